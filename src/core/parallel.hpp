@@ -1,0 +1,41 @@
+// Deterministic parallel loops: the work is cut into chunks of a fixed size, whatever the number of threads, and partial
+// results are combined in chunk order, so the same input gives the same bits on 1 and on N threads.
+#pragma once
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace weft {
+
+/// Upper limit on the threads used by parallel_for and parallel_sum; 0 takes all cores. Call before any loop runs.
+void set_thread_count(int threads);
+int thread_count();
+
+/// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each. Chunks must write to disjoint data.
+template <class Body>
+void parallel_for(std::size_t count, std::size_t chunk, const Body& body) {
+  const std::size_t chunks = (count + chunk - 1) / chunk;
+  const auto run = [&](std::size_t c) { body(c * chunk, std::min(count, (c + 1) * chunk)); };
+  if (chunks <= 1 || thread_count() == 1) {
+    for (std::size_t c = 0; c < chunks; ++c) run(c);
+  } else {
+    tbb::parallel_for(std::size_t{0}, chunks, run);
+  }
+}
+
+/// Sum over [0, count) of body(begin, end) per chunk; the additions happen in chunk order.
+template <class Body>
+double parallel_sum(std::size_t count, std::size_t chunk, const Body& body) {
+  const std::size_t chunks = (count + chunk - 1) / chunk;
+  if (chunks <= 1) return count == 0 ? 0.0 : body(std::size_t{0}, count);
+  std::vector<double> partial(chunks);
+  parallel_for(count, chunk, [&](std::size_t begin, std::size_t end) { partial[begin / chunk] = body(begin, end); });
+  double sum = 0;
+  for (double p : partial) sum += p;
+  return sum;
+}
+
+}  // namespace weft

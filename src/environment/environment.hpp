@@ -1,0 +1,53 @@
+// All objects of a scene now (seed, Fig. 1): topology, geometry, positions, velocities, accelerations.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+#include "mesh/mesh.hpp"
+#include "scene/scene.hpp"
+
+namespace weft::environment {
+
+/// State of the vertices of one object in world space.
+struct Motion {
+  std::vector<Vec3> positions;      ///< [m]
+  std::vector<Vec3> velocities;     ///< [m/s]
+  std::vector<Vec3> accelerations;  ///< [m/s²]
+};
+
+/// A deformable sheet. The solver owns the truth while it steps and writes it back here.
+struct ClothObject {
+  std::string name;
+  mesh::Grid grid;
+  mesh::Mesh mesh;  ///< rest shape in the world pose of the start; uv = (i lu, j lv)
+  Motion motion;
+};
+
+/// A rigid body, still or moved by key frames.
+struct RigidObject {
+  std::string name;
+  mesh::Mesh mesh;   ///< in the body's own coordinates
+  bool moving = false;
+  bool collide = true;
+  bool infinite_floor = false;
+  Motion motion;
+};
+
+class Environment {
+ public:
+  /// Makes meshes and start states. Throws Error(asset_unreadable) naming file and scene line.
+  explicit Environment(const scene::Scene& scene);
+
+  /// Puts the moving rigid objects where they are at time t [s], with exact velocities and accelerations.
+  void move_to(double t);
+
+  std::vector<ClothObject> cloths;
+  std::vector<RigidObject> rigids;  ///< in the order of scene.obstacles
+
+ private:
+  std::vector<scene::PoseTrack> tracks_;  ///< one per rigid
+};
+
+}  // namespace weft::environment

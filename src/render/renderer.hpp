@@ -1,0 +1,50 @@
+// Draws snapshots into images with OpenGL 4.5 core on the CPU.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "frame/frame_snapshot.hpp"
+#include "image/image.hpp"
+
+namespace weft::render {
+
+enum class Quality { draft, preview, final };
+enum class Backend { automatic, osmesa, egl };
+
+struct Settings {
+  int width = 1280, height = 720;          ///< pixels
+  Quality quality = Quality::final;
+  Backend backend = Backend::automatic;
+  std::string camera;                      ///< by name; empty: the first, or automatic framing
+  int threads = 0;                         ///< of the software rasteriser; 0: its own choice
+};
+
+/// Time one picture took.
+struct DrawTimes {
+  double wall_seconds = 0, cpu_seconds = 0;
+};
+
+/// One context and the GPU-side copies of what stays the same. Use from a single thread.
+class Renderer {
+ public:
+  /// Throws Error(internal) with the driver's words where no context can be made.
+  explicit Renderer(const Settings& settings);
+  ~Renderer();
+  Renderer(const Renderer&) = delete;
+  Renderer& operator=(const Renderer&) = delete;
+
+  /// Automatic framing looks at the first snapshot it is given and then stays; call frame_on to choose another.
+  void frame_on(const frame::FrameSnapshot& snapshot);
+  image::Image draw(const frame::FrameSnapshot& snapshot);
+  DrawTimes last_times() const;
+
+  /// Vendor, renderer and version of the GL in use, and which backend was loaded and why.
+  std::string description() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace weft::render

@@ -1,0 +1,187 @@
+// A scene after checking: plain values in SI units, every default filled in, every name resolved.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace weft::scene {
+
+enum class UpAxis { y, z };
+enum class Integrator { implicit_euler, implicit_midpoint, bdf2 };
+enum class Interpolation { linear, cubic };
+enum class HeatQuantity { none, strain, speed };
+
+struct Time {
+  double duration = 5;  ///< [s]; the scene has round(duration * fps) + 1 frames
+  double fps = 25;      ///< frames a second
+  double step = 0.01;   ///< largest time step [s]; a frame is cut into equal steps no longer than this
+  Integrator integrator = Integrator::implicit_euler;
+};
+
+struct Physics {
+  Vec3 gravity{0, 0, -9.81};  ///< [m/s²]; the default follows the up axis
+  double air_density = 1.2;   ///< [kg/m³]; 0 leaves the air out
+  Vec3 wind{0, 0, 0};         ///< velocity of the air [m/s]
+};
+
+struct Solver {
+  double newton_tolerance = 1e-3;  ///< residual against the weight and inertia of the cloth, relative
+  int newton_iterations = 10;      ///< per step, before the step is halved
+  double linear_tolerance = 5e-3;  ///< of the conjugate gradients, relative to the first residual
+  int linear_iterations = 1000;
+  int halvings = 8;                ///< of a rejected step, before the run gives up
+};
+
+/// Contact of all surfaces.
+struct Contact {
+  bool self = true;          ///< cloth against itself and other cloths
+  bool obstacles = true;     ///< cloth against obstacles
+  double stiffness = 100;    ///< of one contact [N/m]
+};
+
+/// A fabric in continuum units (seed, "Elastic Model").
+struct Material {
+  std::string fabric = "cotton";          ///< the named fabric that the numbers started from
+  double density = 0.2;                   ///< [kg/m²]
+  double stretch_weft = 1000;             ///< k1 [N/m]
+  double stretch_warp = 1000;             ///< k2 [N/m]
+  double shear = 100;                     ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
+  double bend = 5e-5;                     ///< B [N·m]
+  double stretch_viscosity = 0;           ///< stress per strain rate, weft and warp [N·s/m]
+  double shear_viscosity = 0;             ///< [N·s/m]
+  double bend_viscosity = 0;              ///< [N·m·s]
+  double thickness = 0.002;               ///< distance that contact keeps between two layers [m]
+  double friction = 0.3;                  ///< Coulomb coefficient; of a pair: the geometric mean of both
+  double drag = 1.0;                      ///< air resistance coefficient of the normal motion; 0 for none
+};
+
+struct Look {
+  Vec3 color{0.8, 0.8, 0.8};                ///< sRGB
+  std::optional<Vec3> back_color;           ///< cloth: the other side; a paler `color` where absent
+  double roughness = 0.6;
+  double thread_spacing = 0.004;            ///< of the drawn weave [m]; cloth only; 0 draws none
+  bool checker = false;                     ///< floors only
+  bool visible = true;
+};
+
+/// A rigid placement: rotation, then translation.
+struct Pose {
+  Vec3 position{0, 0, 0};         ///< [m]
+  Quat rotation{1, 0, 0, 0};
+};
+
+struct PoseKey {
+  double time = 0;  ///< [s], strictly increasing
+  Pose pose;
+};
+
+struct PoseTrack {
+  Interpolation interpolation = Interpolation::cubic;
+  std::vector<PoseKey> keys;  ///< empty: stays at the object's own pose
+};
+
+/// Particles held in place, or moved.
+struct Pin {
+  /// Which particles, in fractions of the cloth's rest size along weft and warp: those inside [low, high].
+  Vec2 low{0, 0}, high{1, 1};
+  std::string follow;   ///< obstacle whose motion they share; empty: none
+  PoseTrack motion;     ///< else displacement of the held particles from where they start (position relative, rotation about the start centroid)
+  double release = -1;  ///< time at which they are let go [s]; negative: never
+};
+
+struct Cloth {
+  std::string name;
+  Vec2 size{1, 1};              ///< weft, warp [m]
+  int particles_weft = 41, particles_warp = 41;
+  Pose pose;                    ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
+  Vec3 velocity{0, 0, 0};       ///< at the start [m/s]
+  Material material;
+  Look look;
+  std::vector<Pin> pins;
+};
+
+struct Sphere { double radius = 0.5; };
+struct BoxShape { Vec3 size{1, 1, 1}; double bevel = 0; };
+struct Cone { double radius = 0.5, height = 1; };                    ///< base at -height/2, axis along the up axis
+struct Torus { double radius = 0.5, tube_radius = 0.15; };
+struct Cylinder { double radius = 0.5, height = 1; };
+struct HalfPipe { double radius = 1, length = 2, thickness = 0.05; };///< open upward, length along x
+struct Plane { Vec2 size{20, 20}; bool infinite = true; };           ///< drawn to the horizon where infinite
+struct MeshFile { std::filesystem::path path; double scale = 1; };   ///< path is absolute after checking
+
+using Shape = std::variant<Sphere, BoxShape, Cone, Torus, Cylinder, HalfPipe, Plane, MeshFile>;
+
+struct Obstacle {
+  std::string name;
+  Shape shape;
+  int segments = 48;    ///< round shapes: faces around
+  Pose pose;
+  PoseTrack motion;     ///< absolute poses; empty: rests at `pose`
+  double friction = 0.3;
+  bool collide = true;
+  Look look;
+  int line = 0, column = 0;  ///< where the scene names it, for errors of its file
+};
+
+struct CameraKey {
+  double time = 0;
+  Vec3 position, target;
+  double field_of_view = 35;
+};
+
+struct Camera {
+  std::string name;
+  std::vector<CameraKey> keys;  ///< at least one; one: still
+  Interpolation interpolation = Interpolation::cubic;
+};
+
+struct LightKey {
+  double time = 0;
+  Vec3 direction{-0.4, -0.5, -1}, position{0, 0, 5}, target{0, 0, 0};
+  double intensity = 1;
+};
+
+struct Light {
+  std::string name;
+  bool spot = false;
+  double cone_angle = 45;
+  Vec3 color{1, 1, 1};
+  double softness = 2;
+  std::vector<LightKey> keys;  ///< at least one; one: still
+  Interpolation interpolation = Interpolation::cubic;
+};
+
+struct Render {
+  int width = 1280, height = 720;
+  std::string camera;                          ///< name; empty: the first, or automatic framing where there is none
+  std::optional<Vec3> sky_color, ground_color; ///< sRGB; the renderer's own where absent
+  std::optional<double> sky_intensity;
+  HeatQuantity heat = HeatQuantity::none;
+  double heat_max = 0;
+};
+
+struct Scene {
+  std::filesystem::path file;
+  std::string name;    ///< file name without its ending; names the output
+  std::string title;
+  std::uint64_t hash = 0;  ///< of the checked values, so that comments and order do not count
+  UpAxis up = UpAxis::z;
+  Time time;
+  Physics physics;
+  Solver solver;
+  Contact contact;
+  std::vector<Cloth> cloths;
+  std::vector<Obstacle> obstacles;
+  std::vector<Camera> cameras;
+  std::vector<Light> lights;
+  Render render;
+
+  int frame_count() const { return static_cast<int>(time.duration * time.fps + 0.5) + 1; }
+};
+
+}  // namespace weft::scene
