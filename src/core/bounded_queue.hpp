@@ -1,0 +1,80 @@
+// A queue of limited length between two stages of a pipeline.
+#pragma once
+
+#include <condition_variable>
+#include <cstddef>
+#include <deque>
+#include <exception>
+#include <mutex>
+#include <optional>
+#include <utility>
+
+namespace weft {
+
+/// Hands items from one thread to another in order. Trouble travels both ways: `close(failure)` reaches the consumer
+/// after the last whole item, so that finished work is kept; `cancel()` stops the producer at its next push.
+template <class T>
+class BoundedQueue {
+ public:
+  /// `capacity` items (at least 1) may wait; the memory of the pipeline is bounded by it.
+  explicit BoundedQueue(std::size_t capacity) : capacity_(capacity > 0 ? capacity : 1) {}
+
+  /// Waits for room. False when nobody will take the item any more: the producer should stop.
+  [[nodiscard]] bool push(T item) {
+    std::unique_lock lock(mutex_);
+    room_.wait(lock, [&] { return items_.size() < capacity_ || closed_ || cancelled_; });
+    if (closed_ || cancelled_) return false;
+    items_.push_back(std::move(item));
+    lock.unlock();
+    arrived_.notify_one();
+    return true;
+  }
+
+  /// Waits for an item. Nothing at the end of the line; there the producer's failure, if any, is thrown.
+  std::optional<T> pop() {
+    std::unique_lock lock(mutex_);
+    arrived_.wait(lock, [&] { return !items_.empty() || closed_ || cancelled_; });
+    if (items_.empty() || cancelled_) {
+      if (failure_ && !cancelled_) std::rethrow_exception(failure_);
+      return std::nullopt;
+    }
+    std::optional<T> item(std::move(items_.front()));
+    items_.pop_front();
+    lock.unlock();
+    room_.notify_one();
+    return item;
+  }
+
+  /// The producer is done; what waits can still be popped. Only the first call counts.
+  void close(std::exception_ptr failure = nullptr) {
+    {
+      const std::lock_guard lock(mutex_);
+      if (!closed_) failure_ = std::move(failure);
+      closed_ = true;
+    }
+    arrived_.notify_all();
+    room_.notify_all();
+  }
+
+  /// The consumer is done; what waits is dropped.
+  void cancel() {
+    {
+      const std::lock_guard lock(mutex_);
+      cancelled_ = true;
+      items_.clear();
+    }
+    arrived_.notify_all();
+    room_.notify_all();
+  }
+
+ private:
+  const std::size_t capacity_;
+  std::mutex mutex_;
+  std::condition_variable room_, arrived_;
+  std::deque<T> items_;
+  bool closed_ = false;
+  bool cancelled_ = false;
+  std::exception_ptr failure_;
+};
+
+}  // namespace weft
