@@ -1,0 +1,54 @@
+// What every force of the cloth shares.
+#pragma once
+
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/types.hpp"
+#include "mesh/mesh.hpp"
+#include "solver/block_matrix.hpp"
+
+namespace weft::forces {
+
+/// Which derivative goes into the matrix.
+enum class Linearisation {
+  exact,     ///< the Jacobian itself, indefinite under compression and unsymmetric with viscosity
+  definite,  ///< its symmetric positive semidefinite part term by term: what conjugate gradients and descent need
+};
+
+/// One evaluation of the forces at (x, v).
+struct Evaluation {
+  std::span<const Vec3> x;                ///< positions [m]
+  std::span<const Vec3> v;                ///< velocities [m/s]
+  std::span<Vec3> force;                  ///< receives += f [N]
+  solver::BlockMatrix* matrix = nullptr;  ///< receives −(∂f/∂x + rate ∂f/∂v) [N/m]; nullptr: forces only
+  double rate = 0;                        ///< dv/dx of the integration scheme [1/s]
+  Linearisation linearisation = Linearisation::definite;
+};
+
+/// A force on the particles of one cloth. `first` is the cloth's first particle in the global numbering.
+class Force {
+ public:
+  virtual ~Force() = default;
+
+  /// Pairs of particles that the Jacobian couples.
+  virtual void couple(std::vector<std::pair<Index, Index>>& pairs) const = 0;
+  /// Looks up where the blocks are; once, after the pattern is known.
+  virtual void attach(const solver::BlockMatrix& matrix) = 0;
+
+  virtual void add(const Evaluation& at) const = 0;
+  /// Elastic energy [J].
+  virtual double energy(std::span<const Vec3> x) const = 0;
+};
+
+/// Share of the sheet's area that belongs to grid line `i` of `count` with spacing `l`: half a spacing at the border
+/// [m].
+inline double line_width(int i, int count, double l) {
+  return (i == 0 || i == count - 1) ? 0.5 * l : l;
+}
+
+/// Lumped masses of a grid [kg], ρ times the area of each particle (ρ in kg/m²).
+std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
+
+}  // namespace weft::forces

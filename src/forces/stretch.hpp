@@ -1,0 +1,52 @@
+// Weft and warp stretch, elastic and viscous.
+#pragma once
+
+#include <array>
+
+#include "forces/force.hpp"
+
+namespace weft::forces {
+
+struct StretchParameters {
+  double weft = 0, warp = 0;  ///< k1, k2 [N/m]
+  double viscosity = 0;       ///< stress per strain rate, both directions [N·s/m]
+};
+
+/// Tension along the grid lines: seed Eq. (1), entries 11 and 22, with the spring formula of "Elastic Model".
+///
+/// Energy of an edge d = x_j − x_i of rest length l that stands for the area A: ½ k A (‖d‖/l − 1)². The force density
+/// of the seed, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], is that on x_j; times A it is the force here.
+/// Viscosity: dissipation ½ η A (d/dt ‖d‖/l)², the same form on the strain rate.
+class Stretch final : public Force {
+ public:
+  Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::BlockMatrix& matrix) override;
+  void add(const Evaluation& at) const override;
+  double energy(std::span<const Vec3> x) const override;
+
+  /// Largest |‖d‖/l − 1| of all edges.
+  double max_strain(std::span<const Vec3> x) const;
+  /// Raises heat[particle − first] to the largest strain of the edges that meet there.
+  void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const;
+
+ private:
+  struct Edge {
+    Index i, j;
+    double rest_length;  // l [m]
+    double elasticity;   // k A / l² [N/m]
+    double viscosity;    // η A / l² [N·s/m]
+  };
+  struct Slots {
+    solver::Slot ii, jj, ij, ji;
+  };
+  Mat3 stiffness(const Edge& edge, const Vec3& n, double length, const Vec3& relative_velocity,
+                 const Evaluation& at) const;
+
+  Index first_;
+  std::vector<Edge> edges_;
+  std::vector<Slots> slots_;
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,54 @@
+// Symmetric sparse matrix of 3×3 blocks whose pattern is fixed while its values change with every linearisation.
+#pragma once
+
+#include <array>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace weft::solver {
+
+/// Position of one block among the values of a BlockMatrix.
+using Slot = Index;
+
+/// Block rows with both triangles stored: the product is then one gather per row, free of write conflicts, so it
+/// gives the same bits on any number of threads.
+class BlockMatrix {
+ public:
+  BlockMatrix() = default;
+
+  /// Pattern of `rows` block rows: the diagonal, and (i, j) and (j, i) for each of `couplings`. Repeats are welcome.
+  BlockMatrix(Index rows, std::vector<std::pair<Index, Index>> couplings);
+
+  Index rows() const { return static_cast<Index>(diagonal_.size()); }
+  std::size_t blocks() const { return columns_.size(); }
+
+  /// Where block (row, column) lives. The pattern must hold it.
+  Slot slot(Index row, Index column) const;
+  Slot diagonal(Index row) const { return diagonal_[static_cast<std::size_t>(row)]; }
+
+  void set_zero();
+  /// Takes over the values of a matrix of the same pattern.
+  void copy_values(const BlockMatrix& other) { values_ = other.values_; }
+
+  void add(Slot slot, const Mat3& block) { map(slot) += block; }
+  void subtract(Slot slot, const Mat3& block) { map(slot) -= block; }
+  /// Adds `value` times the unit matrix.
+  void add_scalar(Slot slot, double value);
+  Mat3 block(Slot slot) const { return Eigen::Map<const Mat3>(values_.data() + 9 * static_cast<std::size_t>(slot)); }
+
+  /// y = A x over the rows [begin, end); x and y have one entry per block row and must not overlap.
+  void multiply(std::span<const Vec3> x, std::span<Vec3> y, std::size_t begin, std::size_t end) const;
+
+ private:
+  Eigen::Map<Mat3> map(Slot slot) { return Eigen::Map<Mat3>(values_.data() + 9 * static_cast<std::size_t>(slot)); }
+
+  std::vector<Index> row_start_;  // rows + 1 entries into columns_
+  std::vector<Index> columns_;    // ascending within a row
+  std::vector<Slot> diagonal_;    // per row
+  std::vector<double> values_;    // 9 per block, column-major, and 3 more at the end so that a column loads as four
+};
+
+}  // namespace weft::solver

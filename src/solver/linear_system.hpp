@@ -1,0 +1,33 @@
+// The linear system of one Newton iteration: assembled blocks, contacts beside them, constraints around both.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/types.hpp"
+#include "solver/block_matrix.hpp"
+
+namespace weft::solver {
+
+/// Directions in which a particle may move: the solution stays in the range of `free` (Baraff & Witkin, "Large Steps in
+/// Cloth Simulation", 1998, section 5). Zero pins the particle, I − n nᵀ keeps it from moving along n.
+struct ParticleConstraint {
+  Index particle = 0;
+  Mat3 free = Mat3::Zero();  ///< a projection: symmetric, free² = free
+};
+
+/// A spring between weighted sums of particles, wᵀw ⊗ stiffness: what a contact adds to the matrix. Contacts come and
+/// go with every step, so they are kept out of the fixed pattern.
+struct StencilTerm {
+  std::array<Index, 4> particles{0, 0, 0, 0};
+  std::array<double, 4> weights{0, 0, 0, 0};  ///< zero for entries that are no particles
+  Mat3 stiffness = Mat3::Zero();              ///< symmetric, positive semidefinite [N/m]
+};
+
+struct LinearSystem {
+  BlockMatrix matrix;  ///< positive definite on the free directions
+  std::vector<StencilTerm> terms;
+  std::vector<ParticleConstraint> constraints;  ///< at most one per particle
+};
+
+}  // namespace weft::solver
