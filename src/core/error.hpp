@@ -29,8 +29,7 @@ class Error : public std::runtime_error {
   Error(ExitCode code, const std::string& text) : std::runtime_error(text), code_(code) {}
 
   template <class... Args>
-  Error(ExitCode code, fmt::format_string<Args...> text, Args&&... args)
-    requires(sizeof...(Args) > 0)
+  Error(ExitCode code, fmt::format_string<Args...> text, Args&&... args) requires(sizeof...(Args) > 0)
       : Error(code, fmt::format(text, std::forward<Args>(args)...)) {}
 
   ExitCode code() const { return code_; }

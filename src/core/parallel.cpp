@@ -20,6 +20,8 @@ void set_thread_count(int threads) {
                         : nullptr;
 }
 
-int thread_count() { return g_threads > 0 ? g_threads : tbb::info::default_concurrency(); }
+int thread_count() {
+  return g_threads > 0 ? g_threads : tbb::info::default_concurrency();
+}
 
 }  // namespace weft

@@ -1,5 +1,5 @@
-// Deterministic parallel loops: the work is cut into chunks of a fixed size, whatever the number of threads, and partial
-// results are combined in chunk order, so the same input gives the same bits on 1 and on N threads.
+// Deterministic parallel loops: the work is cut into chunks of a fixed size, whatever the number of threads, and
+// partial results are combined in chunk order, so the same input gives the same bits on 1 and on N threads.
 #pragma once
 
 #include <tbb/parallel_for.h>
@@ -14,7 +14,8 @@ namespace weft {
 void set_thread_count(int threads);
 int thread_count();
 
-/// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each. Chunks must write to disjoint data.
+/// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each. Chunks must write to disjoint
+/// data.
 template <class Body>
 void parallel_for(std::size_t count, std::size_t chunk, const Body& body) {
   const std::size_t chunks = (count + chunk - 1) / chunk;

@@ -1,0 +1,70 @@
+#include "core/log.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <mutex>
+
+namespace weft::log {
+namespace {
+
+struct State {
+  std::mutex mutex;
+  std::string status;
+  std::vector<std::string> warnings;
+};
+
+State& state() {
+  static State instance;
+  return instance;
+}
+
+// Carriage return and "erase to the end of the line" (ECMA-48 EL).
+constexpr std::string_view kEraseLine = "\r\x1b[K";
+
+// One write per line, so that lines of other processes on the same terminal do not mix in. Trouble with standard error
+// cannot be reported anywhere and must not stop a run.
+void write(std::string_view text) {
+  (void)std::fwrite(text.data(), 1, text.size(), stderr);
+}
+
+void print(State& s, std::string_view line) {
+  if (s.status.empty()) {
+    write(fmt::format("{}\n", line));
+  } else {
+    write(fmt::format("{}{}\n{}", kEraseLine, line, s.status));
+  }
+}
+
+}  // namespace
+
+void info(std::string_view line) {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  print(s, line);
+}
+
+void warn(std::string_view text) {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  if (std::find(s.warnings.begin(), s.warnings.end(), text) != s.warnings.end()) return;
+  s.warnings.emplace_back(text);
+  print(s, fmt::format("warning: {}", text));
+}
+
+std::vector<std::string> warnings() {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  return s.warnings;
+}
+
+void status(std::string_view line) {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  if (line.empty() && s.status.empty()) return;
+  s.status = line;
+  write(fmt::format("{}{}", kEraseLine, line));
+}
+
+}  // namespace weft::log

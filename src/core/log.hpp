@@ -1,0 +1,22 @@
+// Lines for people on standard error, whole and in order whichever thread they come from. Safe from all threads.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+namespace weft::log {
+
+/// Prints one line.
+void info(std::string_view line);
+
+/// Prints `warning: text` and keeps the text for the summary at the end; the same text again is ignored.
+void warn(std::string_view text);
+
+/// All warnings so far, in order.
+std::vector<std::string> warnings();
+
+/// Shows `line` in place below the other lines, for a progress bar; an empty one takes it away. For terminals only.
+void status(std::string_view line);
+
+}  // namespace weft::log

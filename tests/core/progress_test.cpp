@@ -1,0 +1,78 @@
+#include "core/progress.hpp"
+
+#include <gtest/gtest.h>
+
+namespace weft {
+namespace {
+
+TEST(FormatDuration, PicksTheUnitByLength) {
+  EXPECT_EQ(format_duration(0), "0 s");
+  EXPECT_EQ(format_duration(59.4), "59 s");
+  EXPECT_EQ(format_duration(59.6), "1:00 min");
+  EXPECT_EQ(format_duration(187), "3:07 min");
+  EXPECT_EQ(format_duration(3765), "1:02:45 h");
+  EXPECT_EQ(format_duration(-1), "0 s");
+}
+
+TEST(RemainingTime, IsUnknownUntilThereIsAPace) {
+  RemainingTime remaining({100, 100, 100});
+  EXPECT_EQ(remaining.seconds(), std::nullopt);
+  remaining.sample(0, {0, 0, 0});
+  remaining.sample(5, {0, 0, 0});
+  EXPECT_EQ(remaining.seconds(), std::nullopt);
+}
+
+TEST(RemainingTime, FollowsTheSlowestStage) {
+  RemainingTime remaining({100, 100, 100});
+  remaining.sample(0, {0, 0, 0});
+  remaining.sample(10, {40, 20, 20});  // 4 a second, 2 a second
+  ASSERT_TRUE(remaining.seconds());
+  EXPECT_DOUBLE_EQ(*remaining.seconds(), 40);  // 80 frames at 2 a second
+}
+
+TEST(RemainingTime, ForgetsThePaceOfLongAgo) {
+  RemainingTime remaining({1000, 0, 0});
+  remaining.sample(0, {0, 0, 0});
+  remaining.sample(10, {500, 0, 0});                                               // a quick start: 50 a second
+  for (int t = 20; t <= 60; t += 10) remaining.sample(t, {500 + (t - 10), 0, 0});  // then 1 a second
+  ASSERT_TRUE(remaining.seconds());
+  EXPECT_DOUBLE_EQ(*remaining.seconds(), 450);  // 450 frames left at 1 a second
+}
+
+TEST(RemainingTime, IgnoresAStageThatHasNotBegun) {
+  RemainingTime remaining({100, 10, 10});  // the last ten frames are drawn
+  remaining.sample(0, {0, 0, 0});
+  remaining.sample(10, {50, 0, 0});
+  ASSERT_TRUE(remaining.seconds());
+  EXPECT_DOUBLE_EQ(*remaining.seconds(), 10);
+}
+
+TEST(RemainingTime, IsZeroWhenAllIsDone) {
+  RemainingTime remaining({2, 2, 2});
+  remaining.sample(0, {0, 0, 0});
+  remaining.sample(1, {2, 2, 2});
+  EXPECT_EQ(remaining.seconds(), 0.0);
+}
+
+TEST(ProgressBar, FillsWithTheFramesOfAllStages) {
+  EXPECT_EQ(progress_bar({0, 0, 0}, {4, 4, 4}, std::nullopt, 200),
+            "[------------------------]   0 %  simulated 0/4  drawn 0/4  written 0");
+  EXPECT_EQ(progress_bar({3, 2, 1}, {4, 4, 4}, 12.0, 200),
+            "[############------------]  50 %  simulated 3/4  drawn 2/4  written 1  12 s left");
+  EXPECT_EQ(progress_bar({4, 4, 4}, {4, 4, 4}, 0.0, 200),
+            "[########################] 100 %  simulated 4/4  drawn 4/4  written 4  0 s left");
+}
+
+TEST(ProgressBar, StaysOneColumnNarrowerThanTheTerminal) {
+  EXPECT_EQ(progress_bar({1, 0, 0}, {4, 4, 4}, 3.0, 40).size(), 39u);
+}
+
+TEST(ProgressLine, NamesAllStagesAndBothTimes) {
+  EXPECT_EQ(progress_line({60, 57, 55}, {126, 100, 100}, 12, 75.0),
+            "60 of 126 frames simulated, 57 of 100 drawn, 55 written after 12 s, about 1:15 min left");
+  EXPECT_EQ(progress_line({0, 0, 0}, {126, 126, 126}, 5, std::nullopt),
+            "0 of 126 frames simulated, 0 of 126 drawn, 0 written after 5 s");
+}
+
+}  // namespace
+}  // namespace weft
