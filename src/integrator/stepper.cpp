@@ -1,0 +1,151 @@
+#include "integrator/stepper.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::integrator {
+
+std::string_view describe(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::solved:
+      return "solved";
+    case Verdict::not_finite:
+      return "a position or force is not finite";
+    case Verdict::newton_stalled:
+      return "Newton's method did not reach its tolerance";
+    case Verdict::indefinite:
+      return "the linear system is not positive definite";
+  }
+  return "unknown";
+}
+
+Stepper::Stage Stepper::begin(const State& now, double h) {
+  const std::size_t n = now.x.size();
+  for (auto* vector : {&x_hat_, &v_hat_, &x_, &v_, &x_end_, &constant_force_, &force_, &residual_, &delta_})
+    vector->resize(n);
+  x_hat_ = now.x;
+  v_hat_ = now.v;
+  if (method_ == Method::implicit_midpoint) return {0.5 * h, 2.0, 0.5};
+  if (method_ == Method::implicit_euler || previous_h_ == 0) return {h, 1.0, 1.0};
+
+  // BDF2 with variable steps; zero-stable for r < 1 + √2.
+  const double r = h / previous_h_;
+  const double now_weight = (1 + r) * (1 + r) / (1 + 2 * r), before_weight = r * r / (1 + 2 * r);
+  for (std::size_t i = 0; i < n; ++i) {
+    x_hat_[i] = now_weight * now.x[i] - before_weight * previous_.x[i];
+    v_hat_[i] = now_weight * now.v[i] - before_weight * previous_.v[i];
+  }
+  return {h * (1 + r) / (1 + 2 * r), 1.0, 1.0};
+}
+
+// Brings v and x_end in line with x.
+void Stepper::evaluate(const State& now, const Stage& stage) {
+  for (std::size_t i = 0; i < x_.size(); ++i) {
+    v_[i] = (x_[i] - x_hat_[i]) / stage.beta;
+    x_end_[i] = now.x[i] + stage.end_rate * (x_[i] - now.x[i]);
+  }
+}
+
+void Stepper::gather_residual(std::span<const double> masses, const Stage& stage) {
+  for (std::size_t i = 0; i < x_.size(); ++i)
+    residual_[i] = force_[i] + constant_force_[i] - (masses[i] / stage.beta) * (v_[i] - v_hat_[i]);
+  cg_.filter(residual_);
+}
+
+// Norm of the residual at the current stage, with the preconditioner at hand.
+double Stepper::residual(const System& system, const State& now, const Stage& stage) {
+  evaluate(now, stage);
+  std::fill(force_.begin(), force_.end(), Vec3::Zero());
+  system.forces({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, force_);
+  gather_residual(system.masses(), stage);
+  return cg_.norm(residual_);
+}
+
+StepReport Stepper::step(const System& system, const State& now, double h, const Vec3& gravity,
+                         std::span<const HeldParticle> held, solver::LinearSystem& scratch, State& next) {
+  const std::size_t n = now.x.size();
+  const auto masses = system.masses();
+  const Stage stage = begin(now, h);
+
+  // First guess: unchanged velocity. It is also where the non-stiff forces are taken, with the velocity extrapolated
+  // from the last step, so that they keep the method's order.
+  State& guess = next;
+  guess.x.resize(n);
+  guess.v.resize(n);
+  const double trend = previous_h_ > 0 && method_ != Method::implicit_euler ? stage.extrapolation * h / previous_h_ : 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    x_[i] = now.x[i] + stage.extrapolation * h * now.v[i];
+    guess.x[i] = x_[i];
+    guess.v[i] = trend > 0 ? Vec3(now.v[i] + trend * (now.v[i] - previous_.v[i])) : now.v[i];
+    constant_force_[i] = masses[i] * gravity;
+  }
+  system.explicit_forces(guess, h, constant_force_);
+
+  // Held directions start at their target and stay there.
+  scratch.constraints.clear();
+  for (const HeldParticle& particle : held) {
+    const auto i = static_cast<std::size_t>(particle.constraint.particle);
+    const Vec3 target = now.x[i] + (particle.x_end - now.x[i]) / stage.end_rate;
+    x_[i] = target + particle.constraint.free * (x_[i] - target);
+    scratch.constraints.push_back(particle.constraint);
+  }
+
+  StepReport report;
+  double goal = 0;
+  for (;;) {
+    evaluate(now, stage);
+    std::fill(force_.begin(), force_.end(), Vec3::Zero());
+    system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, force_, scratch);
+    cg_.prepare(scratch);
+    gather_residual(masses, stage);
+    if (report.newton_iterations == 0) {
+      report.first_residual = cg_.norm(residual_);
+      // Without the weight as a second measure a cloth at rest would be solved down to rounding, and a hanging one that
+      // starts from equilibrium of everything but gravity would never move.
+      const double weight = cg_.norm(constant_force_);
+      goal = parameters_.tolerance * std::max(report.first_residual, weight);
+    }
+    const double before = cg_.norm(residual_);
+    const solver::LinearReport linear =
+        cg_.solve(residual_, std::max(parameters_.linear_tolerance * before, 0.1 * goal),
+                  parameters_.max_linear_iterations, delta_);
+    ++report.newton_iterations;
+    report.linear_iterations += linear.iterations;
+    for (std::size_t i = 0; i < n; ++i) x_[i] += delta_[i];
+
+    report.last_residual = residual(system, now, stage);
+    if (!std::isfinite(report.last_residual)) {
+      report.verdict = Verdict::not_finite;
+      return report;
+    }
+    if (report.last_residual <= goal) break;
+    if (!linear.definite) {
+      report.verdict = Verdict::indefinite;
+      return report;
+    }
+    if (report.newton_iterations >= parameters_.max_iterations) {
+      report.verdict = Verdict::newton_stalled;
+      return report;
+    }
+  }
+
+  for (std::size_t i = 0; i < n; ++i) {
+    next.x[i] = x_end_[i];
+    next.v[i] = stage.end_rate == 1 ? v_[i] : Vec3(2 * v_[i] - now.v[i]);
+  }
+  for (const HeldParticle& particle : held) {
+    const auto i = static_cast<std::size_t>(particle.constraint.particle);
+    const Mat3& free = particle.constraint.free;
+    next.x[i] = particle.x_end + free * (next.x[i] - particle.x_end);
+    next.v[i] = particle.v_end + free * (next.v[i] - particle.v_end);
+  }
+  return report;
+}
+
+void Stepper::accept(const State& before, double h) {
+  if (method_ == Method::implicit_euler) return;
+  previous_ = before;
+  previous_h_ = h;
+}
+
+}  // namespace weft::integrator

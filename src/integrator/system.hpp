@@ -1,0 +1,50 @@
+// What the integrator knows of the thing it integrates: M x'' = f(x, x') with constraints.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "solver/linear_system.hpp"
+
+namespace weft::integrator {
+
+/// Positions [m] and velocities [m/s] of all particles.
+struct State {
+  std::vector<Vec3> x, v;
+};
+
+/// Where the implicit equation of a step is evaluated.
+struct StagePoint {
+  std::span<const Vec3> x;      ///< stage positions
+  std::span<const Vec3> v;      ///< stage velocities, (x − x̂) / β
+  std::span<const Vec3> x_end;  ///< positions at the end of the step that this stage leads to; contacts act there
+  double rate = 0;              ///< dv/dx = 1/β [1/s]
+  double end_rate = 1;          ///< dx_end/dx: 1, or 2 for the midpoint rule
+};
+
+class System {
+ public:
+  virtual ~System() = default;
+
+  virtual std::span<const double> masses() const = 0;
+
+  /// Non-stiff forces of the step [N]: taken once, at the given extrapolated state, outside of the implicit solve.
+  virtual void explicit_forces(const State& at, double h, std::span<Vec3> force) const = 0;
+
+  /// Stiff forces at a stage [N].
+  virtual void forces(const StagePoint& at, std::span<Vec3> force) const = 0;
+
+  /// As `forces`, and fills system.matrix with rate² M − ∂f/∂x − rate ∂f/∂v and system.terms with what stands beside
+  /// it.
+  virtual void linearise(const StagePoint& at, std::span<Vec3> force, solver::LinearSystem& system) const = 0;
+};
+
+/// A particle held in some directions: at the end of the step it is at `x_end`, moving with `v_end`, as far as the
+/// constraint reaches.
+struct HeldParticle {
+  solver::ParticleConstraint constraint;
+  Vec3 x_end, v_end;
+};
+
+}  // namespace weft::integrator
