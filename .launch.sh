@@ -1,0 +1,61 @@
+# What `weft` and `tests/run` share: packages, lock and build. Sourced, with $root naming the top of the source tree.
+# Whatever is said goes to stderr: stdout belongs to the program.
+
+say() { echo "weft: $*" >&2; }
+die() { status=$1; shift; say "$*"; exit "$status"; }
+
+# use_preset NAME: chooses the build folder of a preset, and waits until nobody else builds there. Unlock: exec 9>&-
+use_preset() {
+  preset=$1
+  folder=$root/build
+  [ "$preset" = release ] || folder=$root/build-$preset
+  { mkdir -p "$folder" && : >>"$folder/.lock"; } 2>/dev/null || die 2 "cannot write in $folder, where Weft is built"
+  exec 9>>"$folder/.lock"
+  flock -n 9 || { say "waiting for another build in $folder"; flock 9; }
+}
+
+# quietly COMMAND...: its output goes to a log, which is shown only if it fails.
+quietly() {
+  "$@" </dev/null >"$folder/launch.log" 2>&1 || { cat "$folder/launch.log" >&2; return 1; }
+}
+
+# need_packages KIND...: installs the packages of these kinds in .packages that are missing. Apt does not inherit the
+# lock: the daemons that a package may start would hold it for ever.
+need_packages() {
+  command -v dpkg-query >/dev/null || return 0  # not Debian: CMake will name what it cannot find
+  missing=$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' | awk -v kinds=" $* " '
+    NR == FNR { if ($2 == "installed") installed[$1]; next }
+    NF && index(kinds, " " $1 " ") && !($2 in installed) { printf " %s", $2 }' - "$root/.packages")
+  [ -n "$missing" ] || return 0
+  [ "$(id -u)" = 0 ] || die 2 "Debian packages are missing; install them and call again:
+  sudo apt-get update && sudo apt-get install --no-install-recommends$missing"
+  say "installing$missing"
+  export DEBIAN_FRONTEND=noninteractive
+  # shellcheck disable=SC2086 # one word for each package
+  { quietly apt-get -q -o DPkg::Lock::Timeout=600 update &&
+    quietly apt-get -q -y -o DPkg::Lock::Timeout=600 install --no-install-recommends $missing; } 9>&- ||
+    die 2 "apt-get could not install$missing"
+}
+
+# configure [-DNAME=VALUE...]: runs CMake where that was not done yet, where the tree has moved since, or where an
+# option has another value. Ninja itself sees changes of the CMake files. Only who asks for the tests gets them.
+configure() {
+  cache=$folder/CMakeCache.txt
+  if [ ! -f "$folder/build.ninja" ] || ! grep -qxF "CMAKE_HOME_DIRECTORY:INTERNAL=$root" "$cache"; then
+    set -- --fresh -DWEFT_TESTS=OFF "$@"
+  else
+    differs=
+    for option; do grep -qxF "${option#-D}" "$cache" || differs=1; done
+    [ -n "$differs" ] || return 0
+  fi
+  quietly cmake -S "$root" --preset "$preset" "$@" || die 1 "the build could not be configured"
+}
+
+# build TARGET: with as many compilers at once as there are processors and 1.5 GB of free memory for each.
+build() {
+  jobs=$(awk -v jobs="$(nproc)" '/^MemAvailable:/ { fit = int($2 / 1500000) }
+                                 END { print fit < 1 ? 1 : fit < jobs ? fit : jobs }' /proc/meminfo)
+  say "building"
+  if [ -t 2 ]; then ninja -C "$folder" -j "$jobs" "$1" >&2; else quietly ninja -C "$folder" -j "$jobs" "$1"; fi ||
+    die 1 "the build failed"
+}
