@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "environment/track.hpp"
 #include "mesh/mesh.hpp"
 #include "scene/scene.hpp"
 
@@ -28,7 +29,7 @@ struct ClothObject {
 /// A rigid body, still or moved by key frames.
 struct RigidObject {
   std::string name;
-  mesh::Mesh mesh;   ///< in the body's own coordinates
+  mesh::Mesh mesh;  ///< in the body's own coordinates; shapes already turned to the scene's up axis
   bool moving = false;
   bool collide = true;
   bool infinite_floor = false;
@@ -37,17 +38,21 @@ struct RigidObject {
 
 class Environment {
  public:
-  /// Makes meshes and start states. Throws Error(asset_unreadable) naming file and scene line.
+  /// Makes meshes and the state at time 0. Throws Error(asset_unreadable) naming file and scene line.
   explicit Environment(const scene::Scene& scene);
 
-  /// Puts the moving rigid objects where they are at time t [s], with exact velocities and accelerations.
+  /// Puts the moving rigid objects where they are at time t [s], with exact velocities and accelerations. Linear in the
+  /// vertices of moving objects; allocates nothing.
   void move_to(double t);
+
+  /// Pose of rigid object `rigid` at any time [s], whatever the last move_to was.
+  PoseSample pose(std::size_t rigid, double t) const { return tracks_[rigid].at(t); }
 
   std::vector<ClothObject> cloths;
   std::vector<RigidObject> rigids;  ///< in the order of scene.obstacles
 
  private:
-  std::vector<scene::PoseTrack> tracks_;  ///< one per rigid
+  std::vector<Track> tracks_;  ///< one per rigid
 };
 
 }  // namespace weft::environment

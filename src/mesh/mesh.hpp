@@ -24,8 +24,8 @@ struct Mesh {
 
 /// Regular grid of nu × nv particles. Particle (i, j) has index i + nu * j, i along weft (u), j along warp (v).
 struct Grid {
-  int nu = 0, nv = 0;      ///< particles along weft and warp, at least 2
-  double lu = 0, lv = 0;   ///< rest spacing along weft and warp [m]
+  int nu = 0, nv = 0;     ///< particles along weft and warp, at least 2
+  double lu = 0, lv = 0;  ///< rest spacing along weft and warp [m]
   Index index(int i, int j) const { return static_cast<Index>(i + nu * j); }
   Index size() const { return static_cast<Index>(nu * nv); }
 };

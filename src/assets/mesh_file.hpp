@@ -1,0 +1,30 @@
+// Static meshes from files, through assimp.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <string>
+
+#include "mesh/mesh.hpp"
+
+namespace weft::assets {
+
+/// Larger files are refused: they would be scans, far beyond what cloth can collide with frame by frame.
+inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{256} << 20;
+
+/// A mesh and what was done to it.
+struct LoadedMesh {
+  mesh::Mesh mesh;                  ///< metres; no uv. Quads stay quads if the file holds nothing else
+  std::size_t removed_faces = 0;    ///< without area: a corner named twice, or all corners on a line
+  std::size_t joined_vertices = 0;  ///< copies at the same place, as made by seams of texture or normals
+};
+
+/// Reads every surface of the file (OBJ, PLY, STL, glTF and what else assimp knows), all meshes merged with the
+/// transforms of their nodes, in the bind pose where the file is animated. Positions are multiplied by `scale` (metres
+/// per unit of the file). Points and lines are ignored; equal positions become one vertex, so that a closed body is
+/// watertight. `where` names what refers to the file, such as "scenes/a.toml:12:8: obstacle.chair". Throws
+/// Error(asset_unreadable) with `where`, the file and assimp's own words.
+LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& where);
+
+}  // namespace weft::assets

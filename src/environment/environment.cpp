@@ -1,0 +1,114 @@
+#include "environment/environment.hpp"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+#include "assets/mesh_file.hpp"
+#include "core/parallel.hpp"
+#include "mesh/quads.hpp"
+#include "mesh/shapes.hpp"
+
+namespace weft::environment {
+namespace {
+
+/// Vertices moved by one task; a task then takes some ten microseconds.
+constexpr std::size_t kVerticesPerTask = 4096;
+
+ClothObject make_cloth(const scene::Cloth& cloth) {
+  ClothObject object;
+  object.name = cloth.name;
+  object.grid = {.nu = cloth.particles_weft,
+                 .nv = cloth.particles_warp,
+                 .lu = cloth.size.x() / (cloth.particles_weft - 1),
+                 .lv = cloth.size.y() / (cloth.particles_warp - 1)};
+  object.mesh = mesh::make_sheet(object.grid);
+  for (Vec3& x : object.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
+  const std::size_t n = object.mesh.positions.size();
+  object.motion = {object.mesh.positions, std::vector<Vec3>(n, cloth.velocity), std::vector<Vec3>(n, Vec3::Zero())};
+  return object;
+}
+
+/// Shapes are made with their axis along z. Where y is up they are turned by -90° about x: z becomes y, x stays.
+mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
+  if (up == scene::UpAxis::y)
+    for (Vec3& x : mesh.positions) x = Vec3(x.x(), x.z(), -x.y());
+  return mesh;
+}
+
+/// Makes the mesh of any shape in the body's own coordinates. A box has its sizes along the scene's axes and a file its
+/// own orientation; the others follow the up axis.
+struct MakeMesh {
+  const scene::Scene& scene;
+  const scene::Obstacle& obstacle;
+
+  mesh::Mesh upright(mesh::Mesh mesh) const { return turned_up(std::move(mesh), scene.up); }
+
+  mesh::Mesh operator()(const scene::Sphere& s) const { return mesh::make_sphere(s.radius, obstacle.segments); }
+  mesh::Mesh operator()(const scene::BoxShape& s) const { return mesh::make_box(s.size, s.bevel, obstacle.segments); }
+  mesh::Mesh operator()(const scene::Cone& s) const {
+    return upright(mesh::make_cone(s.radius, s.height, obstacle.segments));
+  }
+  mesh::Mesh operator()(const scene::Torus& s) const {
+    return upright(mesh::make_torus(s.radius, s.tube_radius, obstacle.segments));
+  }
+  mesh::Mesh operator()(const scene::Cylinder& s) const {
+    return upright(mesh::make_cylinder(s.radius, s.height, obstacle.segments));
+  }
+  mesh::Mesh operator()(const scene::HalfPipe& s) const {
+    return upright(mesh::make_half_pipe(s.radius, s.length, s.thickness, obstacle.segments));
+  }
+  mesh::Mesh operator()(const scene::Plane& s) const { return upright(mesh::make_plane(s.size)); }
+  mesh::Mesh operator()(const scene::MeshFile& s) const {
+    const std::string where =
+        fmt::format("{}:{}:{}: obstacle.{}", scene.file.string(), obstacle.line, obstacle.column, obstacle.name);
+    return assets::load_mesh(s.path, s.scale, where).mesh;
+  }
+};
+
+RigidObject make_rigid(const scene::Scene& scene, const scene::Obstacle& obstacle) {
+  RigidObject object;
+  object.name = obstacle.name;
+  object.mesh = std::visit(MakeMesh{scene, obstacle}, obstacle.shape);
+  object.moving = obstacle.motion.keys.size() > 1;
+  object.collide = obstacle.collide;
+  const auto* plane = std::get_if<scene::Plane>(&obstacle.shape);
+  object.infinite_floor = plane != nullptr && plane->infinite;
+  const std::size_t n = object.mesh.positions.size();
+  const std::vector<Vec3> zero(n, Vec3::Zero());
+  object.motion = {zero, zero, zero};
+  return object;
+}
+
+/// Writes world positions, velocities and accelerations of all vertices of a body.
+void place(RigidObject& object, const PoseSample& pose) {
+  const Mat3 rotation = pose.rotation.toRotationMatrix();
+  const std::vector<Vec3>& body = object.mesh.positions;
+  Motion& motion = object.motion;
+  parallel_for(body.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3 arm = rotation * body[i];
+      motion.positions[i] = pose.position + arm;
+      motion.velocities[i] = pose.velocity_at(arm);
+      motion.accelerations[i] = pose.acceleration_at(arm);
+    }
+  });
+}
+
+}  // namespace
+
+Environment::Environment(const scene::Scene& scene) {
+  for (const scene::Cloth& cloth : scene.cloths) cloths.push_back(make_cloth(cloth));
+  for (const scene::Obstacle& obstacle : scene.obstacles) {
+    rigids.push_back(make_rigid(scene, obstacle));
+    tracks_.emplace_back(obstacle.motion, obstacle.pose);
+    place(rigids.back(), tracks_.back().at(0));
+  }
+}
+
+void Environment::move_to(double t) {
+  for (std::size_t k = 0; k < rigids.size(); ++k)
+    if (rigids[k].moving) place(rigids[k], tracks_[k].at(t));
+}
+
+}  // namespace weft::environment

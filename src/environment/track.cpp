@@ -1,0 +1,134 @@
+#include "environment/track.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace weft::environment {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+/// Half turns are recognised up to this angle [rad]: well above rounding of quaternions, far below what one sees.
+constexpr double kHalfTurnTolerance = 1e-6;
+
+Quat exp(const Vec3& w) {
+  const double angle = w.norm();
+  // sin(a/2)/a, by its series where the quotient loses digits.
+  const double factor = angle > 1e-4 ? std::sin(0.5 * angle) / angle : 0.5 - angle * angle / 48;
+  return Quat(std::cos(0.5 * angle), factor * w.x(), factor * w.y(), factor * w.z());
+}
+
+/// Rotation vector of the shortest turn, angle in [0, pi].
+Vec3 log(const Quat& q) {
+  const Vec3 v = q.w() < 0 ? Vec3(-q.vec()) : Vec3(q.vec());
+  const double sine = v.norm();
+  if (sine < 1e-12) return 2 * v;
+  return 2 * std::atan2(sine, std::abs(q.w())) / sine * v;
+}
+
+/// The rotation vector of q, of the many that differ by whole turns, that comes nearest to `guess`.
+Vec3 log_near(const Quat& q, const Vec3& guess) {
+  const Vec3 w = log(q);
+  const double angle = w.norm();
+  // Without a turn of its own, q says nothing about the axis of whole turns.
+  const Vec3 axis = angle > 1e-9 ? Vec3(w / angle) : Vec3(guess.stableNormalized());
+  return w + 2 * kPi * std::round((guess.dot(axis) - angle) / (2 * kPi)) * axis;
+}
+
+/// Turns from key to key [rad], shortest way.
+std::vector<Vec3> turns_between(const std::vector<Quat>& rotations) {
+  std::vector<Vec3> turns;
+  for (std::size_t i = 0; i + 1 < rotations.size(); ++i) {
+    Vec3 turn = log(rotations[i + 1] * rotations[i].conjugate());
+    // The sign of a half turn's axis is noise: go on turning the way we did.
+    if (!turns.empty() && kPi - turn.norm() < kHalfTurnTolerance && turn.dot(turns.back()) < 0)
+      turn -= 2 * kPi * turn.normalized();
+    turns.push_back(turn);
+  }
+  return turns;
+}
+
+/// Composes exp(b w) onto a rotation whose angular velocity and acceleration are known; db, ddb: derivatives of b by
+/// time. For q = e p: omega = db w + R_e omega_p, and its derivative.
+void turn_further(RotationSpline::Sample& p, const Vec3& w, double b, double db, double ddb) {
+  const Quat e = exp(b * w);
+  const Vec3 carried = e * p.angular_velocity;
+  p.angular_acceleration = ddb * w + e * p.angular_acceleration + (db * w).cross(carried);
+  p.angular_velocity = db * w + carried;
+  p.rotation = e * p.rotation;
+}
+
+std::vector<double> times_of(const scene::PoseTrack& track) {
+  std::vector<double> times;
+  for (const auto& key : track.keys) times.push_back(key.time);
+  return times.empty() ? std::vector{0.0} : times;
+}
+
+std::vector<Vec3> positions_of(const scene::PoseTrack& track, const scene::Pose& rest) {
+  std::vector<Vec3> positions;
+  for (const auto& key : track.keys) positions.push_back(key.pose.position);
+  return positions.empty() ? std::vector{rest.position} : positions;
+}
+
+std::vector<Quat> rotations_of(const scene::PoseTrack& track, const scene::Pose& rest) {
+  std::vector<Quat> rotations;
+  for (const auto& key : track.keys) rotations.push_back(key.pose.rotation.normalized());
+  return rotations.empty() ? std::vector{rest.rotation.normalized()} : rotations;
+}
+
+}  // namespace
+
+RotationSpline::RotationSpline(scene::Interpolation interpolation, std::vector<double> times,
+                               std::vector<Quat> rotations)
+    : interpolation_(interpolation), times_(std::move(times)), rotations_(std::move(rotations)) {
+  const std::vector<Vec3> turns = turns_between(rotations_);
+  std::vector<double> lengths;
+  std::vector<Vec3> slopes;
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    lengths.push_back(times_[i + 1] - times_[i]);
+    slopes.push_back(turns[i] / lengths[i]);
+  }
+  const std::vector<Vec3> bends = natural_second_derivatives<Vec3>(lengths, slopes);
+  for (std::size_t i = 0; i < turns.size(); ++i) {
+    const double h = lengths[i];
+    Segment segment{times_[i], h, rotations_[i], Vec3::Zero(), turns[i], Vec3::Zero()};
+    if (interpolation_ == scene::Interpolation::cubic) {
+      // Angular velocities at both keys, times h/3: the arms of the Bézier curve; the middle takes up the rest.
+      segment.w1 = h / 3 * (slopes[i] - h / 6 * (2 * bends[i] + bends[i + 1]));
+      segment.w3 = h / 3 * (slopes[i] + h / 6 * (bends[i] + 2 * bends[i + 1]));
+      const Quat middle = exp(-segment.w3) * rotations_[i + 1] * rotations_[i].conjugate() * exp(-segment.w1);
+      segment.w2 = log_near(middle, turns[i] - segment.w1 - segment.w3);
+    }
+    segments_.push_back(segment);
+  }
+}
+
+RotationSpline::Sample RotationSpline::at(double t) const {
+  if (t < times_.front() || times_.size() == 1) return {rotations_.front()};
+  if (t >= times_.back()) return {rotations_.back()};
+  const Segment& s = segments_[find_segment(times_, t)];
+  const double h = s.length, u = (t - s.start) / h, v = 1 - u;
+  Sample sample{s.q0};
+  if (interpolation_ == scene::Interpolation::linear) {
+    turn_further(sample, s.w2, u, 1 / h, 0);
+  } else {
+    turn_further(sample, s.w1, 1 - v * v * v, 3 * v * v / h, -6 * v / (h * h));
+    turn_further(sample, s.w2, u * u * (3 - 2 * u), 6 * u * v / h, 6 * (v - u) / (h * h));
+    turn_further(sample, s.w3, u * u * u, 3 * u * u / h, 6 * u / (h * h));
+  }
+  sample.rotation.normalize();
+  return sample;
+}
+
+Track::Track(const scene::PoseTrack& track, const scene::Pose& rest)
+    : position_(track.interpolation, times_of(track), positions_of(track, rest)),
+      rotation_(track.interpolation, times_of(track), rotations_of(track, rest)),
+      moving_(track.keys.size() > 1) {}
+
+PoseSample Track::at(double t) const {
+  const Spline<3>::Sample p = position_.at(t);
+  const RotationSpline::Sample r = rotation_.at(t);
+  return {p.value, r.rotation, p.first_derivative, r.angular_velocity, p.second_derivative, r.angular_acceleration};
+}
+
+}  // namespace weft::environment

@@ -1,0 +1,83 @@
+// Key-framed motion of rigid bodies, pins and whatever else has a pose.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "environment/spline.hpp"
+#include "scene/scene.hpp"
+
+namespace weft::environment {
+
+/// A pose and how it changes, all in world space.
+struct PoseSample {
+  Vec3 position{0, 0, 0};              ///< of the body's origin [m]
+  Quat rotation{1, 0, 0, 0};           ///< body to world
+  Vec3 velocity{0, 0, 0};              ///< [m/s]
+  Vec3 angular_velocity{0, 0, 0};      ///< [rad/s]
+  Vec3 acceleration{0, 0, 0};          ///< [m/s²]
+  Vec3 angular_acceleration{0, 0, 0};  ///< [rad/s²]
+
+  /// World velocity [m/s] of the body point at `arm` from the body's origin (world directions) [m].
+  Vec3 velocity_at(const Vec3& arm) const { return velocity + angular_velocity.cross(arm); }
+
+  /// World acceleration [m/s²] of the same point.
+  Vec3 acceleration_at(const Vec3& arm) const {
+    return acceleration + angular_acceleration.cross(arm) + angular_velocity.cross(angular_velocity.cross(arm));
+  }
+};
+
+/// Rotations through keys along the shortest way between neighbours; a half turn goes on in the direction of the one
+/// before. Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit
+/// quaternions (Kim, Kim & Shin, "A general construction scheme for unit quaternion curves with simple high order
+/// derivatives", SIGGRAPH 1995), which has closed derivatives; angular velocity is continuous. Its values at the keys
+/// come from a natural spline over the turns between keys, so that motion about one axis is exactly the natural cubic
+/// spline of the angle.
+class RotationSpline {
+ public:
+  struct Sample {
+    Quat rotation;
+    Vec3 angular_velocity{0, 0, 0};      ///< [rad/s], world
+    Vec3 angular_acceleration{0, 0, 0};  ///< [rad/s²], world
+  };
+
+  /// At least one key; times [s] strictly increasing, as many as rotations.
+  RotationSpline(scene::Interpolation interpolation, std::vector<double> times, std::vector<Quat> rotations);
+
+  Sample at(double t) const;
+
+ private:
+  /// One stretch between two keys: q(u) = exp(b3(u) w3) exp(b2(u) w2) exp(b1(u) w1) q0 with u from 0 to 1, and the
+  /// cumulative Bernstein basis b1 = 1 - (1-u)³, b2 = 3u² - 2u³, b3 = u³; linear: w2 alone, with b2 = u.
+  struct Segment {
+    double start, length;  // [s]
+    Quat q0;
+    Vec3 w1, w2, w3;  // rotation vectors [rad]
+  };
+
+  scene::Interpolation interpolation_;
+  std::vector<double> times_;
+  std::vector<Quat> rotations_;
+  std::vector<Segment> segments_;
+};
+
+/// The pose of a track at any time. Before the first and after the last key the body rests; at the first key it already
+/// moves, at the last it no longer does.
+class Track {
+ public:
+  /// `rest`: the pose that holds where the track has no keys.
+  explicit Track(const scene::PoseTrack& track, const scene::Pose& rest = {});
+
+  /// Time O(log keys); allocates nothing.
+  PoseSample at(double t) const;
+
+  /// False if the pose is the same at all times, by the number of keys.
+  bool moving() const { return moving_; }
+
+ private:
+  Spline<3> position_;
+  RotationSpline rotation_;
+  bool moving_;
+};
+
+}  // namespace weft::environment

@@ -1,0 +1,29 @@
+// Sizes and normals of triangle meshes.
+#pragma once
+
+#include <span>
+
+#include "mesh/topology.hpp"
+
+namespace weft::mesh {
+
+/// Half the cross product of two sides: length is the area [m²], direction the front normal.
+inline Vec3 area_vector(const Triangle& t, std::span<const Vec3> x) {
+  const auto corner = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(t[k])]; };
+  return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0));
+}
+
+/// Sum of the triangle areas [m²].
+double surface_area(std::span<const Triangle> triangles, std::span<const Vec3> positions);
+
+/// Volume [m³] inside a watertight mesh; positive where the triangles are counter-clockwise seen from outside.
+double enclosed_volume(std::span<const Triangle> triangles, std::span<const Vec3> positions);
+
+/// Unit normal per vertex, triangles weighted by area; zero where a vertex has no triangle of any area. Writes
+/// `normals` (one per position) and allocates nothing.
+void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions, std::span<Vec3> normals);
+
+/// Smallest box around the points; empty without points.
+Box3 bounding_box(std::span<const Vec3> positions);
+
+}  // namespace weft::mesh

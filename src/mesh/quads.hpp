@@ -1,0 +1,27 @@
+// Regular sheets, and how quads become triangles.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "mesh/topology.hpp"
+
+namespace weft::mesh {
+
+/// The two triangles of a quad: cut from corner 0 to 2 (the first diagonal), or from 1 to 3.
+inline std::array<Triangle, 2> split_quad(const Quad& q, bool first_diagonal) {
+  if (first_diagonal) return {Triangle{q[0], q[1], q[2]}, Triangle{q[0], q[2], q[3]}};
+  return {Triangle{q[0], q[1], q[3]}, Triangle{q[1], q[2], q[3]}};
+}
+
+/// Splits any quads along a diagonal inside the quad, the shorter one where both are, the first on a tie. Quad q gives
+/// triangles 2q and 2q + 1.
+std::vector<Triangle> split_quads(std::span<const Quad> quads, std::span<const Vec3> positions);
+
+/// Sheet of nu × nv particles in the x-y plane, centred on the origin: weft along x, warp along y, front toward +z,
+/// uv = (i lu, j lv) [m]. The diagonal alternates from quad to quad, so that the split prefers no direction of bias.
+Mesh make_sheet(const Grid& grid);
+
+}  // namespace weft::mesh
