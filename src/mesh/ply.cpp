@@ -94,7 +94,7 @@ PlyMesh read_ply(const std::filesystem::path& file) {
   mesh.positions.resize(vertices);
   mesh.triangles.resize(faces);
   const char* at = content.data() + expected.size();
-  if (vertices > 0) std::memcpy(mesh.positions.data(), at, kVertexBytes * vertices);
+  if (vertices > 0) std::memcpy(static_cast<void*>(mesh.positions.data()), at, kVertexBytes * vertices);
   at += kVertexBytes * vertices;
   for (auto& triangle : mesh.triangles) {
     if (*at != 3) fail("a face is no triangle");
