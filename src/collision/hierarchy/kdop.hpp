@@ -1,0 +1,89 @@
+// Discrete oriented polytopes (k-DOPs): bounds by k fixed directions (seed, "Bounding Volume Hierarchy", Eq. 3).
+//
+// A set is kept as its k support values: row r holds the least value of direction_r · x over the set. Directions come
+// in opposite pairs, rows 2d and 2d + 1, so the interval along pair d is [row(2d), -row(2d + 1)]. With this one sign
+// convention the hull of two sets is the smaller value row by row, and row_a(r) + row_b(opposite of r) is the gap
+// between the sets along that direction: they overlap where no gap is positive.
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "core/types.hpp"
+
+namespace weft::collision {
+
+/// Rows are stored in multiples of eight floats, so that a hull is whole AVX registers.
+template <int K>
+inline constexpr int kRows = (K + 7) / 8 * 8;
+
+/// The directions of a k-DOP by component; not normalised, so that projections stay short sums. Rows past K are zero.
+template <int K>
+struct Directions {
+  static_assert(K == 6 || K == 14 || K == 18 || K == 26, "box; with corners; with edges; with corners and edges");
+  std::array<double, kRows<K>> x{}, y{}, z{};
+  std::array<double, kRows<K>> length{};
+
+  constexpr Directions() {
+    constexpr double corner[4][3] = {{1, 1, 1}, {1, 1, -1}, {1, -1, 1}, {-1, 1, 1}};
+    constexpr double edge[6][3] = {{1, 1, 0}, {1, -1, 0}, {1, 0, 1}, {1, 0, -1}, {0, 1, 1}, {0, 1, -1}};
+    int row = 0;
+    const auto add = [&](double dx, double dy, double dz, double norm) {
+      for (const double sign : {1.0, -1.0}) {
+        x[row] = sign * dx, y[row] = sign * dy, z[row] = sign * dz;
+        length[row++] = norm;
+      }
+    };
+    add(1, 0, 0, 1), add(0, 1, 0, 1), add(0, 0, 1, 1);
+    if (K == 14 || K == 26)
+      for (const auto& d : corner) add(d[0], d[1], d[2], 1.7320508075688772);
+    if (K == 18 || K == 26)
+      for (const auto& d : edge) add(d[0], d[1], d[2], 1.4142135623730951);
+  }
+};
+
+template <int K>
+inline constexpr Directions<K> kDirections{};
+
+/// Support values of a set in float, rounded away from the set: the bound may be too large, never too small.
+template <int K>
+struct alignas(32) KDop {
+  float row[kRows<K>];
+
+  /// Eq. (3): the k-DOP of a union is the hull of the parts' k-DOPs.
+  void join(const KDop& other) {
+    for (int r = 0; r < kRows<K>; ++r) row[r] = std::min(row[r], other.row[r]);
+  }
+
+  /// Distance of the opposite faces of direction pair d [m].
+  double side(int d) const {
+    return (-static_cast<double>(row[2 * d]) - static_cast<double>(row[2 * d + 1])) / kDirections<K>.length[2 * d];
+  }
+
+  bool overlaps(const KDop& other) const {
+    for (int r = 0; r < K; ++r)
+      if (row[r] + other.row[r ^ 1] > 0) return false;
+    return true;
+  }
+};
+
+/// The k-DOP of the segment from p to q, the path of a vertex in one step, enlarged by `margin` [m] on every side.
+/// Coordinates are finite and below 1e37 m.
+template <int K>
+inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
+  constexpr const Directions<K>& dir = kDirections<K>;
+  // Rounding to float moves a value by at most 2^-24 of itself, and the sums of three products in double by less
+  // than 2^-50 of the coordinates; both are given away on the safe side, with 1e-38 for numbers near zero.
+  const double cancel = K == 6 ? 1e-38 : 1e-38 + 0x1p-50 * (p.cwiseAbs().sum() + q.cwiseAbs().sum() + margin);
+  KDop<K> bound;
+  for (int r = 0; r < kRows<K>; ++r) {
+    const double at_p = dir.x[r] * p[0] + dir.y[r] * p[1] + dir.z[r] * p[2];
+    const double at_q = dir.x[r] * q[0] + dir.y[r] * q[1] + dir.z[r] * q[2];
+    const double low = std::min(at_p, at_q) - margin * dir.length[r];
+    bound.row[r] = static_cast<float>(low - std::abs(low) * 0x1p-23 - cancel);
+  }
+  return bound;
+}
+
+}  // namespace weft::collision

@@ -1,0 +1,99 @@
+// Tests of one k-DOP against several at once: bounds stored by row, one lane per bound.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#if defined(__AVX__)
+#include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
+#endif
+
+namespace weft::collision {
+
+/// Bounds of N sets, structure of arrays: row r of set l is row[r][l].
+template <int K, int N>
+struct alignas(4 * N) LaneBounds {
+  float row[K][N];
+};
+
+/// Bit l is set where set l of `bounds` overlaps (or touches) the k-DOP whose row r is query[r * stride].
+/// The largest gap over all directions decides; a sum of two floats never has the wrong sign.
+template <int K, int N>
+inline std::uint32_t overlap_mask(const LaneBounds<K, N>& bounds, const float* query, std::size_t stride) {
+#if defined(__AVX__)
+  if constexpr (N == 8) {
+    __m256 gap = _mm256_add_ps(_mm256_load_ps(bounds.row[0]), _mm256_broadcast_ss(query + stride));
+    for (std::size_t r = 1; r < K; ++r)
+      gap = _mm256_max_ps(gap,
+                          _mm256_add_ps(_mm256_load_ps(bounds.row[r]), _mm256_broadcast_ss(query + (r ^ 1) * stride)));
+    return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(gap, _mm256_setzero_ps(), _CMP_LE_OQ)));
+  }
+#endif
+#if defined(__SSE2__)
+  if constexpr (N % 4 == 0) {
+    std::uint32_t mask = 0;
+    for (int part = 0; part < N; part += 4) {
+      __m128 gap = _mm_add_ps(_mm_load_ps(bounds.row[0] + part), _mm_set1_ps(query[stride]));
+      for (std::size_t r = 1; r < K; ++r)
+        gap = _mm_max_ps(gap, _mm_add_ps(_mm_load_ps(bounds.row[r] + part), _mm_set1_ps(query[(r ^ 1) * stride])));
+      mask |= static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(gap, _mm_setzero_ps()))) << part;
+    }
+    return mask;
+  }
+#endif
+  std::uint32_t mask = 0;
+  for (int l = 0; l < N; ++l) {
+    bool overlap = true;
+    for (std::size_t r = 0; r < K; ++r) overlap &= bounds.row[r][l] + query[(r ^ 1) * stride] <= 0;
+    mask |= static_cast<std::uint32_t>(overlap) << l;
+  }
+  return mask;
+}
+
+/// Corner numbers of eight triangles: corner c of triangle l is corner[c][l].
+struct alignas(32) LaneCorners {
+  std::int32_t corner[3][8];
+};
+
+/// For eight triangles against one: which share exactly one vertex with it, and which share more.
+struct SharedMasks {
+  std::uint32_t one, more;
+};
+
+/// Triangle `own` of `query` against all of `lanes`. A corner that a triangle names twice counts once.
+inline SharedMasks shared_vertices(const LaneCorners& lanes, const LaneCorners& query, int own) {
+  const std::int32_t c0 = query.corner[0][own];
+  std::int32_t c1 = query.corner[1][own], c2 = query.corner[2][own];
+  if (c2 == c0 || c2 == c1) c2 = -2;
+  if (c1 == c0) c1 = -2;
+#if defined(__AVX2__)
+  const auto row = [&](int c) { return _mm256_load_si256(reinterpret_cast<const __m256i*>(lanes.corner[c])); };
+  const __m256i r0 = row(0), r1 = row(1), r2 = row(2);
+  const auto found = [&](std::int32_t vertex) {
+    const __m256i v = _mm256_set1_epi32(vertex);
+    return _mm256_or_si256(_mm256_or_si256(_mm256_cmpeq_epi32(r0, v), _mm256_cmpeq_epi32(r1, v)),
+                           _mm256_cmpeq_epi32(r2, v));
+  };
+  const auto mask = [](__m256i v) { return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_castsi256_ps(v))); };
+  const __m256i f0 = found(c0), f1 = found(c1), f2 = found(c2);
+  const __m256i any = _mm256_or_si256(_mm256_or_si256(f0, f1), f2);
+  const __m256i two =
+      _mm256_or_si256(_mm256_or_si256(_mm256_and_si256(f0, f1), _mm256_and_si256(f1, f2)), _mm256_and_si256(f0, f2));
+  return {mask(_mm256_andnot_si256(two, any)), mask(two)};
+#else
+  SharedMasks result{0, 0};
+  for (int l = 0; l < 8; ++l) {
+    const auto found = [&](std::int32_t v) {
+      return static_cast<int>(lanes.corner[0][l] == v || lanes.corner[1][l] == v || lanes.corner[2][l] == v);
+    };
+    const int shared = found(c0) + found(c1) + found(c2);
+    result.one |= static_cast<std::uint32_t>(shared == 1) << l;
+    result.more |= static_cast<std::uint32_t>(shared > 1) << l;
+  }
+  return result;
+#endif
+}
+
+}  // namespace weft::collision

@@ -1,0 +1,63 @@
+// What the hierarchy and the proximity search are given: surfaces in one global numbering of vertices and triangles.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace weft::collision {
+
+/// Three vertices of the global vertex array, counter-clockwise from the front.
+using Triangle = std::array<Index, 3>;
+
+/// A piece of cloth or an obstacle: a range of the global vertex array and the triangles over it.
+struct Surface {
+  std::span<const Triangle> triangles;  ///< corners are global vertex indices inside the range below
+  Index first_triangle = 0;             ///< number of triangles.front() where all surfaces are counted together
+  Index first_vertex = 0;
+  Index vertex_count = 0;
+};
+
+/// Two triangles by their global number; a < b where both are of one surface.
+struct TrianglePair {
+  Index a, b;
+  friend auto operator<=>(const TrianglePair&, const TrianglePair&) = default;
+};
+
+/// A growing list of pairs that keeps its memory when cleared and is written without a check per pair.
+class PairList {
+ public:
+  void clear() { size_ = 0; }
+  std::size_t size() const { return size_; }
+  bool empty() const { return size_ == 0; }
+  std::span<const TrianglePair> view() const { return {storage_.data(), size_}; }
+  const TrianglePair* begin() const { return storage_.data(); }
+  const TrianglePair* end() const { return storage_.data() + size_; }
+
+  /// Room for `count` more pairs; write them from the returned place on, then call grow().
+  TrianglePair* reserve_more(std::size_t count) {
+    if (size_ + count > storage_.size()) storage_.resize(2 * (size_ + count));
+    return storage_.data() + size_;
+  }
+  void grow(const TrianglePair* end) { size_ = static_cast<std::size_t>(end - storage_.data()); }
+
+ private:
+  std::vector<TrianglePair> storage_;
+  std::size_t size_ = 0;
+};
+
+/// Triangle pairs whose bounds overlap. Pairs that share an edge or all corners are in neither list.
+struct CandidatePairs {
+  PairList apart;       ///< share no vertex
+  PairList one_shared;  ///< share exactly one vertex
+
+  void clear() {
+    apart.clear();
+    one_shared.clear();
+  }
+};
+
+}  // namespace weft::collision

@@ -1,0 +1,172 @@
+#include "collision/hierarchy/tree.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+#include "collision/hierarchy/split.hpp"
+#include "core/error.hpp"
+
+namespace weft::collision {
+
+namespace {
+
+/// Past this depth sets are halved by number: centre splits of a badly graded surface may peel off one triangle each.
+constexpr int kMaxCentreSplits = 64;
+
+void check(const Surface& surface, std::size_t positions, int leaf_capacity) {
+  const Index first = surface.first_vertex, last = first + surface.vertex_count;
+  if (first < 0 || static_cast<std::size_t>(last) > positions)
+    throw Error(ExitCode::internal, "hierarchy: expected vertices [{}, {}) inside {} positions", first, last,
+                positions);
+  if (leaf_capacity < 1 || leaf_capacity > kLeafLanes)
+    throw Error(ExitCode::internal, "hierarchy: expected a leaf capacity of 1 to {}, got {}", kLeafLanes,
+                leaf_capacity);
+  for (const Triangle& triangle : surface.triangles)
+    for (const Index corner : triangle)
+      if (corner < first || corner >= last)
+        throw Error(ExitCode::internal, "hierarchy: expected corners in [{}, {}), got {}", first, last, corner);
+}
+
+/// Writes one bound into lane l.
+template <int K, int N>
+void set_lane(LaneBounds<K, N>& bounds, int l, const KDop<K>& bound) {
+  for (int r = 0; r < K; ++r) bounds.row[r][l] = bound.row[r];
+}
+
+}  // namespace
+
+/// Splits a range of triangles into the children of a node, again and again.
+template <int K, int Arity>
+struct Tree<K, Arity>::Builder {
+  struct Group {
+    std::size_t begin, end;
+    int depth;
+    std::size_t size() const { return end - begin; }
+  };
+
+  Tree& tree;
+  std::size_t leaf_capacity;
+  std::vector<Bound> bounds;  // of each triangle
+  std::vector<Index> order;   // triangles, those of a group side by side
+
+  /// Cuts group in two; it keeps the first half and the second is returned.
+  Group split(Group& group) {
+    const std::span<Index> items = std::span(order).subspan(group.begin, group.size());
+    const bool deep = ++group.depth > kMaxCentreSplits;
+    const std::size_t first = deep ? items.size() / 2 : split_longest_side<K>(items, bounds);
+    const Group second{group.begin + first, group.end, group.depth};
+    group.end = second.begin;
+    return second;
+  }
+
+  Ref add_leaf(const Group& group) {
+    Leaf leaf{};
+    leaf.count = static_cast<std::int32_t>(group.size());
+    for (int l = 0; l < kLeafLanes; ++l) {
+      const bool used = l < leaf.count;
+      const Index local = used ? order[group.begin + static_cast<std::size_t>(l)] : -1;
+      leaf.triangle[l] = used ? tree.surface_.first_triangle + local : -1;
+      for (std::size_t c = 0; c < 3; ++c)
+        leaf.corners.corner[c][l] = used ? tree.surface_.triangles[static_cast<std::size_t>(local)][c] : -1;
+    }
+    tree.leaves_.push_back(leaf);
+    return ~static_cast<Ref>(tree.leaves_.size() - 1);
+  }
+
+  Ref add(const Group& whole) {
+    if (whole.size() <= leaf_capacity) return add_leaf(whole);
+    // The child with the most triangles is split until the node is full, so that nodes and leaves come out full.
+    std::array<Group, Arity> children{whole};
+    std::size_t count = 1;
+    while (count < Arity) {
+      const auto by_size = [](const Group& a, const Group& b) { return a.size() < b.size(); };
+      Group& largest =
+          *std::max_element(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count), by_size);
+      if (largest.size() <= leaf_capacity) break;
+      children[count++] = split(largest);
+    }
+    const auto number = static_cast<Ref>(tree.nodes_.size());
+    tree.nodes_.emplace_back();
+    for (std::size_t i = 0; i < count; ++i) {
+      const Ref child = add(children[i]);
+      tree.nodes_[static_cast<std::size_t>(number)].child[i] = child;
+    }
+    tree.nodes_[static_cast<std::size_t>(number)].count = static_cast<std::int32_t>(count);
+    return number;
+  }
+};
+
+template <int K, int Arity>
+Tree<K, Arity>::Tree(const Surface& surface, std::span<const Vec3> positions, int leaf_capacity) : surface_(surface) {
+  check(surface, positions.size(), leaf_capacity);
+  vertex_bounds_.resize(static_cast<std::size_t>(surface.vertex_count));
+  if (surface.triangles.empty()) return;
+
+  Builder builder{*this, static_cast<std::size_t>(leaf_capacity), {}, {}};
+  builder.bounds.reserve(surface.triangles.size());
+  for (const Triangle& triangle : surface.triangles) {
+    const auto at = [&](std::size_t c) -> const Vec3& { return positions[static_cast<std::size_t>(triangle[c])]; };
+    Bound bound = swept_point<K>(at(0), at(1), 0);
+    bound.join(swept_point<K>(at(2), at(2), 0));
+    builder.bounds.push_back(bound);
+  }
+  builder.order.resize(surface.triangles.size());
+  std::iota(builder.order.begin(), builder.order.end(), Index{0});
+  root_ = builder.add({0, builder.order.size(), 0});
+
+  node_bounds_.resize(nodes_.size());
+  leaf_bounds_.resize(leaves_.size());
+  refit(positions, positions, 0);
+}
+
+template <int K, int Arity>
+void Tree<K, Arity>::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+  const auto first = static_cast<std::size_t>(surface_.first_vertex);
+  for (std::size_t v = 0; v < vertex_bounds_.size(); ++v)
+    vertex_bounds_[v] = swept_point<K>(x_t0[first + v], x_t1[first + v], margin);
+
+  // Leaves from their triangles' corners.
+  for (std::size_t n = 0; n < leaves_.size(); ++n) {
+    Leaf& leaf = leaves_[n];
+    for (int l = 0; l < leaf.count; ++l) {
+      const auto corner = [&](int c) -> const Bound& {
+        return vertex_bounds_[static_cast<std::size_t>(leaf.corners.corner[c][l] - surface_.first_vertex)];
+      };
+      Bound bound = corner(0);
+      bound.join(corner(1));
+      bound.join(corner(2));
+      set_lane(leaf.bounds, l, bound);
+      if (l == 0)
+        leaf_bounds_[n] = bound;
+      else
+        leaf_bounds_[n].join(bound);
+    }
+  }
+
+  // Nodes from their children, Eq. (3); children have larger numbers than their parent.
+  for (std::size_t n = nodes_.size(); n-- > 0;) {
+    Node& node = nodes_[n];
+    node_bounds_[n] = bound(node.child[0]);
+    for (int i = 0; i < node.count; ++i) {
+      const Bound& child = bound(node.child[i]);
+      set_lane(node.bounds, i, child);
+      node_bounds_[n].join(child);
+    }
+  }
+}
+
+template class Tree<6, 2>;
+template class Tree<6, 4>;
+template class Tree<6, 8>;
+template class Tree<14, 2>;
+template class Tree<14, 4>;
+template class Tree<14, 8>;
+template class Tree<18, 2>;
+template class Tree<18, 4>;
+template class Tree<18, 8>;
+template class Tree<26, 2>;
+template class Tree<26, 4>;
+template class Tree<26, 8>;
+
+}  // namespace weft::collision

@@ -1,0 +1,84 @@
+#include "collision/proximity/closest_points.hpp"
+
+#include <algorithm>
+#include <limits>
+
+namespace weft::collision {
+
+namespace {
+
+/// Below this sine² between two edges their cross product has lost so many digits that the inner solution may lie:
+/// the boundary is then looked at as well. Any value well above the rounding 1e-16 and well below 1 will do.
+constexpr double kNearlyParallelSq = 1e-8;
+
+/// Parameter in [0, 1] of the point of segment o + t e closest to o + w.
+double along_segment(const Vec3& e, const Vec3& w) {
+  const double length_sq = e.squaredNorm();
+  return length_sq > 0 ? std::clamp(e.dot(w) / length_sq, 0.0, 1.0) : 0.0;
+}
+
+void keep_closer(ClosestPoints& best, const std::array<double, 4>& weights, const Vec3& difference) {
+  const double distance_sq = difference.squaredNorm();
+  if (distance_sq < best.distance_sq) best = {weights, difference, distance_sq};
+}
+
+ClosestPoints nothing_yet() {
+  return {{}, Vec3::Zero(), std::numeric_limits<double>::infinity()};
+}
+
+}  // namespace
+
+ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2) {
+  // Everything relative to t0, so that the place in space costs no digits.
+  const Vec3 e1 = t1 - t0, e2 = t2 - t0, w = p - t0;
+  const Vec3 n = e1.cross(e2);
+  const double n_sq = n.squaredNorm();
+  const double b1 = w.cross(e2).dot(n), b2 = e1.cross(w).dot(n);
+
+  ClosestPoints best = nothing_yet();
+  if (n_sq > 0 && b1 > 0 && b2 > 0 && b1 + b2 < n_sq) {
+    const double u1 = b1 / n_sq, u2 = b2 / n_sq;
+    // The difference along the normal has all its digits where w - u1 e1 - u2 e2 would cancel.
+    const Vec3 difference = n * (w.dot(n) / n_sq);
+    best = {{1, -(1 - u1 - u2), -u1, -u2}, difference, difference.squaredNorm()};
+    if (n_sq > kNearlyParallelSq * e1.squaredNorm() * e2.squaredNorm()) return best;
+    best.difference = w - u1 * e1 - u2 * e2;
+    best.distance_sq = best.difference.squaredNorm();
+  }
+
+  const Vec3 e12 = t2 - t1, w1 = p - t1;
+  const double s01 = along_segment(e1, w), s12 = along_segment(e12, w1), s02 = along_segment(e2, w);
+  keep_closer(best, {1, -(1 - s01), -s01, 0}, w - s01 * e1);
+  keep_closer(best, {1, 0, -(1 - s12), -s12}, w1 - s12 * e12);
+  keep_closer(best, {1, -(1 - s02), 0, -s02}, w - s02 * e2);
+  return best;
+}
+
+ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
+  const Vec3 d = p1 - p0, e = q1 - q0, w = q0 - p0;
+  const Vec3 n = d.cross(e);
+  const double n_sq = n.squaredNorm();
+  const double s_n = w.cross(e).dot(n), t_n = w.cross(d).dot(n);
+
+  ClosestPoints best = nothing_yet();
+  if (n_sq > 0 && s_n > 0 && s_n < n_sq && t_n > 0 && t_n < n_sq) {
+    const double s = s_n / n_sq, t = t_n / n_sq;
+    const Vec3 difference = n * (-w.dot(n) / n_sq);
+    best = {{1 - s, s, -(1 - t), -t}, difference, difference.squaredNorm()};
+    if (n_sq > kNearlyParallelSq * d.squaredNorm() * e.squaredNorm()) return best;
+    best.difference = s * d - w - t * e;
+    best.distance_sq = best.difference.squaredNorm();
+  }
+
+  // The distance is convex in both parameters: without an inner minimum it is least where one of them is at an end.
+  const Vec3 w_p1 = p1 - q0, w_q1 = q1 - p0;
+  const double t_p0 = along_segment(e, -w), t_p1 = along_segment(e, w_p1);
+  const double s_q0 = along_segment(d, w), s_q1 = along_segment(d, w_q1);
+  keep_closer(best, {1, 0, -(1 - t_p0), -t_p0}, -w - t_p0 * e);
+  keep_closer(best, {0, 1, -(1 - t_p1), -t_p1}, w_p1 - t_p1 * e);
+  keep_closer(best, {1 - s_q0, s_q0, -1, 0}, s_q0 * d - w);
+  keep_closer(best, {1 - s_q1, s_q1, 0, -1}, s_q1 * d - w_q1);
+  return best;
+}
+
+}  // namespace weft::collision
