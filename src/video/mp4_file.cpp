@@ -1,0 +1,129 @@
+#include "video/mp4_file.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace weft::video {
+namespace {
+
+// use_metadata_tags: without it only iTunes' own keys are written.
+constexpr const char* kFragmentedFlags = "+frag_every_frame+empty_moov+default_base_moof+use_metadata_tags";
+constexpr const char* kFastStartFlags = "+faststart+use_metadata_tags";
+
+// A dictionary that libav may replace while reading it.
+struct Dictionary {
+  AVDictionary* entries = nullptr;
+  Dictionary() = default;
+  ~Dictionary() { av_dict_free(&entries); }
+  Dictionary(const Dictionary&) = delete;
+  Dictionary& operator=(const Dictionary&) = delete;
+};
+
+InputPtr open_video(const std::filesystem::path& file, const std::filesystem::path& reported_file) {
+  AVFormatContext* opened = nullptr;
+  check(avformat_open_input(&opened, url_of(file).c_str(), av_find_input_format("mp4"), nullptr), reported_file,
+        "read the frames back");
+  InputPtr input(opened);
+  if (input->nb_streams != 1) fail(reported_file, "read the frames back", "expected one stream");
+  return input;
+}
+
+// False at the end of the file.
+bool read_packet(AVFormatContext& input, AVPacket& packet, const std::filesystem::path& reported_file) {
+  const int code = av_read_frame(&input, &packet);
+  if (code == AVERROR_EOF) return false;
+  check(code, reported_file, "read the frames back");
+  return true;
+}
+
+}  // namespace
+
+Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
+                     const AVCodecParameters& codec, AVRational rate,
+                     const std::map<std::string, std::string>& metadata)
+    : reported_file_(std::move(reported_file)), frame_duration_(av_inv_q(rate)) {
+  AVFormatContext* allocated = nullptr;
+  check(avformat_alloc_output_context2(&allocated, nullptr, "mp4", url_of(file).c_str()), reported_file_,
+        "start an MP4 file");
+  output_.reset(allocated);
+
+  AVStream* stream = check_allocated(avformat_new_stream(output_.get(), nullptr), reported_file_);
+  check(avcodec_parameters_copy(stream->codecpar, &codec), reported_file_, "describe the video");
+  stream->codecpar->codec_tag = 0;  // the tag of the container it came from need not suit this one
+  stream->time_base = frame_duration_;
+  stream->avg_frame_rate = rate;
+  for (const auto& [key, value] : metadata) {
+    check(av_dict_set(&output_->metadata, key.c_str(), value.c_str(), 0), reported_file_, "set metadata");
+  }
+
+  // Each packet reaches the system at once, so that a kill loses the encoder's look-ahead and no more.
+  output_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
+  check(avio_open(&output_->pb, output_->url, AVIO_FLAG_WRITE), reported_file_, "create the file");
+  Dictionary options;
+  const char* flags = layout == Mp4Layout::fragmented ? kFragmentedFlags : kFastStartFlags;
+  check(av_dict_set(&options.entries, "movflags", flags, 0), reported_file_, "choose the layout of the file");
+  check(avformat_write_header(output_.get(), &options.entries), reported_file_, "write the header");
+  if (av_dict_count(options.entries) != 0) fail(reported_file_, "write the header", "libav ignores movflags");
+}
+
+void Mp4Writer::write(AVPacket& packet) {
+  packet.stream_index = 0;
+  packet.pos = -1;
+  packet.duration = 1;
+  av_packet_rescale_ts(&packet, frame_duration_, output_->streams[0]->time_base);
+  check(av_write_frame(output_.get(), &packet), reported_file_, "write a frame");
+}
+
+void Mp4Writer::close() {
+  check(av_write_trailer(output_.get()), reported_file_, "write the index");
+  check(avio_closep(&output_->pb), reported_file_, "close the file");
+  output_.reset();
+}
+
+void copy_to_fast_start(const std::filesystem::path& from, const std::filesystem::path& to,
+                        const std::filesystem::path& reported_file, AVRational rate,
+                        const std::map<std::string, std::string>& metadata) {
+  const InputPtr input = open_video(from, reported_file);
+  const AVStream& stream = *input->streams[0];
+  Mp4Writer writer(to, reported_file, Mp4Layout::fast_start, *stream.codecpar, rate, metadata);
+  const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
+
+  // A fragmented file cannot hold times below zero, so libav moved all of them by the delay of the B-frames. The first
+  // packet is frame 0, because the stream starts with a key frame.
+  std::int64_t delay = AV_NOPTS_VALUE;
+  while (read_packet(*input, *packet, reported_file)) {
+    av_packet_rescale_ts(packet.get(), stream.time_base, av_inv_q(rate));
+    if (delay == AV_NOPTS_VALUE) delay = packet->pts;
+    packet->pts -= delay;
+    packet->dts -= delay;
+    writer.write(*packet);
+    av_packet_unref(packet.get());
+  }
+  writer.close();
+}
+
+void verify_frames(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate,
+                   int frames) {
+  const InputPtr input = open_video(file, reported_file);
+  const AVRational unit = input->streams[0]->time_base;
+  const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
+
+  std::vector<bool> seen(static_cast<std::size_t>(frames));
+  int count = 0;
+  while (read_packet(*input, *packet, reported_file)) {
+    const std::int64_t frame = av_rescale_q(packet->pts, unit, av_inv_q(rate));
+    const bool on_time = av_compare_ts(packet->pts, unit, frame, av_inv_q(rate)) == 0;
+    const bool new_frame = frame >= 0 && frame < frames && !seen[static_cast<std::size_t>(frame)];
+    if (!on_time || !new_frame) {
+      fail(reported_file, "verify the frames", fmt::format("packet {} is not one of {} frames", count, frames));
+    }
+    seen[static_cast<std::size_t>(frame)] = true;
+    ++count;
+    av_packet_unref(packet.get());
+  }
+  if (count != frames) fail(reported_file, "verify the frames", fmt::format("{} of {} are there", count, frames));
+}
+
+}  // namespace weft::video
