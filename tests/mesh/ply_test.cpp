@@ -1,0 +1,133 @@
+#include "mesh/ply.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <string>
+
+#include "core/error.hpp"
+
+namespace weft::mesh {
+namespace {
+
+namespace fs = std::filesystem;
+using Triangles = std::vector<std::array<Index, 3>>;
+
+// Values that only survive bit for bit.
+const std::vector<Vec3> kPositions{
+    {0, -0.0, 1.0 / 3}, {1e-310, std::numeric_limits<double>::max(), -1}, {0.1, 0.2, 0.30000000000000004}};
+const Triangles kTriangles{{0, 1, 2}, {2, 1, 0}};
+
+class Ply : public testing::Test {
+ protected:
+  Ply() : folder_(fs::path(testing::TempDir()) / ("weft_ply_" + std::to_string(::getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~Ply() override { fs::remove_all(folder_); }
+
+  fs::path file() const { return folder_ / "mesh.ply"; }
+
+  static std::string bytes_of(const fs::path& path) {
+    std::ifstream in(path, std::ios::binary);
+    return {std::istreambuf_iterator<char>(in), {}};
+  }
+
+  void put(const std::string& bytes) const { std::ofstream(file(), std::ios::binary) << bytes; }
+
+  fs::path folder_;
+};
+
+/// The text of the error, with its exit code in front.
+template <class Action>
+std::string error_of(const Action& action) {
+  try {
+    action();
+  } catch (const Error& error) {
+    return std::to_string(static_cast<int>(error.code())) + " " + error.what();
+  }
+  return "none";
+}
+
+TEST_F(Ply, FilesHoldLittleEndianDoublesAndTriangles) {
+  write_ply(file(), kPositions, kTriangles);
+  const std::string bytes = bytes_of(file());
+  const std::string header =
+      "ply\nformat binary_little_endian 1.0\ncomment Weft, metres\nelement vertex 3\nproperty double x\n"
+      "property double y\nproperty double z\nelement face 2\nproperty list uchar int vertex_indices\nend_header\n";
+  ASSERT_EQ(bytes.substr(0, header.size()), header);
+  ASSERT_EQ(bytes.size(), header.size() + 3 * 24 + 2 * 13);
+  double third = 0;
+  std::memcpy(&third, &bytes[header.size() + 16], 8);
+  EXPECT_EQ(third, 1.0 / 3);
+  const std::string faces = bytes.substr(header.size() + 72);
+  EXPECT_EQ(faces, std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0\3\2\0\0\0\1\0\0\0\0\0\0\0", 26));
+}
+
+TEST_F(Ply, ReadsBackBitForBit) {
+  write_ply(file(), kPositions, kTriangles);
+  const PlyMesh mesh = read_ply(file());
+  ASSERT_EQ(mesh.positions.size(), kPositions.size());
+  EXPECT_EQ(std::memcmp(mesh.positions.data(), kPositions.data(), 3 * sizeof(Vec3)), 0);
+  EXPECT_EQ(mesh.triangles, kTriangles);
+}
+
+TEST_F(Ply, OfNothingIsAFileToo) {
+  write_ply(file(), {}, {});
+  const PlyMesh mesh = read_ply(file());
+  EXPECT_TRUE(mesh.positions.empty());
+  EXPECT_TRUE(mesh.triangles.empty());
+}
+
+TEST_F(Ply, ReplacesAnOlderFileAndLeavesNothingElse) {
+  put("older");
+  write_ply(file(), kPositions, kTriangles);
+  EXPECT_EQ(read_ply(file()).triangles, kTriangles);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
+}
+
+TEST_F(Ply, ToAPlaceThatCannotBeWrittenIsAnOutputError) {
+  put("a file where a folder is needed");
+  const std::string text = error_of([&] { write_ply(file() / "mesh.ply", kPositions, kTriangles); });
+  EXPECT_EQ(text.substr(0, 2), "6 ") << text;
+}
+
+TEST_F(Ply, ThatIsMissingIsAnAssetError) {
+  EXPECT_EQ(error_of([&] { read_ply(file()); }), "4 " + file().string() + ": cannot be read");
+}
+
+TEST_F(Ply, CutShortAnywhereIsRefused) {
+  write_ply(file(), kPositions, kTriangles);
+  const std::string whole = bytes_of(file());
+  for (std::size_t length = 0; length < whole.size(); ++length) {
+    put(whole.substr(0, length));
+    EXPECT_EQ(error_of([&] { read_ply(file()); }).substr(0, 2), "4 ") << length;
+  }
+  put(whole + "x");
+  EXPECT_EQ(error_of([&] { read_ply(file()); }).substr(0, 2), "4 ");
+}
+
+TEST_F(Ply, WithAVertexIndexOutOfRangeIsRefused) {
+  for (const Index wrong : {3, -1}) {
+    write_ply(file(), kPositions, Triangles{{0, 1, wrong}});
+    EXPECT_EQ(error_of([&] { read_ply(file()); }), "4 " + file().string() +
+                                                       ": expected a PLY file written by Weft: a face names a vertex "
+                                                       "that is not there");
+  }
+}
+
+TEST_F(Ply, WithCountsThatOverflowIsRefusedWithoutAllocating) {
+  write_ply(file(), kPositions, kTriangles);
+  std::string bytes = bytes_of(file());
+  bytes.replace(bytes.find("vertex 3"), 8, "vertex 9999999999");
+  put(bytes);
+  EXPECT_EQ(error_of([&] { read_ply(file()); }).substr(0, 2), "4 ");
+}
+
+}  // namespace
+}  // namespace weft::mesh

@@ -1,0 +1,91 @@
+#include "mesh/topology.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+
+namespace weft::mesh {
+namespace {
+
+using Pair = std::array<Index, 2>;
+using Pairs = std::vector<Pair>;
+
+// Two triangles over the square 0 1 2 3, cut from 0 to 2.
+const std::vector<Triangle> kSquare{{0, 1, 2}, {0, 2, 3}};
+
+// Counter-clockwise from outside.
+const std::vector<Triangle> kTetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+
+TEST(Edges, AreListedOnceSortedWithTheTrianglesOnBothSides) {
+  const EdgeSet set = collect_edges(kSquare);
+  Pairs vertices, triangles;
+  for (const Edge& edge : set.edges) {
+    vertices.push_back(edge.vertices);
+    triangles.push_back(edge.triangles);
+  }
+  EXPECT_EQ(vertices, (Pairs{{0, 1}, {0, 2}, {0, 3}, {1, 2}, {2, 3}}));
+  EXPECT_EQ(triangles, (Pairs{{0, -1}, {0, 1}, {1, -1}, {0, -1}, {1, -1}}));
+  EXPECT_TRUE(set.non_manifold.empty());
+}
+
+TEST(Edges, OfATriangleFollowItsCorners) {
+  const EdgeSet set = collect_edges(kTetrahedron);
+  ASSERT_EQ(set.edges.size(), 6u);
+  for (std::size_t t = 0; t < kTetrahedron.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      Pair expected{kTetrahedron[t][k], kTetrahedron[t][(k + 1) % 3]};
+      std::sort(expected.begin(), expected.end());
+      EXPECT_EQ(set.edges[static_cast<std::size_t>(set.of_triangle[t][k])].vertices, expected);
+    }
+  }
+}
+
+TEST(Edges, WithThreeTrianglesAreReportedAndKeepTheFirstTwo) {
+  const EdgeSet set = collect_edges(std::vector<Triangle>{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}});
+  ASSERT_EQ(set.non_manifold, std::vector<Index>{0});
+  EXPECT_EQ(set.edges[0].vertices, (Pair{0, 1}));
+  EXPECT_EQ(set.edges[0].triangles, (Pair{0, 1}));
+}
+
+TEST(Incidence, ListsTheTrianglesAroundEachVertexInOrder) {
+  const Incidence incidence = collect_incidence(kSquare, 5);
+  const auto around = [&](Index v) {
+    const auto row = incidence.around(v);
+    return std::vector<Index>(row.begin(), row.end());
+  };
+  EXPECT_EQ(around(0), (std::vector<Index>{0, 1}));
+  EXPECT_EQ(around(1), (std::vector<Index>{0}));
+  EXPECT_EQ(around(2), (std::vector<Index>{0, 1}));
+  EXPECT_EQ(around(3), (std::vector<Index>{1}));
+  EXPECT_TRUE(around(4).empty());
+}
+
+TEST(Inspection, CallsATetrahedronWatertightAndASquareMerelyManifold) {
+  EXPECT_TRUE(inspect(kTetrahedron, 4).watertight());
+  const TopologyReport square = inspect(kSquare, 4);
+  EXPECT_TRUE(square.manifold());
+  EXPECT_FALSE(square.watertight());
+  EXPECT_EQ(square.border, (Pairs{{0, 1}, {0, 3}, {1, 2}, {2, 3}}));
+}
+
+TEST(Inspection, NamesTrianglesOutOfRangeOnEitherSideAndDegenerateOnes) {
+  const std::vector<Triangle> triangles{
+      {0, 1, 2}, {0, 1, 3}, {-1, 1, 2}, {2, 1, 1}, {std::numeric_limits<Index>::max(), 0, 1}};
+  const TopologyReport report = inspect(triangles, 3);
+  EXPECT_EQ(report.out_of_range, (std::vector<Index>{1, 2, 4}));
+  EXPECT_EQ(report.degenerate, std::vector<Index>{3});
+  EXPECT_EQ(report.border.size(), 3u);  // only the sound triangle counts
+  EXPECT_FALSE(report.manifold());
+}
+
+TEST(Inspection, NamesEdgesOfThreeTrianglesAndTrianglesTurnedOver) {
+  const TopologyReport fan = inspect(std::vector<Triangle>{{0, 1, 2}, {1, 0, 3}, {0, 1, 4}}, 5);
+  EXPECT_EQ(fan.non_manifold, (Pairs{{0, 1}}));
+  const TopologyReport turned = inspect(std::vector<Triangle>{{0, 1, 2}, {0, 3, 2}}, 4);
+  EXPECT_EQ(turned.misoriented, (Pairs{{0, 2}}));
+  EXPECT_FALSE(turned.manifold());
+}
+
+}  // namespace
+}  // namespace weft::mesh
