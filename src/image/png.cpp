@@ -123,7 +123,9 @@ bool ask_for_rgb(const Reader& reader) {
   png_set_expand(reader.png);
   png_set_scale_16(reader.png);
   png_set_gray_to_rgb(reader.png);
-  // Over white in sRGB values, as browsers show it.
+  // Over white in sRGB values, as browsers show it. Equal gammas keep libpng from blending some files in linear light
+  // and others not, depending on their chunks.
+  png_set_gamma(reader.png, 1.0, 1.0);
   png_color_16 white{};
   white.red = white.green = white.blue = white.gray = 255;
   png_set_background(reader.png, &white, PNG_BACKGROUND_GAMMA_SCREEN, 0, 1.0);
