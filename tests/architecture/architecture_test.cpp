@@ -1,13 +1,12 @@
 // Holds the source tree against the design, after showing on small made-up trees that each check sees what it is for.
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "architecture/source_tree.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::architecture {
 namespace {
@@ -20,68 +19,65 @@ const fs::path kRoot = WEFT_SOURCE_DIR;
 const std::vector<std::string> kMayBeLong = {};
 
 /// A source tree on disk that holds just what a test writes, and goes away with it.
-class MadeTree : public testing::Test {
+class MadeTree : public support::TestFolder {
  protected:
-  MadeTree() : root_(fs::temp_directory_path() / ("weft_made_tree_" + std::to_string(::getpid()))) {
-    fs::remove_all(root_);
+  void SetUp() override {
+    TestFolder::SetUp();
     write("src/CMakeLists.txt",
           "weft_module(core LINKS x)\nweft_module(mesh)\nweft_module(render USES mesh\n  LINKS y)\n");
     write("src/core/error.hpp", "#pragma once\n");
     write("src/mesh/mesh.hpp", "#include \"core/error.hpp\"\n");
     write("src/render/renderer.hpp", "#include <vector>\n#include \"mesh/mesh.hpp\"\n#include \"core/error.hpp\"\n");
   }
-  ~MadeTree() override { fs::remove_all(root_); }
 
   void write(const fs::path& file, const std::string& text) {
-    fs::create_directories((root_ / file).parent_path());
-    std::ofstream(root_ / file) << text;
+    fs::create_directories((folder_ / file).parent_path());
+    support::write_bytes(folder_ / file, text);
   }
-
-  fs::path root_;
 };
 
 TEST_F(MadeTree, IsWellAtFirst) {
-  EXPECT_EQ(wrong_includes(root_), "");
-  EXPECT_EQ(wrong_declarations(root_), "");
-  EXPECT_EQ(long_files(root_, 3, {}), "");
+  EXPECT_EQ(wrong_includes(folder_), "");
+  EXPECT_EQ(wrong_declarations(folder_), "");
+  EXPECT_EQ(long_files(folder_, 3, {}), "");
 }
 
 TEST_F(MadeTree, IncludeOfAModuleNotUsedIsReportedWithItsLine) {
   write("src/mesh/ply.cpp", "#include <string>\n\n#include \"render/renderer.hpp\"  // why not\n");
-  EXPECT_EQ(wrong_includes(root_), "src/mesh/ply.cpp:3: mesh does not use render\n");
+  EXPECT_EQ(wrong_includes(folder_), "src/mesh/ply.cpp:3: mesh does not use render\n");
 }
 
 TEST_F(MadeTree, CoreMayUseNoOtherModule) {
   write("src/core/log.cpp", "#include \"mesh/mesh.hpp\"\n");
-  EXPECT_EQ(wrong_includes(root_), "src/core/log.cpp:1: core does not use mesh\n");
+  EXPECT_EQ(wrong_includes(folder_), "src/core/log.cpp:1: core does not use mesh\n");
 }
 
 TEST_F(MadeTree, IncludePastItsOwnFolderIsReported) {
   write("src/mesh/ply.cpp", "#include \"mesh.hpp\"\n");
-  EXPECT_EQ(wrong_includes(root_), "src/mesh/ply.cpp:1: src/mesh.hpp does not exist\n");
+  EXPECT_EQ(wrong_includes(folder_), "src/mesh/ply.cpp:1: src/mesh.hpp does not exist\n");
 }
 
 TEST_F(MadeTree, CycleIsReportedWhereItClosesBackwards) {
   write("src/CMakeLists.txt", "weft_module(core)\nweft_module(mesh USES render)\nweft_module(render USES mesh)\n");
-  EXPECT_EQ(wrong_declarations(root_), "src/CMakeLists.txt: mesh uses render, which is not declared before it\n");
+  EXPECT_EQ(wrong_declarations(folder_), "src/CMakeLists.txt: mesh uses render, which is not declared before it\n");
 }
 
 TEST_F(MadeTree, FolderThatIsNoModuleIsReported) {
   write("src/utils/misc.hpp", "\n");
-  EXPECT_EQ(wrong_declarations(root_), "src/CMakeLists.txt: src/utils is not declared\n");
+  EXPECT_EQ(wrong_declarations(folder_), "src/CMakeLists.txt: src/utils is not declared\n");
 }
 
 TEST_F(MadeTree, LongFileIsReportedUnlessListed) {
   write("src/mesh/table.cpp", "1\n2\n3\n4\n");
-  EXPECT_EQ(long_files(root_, 3, {}), "src/mesh/table.cpp: 4 lines, more than 3\n");
-  EXPECT_EQ(long_files(root_, 3, {"src/mesh/table.cpp"}), "");
-  EXPECT_EQ(long_files(root_, 4, {"src/mesh/table.cpp"}), "src/mesh/table.cpp: needs no exemption\n");
+  EXPECT_EQ(long_files(folder_, 3, {}), "src/mesh/table.cpp: 4 lines, more than 3\n");
+  EXPECT_EQ(long_files(folder_, 3, {"src/mesh/table.cpp"}), "");
+  EXPECT_EQ(long_files(folder_, 4, {"src/mesh/table.cpp"}), "src/mesh/table.cpp: needs no exemption\n");
 }
 
 TEST_F(MadeTree, WordsAreFoundInEveryKindOfFileButNotInsideOtherWords) {
   write("shaders/cloth.frag", "// LATER\n");
   write("run", "echo LATERAL; exec /elsewhere/bin/x\n");
-  EXPECT_EQ(lines_with(root_, {"LATER", "/elsewhere/"}), "run:1: /elsewhere/\nshaders/cloth.frag:1: LATER\n");
+  EXPECT_EQ(lines_with(folder_, {"LATER", "/elsewhere/"}), "run:1: /elsewhere/\nshaders/cloth.frag:1: LATER\n");
 }
 
 TEST(Architecture, ModulesAreReadWithWhatTheyUse) {
