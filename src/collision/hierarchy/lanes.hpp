@@ -52,6 +52,9 @@ inline std::uint32_t overlap_mask(const LaneBounds<K, N>& bounds, const float* q
   return mask;
 }
 
+/// A point in float, for first looks; the fourth lane is unused and zero.
+typedef float Lanes4 __attribute__((vector_size(16)));
+
 /// Corner numbers of eight triangles: corner c of triangle l is corner[c][l].
 struct alignas(32) LaneCorners {
   std::int32_t corner[3][8];

@@ -1,0 +1,54 @@
+// Who answers for which vertex and edge, and what surrounds them.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collision/hierarchy/surface.hpp"
+#include "core/types.hpp"
+
+namespace weft::collision {
+
+/// Every vertex and edge is owned by the triangle with the lowest number that has it (representative triangles: Curtis,
+/// Tamstorf & Manocha, "Fast Collision Detection for Deformable Models using Representative-Triangles", 2008), so
+/// that going through triangle pairs meets each pair of features once.
+class Features {
+ public:
+  Features() = default;
+
+  /// `triangles` are those of all surfaces in their global numbering; surfaces have no vertices in common.
+  Features(std::span<const Triangle> triangles, Index vertex_count);
+
+  std::span<const Triangle> triangles() const { return triangles_; }
+  const Triangle& triangle(Index t) const { return triangles_[static_cast<std::size_t>(t)]; }
+
+  /// Bits 0 to 2: corner c is owned; bits 3 to 5: the edge from corner c to corner c + 1 is owned.
+  std::uint8_t owned(Index t) const { return owned_[static_cast<std::size_t>(t)]; }
+
+  /// Triangles at a vertex, lowest number first.
+  std::span<const Index> triangles_at(Index vertex) const {
+    const auto v = static_cast<std::size_t>(vertex);
+    return std::span(around_).subspan(around_begin_[v], around_begin_[v + 1] - around_begin_[v]);
+  }
+
+  /// Pairs of triangles a < b with a common edge where both numbers are in [first, first + count), sorted.
+  std::span<const TrianglePair> hinges(Index first, Index count) const;
+
+ private:
+  void collect_fans(Index vertex_count);
+  void own_edges();
+
+  std::vector<Triangle> triangles_;
+  std::vector<std::uint8_t> owned_;
+  std::vector<std::size_t> around_begin_;
+  std::vector<Index> around_;
+  std::vector<TrianglePair> hinges_;
+};
+
+inline bool has_vertex(const Triangle& triangle, Index vertex) {
+  return triangle[0] == vertex || triangle[1] == vertex || triangle[2] == vertex;
+}
+
+}  // namespace weft::collision

@@ -1,0 +1,68 @@
+// From candidate triangle pairs to the vertex-face and edge-edge pairs that are close now.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "collision/hierarchy/lanes.hpp"
+#include "collision/hierarchy/surface.hpp"
+#include "collision/proximity/features.hpp"
+#include "core/types.hpp"
+
+namespace weft::collision {
+
+enum class ProximityKind : std::uint8_t { vertex_face, edge_edge };
+
+/// Two features closer than the reach, with their closest points x_a = Σ (w > 0) w x and x_b = -Σ (w < 0) w x.
+struct Proximity {
+  ProximityKind kind;
+  std::array<Index, 4> vertices;  ///< vertex, then the face's corners; or the ends of edge a, then of edge b
+  std::array<double, 4> weights;  ///< side a sums to 1, side b to -1
+  Vec3 normal;                    ///< unit, from x_b to x_a: Σ w x = distance · normal
+  double distance;                ///< [m]
+  /// Edge-edge: sine of the angle by which the normal leaves the wedge of edge a and b, the directions in which no face
+  /// at the edge comes closer than the edge itself; ≤ 0 inside, 0 for vertex-face. Above 0 a neighbouring pair
+  /// is closer, and the response may leave this one out.
+  std::array<double, 2> outside_wedge;
+};
+
+/// Finds proximities among candidates. Listed are, of all vertex-face and edge-edge pairs without a common vertex whose
+/// distance is below the reach, those whose closest points are
+///   - inside the face: always;
+///   - inside both edges: always;
+///   - on an edge or at a vertex of the face: only if no other face around that edge or vertex is closer, and then
+///   once.
+/// What is left out is a duplicate or a poorer neighbour: a face around the edge or vertex S where the closest point
+/// lies contains that point, so its distance is no larger, and going from face to face like this, or from an edge pair
+/// with its closest point at an end to the faces around the other edge, distances never grow; ties go to the lower
+/// number, so the walk ends, at a listed pair. So for each feature pair within reach of two triangles without a
+/// common vertex a listed pair is at least as close, and the least distance of all is always listed.
+class ProximityFinder {
+ public:
+  ProximityFinder() = default;
+
+  /// Triangles of all surfaces in their global numbering.
+  ProximityFinder(std::span<const Triangle> triangles, Index vertex_count) : features_(triangles, vertex_count) {}
+
+  const Features& features() const { return features_; }
+
+  /// Replaces `out` by the proximities at positions x [m] below `reach` [m], in the order of the candidates. These must
+  /// hold every pair of triangles closer than the reach (up to those with a common edge, which are looked up for each
+  /// surface of `deformable`).
+  void find(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
+            double reach, std::vector<Proximity>& out);
+
+ private:
+  class Search;
+
+  struct Rounded {
+    Lanes4 xyz;
+  };
+
+  Features features_;
+  std::vector<Rounded> rounded_;  ///< positions in float, for the first look
+};
+
+}  // namespace weft::collision
