@@ -29,7 +29,7 @@ std::string nearest_name(std::string_view name, std::span<const std::string> kno
   for (const std::string& candidate : known) {
     const int distance = edit_distance(name, candidate);
     const auto longest = static_cast<int>(std::max(name.size(), candidate.size()));
-    if (2 * distance > longest) continue;
+    if (2 * distance >= longest) continue;
     if (best.empty() || distance < best_distance) {
       best = candidate;
       best_distance = distance;

@@ -11,7 +11,7 @@ namespace weft {
 /// technique for computer detection and correction of spelling errors", 1964; each place edited once).
 int edit_distance(std::string_view from, std::string_view to);
 
-/// The closest of `known`, the first among equals; empty if none shares at least half of its letters.
+/// The closest of `known`, the first among equals; empty if more edits than half of the letters would be needed.
 std::string nearest_name(std::string_view name, std::span<const std::string> known);
 
 }  // namespace weft

@@ -1,0 +1,21 @@
+// What each command does. All return the exit code or throw Error.
+#pragma once
+
+#include "cli/options.hpp"
+#include "core/error.hpp"
+
+namespace weft::cli {
+
+/// Simulates, draws and writes side by side; ends early but in order on SIGINT, SIGTERM or failure, keeping what is
+/// finished.
+ExitCode run(const RunOptions& options);
+
+/// Mistakes go to standard error, good scenes and plans to standard output.
+ExitCode check(const CheckOptions& options);
+
+ExitCode thumbnail(const ThumbnailOptions& options);
+
+/// Prints what this machine offers and tries it.
+ExitCode doctor(const DoctorOptions& options);
+
+}  // namespace weft::cli

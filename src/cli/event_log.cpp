@@ -1,0 +1,50 @@
+#include "cli/event_log.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <utility>
+
+#include "cli/output_target.hpp"
+#include "core/error.hpp"
+
+namespace weft::cli {
+
+using Json = nlohmann::ordered_json;
+
+EventLog::EventLog(std::string destination) : destination_(std::move(destination)) {
+  if (destination_.empty()) return;
+  if (destination_ == "-") {
+    file_ = stdout;
+    return;
+  }
+  check_writable(destination_);  // makes the folder too
+  file_ = std::fopen(destination_.c_str(), "wbe");
+  if (file_ == nullptr) {
+    throw Error(ExitCode::output_failed, "{}: cannot be written: {}", destination_, std::strerror(errno));
+  }
+}
+
+EventLog::~EventLog() {
+  if (file_ != nullptr && file_ != stdout) std::fclose(file_);
+}
+
+void EventLog::write(const char* event, Json fields) {
+  if (file_ == nullptr) return;
+  Json line{{"event", event}};
+  line.update(fields);
+  // Text from the outside, such as names of files, may not be UTF-8: replaced, since JSON cannot hold it.
+  const std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::lock_guard lock(mutex_);
+  if (error_ != 0) return;
+  const bool good = std::fwrite(text.data(), 1, text.size(), file_) == text.size() && std::fflush(file_) == 0;
+  if (!good) error_ = errno;
+}
+
+void EventLog::check() {
+  const std::lock_guard lock(mutex_);
+  if (error_ == 0) return;
+  const std::string name = destination_ == "-" ? "standard output" : destination_;
+  throw Error(ExitCode::output_failed, "{}: the log is not complete: {}", name, std::strerror(error_));
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,32 @@
+// `--frames A:B:STEP`: which frames of a scene are drawn.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace weft::cli {
+
+/// As typed: half-open, from 0; an end left out is that of the scene.
+struct FrameSelection {
+  std::optional<int> begin, end;
+  int step = 1;
+};
+
+/// Frames begin, begin + step, ... below end. Never empty.
+struct FrameRange {
+  int begin = 0, end = 1, step = 1;
+
+  bool contains(int frame) const { return frame >= begin && frame < end && (frame - begin) % step == 0; }
+  int count() const { return (end - begin + step - 1) / step; }
+  int last() const { return begin + (count() - 1) * step; }
+  std::string text() const;
+};
+
+/// Reads `A:B`, `A:B:STEP`, `A:`, `:B` or `:`. Throws Error(usage).
+FrameSelection parse_frames(std::string_view text);
+
+/// The selected frames of a scene with `frame_count` frames. Throws Error(usage) where it has no such frames.
+FrameRange resolve_frames(const FrameSelection& selection, int frame_count);
+
+}  // namespace weft::cli

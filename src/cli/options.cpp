@@ -1,0 +1,295 @@
+#include "cli/options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/nearest.hpp"
+#include "core/version.hpp"
+
+namespace weft::cli {
+namespace {
+
+constexpr int kMaxPictureSide = 16384;  // what OpenGL 4.5 promises for textures
+constexpr int kMaxThreads = 1024;
+constexpr double kMaxFps = 1000;
+
+template <class Value>
+using Choice = std::pair<const char*, Value>;
+
+constexpr std::array kQualities{Choice<render::Quality>{"draft", render::Quality::draft},
+                                Choice<render::Quality>{"preview", render::Quality::preview},
+                                Choice<render::Quality>{"final", render::Quality::final}};
+constexpr std::array kBackends{Choice<render::Backend>{"auto", render::Backend::automatic},
+                               Choice<render::Backend>{"osmesa", render::Backend::osmesa},
+                               Choice<render::Backend>{"egl", render::Backend::egl}};
+constexpr std::array kProgressStyles{
+    Choice<Progress::Style>{"auto", Progress::Style::automatic}, Choice<Progress::Style>{"bar", Progress::Style::bar},
+    Choice<Progress::Style>{"plain", Progress::Style::plain}, Choice<Progress::Style>{"none", Progress::Style::none}};
+
+std::string did_you_mean(const std::string& name, std::span<const std::string> known) {
+  const std::string nearest = nearest_name(name, known);
+  return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
+}
+
+template <class Value, std::size_t N>
+Value parse_choice(const char* option, const std::string& text, const std::array<Choice<Value>, N>& choices) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) {
+    if (text == name) return value;
+    names.emplace_back(name);
+  }
+  throw Error(ExitCode::usage, "{}: expected {}, got {}{}", option, fmt::join(names, " or "), text,
+              did_you_mean(text, names));
+}
+
+int parse_integer(const char* option, const std::string& text, int low, int high) {
+  int value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || value < low || value > high) {
+    throw Error(ExitCode::usage, "{}: expected a whole number from {} to {}, got {}", option, low, high, text);
+  }
+  return value;
+}
+
+double parse_fps(const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value > 0 && value <= kMaxFps)) {
+    throw Error(ExitCode::usage, "--fps: expected a number of frames a second, above 0 and up to {}, got {}", kMaxFps,
+                text);
+  }
+  return value;
+}
+
+std::string check_override(const std::string& text) {
+  if (text.find('=') == std::string::npos || text.front() == '=') {
+    throw Error(ExitCode::usage, "--set: expected path.to.key=value such as cloth.band.material.stretch=1e6, got {}",
+                text);
+  }
+  return text;
+}
+
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&overrides](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) overrides.push_back(check_override(text));
+          },
+          "Change one value of the scene, checked like the file; may be given several times")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+// One option with one value, handed to `read` as text.
+void add_value(CLI::App& command, const char* name, const char* value, const char* description,
+               std::function<void(const std::string&)> read) {
+  command.add_option_function<std::string>(name, read, description)->type_name(value);
+}
+
+void add_backend(CLI::App& command, render::Backend& backend) {
+  add_value(command, "--backend", "auto|osmesa|egl", "How the OpenGL context is made [auto]",
+            [&](const std::string& text) { backend = parse_choice("--backend", text, kBackends); });
+}
+
+void add_common(CLI::App& command, SceneOptions& options) {
+  command.add_option("SCENE", options.scene, "The scene, a TOML file")->required()->type_name("");
+  add_value(command, "--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]",
+            [&](const std::string& text) { options.size = parse_size(text); });
+  add_value(command, "--fps", "N", "Frames a second [the scene's]",
+            [&](const std::string& text) { options.fps = parse_fps(text); });
+  add_value(command, "--camera", "NAME", "A camera of the scene [its choice, or automatic framing]",
+            [&](const std::string& text) { options.camera = text; });
+  add_value(command, "--quality", "draft|preview|final", "Care taken in drawing [final]",
+            [&](const std::string& text) { options.quality = parse_choice("--quality", text, kQualities); });
+  add_overrides(command, options.overrides);
+  add_value(command, "--threads", "N", "Threads to use at most [all cores]; results do not depend on it",
+            [&](const std::string& text) { options.threads = parse_integer("--threads", text, 1, kMaxThreads); });
+  add_backend(command, options.backend);
+  add_value(command, "--progress", "auto|bar|plain|none", "Progress on standard error [auto]",
+            [&](const std::string& text) { options.progress = parse_choice("--progress", text, kProgressStyles); });
+  command.add_flag("--overwrite", options.overwrite, "Replace files that exist already");
+}
+
+// The program's commands and the values that CLI11 writes into while parsing.
+struct Parser {
+  CLI::App app{"Weft: cloth scenes to video, on any machine, without a window.", "weft"};
+  RunOptions run;
+  CheckOptions check;
+  ThumbnailOptions thumbnail;
+  SchemaOptions schema;
+  DoctorOptions doctor;
+
+  Parser() {
+    app.set_version_flag("--version", fmt::format("weft {}", kVersion), "Print the version");
+    app.set_help_flag("-h,--help", "Print this help");
+    app.get_formatter()->column_width(34);
+    app.require_subcommand(1);
+    app.footer(
+        "\nExamples:\n"
+        "  weft run scenes/falling_band.toml\n"
+        "  weft check --plan scenes/falling_band.toml\n"
+        "  weft thumbnail scenes/falling_band.toml -o band.png --frame 60\n"
+        "\nExit codes: 0 well, 1 our own fault, 2 command line, 3 scene, 4 asset, 5 simulation,\n"
+        "  6 output or encoder, 75 interrupted.");
+    add_run();
+    add_check();
+    add_thumbnail();
+    add_schema();
+    add_doctor();
+  }
+
+  void add_run() {
+    CLI::App& command = *app.add_subcommand("run", "Simulate a scene, draw it and encode the video");
+    add_value(command, "-o,--output", "FILE", "Video (.mp4) or pictures ('out/{frame:05}.png') [output/<scene>.mp4]",
+              [this](const std::string& text) { run.output = text; });
+    add_value(command, "--frames", "A:B[:STEP]", "Draw frames A up to but without B, counted from 0 [all]",
+              [this](const std::string& text) { run.frames = parse_frames(text); });
+    add_common(command, run.common);
+    add_value(command, "--meshes", "DIR", "Also write each cloth and obstacle of each drawn frame as PLY",
+              [this](const std::string& text) { run.meshes = text; });
+    add_value(command, "--stats", "FILE", "Also write times, iterations and energies as JSON",
+              [this](const std::string& text) { run.stats = text; });
+    add_value(command, "--log-json", "FILE|-", "Also write events as JSON lines (-: standard output)",
+              [this](const std::string& text) { run.log_json = text; });
+    command.footer(
+        "\nExamples:\n"
+        "  weft run scenes/falling_band.toml\n"
+        "  weft run scenes/falling_band.toml -o band.mp4 --quality preview --size 640x360\n"
+        "  weft run scenes/falling_band.toml --frames 0:50 -o 'out/{frame:05}.png' --overwrite\n"
+        "  weft run scenes/falling_band.toml --set cloth.band.material.stretch=1e4 --stats band.json\n"
+        "\nCtrl-C or SIGTERM ends the run after the current frame with a playable video (exit code 75);\n"
+        "a second one quits at once. With a STEP the video keeps the true speed at fewer frames a second.");
+  }
+
+  void add_check() {
+    CLI::App& command = *app.add_subcommand("check", "Print every mistake of one or more scenes");
+    command.add_option("SCENE", check.scenes, "Scenes, TOML files")->required()->type_name("");
+    command.add_flag("--plan", check.plan, "Also print which parts the scene needs and which are left out");
+    add_overrides(command, check.overrides);
+    command.footer("\nExample:\n  weft check scenes/*.toml");
+  }
+
+  void add_thumbnail() {
+    CLI::App& command = *app.add_subcommand("thumbnail", "Draw one still of a scene");
+    add_value(command, "-o,--output", "FILE.png", "The picture [output/<scene>.png]",
+              [this](const std::string& text) { thumbnail.output = text; });
+    add_value(command, "--frame", "N", "Which frame, counted from 0 [the middle one]",
+              [this](const std::string& text) { thumbnail.frame = parse_integer("--frame", text, 0, 1'000'000'000); });
+    add_common(command, thumbnail.common);
+    command.footer("\nExample:\n  weft thumbnail scenes/falling_band.toml -o band.png --frame 60 --quality draft");
+  }
+
+  void add_schema() {
+    CLI::App& command = *app.add_subcommand("schema", "Print the JSON schema of the scene format");
+    command.footer("\nExample:\n  weft schema > weft.schema.json");
+  }
+
+  void add_doctor() {
+    CLI::App& command = *app.add_subcommand("doctor", "Test this machine: processor, OpenGL, encoder");
+    add_backend(command, doctor.backend);
+  }
+
+  std::vector<std::string> command_names() const {
+    std::vector<std::string> names;
+    for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
+    return names;
+  }
+
+  CLI::App* selected() const {
+    const auto commands = app.get_subcommands();
+    return commands.empty() ? nullptr : commands.front();
+  }
+};
+
+// All long and short option names of a command, as typed.
+std::vector<std::string> option_names(const CLI::App& command) {
+  std::vector<std::string> names;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) names.push_back("--" + name);
+    for (const std::string& name : option->get_snames()) names.push_back("-" + name);
+  }
+  return names;
+}
+
+// The first argument must be a command or an option of the program itself; CLI11 alone would only say "required".
+void check_command_name(const Parser& parser, const std::vector<std::string>& arguments) {
+  const std::vector<std::string> known = parser.command_names();
+  const std::string list = fmt::format("{}", fmt::join(known, ", "));
+  if (arguments.empty()) {
+    throw Error(ExitCode::usage, "expected a command: {}; see weft --help", list);
+  }
+  const std::string& first = arguments.front();
+  if (first.starts_with('-')) {
+    const std::vector<std::string> options = option_names(parser.app);
+    if (std::find(options.begin(), options.end(), first) != options.end()) return;
+    throw Error(ExitCode::usage, "unknown option {} before the command{}; see weft --help", first,
+                did_you_mean(first, options));
+  }
+  if (std::find(known.begin(), known.end(), first) != known.end()) return;
+  if (std::filesystem::path(first).extension() == ".toml") {
+    throw Error(ExitCode::usage, "expected a command before {}; did you mean weft run {}?", first, first);
+  }
+  throw Error(ExitCode::usage, "unknown command {}{}; the commands are {}", first, did_you_mean(first, known), list);
+}
+
+[[noreturn]] void throw_unexpected(const CLI::App& command, const std::string& prefix) {
+  const std::vector<std::string> rest = command.remaining(true);
+  for (const std::string& argument : rest) {
+    if (!argument.starts_with('-')) continue;
+    const std::string name = argument.substr(0, argument.find('='));
+    throw Error(ExitCode::usage, "{}: unknown option {}{}; see {} --help", prefix, name,
+                did_you_mean(name, option_names(command)), prefix);
+  }
+  throw Error(ExitCode::usage, "{}: unexpected argument {}; see {} --help", prefix, rest.empty() ? "" : rest.front(),
+              prefix);
+}
+
+}  // namespace
+
+PictureSize parse_size(const std::string& text) {
+  const std::size_t cross = text.find('x');
+  PictureSize size;
+  if (cross != std::string::npos) {
+    const char *begin = text.data(), *middle = begin + cross, *end = begin + text.size();
+    const auto width = std::from_chars(begin, middle, size.width);
+    const auto height = std::from_chars(middle + 1, end, size.height);
+    const bool whole = width.ec == std::errc() && width.ptr == middle && height.ec == std::errc() && height.ptr == end;
+    const auto good = [](int side) { return side >= 1 && side <= kMaxPictureSide; };
+    if (whole && good(size.width) && good(size.height)) return size;
+  }
+  throw Error(ExitCode::usage, "--size: expected WxH in pixels, each from 1 to {}, such as 1280x720, got {}",
+              kMaxPictureSide, text);
+}
+
+Command parse_command_line(const std::vector<std::string>& arguments) {
+  Parser parser;
+  check_command_name(parser, arguments);
+  try {
+    parser.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them reversed
+  } catch (const CLI::CallForHelp&) {
+    return PrintText{parser.app.help()};
+  } catch (const CLI::CallForVersion& version) {
+    return PrintText{fmt::format("{}\n", version.what())};
+  } catch (const CLI::ExtrasError&) {
+    const CLI::App* command = parser.selected();
+    throw_unexpected(command ? *command : parser.app, command ? "weft " + command->get_name() : "weft");
+  } catch (const CLI::ParseError& error) {
+    const CLI::App* command = parser.selected();
+    const std::string prefix = command ? "weft " + command->get_name() : "weft";
+    throw Error(ExitCode::usage, "{}: {}; see {} --help", prefix, error.what(), prefix);
+  }
+  const std::string name = parser.selected()->get_name();
+  if (name == "run") return parser.run;
+  if (name == "check") return parser.check;
+  if (name == "thumbnail") return parser.thumbnail;
+  if (name == "schema") return parser.schema;
+  return parser.doctor;
+}
+
+}  // namespace weft::cli

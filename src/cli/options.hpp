@@ -1,0 +1,74 @@
+// The command line as checked values.
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "cli/frame_range.hpp"
+#include "core/progress.hpp"
+#include "render/renderer.hpp"
+
+namespace weft::cli {
+
+struct PictureSize {
+  int width = 0, height = 0;  ///< pixels
+};
+
+/// What run and thumbnail share.
+struct SceneOptions {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;  ///< of --set
+  std::optional<PictureSize> size;     ///< else that of the scene
+  std::optional<double> fps;           ///< else that of the scene
+  std::string camera;                  ///< empty: the scene's choice
+  render::Quality quality = render::Quality::final;
+  render::Backend backend = render::Backend::automatic;
+  int threads = 0;  ///< 0: all cores
+  bool overwrite = false;
+  Progress::Style progress = Progress::Style::automatic;
+};
+
+struct RunOptions {
+  SceneOptions common;
+  std::string output;  ///< empty: output/<scene>.mp4
+  FrameSelection frames;
+  std::filesystem::path meshes;  ///< folder; empty: none
+  std::filesystem::path stats;   ///< file; empty: none
+  std::string log_json;          ///< file, "-" for standard output; empty: none
+};
+
+struct CheckOptions {
+  std::vector<std::filesystem::path> scenes;
+  std::vector<std::string> overrides;
+  bool plan = false;
+};
+
+struct ThumbnailOptions {
+  SceneOptions common;
+  std::filesystem::path output;  ///< empty: output/<scene>.png
+  std::optional<int> frame;      ///< else the middle one
+};
+
+struct SchemaOptions {};
+
+struct DoctorOptions {
+  render::Backend backend = render::Backend::automatic;
+};
+
+/// Help or version: to be printed on standard output, and that was all.
+struct PrintText {
+  std::string text;
+};
+
+using Command = std::variant<RunOptions, CheckOptions, ThumbnailOptions, SchemaOptions, DoctorOptions, PrintText>;
+
+/// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
+Command parse_command_line(const std::vector<std::string>& arguments);
+
+/// Reads `1280x720`. Throws Error(usage).
+PictureSize parse_size(const std::string& text);
+
+}  // namespace weft::cli

@@ -1,0 +1,53 @@
+#include "cli/program.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <cstdio>
+#include <variant>
+
+#include "cli/commands.hpp"
+#include "cli/failure.hpp"
+#include "cli/options.hpp"
+#include "core/log.hpp"
+#include "scene/loader.hpp"
+
+namespace weft::cli {
+namespace {
+
+ExitCode print(const std::string& text) {
+  const bool good = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
+  if (!good) throw Error(ExitCode::output_failed, "standard output cannot be written");
+  return ExitCode::ok;
+}
+
+struct Dispatch {
+  ExitCode operator()(const RunOptions& options) const { return run(options); }
+  ExitCode operator()(const CheckOptions& options) const { return check(options); }
+  ExitCode operator()(const ThumbnailOptions& options) const { return thumbnail(options); }
+  ExitCode operator()(const SchemaOptions&) const { return print(scene::json_schema() + "\n"); }
+  ExitCode operator()(const DoctorOptions& options) const { return doctor(options); }
+  ExitCode operator()(const PrintText& text) const { return print(text.text); }
+};
+
+void report(const Failure& failure) {
+  // Mistakes of a scene name their file first, as compilers do, so that editors can jump there.
+  log::info(failure.code == ExitCode::scene_invalid ? failure.text : "weft: " + failure.text);
+}
+
+}  // namespace
+
+int run_program(int argc, char** argv) noexcept {
+  try {
+    // A closed pipe is an error of the write that meets it, not a reason to die with half a file.
+    ::signal(SIGPIPE, SIG_IGN);
+    const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
+    return static_cast<int>(std::visit(Dispatch{}, parse_command_line(arguments)));
+  } catch (...) {
+    const Failure failure = describe_failure(std::current_exception());
+    report(failure);
+    return static_cast<int>(failure.code);
+  }
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,43 @@
+// Everything a run found out about itself, for the statistics file and for the summary.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/pipeline.hpp"
+#include "core/error.hpp"
+#include "simulation/simulation.hpp"
+
+namespace weft::cli {
+
+struct RunReport {
+  std::string scene;  ///< its name
+  std::string scene_file;
+  std::uint64_t scene_hash = 0;
+  std::vector<simulation::ObjectInfo> objects;
+  std::size_t particles = 0;
+  int threads = 0;
+  std::string gl;
+  int width = 0, height = 0;  ///< pixels
+  double fps = 0;
+  std::string output;               ///< as the user named it
+  std::uintmax_t output_bytes = 0;  ///< of a video; 0 for pictures or none
+  FrameRange wanted;
+  std::vector<FrameRecord> frames;  ///< those simulated
+  int written = 0;
+  StageTime setup;               ///< reading the scene and building the simulation
+  double wall_s = 0, cpu_s = 0;  ///< of the whole process, all threads
+  std::int64_t peak_memory = 0;  ///< [bytes]
+  std::vector<std::string> warnings;
+  ExitCode exit_code = ExitCode::ok;
+  std::string message;  ///< why it ended early; empty if it did not
+};
+
+struct StageTotals {
+  StageTime simulate, collide, render, encode, meshes;  ///< collide is a part of simulate
+};
+
+StageTotals total_times(const std::vector<FrameRecord>& frames);
+
+}  // namespace weft::cli

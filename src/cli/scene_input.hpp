@@ -1,0 +1,21 @@
+// From the scene named on the command line to a checked Scene.
+#pragma once
+
+#include <string>
+
+#include "cli/options.hpp"
+#include "render/renderer.hpp"
+#include "scene/scene.hpp"
+
+namespace weft::cli {
+
+/// Reads the scene with the changes of the command line. Throws Error(scene_invalid) with all mistakes, one a line, and
+/// Error(usage) for a camera that the scene does not have.
+scene::Scene load_scene(const SceneOptions& options);
+
+render::Settings render_settings(const scene::Scene& scene, const SceneOptions& options);
+
+/// "1 cloth, 2 obstacles, 2091 particles, 126 frames at 25 fps".
+std::string describe_scene(const scene::Scene& scene);
+
+}  // namespace weft::cli

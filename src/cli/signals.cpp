@@ -1,0 +1,67 @@
+#include "cli/signals.hpp"
+
+#include <signal.h>
+#include <time.h>
+#include <unistd.h>
+
+#include <array>
+#include <string_view>
+
+#include "core/error.hpp"
+#include "core/temporary_file.hpp"
+
+namespace weft::cli {
+namespace {
+
+constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+constexpr long long kRepeatWindow = 1'000'000'000;  // [ns]
+
+std::atomic<bool> g_requested{false};
+std::atomic<long long> g_first{0};  // time of the first signal [ns]
+static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<long long>::is_always_lock_free,
+              "a signal handler may only touch lock-free atomics");
+std::array<struct sigaction, kSignals.size()> g_previous;
+
+void say(std::string_view text) {
+  if (::write(STDERR_FILENO, text.data(), text.size()) < 0) return;  // nobody reads it: nothing to be done here
+}
+
+// Only async-signal-safe calls (POSIX.1-2017, 2.4.3): write, clock_gettime, unlink, _exit.
+void on_signal(int) {
+  timespec clock{};
+  clock_gettime(CLOCK_MONOTONIC, &clock);
+  const long long now = clock.tv_sec * 1'000'000'000LL + clock.tv_nsec;
+  if (!g_requested.exchange(true)) {
+    g_first = now;
+    say("\nfinishing the current frame; press again to quit at once\n");
+  } else if (now - g_first > kRepeatWindow) {
+    remove_temporary_files();
+    say("\nquit at once; unfinished files are removed\n");
+    ::_exit(static_cast<int>(ExitCode::interrupted));
+  }
+}
+
+}  // namespace
+
+StopSignals::StopSignals() {
+  g_requested = false;
+  struct sigaction action {};
+  action.sa_handler = on_signal;
+  action.sa_flags = SA_RESTART;  // system calls of other threads go on as if nothing had happened
+  sigemptyset(&action.sa_mask);
+  for (const int signal : kSignals) sigaddset(&action.sa_mask, signal);
+  for (std::size_t i = 0; i < kSignals.size(); ++i) {
+    sigaction(kSignals[i], nullptr, &g_previous[i]);
+    if (g_previous[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &action, nullptr);
+  }
+}
+
+StopSignals::~StopSignals() {
+  for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &g_previous[i], nullptr);
+}
+
+const std::atomic<bool>& StopSignals::requested() const {
+  return g_requested;
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,132 @@
+#include "cli/stages.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <optional>
+#include <utility>
+
+#include "core/log.hpp"
+#include "core/timer.hpp"
+#include "core/version.hpp"
+#include "image/png.hpp"
+#include "mesh/ply.hpp"
+#include "video/encoder.hpp"
+
+namespace weft::cli {
+namespace {
+
+bool shows_single_color(const image::Image& image) {
+  // Equal to itself shifted by one pixel: every pixel equals its neighbour.
+  return image.rgb.size() > 3 && std::equal(image.rgb.begin() + 3, image.rgb.end(), image.rgb.begin());
+}
+
+class GlPainter : public FramePainter {
+ public:
+  explicit GlPainter(const render::Settings& settings) : renderer_(settings) {}
+
+  image::Image draw(const frame::FrameSnapshot& snapshot) override {
+    image::Image image = renderer_.draw(snapshot);
+    if (!warned_ && shows_single_color(image)) {
+      warned_ = true;
+      log::warn(fmt::format("frame {} shows a single color: does the camera look at the scene?", snapshot.frame));
+    }
+    return image;
+  }
+
+  StageTime last_time() const override {
+    const render::DrawTimes times = renderer_.last_times();
+    return {times.wall_seconds, times.cpu_seconds};
+  }
+
+  std::string description() const override { return renderer_.description(); }
+
+ private:
+  render::Renderer renderer_;
+  bool warned_ = false;
+};
+
+class OutputWriter : public FrameWriter {
+ public:
+  explicit OutputWriter(const WriterSettings& settings) : settings_(settings) {
+    if (settings.target.kind == OutputTarget::Kind::video) open_video();
+  }
+
+  void write(const frame::FrameSnapshot& snapshot, const image::Image& image) override {
+    if (video_) {
+      video_->add(image);
+    } else {
+      image::write_png(settings_.target.file(snapshot.frame), image,
+                       describe_still(settings_.metadata, snapshot.frame, snapshot.time));
+    }
+    if (!settings_.meshes.empty()) {
+      const WallTimer wall;
+      const double cpu = thread_cpu_seconds();
+      write_meshes(settings_.meshes, snapshot);
+      mesh_time_ = {wall.seconds(), thread_cpu_seconds() - cpu};
+    }
+  }
+
+  void finish() override {
+    if (video_) video_->finish();
+  }
+
+  StageTime last_extra_time() const override { return mesh_time_; }
+
+ private:
+  void open_video() {
+    video::Settings video;
+    video.width = settings_.width;
+    video.height = settings_.height;
+    // Every STEP-th frame: fewer pictures a second, so that the motion keeps its true speed.
+    video.fps = settings_.fps / settings_.frames.step;
+    video.metadata = settings_.metadata;
+    video.metadata["frames"] = settings_.frames.text();
+    video_.emplace(settings_.target.file(0), video);
+  }
+
+  const WriterSettings settings_;
+  std::optional<video::Encoder> video_;
+  StageTime mesh_time_;
+};
+
+}  // namespace
+
+std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings) {
+  return std::make_unique<GlPainter>(settings);
+}
+
+Metadata describe_pictures(const scene::Scene& scene, const render::Settings& settings, const std::string& gl) {
+  constexpr const char* kQualities[] = {"draft", "preview", "final"};
+  Metadata metadata{{"scene", scene.name},
+                    {"scene_hash", fmt::format("{:016x}", scene.hash)},
+                    {"weft_version", kVersion},
+                    {"gl", gl},
+                    {"quality", kQualities[static_cast<int>(settings.quality)]}};
+  if (!settings.camera.empty()) metadata["camera"] = settings.camera;
+  if (!scene.title.empty()) metadata["title"] = scene.title;
+  return metadata;
+}
+
+Metadata describe_still(Metadata metadata, int frame, double time_s) {
+  metadata["frame"] = fmt::format("{}", frame);
+  metadata["time_s"] = fmt::format("{}", time_s);
+  return metadata;
+}
+
+std::unique_ptr<FrameWriter> make_writer(const WriterSettings& settings) {
+  return std::make_unique<OutputWriter>(settings);
+}
+
+std::filesystem::path mesh_file(const std::filesystem::path& folder, const std::string& object, int frame) {
+  return folder / fmt::format("{}_{:05}.ply", object, frame);
+}
+
+void write_meshes(const std::filesystem::path& folder, const frame::FrameSnapshot& snapshot) {
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    const frame::Surface& surface = *snapshot.surfaces[i];
+    mesh::write_ply(mesh_file(folder, surface.name, snapshot.frame), snapshot.states[i].positions, surface.triangles);
+  }
+}
+
+}  // namespace weft::cli

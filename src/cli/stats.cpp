@@ -1,0 +1,120 @@
+#include "cli/stats.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "cli/system_info.hpp"
+#include "core/version.hpp"
+
+namespace weft::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+const char* kind_name(frame::ObjectKind kind) {
+  switch (kind) {
+    case frame::ObjectKind::cloth:
+      return "cloth";
+    case frame::ObjectKind::obstacle:
+      return "obstacle";
+    case frame::ObjectKind::character:
+      return "character";
+  }
+  return "unknown";
+}
+
+// JSON knows neither infinity nor NaN.
+Json finite(double value) {
+  return std::isfinite(value) ? Json(value) : Json(nullptr);
+}
+
+Json totals_json(const RunReport& report) {
+  const StageTotals totals = total_times(report.frames);
+  return {{"simulate", totals.simulate.wall_s},
+          {"collide", totals.collide.wall_s},
+          {"render", totals.render.wall_s},
+          {"encode", totals.encode.wall_s},
+          {"meshes", totals.meshes.wall_s},
+          {"setup", report.setup.wall_s},
+          {"wall", report.wall_s},
+          {"simulate_cpu", totals.simulate.cpu_s},
+          {"collide_cpu", totals.collide.cpu_s},
+          {"render_cpu", totals.render.cpu_s},
+          {"encode_cpu", totals.encode.cpu_s},
+          {"meshes_cpu", totals.meshes.cpu_s},
+          {"setup_cpu", report.setup.cpu_s},
+          {"cpu", report.cpu_s}};
+}
+
+}  // namespace
+
+StageTotals total_times(const std::vector<FrameRecord>& frames) {
+  StageTotals totals;
+  for (const FrameRecord& record : frames) {
+    totals.simulate += {record.report.simulate_wall_s, record.report.simulate_cpu_s};
+    totals.collide += {record.report.collide_wall_s, record.report.collide_cpu_s};
+    totals.render += record.render;
+    totals.encode += record.encode;
+    totals.meshes += record.meshes;
+  }
+  return totals;
+}
+
+Json frame_json(const FrameRecord& record) {
+  const simulation::FrameReport& report = record.report;
+  return {{"frame", report.frame},
+          {"time_s", report.time},
+          {"written", record.written},
+          {"simulate_ms", 1e3 * report.simulate_wall_s},
+          {"collide_ms", 1e3 * report.collide_wall_s},
+          {"render_ms", 1e3 * record.render.wall_s},
+          {"encode_ms", 1e3 * record.encode.wall_s},
+          {"simulate_cpu_ms", 1e3 * report.simulate_cpu_s},
+          {"collide_cpu_ms", 1e3 * report.collide_cpu_s},
+          {"render_cpu_ms", 1e3 * record.render.cpu_s},
+          {"encode_cpu_ms", 1e3 * record.encode.cpu_s},
+          {"steps", report.steps},
+          {"rejected_steps", report.rejected_steps},
+          {"newton_iterations", report.newton_iterations},
+          {"linear_iterations", report.linear_iterations},
+          {"proximities", report.proximities},
+          {"constraints", report.constraints},
+          {"min_distance_m", finite(report.min_distance)},
+          {"max_strain", finite(report.max_strain)},
+          {"kinetic_energy_j", finite(report.kinetic_energy)},
+          {"elastic_energy_j", finite(report.elastic_energy)}};
+}
+
+Json stats_json(const RunReport& report) {
+  Json objects = Json::array();
+  for (const simulation::ObjectInfo& object : report.objects) {
+    objects.push_back({{"name", object.name},
+                       {"kind", kind_name(object.kind)},
+                       {"vertices", object.vertices},
+                       {"faces", object.faces}});
+  }
+  Json frames = Json::array();
+  for (const FrameRecord& record : report.frames) frames.push_back(frame_json(record));
+  return {{"scene", report.scene},
+          {"scene_file", report.scene_file},
+          {"scene_hash", fmt::format("{:016x}", report.scene_hash)},
+          {"version", kVersion},
+          {"threads", report.threads},
+          {"cpu", cpu_model()},
+          {"gl", report.gl},
+          {"exit_code", static_cast<int>(report.exit_code)},
+          {"message", report.message},
+          {"warnings", report.warnings},
+          {"output", report.output},
+          {"width", report.width},
+          {"height", report.height},
+          {"fps", report.fps},
+          {"objects", std::move(objects)},
+          {"particles", report.particles},
+          {"totals", totals_json(report)},
+          {"peak_memory_bytes", report.peak_memory},
+          {"frames", std::move(frames)}};
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,17 @@
+// The JSON of --stats and --log-json.
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "cli/run_report.hpp"
+
+namespace weft::cli {
+
+/// One frame: times in ms, counts, distances and energies in SI units. An infinite distance becomes null.
+nlohmann::ordered_json frame_json(const FrameRecord& record);
+
+/// All of --stats.
+nlohmann::ordered_json stats_json(const RunReport& report);
+
+}  // namespace weft::cli

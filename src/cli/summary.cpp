@@ -1,0 +1,124 @@
+#include "cli/summary.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "cli/table.hpp"
+
+namespace weft::cli {
+namespace {
+
+using Row = std::vector<std::string>;
+
+constexpr double kLargeStrain = 0.25;  // woven cloth tears near it
+
+std::string bytes_text(std::uintmax_t bytes) {
+  const auto value = static_cast<double>(bytes);
+  if (value < 1e3) return fmt::format("{} bytes", bytes);
+  if (value < 1e6) return fmt::format("{:.0f} kB", value / 1e3);
+  if (value < 1e9) return fmt::format("{:.1f} MB", value / 1e6);
+  return fmt::format("{:.2f} GB", value / 1e9);
+}
+
+std::string headline(const RunReport& report) {
+  if (report.written == 0) return fmt::format("{}: no frame was written", report.output);
+  const double video_fps = report.fps / report.wanted.step;
+  std::string line = fmt::format("{}: {} frame{}, {}x{} at {:.4g} fps", report.output, report.written,
+                                 report.written == 1 ? "" : "s", report.width, report.height, video_fps);
+  if (report.output_bytes > 0) line += fmt::format(", {}", bytes_text(report.output_bytes));
+  return line;
+}
+
+Row stage_row(const char* name, const StageTime& time, int frames) {
+  const std::string per_frame = frames > 0 ? fmt::format("{:.1f} ms", 1e3 * time.cpu_s / frames) : std::string("-");
+  return {name, fmt::format("{:.2f} s", time.wall_s), fmt::format("{:.2f} s", time.cpu_s), per_frame};
+}
+
+std::string times_table(const RunReport& report) {
+  const StageTotals totals = total_times(report.frames);
+  // Frame 0 is given, not computed.
+  const int simulated = std::max(0, static_cast<int>(report.frames.size()) - 1);
+  std::vector<Row> rows{{"", "wall", "CPU", "CPU a frame"},
+                        stage_row("set up", report.setup, 0),
+                        stage_row("simulate", totals.simulate, simulated),
+                        stage_row("  collisions", totals.collide, simulated),
+                        stage_row("draw", totals.render, report.written),
+                        stage_row("encode", totals.encode, report.written)};
+  if (totals.meshes.wall_s > 0) rows.push_back(stage_row("meshes", totals.meshes, report.written));
+  rows.push_back(stage_row("whole run", {report.wall_s, report.cpu_s}, report.written));
+  return format_table(rows, "lrrr", 2);
+}
+
+// The frame where `value` is largest, as text "0.0123 (frame 45)".
+template <class Value>
+std::string at_largest(const std::vector<FrameRecord>& frames, const char* format, const Value& value, double scale) {
+  const auto largest = std::max_element(
+      frames.begin(), frames.end(), [&](const auto& a, const auto& b) { return value(a.report) < value(b.report); });
+  return fmt::format(fmt::runtime(format), scale * value(largest->report)) +
+         fmt::format(" (frame {})", largest->report.frame);
+}
+
+std::string figures_table(const RunReport& report) {
+  long long steps = 0, rejected = 0, newton = 0, linear = 0;
+  for (const FrameRecord& record : report.frames) {
+    steps += record.report.steps;
+    rejected += record.report.rejected_steps;
+    newton += record.report.newton_iterations;
+    linear += record.report.linear_iterations;
+  }
+  const simulation::FrameReport &first = report.frames.front().report, &last = report.frames.back().report;
+  const auto nearness = [](const simulation::FrameReport& r) { return -r.min_distance; };
+  const bool none_near = std::all_of(report.frames.begin(), report.frames.end(),
+                                     [](const FrameRecord& r) { return std::isinf(r.report.min_distance); });
+  const auto strain = [](const simulation::FrameReport& r) { return r.max_strain; };
+  return format_table(
+      {{"particles", fmt::format("{} in {} objects", report.particles, report.objects.size())},
+       {"steps",
+        fmt::format("{} and {} rejected; {} Newton and {} linear iterations", steps, rejected, newton, linear)},
+       {"smallest distance", none_near ? "nothing came near" : at_largest(report.frames, "{:.3g} mm", nearness, -1e3)},
+       {"largest strain", at_largest(report.frames, "{:.2f} %", strain, 100)},
+       {"energy at the end",
+        fmt::format("kinetic {:.3g} J (start {:.3g}), elastic {:.3g} J (start {:.3g})", last.kinetic_energy,
+                    first.kinetic_energy, last.elastic_energy, first.elastic_energy)},
+       {"peak memory", bytes_text(static_cast<std::uintmax_t>(report.peak_memory))},
+       {"scene", fmt::format("{} ({:016x}), {} thread{}", report.scene_file, report.scene_hash, report.threads,
+                             report.threads == 1 ? "" : "s")}},
+      "ll", 2);
+}
+
+}  // namespace
+
+std::string summary(const RunReport& report) {
+  std::string text = headline(report) + "\n" + times_table(report);
+  if (!report.frames.empty()) text += figures_table(report);
+  for (const std::string& warning : report.warnings) text += fmt::format("  warning: {}\n", warning);
+  text.pop_back();
+  return text;
+}
+
+std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
+  std::vector<std::string> warnings;
+  if (frames.empty()) return warnings;
+  double strain = 0, distance = std::numeric_limits<double>::infinity();
+  long long steps = 0, rejected = 0;
+  for (const FrameRecord& record : frames) {
+    strain = std::max(strain, record.report.max_strain);
+    distance = std::min(distance, record.report.min_distance);
+    steps += record.report.steps;
+    rejected += record.report.rejected_steps;
+  }
+  if (strain > kLargeStrain) {
+    warnings.push_back(fmt::format(
+        "threads were stretched or squeezed by up to {:.0f} %: a stiffer material or a smaller time.step may be needed",
+        100 * strain));
+  }
+  if (rejected > steps / 4) {
+    warnings.push_back(
+        fmt::format("{} of {} steps were rejected: a smaller time.step would be faster", rejected, steps + rejected));
+  }
+  if (distance <= 0) warnings.push_back("surfaces touched or passed through each other");
+  return warnings;
+}
+
+}  // namespace weft::cli

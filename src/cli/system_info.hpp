@@ -1,0 +1,15 @@
+// What machine this is and what it gave us.
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+namespace weft::cli {
+
+/// Model name of the processor; "unknown" where the system does not tell.
+std::string cpu_model();
+
+/// The most memory that the process held so far [bytes].
+std::int64_t peak_memory_bytes();
+
+}  // namespace weft::cli
