@@ -1,0 +1,70 @@
+// Direct light and its shadows. A pixel first asks a coarse map of depth ranges whether any caster is near enough to
+// matter; only in and around penumbrae does it search for blockers and filter (Fernando, "Percentage-Closer Soft
+// Shadows", 2005).
+struct Light {
+  mat4 shadow_from_world;         // to texture coordinates and depth, homogeneous
+  mat4 shadow_planes_from_world;  // its inverse transpose: carries planes
+  vec4 toward_light_world;        // w: 1 for a spot
+  vec4 position_world;            // w: cosine of half the cone
+  vec4 color;                     // linear; w: 1 / width of the soft edge of the cone
+  vec4 shadow;                    // penumbra width for each unit of depth, depth bias, texel size
+};
+layout(std140, binding = 1) uniform Lights {
+  Light lights[4];
+  ivec4 light_count;
+};
+layout(binding = 0) uniform sampler2DArrayShadow shadow_compare;
+layout(binding = 1) uniform sampler2DArray shadow_depth;
+layout(binding = 2) uniform sampler2DArray shadow_range;
+
+// Share of light i that reaches a point, 0 to 1. `normal_world` faces the light.
+float visibility(int i, vec3 position_world, vec3 normal_world) {
+  vec4 homogeneous = lights[i].shadow_from_world * vec4(position_world, 1.0);
+  vec3 at = homogeneous.xyz / homogeneous.w;
+  if (homogeneous.w <= 0.0 || any(greaterThan(abs(at.xy - 0.5), vec2(0.5)))) return 1.0;
+
+  // The tangent plane as depth over texture coordinates, so that wide filters do not shade a slope by itself.
+  vec4 plane = lights[i].shadow_planes_from_world * vec4(normal_world, -dot(normal_world, position_world));
+  float texel = lights[i].shadow.w, bias = lights[i].shadow.z;
+  vec2 slope = -plane.xy / (sign(plane.z) * max(abs(plane.z), 1e-6));
+  // Nearly edge-on slopes would reach out of the map; there the light is faint anyway.
+  slope *= min(1.0, MAX_SLOPE_TEXELS * bias / (texel * max(length(slope), 1e-9)));
+
+  vec2 range = texture(shadow_range, vec3(at.xy, i)).rg;
+  vec2 reach = lights[i].shadow.xy * max(at.z - range.x, 0.0);
+  reach = clamp(reach, vec2(FILTER_FLOOR_TEXELS * texel), vec2(FILTER_LIMIT_TEXELS * texel));
+  float lift = dot(abs(slope), reach + texel) + bias;
+  if (at.z - bias <= range.x) return 1.0;
+  if (at.z - lift > range.y) return 0.0;
+
+  float turn = pixel_noise(gl_FragCoord.xy);
+  float blocker_sum = 0.0, blocker_count = 0.0;
+  for (int k = 0; k < BLOCKER_TAPS; ++k) {
+    vec2 offset = disc_point(k, BLOCKER_TAPS, turn) * reach;
+    float depth = texture(shadow_depth, vec3(at.xy + offset, i)).r;
+    if (depth < at.z + dot(slope, offset) - bias - texel * length(slope)) {
+      blocker_sum += depth;
+      blocker_count += 1.0;
+    }
+  }
+  if (blocker_count == 0.0) return 1.0;
+  vec2 radius = lights[i].shadow.xy * max(at.z - blocker_sum / blocker_count, 0.0);
+  radius = clamp(radius, vec2(FILTER_FLOOR_TEXELS * texel), reach);
+  float lit = 0.0;
+  for (int k = 0; k < FILTER_TAPS; ++k) {
+    vec2 offset = disc_point(k, FILTER_TAPS, turn) * radius;
+    float expected = min(at.z + dot(slope, offset) - bias - 0.5 * texel * length(slope), 1.0);
+    lit += texture(shadow_compare, vec4(at.xy + offset, i, expected));
+  }
+  return lit / float(FILTER_TAPS);
+}
+
+// Unit vector toward light i, and how much of its cone covers the point.
+vec3 toward_light(int i, vec3 position_world, out float cone) {
+  cone = 1.0;
+  if (lights[i].toward_light_world.w == 0.0) return lights[i].toward_light_world.xyz;
+  vec3 toward = normalize(lights[i].position_world.xyz - position_world);
+  float cosine = dot(toward, lights[i].toward_light_world.xyz);
+  cone = smoothstep(0.0, 1.0, (cosine - lights[i].position_world.w) * lights[i].color.w);
+  return toward;
+}

@@ -1,0 +1,71 @@
+// How much of the sky each point sees, from two sources: what the camera sees nearby (creases, contacts) and maps of
+// the scene from straight above and below (the soft dark under large things). Half size; blurred afterwards.
+#include "frame.glsl"
+layout(binding = 0) uniform sampler2D depth_map;
+layout(binding = 1) uniform sampler2D normal_map;
+layout(binding = 2) uniform sampler2DArray sky_maps;  // layer 0 from above, 1 from below
+layout(location = 0) out vec4 occlusion;  // x: nearby, y: sky; 1 is open. z: view distance for the blur
+
+vec3 position_view(vec2 uv, float distance_view) {
+  return vec3((uv * 2.0 - 1.0) * frame.frustum.xy * distance_view, -distance_view);
+}
+
+// Scalable ambient obscurance (McGuire, Mara, Luebke 2012, Eq. 1): the mean of how far neighbours stand out of the
+// tangent plane, so that it hardly depends on the distance at which taps happen to land.
+float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, float turn) {
+  float radius = 0.16 * frame.eye_world.w;
+  vec2 reach_uv = min(radius / (2.0 * frame.frustum.xy * -p_view.z), vec2(0.12));
+  float sum = 0.0;
+  for (int k = 0; k < NEARBY_TAPS; ++k) {
+    vec2 point = disc_point(k, NEARBY_TAPS, turn);
+    // Squared spacing: contacts a few millimetres wide get as many taps as the wide surroundings.
+    vec2 tap_uv = uv + point * length(point) * reach_uv;
+    vec3 v = position_view(tap_uv, view_distance(textureLod(depth_map, tap_uv, 0.0).r)) - p_view;
+    float d_sq = dot(v, v), fall = max(1.0 - d_sq / (radius * radius), 0.0);
+    sum += fall * max(dot(v, n_view) + 4e-4 * p_view.z, 0.0) * inversesqrt(d_sq + 1e-8);
+  }
+  return clamp(1.0 - 1.6 * sum / float(NEARBY_TAPS), 0.0, 1.0);
+}
+
+// Share of the sky left free by what the maps show above the point, taken as horizontal patches: one of area A at height
+// h and distance d covers A cos_receiver (h / d) / (pi d^2), its form factor.
+float sky_openness(vec3 p_world, vec3 n_world, float turn) {
+  float reach = frame.sky_light.w, depth_metres = frame.ground_light.w;
+  vec3 up = frame.up_world.xyz, across = frame.right_world.xyz, along = cross(up, across);
+  vec3 above = (frame.above_from_world * vec4(p_world, 1.0)).xyz;
+  vec3 below = (frame.below_from_world * vec4(p_world, 1.0)).xyz;
+  mat2 above_axes = mat2((mat3(frame.above_from_world) * across).xy, (mat3(frame.above_from_world) * along).xy);
+  mat2 below_axes = mat2((mat3(frame.below_from_world) * across).xy, (mat3(frame.below_from_world) * along).xy);
+  float covered = 0.0;
+  for (int k = 0; k < SKY_TAPS; ++k) {
+    vec2 point = disc_point(k, SKY_TAPS, turn);
+    // Radius r = reach t^2 for t = (k + 1/2) / n, denser towards the zenith; patch area 2 pi r dr follows.
+    float t = dot(point, point), r = reach * t * t;
+    vec2 offset = point * (r * inversesqrt(t));
+    float area = 12.5663706 * reach * r * t / float(SKY_TAPS);
+    float height = (above.z - textureLod(sky_maps, vec3(above.xy + above_axes * offset, 0.0), 0.0).r) * depth_metres;
+    if (height < 2e-3) continue;
+    float lowest = (textureLod(sky_maps, vec3(below.xy + below_axes * offset, 1.0), 0.0).r - below.z) * depth_metres;
+    if (lowest > 2e-3) height = lowest;
+    vec3 w = across * offset.x + along * offset.y + up * height;
+    float d_sq = dot(w, w);
+    covered += area * max(dot(n_world, w), 0.0) * height / (d_sq * (3.14159265 * d_sq + area));
+  }
+  return clamp(1.0 - covered, 0.0, 1.0);
+}
+
+void main() {
+  vec2 uv = gl_FragCoord.xy / vec2(textureSize(depth_map, 0));
+  float depth = textureLod(depth_map, uv, 0.0).r;
+  if (depth == 1.0) {
+    occlusion = vec4(1.0, 1.0, frame.frustum.w, 0.0);
+    return;
+  }
+  vec3 n_world = normalize(textureLod(normal_map, uv, 0.0).xyz * 2.0 - 1.0);
+  vec3 p_view = position_view(uv, view_distance(depth));
+  vec3 p_world = transpose(mat3(frame.view_from_world)) * p_view + frame.eye_world.xyz;
+  float turn = pixel_noise(gl_FragCoord.xy);
+  occlusion.x = nearby_openness(uv, p_view, mat3(frame.view_from_world) * n_world, turn);
+  occlusion.y = sky_openness(p_world, n_world, turn);
+  occlusion.z = -p_view.z;
+}

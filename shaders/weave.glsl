@@ -1,0 +1,59 @@
+// A plain weave drawn in rest coordinates: threads alternate over and under, each a little different in tone. Every
+// feature fades to its mean before it gets smaller than two pixels, so that nothing shimmers.
+float thread_noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
+
+// Tone of yarns that vary along the sheet, smooth over `scale` threads.
+float yarn_tone(float at) {
+  float i = floor(at), f = at - i;
+  return mix(thread_noise(i), thread_noise(i + 1.0), f * f * (3.0 - 2.0 * f)) - 0.5;
+}
+
+struct Weave {
+  vec3 normal_world;
+  float tone;   // factor on the colour
+  float shine;  // factor on the highlight
+};
+
+// 1 while a feature of `size` is well above the pixel's footprint, 0 once it is below two pixels.
+float visible_feature(float footprint, float size) { return 1.0 - smoothstep(0.22, 0.5, footprint / size); }
+
+Weave weave(vec2 rest_uv, float spacing, vec3 n_world, vec3 p_world) {
+  vec2 thread = rest_uv / spacing;
+  vec2 across = dFdx(thread), down = dFdy(thread);
+  float footprint = max(length(across), length(down));
+  Weave result = Weave(n_world, 1.0, 1.0);
+
+  // A grid of heavier threads, 32 apart, seen from afar: the scale of the cloth and how it is stretched and sheared.
+  vec2 ruled = abs(fract(thread / 32.0 + 0.5) - 0.5) * 32.0;
+  vec2 width = vec2(length(vec2(across.x, down.x)), length(vec2(across.y, down.y)));
+  vec2 line = clamp((1.0 + 0.5 * width - ruled) / max(width, 1e-6), 0.0, 1.0) * min(2.0 / max(width, 1e-6), 1.0);
+  line = mix(vec2(0.0625), line, visible_feature(footprint, 32.0));
+  result.tone *= 1.0 - 0.16 * (line.x + line.y);
+
+  // Uneven yarn, a few threads wide.
+  float slub = visible_feature(footprint, 5.0);
+  if (slub > 0.0) result.tone *= 1.0 + 0.09 * slub * (yarn_tone(thread.x / 2.5) + yarn_tone(thread.y / 2.5 + 71.0));
+
+  float fine = visible_feature(footprint, 1.0);
+  if (fine > 0.0) {
+    vec2 cell = floor(thread), local = fract(thread) - 0.5;
+    bool weft_over = mod(cell.x + cell.y, 2.0) < 1.0;
+    // Round yarns: height falls off across the thread and where it dives under the next one.
+    vec2 along_across = weft_over ? local : local.yx;
+    vec2 bend = vec2(0.9 * along_across.x, 1.5 * along_across.y);
+    float height = 1.0 - 1.6 * along_across.y * along_across.y - 1.1 * along_across.x * along_across.x;
+    vec2 tilt = weft_over ? bend : bend.yx;
+    // Gradients of weft and warp in the surface, from screen derivatives.
+    vec3 p_dx = dFdx(p_world), p_dy = dFdy(p_world);
+    vec3 weft = p_dx * down.y - p_dy * across.y, warp = p_dy * across.x - p_dx * down.x;
+    float area = across.x * down.y - across.y * down.x;
+    weft *= sign(area) * inversesqrt(max(dot(weft, weft), 1e-20));
+    warp *= sign(area) * inversesqrt(max(dot(warp, warp), 1e-20));
+    result.normal_world = normalize(n_world + 0.75 * fine * (tilt.x * weft + tilt.y * warp));
+    float yarn = weft_over ? thread_noise(cell.y + 0.5) : thread_noise(cell.x + 37.0);
+    // 0.78 is the mean of the height over a cell: the tone stays when the threads fade.
+    result.tone *= 1.0 + fine * (0.85 * (height - 0.775) + 0.10 * (yarn - 0.5));
+    result.shine = 1.0 + fine * (height - 0.775);
+  }
+  return result;
+}

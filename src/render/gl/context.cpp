@@ -1,0 +1,61 @@
+#include "render/gl/context.hpp"
+
+#include <cstdlib>
+#include <string_view>
+
+#include "core/error.hpp"
+
+namespace weft::render {
+namespace {
+
+const char* text(const Gl& gl, GLenum name) {
+  const auto* found = reinterpret_cast<const char*>(gl.GetString(name));
+  return found ? found : "unknown";
+}
+
+/// llvmpipe reads these once, when the first context of the process is made.
+void set_rasteriser_environment(int threads) {
+  // 512-bit vectors together with 4x multisampling crash llvmpipe of Mesa 22.3; its own choice is right everywhere.
+  const char* width = std::getenv("LP_NATIVE_VECTOR_WIDTH");
+  if (width && std::string_view(width) == "512") unsetenv("LP_NATIVE_VECTOR_WIDTH");
+  if (threads > 0) setenv("LP_NUM_THREADS", std::to_string(threads).c_str(), 1);
+}
+
+}  // namespace
+
+void Context::load_functions(Loader loader, const std::string& backend) {
+  const int version = gladLoadGLContext(&gl_, loader);
+  if (version < GLAD_MAKE_VERSION(4, 5)) {
+    throw Error(ExitCode::internal, "{}: expected OpenGL 4.5 core, got {}.{}; install Mesa 20 or newer", backend,
+                GLAD_VERSION_MAJOR(version), GLAD_VERSION_MINOR(version));
+  }
+  description_ = fmt::format("{}; {}; {}; OpenGL {}", backend, text(gl_, GL_VENDOR), text(gl_, GL_RENDERER),
+                             text(gl_, GL_VERSION));
+}
+
+std::unique_ptr<Context> make_context(Backend backend, int threads) {
+  set_rasteriser_environment(threads);
+  switch (backend) {
+    case Backend::osmesa:
+      return make_osmesa_context();
+    case Backend::egl:
+      return make_egl_context();
+    case Backend::automatic:
+      break;
+  }
+  std::string osmesa_said;
+  try {
+    return make_osmesa_context();
+  } catch (const Error& error) {
+    osmesa_said = error.what();
+  }
+  try {
+    return make_egl_context();
+  } catch (const Error& error) {
+    throw Error(ExitCode::internal,
+                "no OpenGL without a window on this machine: install libosmesa6, or libegl1 and libegl-mesa0\n  {}\n  {}",
+                osmesa_said, error.what());
+  }
+}
+
+}  // namespace weft::render

@@ -1,0 +1,19 @@
+#include "render/gl/shared_library.hpp"
+
+#include <dlfcn.h>
+
+#include "core/error.hpp"
+
+namespace weft::render {
+
+SharedLibrary::SharedLibrary(const std::string& file) : file_(file), handle_(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+  if (!handle_) throw Error(ExitCode::internal, "{}: cannot be opened: {}", file, dlerror());
+}
+
+void* SharedLibrary::address(const char* name) const {
+  void* symbol = dlsym(handle_, name);
+  if (!symbol) throw Error(ExitCode::internal, "{}: has no function {}", file_, name);
+  return symbol;
+}
+
+}  // namespace weft::render

@@ -1,0 +1,125 @@
+#include "render/lighting.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/color.hpp"
+
+namespace weft::render {
+namespace {
+
+double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+
+// Free texels at each edge of a shadow map, so that filters at the edge find nothing in the way.
+constexpr double kBorderTexels = 4;
+
+Vec3 travel_direction(const frame::Light& light) {
+  const bool spot = light.kind == frame::Light::Kind::spot;
+  const Vec3 direction = spot ? Vec3(light.target - light.position) : light.direction;
+  return direction.squaredNorm() > 0 ? Vec3(direction.normalized()) : Vec3(-Vec3::UnitZ());
+}
+
+double half_cone(const frame::Light& light) { return radians(std::clamp(light.cone_angle, 1.0, 160.0)) / 2; }
+
+/// Tangent of half the angle under which the light's source is seen; a floor keeps edges from being razor sharp.
+double source_tangent(const frame::Light& light) { return std::tan(radians(std::clamp(light.softness, 0.1, 40.0)) / 2); }
+
+ShadowView fit_sun(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size) {
+  const ViewAxes axes = view_axes(travel_direction(light), up);
+  const Mat4 view = look_along(Vec3::Zero(), axes);
+  Box3 bounds;
+  for (const Vec3& caster : casters) bounds.extend(Vec3(view.block<3, 3>(0, 0) * caster));
+  if (bounds.isEmpty()) bounds = Box3(Vec3::Constant(-0.5), Vec3::Constant(0.5));
+  // A flat or tiny set of casters still needs room across and along the light.
+  const double least = std::max(1e-3, 1e-3 * bounds.sizes().norm());
+  const Vec3 size = bounds.sizes().cwiseMax(least);
+  const Vec3 margin(size.x() * kBorderTexels / map_size, size.y() * kBorderTexels / map_size, 0.01 * size.z());
+  const Vec3 half = 0.5 * size + margin;
+  const Box3 fitted(bounds.center() - half, bounds.center() + half);
+
+  ShadowView shadow;
+  shadow.clip_from_world = orthographic(fitted) * view;
+  const Vec3 extent = fitted.sizes();
+  shadow.penumbra_uv = source_tangent(light) * extent.z() * Vec2(1 / extent.x(), 1 / extent.y());
+  shadow.depth_per_metre = 1 / extent.z();
+  shadow.texel_metres = std::max(extent.x(), extent.y()) / map_size;
+  return shadow;
+}
+
+ShadowView fit_spot(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size) {
+  const ViewAxes axes = view_axes(travel_direction(light), up);
+  double nearest = 1e30, farthest = 0;
+  for (const Vec3& caster : casters) {
+    const double distance = axes.forward.dot(caster - light.position);
+    nearest = std::min(nearest, distance);
+    farthest = std::max(farthest, distance);
+  }
+  const double reach = std::max((light.target - light.position).norm(), 1e-2);
+  farthest = 1.01 * std::max(farthest, reach);
+  // Casters beside or behind the light must not pull the near plane to zero: depth precision goes with near / far.
+  const double near = std::clamp(0.99 * nearest, 0.01 * farthest, 0.9 * farthest);
+  const double tangent = std::tan(half_cone(light));
+
+  ShadowView shadow;
+  shadow.clip_from_world = perspective(tangent, tangent, near, farthest) * look_along(light.position, axes);
+  const double source_radius = source_tangent(light) * reach;
+  const double range = (farthest - near) / (farthest * near);  // 1/distance from depth 0 to depth 1
+  shadow.penumbra_uv.setConstant(source_radius / (2 * tangent) * range);
+  shadow.depth_per_metre = 1 / (range * reach * reach);
+  shadow.texel_metres = 2 * tangent * reach / map_size;
+  return shadow;
+}
+
+}  // namespace
+
+std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, const ViewAxes& camera,
+                                           const Vec3& up) {
+  std::vector<frame::Light> lights = snapshot.lights;
+  if (lights.size() > kMaxLights) lights.resize(kMaxLights);
+  if (!lights.empty()) return lights;
+  // Key light over the left shoulder, so that shadows fall to the right and a little away and folds get relief.
+  const Vec3 level_forward = view_axes(camera.right.cross(-up), up).forward;
+  frame::Light key;
+  key.name = "key";
+  key.direction = 0.75 * camera.right + 0.45 * level_forward - 1.15 * up;
+  key.color = Vec3(1.0, 0.985, 0.955);
+  key.softness = 5;
+  return {key};
+}
+
+ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size) {
+  return light.kind == frame::Light::Kind::spot ? fit_spot(light, casters, up, map_size)
+                                                : fit_sun(light, casters, up, map_size);
+}
+
+SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach, bool from_above) {
+  const ViewAxes axes = view_axes(from_above ? Vec3(-up) : up, up.unitOrthogonal());
+  const Mat4 view = look_along(Vec3::Zero(), axes);
+  Box3 bounds_view;
+  for (int corner = 0; corner < 8; ++corner) {
+    bounds_view.extend(Vec3(view.block<3, 3>(0, 0) * bounds.corner(static_cast<Box3::CornerType>(corner))));
+  }
+  const Vec3 margin(reach, reach, 0.01 * reach);
+  const Box3 fitted(bounds_view.min() - margin, bounds_view.max() + margin);
+  return {orthographic(fitted) * view, fitted.sizes().z()};
+}
+
+LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, double share, int map_size) {
+  const bool spot = light.kind == frame::Light::Kind::spot;
+  const Mat4 shadow_from_world = texture_from_clip() * shadow.clip_from_world;
+  LightUniform packed;
+  packed.shadow_from_world = shadow_from_world.cast<float>();
+  packed.shadow_planes_from_world = Mat4(shadow_from_world.inverse().transpose()).cast<float>();
+  packed.toward_light << (-travel_direction(light)).cast<float>(), spot ? 1.0f : 0.0f;
+  const double outer = std::cos(half_cone(light)), inner = std::cos(0.8 * half_cone(light));
+  packed.position << light.position.cast<float>(), static_cast<float>(outer);
+  packed.color << (share * light.intensity * linear_from_srgb(light.color)).cast<float>(),
+      static_cast<float>(1 / (inner - outer));
+  // Half a texel for the slope that the filter cannot see, and 0.2 mm for what rasterising rounds.
+  const double bias = (0.25 * shadow.texel_metres + 2e-4) * shadow.depth_per_metre;
+  packed.shadow << shadow.penumbra_uv.cast<float>(), static_cast<float>(bias), 1.0f / static_cast<float>(map_size);
+  return packed;
+}
+
+}  // namespace weft::render

@@ -1,0 +1,57 @@
+// Lights as the shaders read them, with the part of the world that their shadow maps cover.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "frame/frame_snapshot.hpp"
+#include "render/transforms.hpp"
+
+namespace weft::render {
+
+/// More lights than this are left out: each costs a shadow map.
+inline constexpr int kMaxLights = 4;
+
+/// The snapshot's lights, at most kMaxLights; where it has none, a warm key light from above, beside the camera.
+std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, const ViewAxes& camera, const Vec3& up);
+
+/// A parallel or central projection onto a shadow map.
+struct ShadowView {
+  Mat4 clip_from_world = Mat4::Identity();
+  Vec2 penumbra_uv{0, 0};   ///< width of the penumbra, in texture coordinates, for each unit of depth between blocker
+                            ///< and receiver: the same for both kinds of light, as depth goes with 1/distance in a
+                            ///< central projection, and so does the blur
+  double depth_per_metre = 1;  ///< of the depth buffer, in the middle of the subjects
+  double texel_metres = 0;     ///< width of one texel there
+};
+
+/// Fits a shadow map of `map_size` texels to the given casters (world space), as tightly as they allow.
+ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size);
+
+/// A parallel view from straight above (`from_above`) or below that covers `bounds` and `reach` metres more, for the
+/// light of the sky that things take from each other. Depth 0 to 1 covers `depth_metres`.
+struct SkyView {
+  Mat4 clip_from_world = Mat4::Identity();
+  double depth_metres = 1;
+};
+SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach, bool from_above);
+
+/// Light block of shaders/lights.glsl, std140.
+struct alignas(16) LightUniform {
+  Eigen::Matrix4f shadow_from_world;
+  Eigen::Matrix4f shadow_planes_from_world;  ///< inverse transpose of the above: carries planes instead of points
+  Eigen::Vector4f toward_light;              ///< unit; w: 1 for a spot
+  Eigen::Vector4f position;                  ///< [m]; w: cosine of half the cone
+  Eigen::Vector4f color;                     ///< linear, times intensity; w: 1 / (cosine inside which all is lit - position.w)
+  Eigen::Vector4f shadow;                    ///< penumbra_uv; depth bias; texel size in texture coordinates
+};
+struct LightsUniform {
+  std::array<LightUniform, kMaxLights> lights;
+  Eigen::Vector4i count{0, 0, 0, 0};
+};
+
+/// Packs a light. `share` scales its strength: the part of all light that does not come from the sky.
+LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, double share, int map_size);
+
+}  // namespace weft::render

@@ -1,0 +1,201 @@
+#include "render/renderer.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/error.hpp"
+#include "core/timer.hpp"
+#include "render/ambient_occlusion.hpp"
+#include "render/framing.hpp"
+#include "render/picture.hpp"
+#include "render/view.hpp"
+
+namespace weft::render {
+namespace {
+
+constexpr double kFloorReach = 60;  // half side of the drawn floor, in radii of the subjects
+
+Vec3 up_of(const frame::FrameSnapshot& snapshot) {
+  const Vec3 up = snapshot.stage ? snapshot.stage->up : Vec3(0, 0, 1);
+  return up.squaredNorm() > 0 ? Vec3(up.normalized()) : Vec3(0, 0, 1);
+}
+
+void check(const frame::FrameSnapshot& snapshot) {
+  if (snapshot.surfaces.size() != snapshot.states.size()) {
+    throw Error(ExitCode::internal, "frame {}: {} surfaces, but states of {}", snapshot.frame, snapshot.surfaces.size(),
+                snapshot.states.size());
+  }
+}
+
+/// 1 / value at the hot end of the scale, 0 where no heat is to be drawn.
+double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stage) {
+  if (stage.heat == frame::Stage::Heat::none) return 0;
+  double hottest = stage.heat_max;
+  if (hottest <= 0) {
+    for (const frame::SurfaceState& state : snapshot.states) {
+      for (const float heat : state.heat) hottest = std::max(hottest, static_cast<double>(heat));
+    }
+  }
+  // A frame without any heat is drawn all cold.
+  return hottest > 0 ? 1 / hottest : 1;
+}
+
+}  // namespace
+
+struct Renderer::Impl {
+  Settings settings;
+  QualitySettings quality;
+  std::unique_ptr<Context> context;
+  const Gl& gl;
+  std::optional<frame::Camera> automatic_camera;
+  DrawTimes times;
+
+  // GL objects; made and deleted with the context current.
+  struct Passes {
+    DepthProgram depth;
+    ShadowMaps shadows;
+    std::optional<AmbientOcclusion> occlusion;
+    Picture picture;
+    FloorBuffers floor;
+    Buffer frame_block;
+    std::vector<SurfaceBuffers> surfaces;
+
+    Passes(const Gl& gl, const QualitySettings& quality, const Settings& settings)
+        : depth(gl),
+          shadows(gl, quality),
+          picture(gl, quality, settings.width, settings.height),
+          floor(gl),
+          frame_block(gl) {
+      if (quality.occlusion_divisor > 0) occlusion.emplace(gl, quality, settings.width, settings.height);
+    }
+  };
+  std::optional<Passes> passes;
+
+  explicit Impl(const Settings& wanted);
+  ~Impl();
+
+  double aspect() const { return static_cast<double>(settings.width) / settings.height; }
+  void update_surfaces(const frame::FrameSnapshot& snapshot);
+  void draw(const frame::FrameSnapshot& snapshot);
+};
+
+Renderer::Impl::Impl(const Settings& wanted)
+    : settings(wanted),
+      quality(quality_settings(wanted.quality)),
+      context(make_context(wanted.backend, wanted.threads)),
+      gl(context->gl()) {
+  const CurrentContext current(*context);
+  GLint largest = 0;
+  gl.GetIntegerv(GL_MAX_TEXTURE_SIZE, &largest);
+  if (settings.width < 1 || settings.height < 1 || settings.width > largest || settings.height > largest) {
+    throw Error(ExitCode::usage, "--size: expected 1x1 to {}x{} pixels, got {}x{}", largest, largest, settings.width,
+                settings.height);
+  }
+  passes.emplace(gl, quality, settings);
+  check_errors(gl, "preparing to draw");
+}
+
+Renderer::Impl::~Impl() {
+  context->make_current();
+  passes.reset();
+  context->release();
+}
+
+/// Brings the buffers in line with the snapshot's surfaces: kept where the surface is known, made where it is new.
+void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot) {
+  std::vector<SurfaceBuffers> next;
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    const auto& surface = snapshot.surfaces[i];
+    if (!is_subject(*surface)) continue;
+    auto known = std::find_if(passes->surfaces.begin(), passes->surfaces.end(),
+                              [&](const SurfaceBuffers& buffers) { return &buffers.surface() == surface.get(); });
+    if (known != passes->surfaces.end()) {
+      next.push_back(std::move(*known));
+      passes->surfaces.erase(known);
+    } else {
+      next.emplace_back(gl, surface);
+    }
+    next.back().update(snapshot.states[i]);
+  }
+  passes->surfaces = std::move(next);
+}
+
+void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
+  const frame::Stage stage = snapshot.stage ? *snapshot.stage : frame::Stage{};
+  const Vec3 up = up_of(snapshot);
+  const Box3 subjects = subject_bounds(snapshot);
+  FloorPlane floor;
+  const bool has_floor = find_floor(snapshot, up, floor);
+  const frame::Camera* camera = find_camera(snapshot, settings.camera);
+  if (!camera) {
+    if (!automatic_camera) automatic_camera = frame_subjects(snapshot, up, aspect());
+    camera = &*automatic_camera;
+  }
+  const View view = make_view(*camera, up, aspect(), subjects, has_floor ? &floor : nullptr);
+  const double radius = 0.5 * subjects.diagonal().norm();
+
+  update_surfaces(snapshot);
+  const Vec3 under = subjects.center() - floor.normal.dot(subjects.center() - floor.point) * floor.normal;
+  if (has_floor) passes->floor.update(under, floor.normal, kFloorReach * (radius + (view.eye - under).norm()));
+  const DrawCasters casters = [&] {
+    for (const SurfaceBuffers& surface : passes->surfaces) surface.draw();
+  };
+
+  // Shadows.
+  std::vector<Vec3> caster_positions;
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    if (!is_subject(*snapshot.surfaces[i])) continue;
+    const auto& positions = snapshot.states[i].positions;
+    caster_positions.insert(caster_positions.end(), positions.begin(), positions.end());
+  }
+  gl.Disable(GL_DITHER);
+  gl.Enable(GL_MULTISAMPLE);
+  const std::vector<frame::Light> lights = effective_lights(snapshot, view.axes, up);
+  const double share = 1 - std::clamp(stage.sky_intensity, 0.0, 1.0);
+  const FrameUniform block = pack_frame(view, stage, up, subjects, settings.width, settings.height);
+  gl.NamedBufferData(passes->frame_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
+  gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
+  if (passes->occlusion) {
+    const double reach = 0.8 * radius;
+    passes->occlusion->draw(fit_sky(subjects, up, reach, true), fit_sky(subjects, up, reach, false), passes->depth,
+                            casters, [&] {
+                              casters();
+                              if (has_floor) passes->floor.draw();
+                            });
+  }
+  passes->shadows.draw(lights, caster_positions, up, share, passes->depth, casters);
+
+  std::vector<const SurfaceBuffers*> drawn;
+  for (const SurfaceBuffers& surface : passes->surfaces) drawn.push_back(&surface);
+  const frame::Appearance* floor_appearance = nullptr;
+  for (const auto& surface : snapshot.surfaces) {
+    if (surface->visible && surface->infinite_floor && !floor_appearance) floor_appearance = &surface->appearance;
+  }
+  passes->picture.draw(drawn, has_floor ? &passes->floor : nullptr, floor_appearance, heat_scale(snapshot, stage));
+}
+
+Renderer::Renderer(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+Renderer::~Renderer() = default;
+
+void Renderer::frame_on(const frame::FrameSnapshot& snapshot) {
+  check(snapshot);
+  impl_->automatic_camera = frame_subjects(snapshot, up_of(snapshot), impl_->aspect());
+}
+
+image::Image Renderer::draw(const frame::FrameSnapshot& snapshot) {
+  check(snapshot);
+  const WallTimer wall;
+  const double cpu_start = process_cpu_seconds();
+  const CurrentContext current(*impl_->context);
+  impl_->draw(snapshot);
+  image::Image image = impl_->passes->picture.read();
+  check_errors(impl_->gl, "drawing");
+  impl_->times = {wall.seconds(), process_cpu_seconds() - cpu_start};
+  return image;
+}
+
+DrawTimes Renderer::last_times() const { return impl_->times; }
+
+std::string Renderer::description() const { return impl_->context->description(); }
+
+}  // namespace weft::render

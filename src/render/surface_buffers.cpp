@@ -1,0 +1,87 @@
+#include "render/surface_buffers.hpp"
+
+#include <cstddef>
+
+#include "core/error.hpp"
+
+namespace weft::render {
+namespace {
+
+struct DrawnVertex {
+  Eigen::Vector3f position, normal;
+  Eigen::Vector2f rest_uv;
+  float heat;
+};
+
+void describe_vertices(const Gl& gl, const VertexArray& array, const Buffer& vertices) {
+  struct Attribute {
+    GLint size;
+    std::size_t offset;
+  };
+  const Attribute attributes[] = {{3, offsetof(DrawnVertex, position)},
+                                  {3, offsetof(DrawnVertex, normal)},
+                                  {2, offsetof(DrawnVertex, rest_uv)},
+                                  {1, offsetof(DrawnVertex, heat)}};
+  gl.VertexArrayVertexBuffer(array.name(), 0, vertices.name(), 0, sizeof(DrawnVertex));
+  for (GLuint place = 0; place < std::size(attributes); ++place) {
+    gl.EnableVertexArrayAttrib(array.name(), place);
+    gl.VertexArrayAttribFormat(array.name(), place, attributes[place].size, GL_FLOAT, GL_FALSE,
+                               static_cast<GLuint>(attributes[place].offset));
+    gl.VertexArrayAttribBinding(array.name(), place, 0);
+  }
+}
+
+}  // namespace
+
+SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface)
+    : gl_(&gl), surface_(std::move(surface)), array_(gl), vertices_(gl), triangles_(gl) {
+  describe_vertices(gl, array_, vertices_);
+  gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
+}
+
+void SurfaceBuffers::update(const frame::SurfaceState& state) {
+  if (!mapped_ || vertex_count_ != state.positions.size()) {
+    corners_ = CornerMap(surface_->triangles, state.positions.size());
+    vertex_count_ = state.positions.size();
+    mapped_ = true;
+  }
+  const ShadedMesh mesh = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
+  std::vector<DrawnVertex> vertices(mesh.source.size());
+  const bool has_uv = surface_->uv.size() == vertex_count_, has_heat = state.heat.size() == vertex_count_;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    const Index v = mesh.source[i];
+    vertices[i] = {state.positions[v].cast<float>(), mesh.normals[i].cast<float>(),
+                   has_uv ? surface_->uv[v].cast<float>().eval() : Eigen::Vector2f::Zero(),
+                   has_heat ? state.heat[v] : 0.0f};
+  }
+  upload<DrawnVertex>(*gl_, vertices_, vertices);
+  upload<Triangle>(*gl_, triangles_, mesh.triangles);
+  index_count_ = static_cast<GLsizei>(3 * mesh.triangles.size());
+}
+
+void SurfaceBuffers::draw() const {
+  if (index_count_ == 0) return;
+  gl_->BindVertexArray(array_.name());
+  gl_->DrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+}
+
+FloorBuffers::FloorBuffers(const Gl& gl) : gl_(&gl), array_(gl), vertices_(gl) {
+  describe_vertices(gl, array_, vertices_);
+}
+
+void FloorBuffers::update(const Vec3& center, const Vec3& normal, double half_side) {
+  const Vec3 x = half_side * normal.unitOrthogonal(), y = normal.cross(x);
+  std::array<DrawnVertex, 4> vertices;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 position = center + (i & 1 ? x : -x) + (i & 2 ? y : -y);
+    vertices[i] = {position.cast<float>(), normal.cast<float>(), Eigen::Vector2f::Zero(), 0.0f};
+  }
+  upload<DrawnVertex>(*gl_, vertices_, vertices);
+}
+
+void FloorBuffers::draw() const {
+  gl_->BindVertexArray(array_.name());
+  gl_->DrawArrays(GL_TRIANGLE_STRIP, 0, 4);
+}
+
+}  // namespace weft::render

@@ -1,0 +1,47 @@
+// The vertices and triangles of one surface in GL buffers.
+#pragma once
+
+#include <memory>
+
+#include "frame/frame_snapshot.hpp"
+#include "render/gl/objects.hpp"
+#include "render/shaded_mesh.hpp"
+
+namespace weft::render {
+
+/// Attribute places, as in the shaders: 0 position, 1 normal, 2 rest (u,v), 3 heat.
+class SurfaceBuffers {
+ public:
+  SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface);
+
+  const frame::Surface& surface() const { return *surface_; }
+
+  /// Takes over the positions of a frame. Throws Error(internal) where their number is not that of the surface.
+  void update(const frame::SurfaceState& state);
+  void draw() const;
+
+ private:
+  const Gl* gl_;
+  std::shared_ptr<const frame::Surface> surface_;
+  CornerMap corners_;
+  std::size_t vertex_count_ = 0;
+  bool mapped_ = false;
+  VertexArray array_;
+  Buffer vertices_, triangles_;
+  GLsizei index_count_ = 0;
+};
+
+/// Two triangles that reach to the horizon, wound so that `normal` faces the viewer.
+class FloorBuffers {
+ public:
+  explicit FloorBuffers(const Gl& gl);
+  void update(const Vec3& center, const Vec3& normal, double half_side);
+  void draw() const;
+
+ private:
+  const Gl* gl_;
+  VertexArray array_;
+  Buffer vertices_;
+};
+
+}  // namespace weft::render

@@ -1,0 +1,86 @@
+#include "render/view.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/color.hpp"
+
+namespace weft::render {
+
+bool find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up, FloorPlane& floor) {
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    const frame::Surface& surface = *snapshot.surfaces[i];
+    const auto& positions = snapshot.states[i].positions;
+    if (!surface.visible || !surface.infinite_floor || positions.empty()) continue;
+    floor.point = positions.front();
+    floor.normal = up;
+    for (const auto& [a, b, c] : surface.triangles) {
+      const Vec3 normal = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
+      if (normal.squaredNorm() > 0) {
+        floor.normal = normal.dot(up) < 0 ? -normal.normalized() : normal.normalized();
+        break;
+      }
+    }
+    return true;
+  }
+  return false;
+}
+
+View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
+               const FloorPlane* floor) {
+  View view;
+  view.eye = camera.position;
+  view.axes = view_axes(camera.target - camera.position, up);
+  view.tan_half_height = std::tan(std::clamp(camera.field_of_view, 1.0, 170.0) * std::numbers::pi / 360);
+  view.tan_half_width = view.tan_half_height * aspect;
+
+  const double radius = 0.5 * subjects.diagonal().norm();
+  const double reach = (subjects.center() - view.eye).norm() + radius;
+  double nearest = view.axes.forward.dot(subjects.center() - view.eye) - radius;
+  if (floor) {
+    // The floor comes nearest at the lower edge of the picture, never nearer than this part of the eye's height.
+    const double height = floor->normal.dot(view.eye - floor->point);
+    const double widest = std::hypot(1.0, view.tan_half_width, view.tan_half_height);
+    if (height > 0) nearest = std::min(nearest, height / widest);
+  }
+  // Depth is resolved to distance^2 / (near 2^24): with near at a thousandth of the reach, some 1e-4 of the scene.
+  view.near = std::max(0.8 * nearest, 1e-3 * reach);
+  view.far = 200 * reach;
+  view.view_from_world = look_along(view.eye, view.axes);
+  view.clip_from_world =
+      perspective(view.tan_half_width, view.tan_half_height, view.near, view.far) * view.view_from_world;
+  return view;
+}
+
+FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects, int width,
+                        int height) {
+  const auto four = [](const Vec3& v, double w) {
+    return Eigen::Vector4f(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
+                           static_cast<float>(w));
+  };
+  const double radius = 0.5 * subjects.diagonal().norm(), reach = 0.8 * radius;
+  const double share = std::clamp(stage.sky_intensity, 0.0, 1.0);
+  const SkyView above = fit_sky(subjects, up, reach, true), below = fit_sky(subjects, up, reach, false);
+  const Vec3 sky = linear_from_srgb(stage.sky_color), ground = linear_from_srgb(stage.ground_color);
+
+  FrameUniform frame;
+  frame.clip_from_world = view.clip_from_world.cast<float>();
+  frame.view_from_world = view.view_from_world.cast<float>();
+  frame.eye_world = four(view.eye, radius);
+  frame.center_world = four(subjects.center(), 0);
+  frame.up_world = four(up, 0);
+  frame.right_world = four(view.axes.right, 0);
+  frame.sky_light = four(share * sky, reach);
+  frame.ground_light = four(share * ground, above.depth_metres);
+  frame.backdrop = four(0.62 * sky, 0);
+  frame.viewport = {static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),
+                    1.0f / static_cast<float>(height)};
+  frame.frustum = {static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height),
+                   static_cast<float>(view.near), static_cast<float>(view.far)};
+  frame.above_from_world = (texture_from_clip() * above.clip_from_world).cast<float>();
+  frame.below_from_world = (texture_from_clip() * below.clip_from_world).cast<float>();
+  return frame;
+}
+
+}  // namespace weft::render
