@@ -13,19 +13,20 @@ namespace weft::simulation {
 /// What the computation of one frame took and found.
 struct FrameReport {
   int frame = 0;
-  double time = 0;                 ///< [s]
+  double time = 0;  ///< [s]
   double simulate_wall_s = 0, simulate_cpu_s = 0;
   double collide_wall_s = 0, collide_cpu_s = 0;  ///< part of simulate
-  int steps = 0;                   ///< accepted
-  int rejected_steps = 0;          ///< halved and retried
+  int steps = 0;                                 ///< accepted
+  int rejected_steps = 0;                        ///< halved and retried
   int newton_iterations = 0;
   int linear_iterations = 0;
-  int proximities = 0;             ///< pairs closer than the contact range at the last step
-  int constraints = 0;             ///< contacts and pins that acted in the last step
-  double min_distance = 0;         ///< smallest distance between two surfaces at the end of the frame [m]; infinite if none is near
-  double max_strain = 0;           ///< largest |length / rest length - 1| of a weft or warp edge
-  double kinetic_energy = 0;       ///< [J]
-  double elastic_energy = 0;       ///< stretch, shear and bending [J]
+  int proximities = 0;  ///< pairs closer than the contact range at the last step
+  int constraints = 0;  ///< contacts and pins that acted in the last step
+  double min_distance =
+      0;  ///< smallest distance between two surfaces at the end of the frame [m]; infinite if none is near
+  double max_strain = 0;      ///< largest |length / rest length - 1| of a weft or warp edge
+  double kinetic_energy = 0;  ///< [J]
+  double elastic_energy = 0;  ///< stretch, shear and bending [J]
 };
 
 struct ObjectInfo {
@@ -53,8 +54,8 @@ class Simulation {
   /// The current frame; frame 0 after construction.
   frame::SnapshotPtr snapshot() const;
 
-  /// Goes on to the next frame. Throws Error(simulation_failed) with a named reason if it cannot; the state is then still
-  /// that of the last good frame.
+  /// Goes on to the next frame. Throws Error(simulation_failed) with a named reason if it cannot; the state is then
+  /// still that of the last good frame.
   FrameReport advance();
 
   /// The report of frame 0: energies and distances of the start.

@@ -1,0 +1,63 @@
+// Contacts of one step as stiff, short-range springs with Coulomb friction inside the implicit solve.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "solver/linear_system.hpp"
+
+namespace weft::collision {
+
+/// A pair of points, one on each of two surfaces, that must not come closer than `range` along `normal`.
+struct Contact {
+  std::array<Index, 4> particles{0, 0, 0, 0};
+  std::array<double, 4> weights{0, 0, 0, 0};  ///< of the particles; zero for vertices of obstacles
+  Vec3 obstacle_end = Vec3::Zero();           ///< what the obstacle's vertices add at the end of the step [m]
+  Vec3 relative_start = Vec3::Zero();         ///< point a minus point b at the start of the step [m]
+  Vec3 normal = Vec3::UnitZ();                ///< unit, from b to a at the start of the step
+  double range = 0;                           ///< r: the spring acts below this distance [m]
+  double stiffness = 0;                       ///< k [N/m]
+  double friction = 0;                        ///< Coulomb coefficient of the pair
+};
+
+/// Energy of a contact: ½ k (r − g)² for a gap g = n·(a − b) < r, with n kept from the start of the step: convex, with
+/// a Jacobian of rank one. Friction opposes the slip u of the step in the tangent plane with μ k (r − g), reached
+/// smoothly from zero within a slip of `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
+class ContactSet {
+ public:
+  /// Slip speed below which friction is viscous and a contact counts as sticking [m/s]. Smaller creeps less and makes
+  /// the system stiffer: 2 μ λ / (h · stick_speed) per contact of load λ.
+  static constexpr double kStickSpeed = 2e-4;
+
+  void clear() { contacts_.clear(); }
+  void add(const Contact& contact) { contacts_.push_back(contact); }
+  void set_step(double h) { stick_slip_ = kStickSpeed * h; }
+  std::span<const Contact> contacts() const { return contacts_; }
+
+  /// force += contact forces [N] with the particles at x_end.
+  void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
+
+  /// As add_forces, and adds −∂f/∂x to the system, where x_end changes by `end_rate` per change of the unknown. The
+  /// change of the friction with the load is left out: it is unsymmetric.
+  void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
+                 solver::LinearSystem& system) const;
+
+  /// Number of contacts that push with the particles at x_end.
+  int active(std::span<const Vec3> x_end) const;
+
+ private:
+  struct Response {
+    bool active = false;
+    Vec3 force;          // on point a
+    double load = 0;     // k (r − g) [N]
+    double sliding = 0;  // friction force per slip [N/m]
+  };
+  Response respond(const Contact& contact, std::span<const Vec3> x_end) const;
+
+  std::vector<Contact> contacts_;
+  double stick_slip_ = 1e-6;  // ε of the friction [m]
+};
+
+}  // namespace weft::collision

@@ -1,0 +1,100 @@
+#include "simulation/cloth_system.hpp"
+
+#include <algorithm>
+
+namespace weft::simulation {
+
+ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environment& environment) {
+  std::vector<std::pair<Index, Index>> couplings;
+  Index first = 0;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const scene::Material& material = scene.cloths[c].material;
+    const mesh::Grid& grid = environment.cloths[c].grid;
+    first_.push_back(first);
+    const auto masses = forces::lumped_masses(grid, material.density);
+    masses_.insert(masses_.end(), masses.begin(), masses.end());
+
+    stretch_.push_back(std::make_unique<forces::Stretch>(
+        grid, first,
+        forces::StretchParameters{material.stretch_weft, material.stretch_warp, material.stretch_viscosity}));
+    if (material.shear > 0 || material.shear_viscosity > 0)
+      shear_.push_back(std::make_unique<forces::Shear>(
+          grid, first, forces::ShearParameters{material.shear, material.shear_viscosity}));
+    if (material.bend > 0 || material.bend_viscosity > 0)
+      bend_.push_back(
+          std::make_unique<forces::Bend>(grid, first, forces::BendParameters{material.bend, material.bend_viscosity}));
+    if (scene.physics.air_density > 0 && material.drag > 0)
+      air_.emplace_back(grid, first,
+                        forces::AirParameters{scene.physics.air_density, scene.physics.wind, material.drag});
+    first += grid.size();
+  }
+  first_.push_back(first);
+
+  for (const auto& force : stretch_) forces_.push_back(force.get());
+  for (const auto& force : shear_) forces_.push_back(force.get());
+  for (const auto& force : bend_) forces_.push_back(force.get());
+  for (const forces::Force* force : forces_) force->couple(couplings);
+  base_ = solver::BlockMatrix(first, std::move(couplings));
+  for (const auto& force : stretch_) force->attach(base_);
+  for (const auto& force : shear_) force->attach(base_);
+  for (const auto& force : bend_) force->attach(base_);
+}
+
+void ClothSystem::explicit_forces(const integrator::State& at, double h, std::span<Vec3> force) const {
+  for (const forces::Air& air : air_) air.add(at.x, at.v, masses_, h, force);
+}
+
+void ClothSystem::forces(const integrator::StagePoint& at, std::span<Vec3> force) const {
+  for (const forces::Force* f : forces_) f->add({at.x, at.v, force});
+  if (contacts_ != nullptr) contacts_->add_forces(at.x_end, force);
+}
+
+void ClothSystem::prepare_base(double rate) const {
+  if (rate == base_rate_) return;
+  base_.set_zero();
+  for (std::size_t i = 0; i < masses_.size(); ++i)
+    base_.add_scalar(base_.diagonal(static_cast<Index>(i)), rate * rate * masses_[i]);
+  for (const auto& bend : bend_) bend->add_constant_stiffness(base_);
+  base_rate_ = rate;
+}
+
+void ClothSystem::linearise(const integrator::StagePoint& at, std::span<Vec3> force,
+                            solver::LinearSystem& system) const {
+  prepare_base(at.rate);
+  system.matrix.copy_values(base_);
+  for (const forces::Force* f : forces_) f->add({at.x, at.v, force, &system.matrix, at.rate});
+  system.terms.clear();
+  if (contacts_ != nullptr) contacts_->linearise(at.x_end, at.end_rate, force, system);
+}
+
+solver::LinearSystem ClothSystem::make_linear_system() const {
+  solver::LinearSystem system;
+  system.matrix = base_;
+  return system;
+}
+
+double ClothSystem::elastic_energy(std::span<const Vec3> x) const {
+  double sum = 0;
+  for (const forces::Force* f : forces_) sum += f->energy(x);
+  return sum;
+}
+
+double ClothSystem::kinetic_energy(std::span<const Vec3> v) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < v.size(); ++i) sum += 0.5 * masses_[i] * v[i].squaredNorm();
+  return sum;
+}
+
+double ClothSystem::max_strain(std::span<const Vec3> x) const {
+  double largest = 0;
+  for (const auto& stretch : stretch_) largest = std::max(largest, stretch->max_strain(x));
+  return largest;
+}
+
+std::vector<float> ClothSystem::strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const {
+  std::vector<float> heat(static_cast<std::size_t>(first_[cloth + 1] - first_[cloth]));
+  stretch_[cloth]->strain_per_particle(x, heat);
+  return heat;
+}
+
+}  // namespace weft::simulation

@@ -1,0 +1,60 @@
+// The particles of all cloths as one system M x'' = f: forces put together from what the materials name.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "collision/response/contact_set.hpp"
+#include "environment/environment.hpp"
+#include "forces/air.hpp"
+#include "forces/bend.hpp"
+#include "forces/force.hpp"
+#include "forces/shear.hpp"
+#include "forces/stretch.hpp"
+#include "integrator/system.hpp"
+#include "scene/scene.hpp"
+
+namespace weft::simulation {
+
+/// Particles are numbered through all cloths, in the order of the scene.
+class ClothSystem final : public integrator::System {
+ public:
+  ClothSystem(const scene::Scene& scene, const environment::Environment& environment);
+
+  std::span<const double> masses() const override { return masses_; }
+  void explicit_forces(const integrator::State& at, double h, std::span<Vec3> force) const override;
+  void forces(const integrator::StagePoint& at, std::span<Vec3> force) const override;
+  void linearise(const integrator::StagePoint& at, std::span<Vec3> force, solver::LinearSystem& system) const override;
+
+  /// Contacts of the current step, or nullptr where the scene can have none. Must outlive the steps.
+  void use_contacts(const collision::ContactSet* contacts) { contacts_ = contacts; }
+
+  /// An empty system with the pattern of this one.
+  solver::LinearSystem make_linear_system() const;
+
+  Index first_particle(std::size_t cloth) const { return first_[cloth]; }
+  double elastic_energy(std::span<const Vec3> x) const;
+  double kinetic_energy(std::span<const Vec3> v) const;
+  double max_strain(std::span<const Vec3> x) const;
+  /// Largest strain of the edges at each particle of one cloth.
+  std::vector<float> strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const;
+
+ private:
+  void prepare_base(double rate) const;
+
+  std::vector<Index> first_;  // per cloth, and the total at the end
+  std::vector<double> masses_;
+  std::vector<std::unique_ptr<forces::Stretch>> stretch_;  // per cloth
+  std::vector<std::unique_ptr<forces::Bend>> bend_;        // of the cloths that have it
+  std::vector<std::unique_ptr<forces::Shear>> shear_;
+  std::vector<forces::Air> air_;
+  std::vector<const forces::Force*> forces_;  // all of the stiff ones
+  const collision::ContactSet* contacts_ = nullptr;
+
+  // rate² M plus the constant part of the bending, kept as long as the step does not change.
+  mutable solver::BlockMatrix base_;
+  mutable double base_rate_ = 0;
+};
+
+}  // namespace weft::simulation

@@ -1,0 +1,125 @@
+#include "simulation/collision_stage.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+namespace weft::simulation {
+namespace {
+
+bool obstacles_collide(const scene::Scene& scene) {
+  return scene.contact.obstacles && std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                                                [](const scene::Obstacle& o) { return o.collide; });
+}
+
+std::vector<std::size_t> colliding_rigids(const scene::Scene& scene, const environment::Environment& environment) {
+  std::vector<std::size_t> rigids;
+  if (!obstacles_collide(scene)) return rigids;
+  for (std::size_t r = 0; r < environment.rigids.size(); ++r)
+    if (environment.rigids[r].collide) rigids.push_back(r);
+  return rigids;
+}
+
+// The triangles of a mesh with its vertices numbered from `first`.
+std::vector<collision::Triangle> shifted(const mesh::Mesh& mesh, Index first) {
+  std::vector<collision::Triangle> triangles = mesh.topology.triangles;
+  for (collision::Triangle& t : triangles)
+    for (Index& v : t) v += first;
+  return triangles;
+}
+
+std::vector<collision::Body> make_bodies(const scene::Scene& scene, const environment::Environment& environment) {
+  std::vector<collision::Body> bodies;
+  Index first = 0;
+  const auto add = [&](const mesh::Mesh& mesh, bool deformable, double thickness, double friction) {
+    const auto count = static_cast<Index>(mesh.positions.size());
+    bodies.push_back({shifted(mesh, first), first, count, deformable, thickness, friction});
+    first += count;
+  };
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    add(environment.cloths[c].mesh, true, scene.cloths[c].material.thickness, scene.cloths[c].material.friction);
+  for (std::size_t r : colliding_rigids(scene, environment))
+    add(environment.rigids[r].mesh, false, 0, scene.obstacles[r].friction);
+  return bodies;
+}
+
+std::vector<Vec3> start_positions(const scene::Scene& scene, const environment::Environment& environment) {
+  std::vector<Vec3> x;
+  for (const auto& cloth : environment.cloths)
+    x.insert(x.end(), cloth.motion.positions.begin(), cloth.motion.positions.end());
+  for (std::size_t r : colliding_rigids(scene, environment)) {
+    const auto& positions = environment.rigids[r].motion.positions;
+    x.insert(x.end(), positions.begin(), positions.end());
+  }
+  return x;
+}
+
+}  // namespace
+
+bool CollisionStage::needed(const scene::Scene& scene) {
+  return !scene.cloths.empty() && (scene.contact.self || obstacles_collide(scene));
+}
+
+CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Environment& environment,
+                               const ClothSystem& system)
+    : rigids_(colliding_rigids(scene, environment)),
+      particles_(system.masses().size()),
+      all_t0_(start_positions(scene, environment)),
+      all_t1_(all_t0_),
+      engine_(make_bodies(scene, environment), {scene.contact.self, scene.contact.obstacles, scene.contact.stiffness},
+              all_t0_, {system.masses().begin(), system.masses().end()}) {
+  for (const auto& cloth : environment.cloths) names_.push_back(cloth.name);
+  for (std::size_t r : rigids_) names_.push_back(environment.rigids[r].name);
+}
+
+void CollisionStage::begin_step(environment::Environment& environment, const integrator::State& now,
+                                std::span<const integrator::HeldParticle> held, double t, double h) {
+  const auto copy_obstacles = [&](std::vector<Vec3>& all) {
+    auto place = all.begin() + static_cast<std::ptrdiff_t>(particles_);
+    for (std::size_t r : rigids_) {
+      const auto& positions = environment.rigids[r].motion.positions;
+      place = std::copy(positions.begin(), positions.end(), place);
+    }
+  };
+  environment.move_to(t);
+  copy_obstacles(all_t0_);
+  environment.move_to(t + h);
+  copy_obstacles(all_t1_);
+
+  movable_.assign(all_t0_.size(), 0);
+  std::fill_n(movable_.begin(), particles_, std::uint8_t{1});
+  for (std::size_t i = 0; i < particles_; ++i) {
+    all_t0_[i] = now.x[i];
+    all_t1_[i] = now.x[i] + h * now.v[i];
+  }
+  for (const integrator::HeldParticle& particle : held) {
+    const auto i = static_cast<std::size_t>(particle.constraint.particle);
+    all_t1_[i] = particle.x_end;
+    movable_[i] = 0;
+  }
+  engine_.begin_step(all_t0_, all_t1_, h);
+}
+
+int CollisionStage::adopt_failing(const integrator::State& next) {
+  std::copy(next.x.begin(), next.x.end(), all_t1_.begin());
+  return engine_.adopt_failing(all_t0_, all_t1_);
+}
+
+std::optional<std::string> CollisionStage::finish_step(double h, integrator::State& next) {
+  std::copy(next.x.begin(), next.x.end(), all_t1_.begin());
+  const collision::SeparationReport report = engine_.finish_step(all_t0_, all_t1_, movable_);
+  if (!report.separated) {
+    const auto [a, b] = engine_.bodies_of(report.stuck);
+    const Vec3& at = all_t0_[static_cast<std::size_t>(engine_.triangle(report.stuck.a)[0])];
+    return fmt::format("'{}' and '{}' cannot be kept apart near ({:.4g}, {:.4g}, {:.4g}) m", names_[a], names_[b],
+                       at.x(), at.y(), at.z());
+  }
+  if (report.corrected_pairs == 0) return std::nullopt;
+  for (std::size_t i = 0; i < particles_; ++i) {
+    next.v[i] += (all_t1_[i] - next.x[i]) / h;
+    next.x[i] = all_t1_[i];
+  }
+  return std::nullopt;
+}
+
+}  // namespace weft::simulation

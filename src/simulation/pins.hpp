@@ -1,0 +1,41 @@
+// Particles that the scene holds or moves.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "environment/environment.hpp"
+#include "integrator/system.hpp"
+#include "scene/scene.hpp"
+
+namespace weft::simulation {
+
+/// All pins of a scene, evaluated at the end of each step.
+class Pins {
+ public:
+  /// `first_particle`: number of the first particle of each cloth.
+  Pins(const scene::Scene& scene, const environment::Environment& environment,
+       const std::vector<Index>& first_particle);
+
+  bool empty() const { return groups_.empty(); }
+
+  /// Particles held at time t [s]; pins that are released by then are left out. One entry per particle: where pins
+  /// overlap, the first of the scene wins.
+  void held_at(double t, const environment::Environment& environment,
+               std::vector<integrator::HeldParticle>& held) const;
+
+ private:
+  /// Particles that share one motion.
+  struct Group {
+    std::vector<Index> particles;
+    std::vector<Vec3> arms;  // from the motion's origin at time 0, in its own directions [m]
+    double release = -1;     // [s]; negative: never
+    int follow = -1;         // rigid object, or −1 for `track`
+    std::optional<environment::Track> track;
+    Vec3 origin;  // of the particles at the start, about which `track` turns [m]
+  };
+
+  std::vector<Group> groups_;
+};
+
+}  // namespace weft::simulation

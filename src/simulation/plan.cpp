@@ -1,0 +1,92 @@
+// What a simulation of a scene would be put together from.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "simulation/simulation.hpp"
+
+namespace weft::simulation {
+namespace {
+
+using scene::Cloth;
+using scene::Scene;
+
+// "2 of 3 cloths", or why none.
+template <class Test>
+PlanItem of_cloths(std::string part, const Scene& scene, Test needs, std::string_view absent) {
+  const auto count = std::count_if(scene.cloths.begin(), scene.cloths.end(), needs);
+  if (count == 0) return {std::move(part), false, std::string(absent)};
+  return {std::move(part), true,
+          fmt::format("{} of {} cloth{}", count, scene.cloths.size(), scene.cloths.size() == 1 ? "" : "s")};
+}
+
+PlanItem when(std::string part, bool used, std::string present, std::string absent) {
+  return {std::move(part), used, used ? std::move(present) : std::move(absent)};
+}
+
+void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
+  const double gravity = scene.physics.gravity.norm();
+  items.push_back(when("force: gravity", gravity > 0, fmt::format("{:.4g} m/s²", gravity), "physics.gravity is zero"));
+  items.push_back(of_cloths(
+      "force: stretch", scene, [](const Cloth&) { return true; }, "no cloth"));
+  items.push_back(of_cloths(
+      "force: shear", scene, [](const Cloth& c) { return c.material.shear > 0 || c.material.shear_viscosity > 0; },
+      "shear and shear_viscosity are zero"));
+  items.push_back(of_cloths(
+      "force: bending", scene, [](const Cloth& c) { return c.material.bend > 0 || c.material.bend_viscosity > 0; },
+      "bend and bend_viscosity are zero"));
+  items.push_back(of_cloths(
+      "force: viscosity", scene,
+      [](const Cloth& c) {
+        return c.material.stretch_viscosity > 0 || c.material.shear_viscosity > 0 || c.material.bend_viscosity > 0;
+      },
+      "all viscosities are zero"));
+  items.push_back(of_cloths(
+      "force: air", scene, [&](const Cloth& c) { return scene.physics.air_density > 0 && c.material.drag > 0; },
+      "air_density or drag is zero"));
+}
+
+void plan_constraints(const Scene& scene, std::vector<PlanItem>& items) {
+  std::size_t pins = 0;
+  for (const Cloth& cloth : scene.cloths) pins += cloth.pins.size();
+  items.push_back(when("constraint: pins", pins > 0, fmt::format("{} group{}", pins, pins == 1 ? "" : "s"), "no pin"));
+}
+
+void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
+  const auto obstacles =
+      std::count_if(scene.obstacles.begin(), scene.obstacles.end(), [](const scene::Obstacle& o) { return o.collide; });
+  const auto moving = std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
+                                    [](const scene::Obstacle& o) { return o.motion.keys.size() > 1; });
+  const bool with_obstacles = scene.contact.obstacles && obstacles > 0 && !scene.cloths.empty();
+  const bool self = scene.contact.self && !scene.cloths.empty();
+  items.push_back(when("collision: cloth and obstacles", with_obstacles, fmt::format("{} obstacles", obstacles),
+                       obstacles == 0 ? "no obstacle collides" : "contact.obstacles is false"));
+  items.push_back(when("collision: cloth and cloth", self, "itself and others", "contact.self is false"));
+  items.push_back(of_cloths(
+      "collision: friction", scene, [&](const Cloth& c) { return (with_obstacles || self) && c.material.friction > 0; },
+      "no collision, or friction is zero"));
+  items.push_back(when("motion: key frames", moving > 0, fmt::format("{} obstacles", moving), "no obstacle moves"));
+}
+
+}  // namespace
+
+std::vector<PlanItem> plan(const Scene& scene) {
+  std::vector<PlanItem> items;
+  plan_forces(scene, items);
+  plan_constraints(scene, items);
+  plan_collisions(scene, items);
+
+  const char* method = scene.time.integrator == scene::Integrator::implicit_euler      ? "implicit Euler"
+                       : scene.time.integrator == scene::Integrator::implicit_midpoint ? "implicit midpoint"
+                                                                                       : "BDF2";
+  items.push_back({"integrator: " + std::string(method), true,
+                   fmt::format("step at most {:.4g} ms, {} fps", 1e3 * scene.time.step, scene.time.fps)});
+  items.push_back(when("render: heat colours", scene.render.heat != scene::HeatQuantity::none,
+                       scene.render.heat == scene::HeatQuantity::strain ? "strain" : "speed", "render.heat is none"));
+  const bool camera = !scene.cameras.empty();
+  items.push_back(when("render: automatic framing", !camera, "no camera named",
+                       fmt::format("{} camera{}", scene.cameras.size(), scene.cameras.size() == 1 ? "" : "s")));
+  return items;
+}
+
+}  // namespace weft::simulation

@@ -1,0 +1,260 @@
+#include "simulation/simulation.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "core/error.hpp"
+#include "core/timer.hpp"
+#include "environment/environment.hpp"
+#include "integrator/stepper.hpp"
+#include "simulation/cloth_system.hpp"
+#include "simulation/collision_stage.hpp"
+#include "simulation/pins.hpp"
+#include "simulation/snapshots.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Solves of one step with contacts added in between, before the rest is left to moving particles. A second one replaces
+// nearly all corrections where something fast arrives; a third found nothing more to do.
+constexpr int kContactRounds = 2;
+
+integrator::Method method_of(scene::Integrator integrator) {
+  switch (integrator) {
+    case scene::Integrator::implicit_euler:
+      return integrator::Method::implicit_euler;
+    case scene::Integrator::implicit_midpoint:
+      return integrator::Method::implicit_midpoint;
+    case scene::Integrator::bdf2:
+      return integrator::Method::bdf2;
+  }
+  return integrator::Method::implicit_euler;
+}
+
+integrator::NewtonParameters newton_of(const scene::Solver& solver) {
+  return {solver.newton_tolerance, solver.newton_iterations, solver.linear_tolerance, solver.linear_iterations};
+}
+
+std::vector<Index> first_particles(const scene::Scene& scene, const ClothSystem& system) {
+  std::vector<Index> first;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) first.push_back(system.first_particle(c));
+  return first;
+}
+
+/// Adds the wall and CPU time of a scope to two counters.
+class Stopwatch {
+ public:
+  Stopwatch(double& wall, double& cpu) : wall_(wall), cpu_(cpu) {}
+  ~Stopwatch() {
+    wall_ += timer_.seconds();
+    cpu_ += thread_cpu_seconds() - cpu_start_;
+  }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  double &wall_, &cpu_;
+  WallTimer timer_;
+  double cpu_start_ = thread_cpu_seconds();
+};
+
+}  // namespace
+
+// Parts that a scene does not need are not there: no collision stage where nothing collides, no forces of zero
+// stiffness.
+struct Simulation::Impl {
+  explicit Impl(const scene::Scene& s);
+
+  FrameReport advance();
+  void measure(FrameReport& report) const;
+  frame::SnapshotPtr make_snapshot() const;
+
+  // Why a step was rejected; empty where it was not.
+  using Rejection = std::optional<std::string>;
+
+  void advance_over(double t, double h, int halvings, FrameReport& report);
+  Rejection attempt(double t, double h, FrameReport& report);
+  Rejection solve(double h, FrameReport& report);
+  void write_back();
+
+  scene::Scene scene;
+  environment::Environment environment;
+  ClothSystem system;
+  Pins pins;
+  SnapshotMaker snapshots;
+  integrator::Stepper stepper;
+  solver::LinearSystem linear_system;
+  std::optional<CollisionStage> collisions;
+
+  int frame = 0;
+  integrator::State now, next;
+  std::vector<integrator::HeldParticle> held;
+  frame::SnapshotPtr current;
+};
+
+Simulation::Impl::Impl(const scene::Scene& s)
+    : scene(s),
+      environment(scene),
+      system(scene, environment),
+      pins(scene, environment, first_particles(scene, system)),
+      snapshots(scene, environment),
+      stepper(method_of(scene.time.integrator), newton_of(scene.solver)),
+      linear_system(system.make_linear_system()) {
+  for (const environment::ClothObject& cloth : environment.cloths) {
+    now.x.insert(now.x.end(), cloth.motion.positions.begin(), cloth.motion.positions.end());
+    now.v.insert(now.v.end(), cloth.motion.velocities.begin(), cloth.motion.velocities.end());
+  }
+  pins.held_at(0, environment, held);
+  for (const integrator::HeldParticle& particle : held)
+    now.v[static_cast<std::size_t>(particle.constraint.particle)] = particle.v_end;
+  if (CollisionStage::needed(scene)) {
+    collisions.emplace(scene, environment, system);
+    system.use_contacts(&collisions->contacts());
+  }
+  current = make_snapshot();
+}
+
+Simulation::Impl::Rejection Simulation::Impl::solve(double h, FrameReport& report) {
+  const integrator::StepReport step = stepper.step(system, now, h, scene.physics.gravity, held, linear_system, next);
+  report.newton_iterations += step.newton_iterations;
+  report.linear_iterations += step.linear_iterations;
+  if (step.verdict == integrator::Verdict::solved) return std::nullopt;
+  return fmt::format("{} (residual {:.3g} of {:.3g} after {} iterations)", integrator::describe(step.verdict),
+                     step.last_residual, step.first_residual, step.newton_iterations);
+}
+
+// One step from `now` at time t [s] over h [s] into `next`.
+Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, FrameReport& report) {
+  pins.held_at(t + h, environment, held);
+  if (!collisions) return solve(h, report);
+  {
+    const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
+    collisions->begin_step(environment, now, held, t, h);
+  }
+  for (int round = 1;; ++round) {
+    if (Rejection rejection = solve(h, report)) return rejection;
+    const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
+    if (round < kContactRounds && collisions->adopt_failing(next) > 0) continue;
+    return collisions->finish_step(h, next);
+  }
+}
+
+// Goes from t to t + h, in two halves where one step is rejected.
+void Simulation::Impl::advance_over(double t, double h, int halvings, FrameReport& report) {
+  if (const Rejection rejection = attempt(t, h, report)) {
+    ++report.rejected_steps;
+    if (halvings == 0)
+      throw Error(
+          ExitCode::simulation_failed,
+          "frame {}: the step at t = {:.6g} s was rejected down to h = {:.3g} s: {}; try a smaller time.step or "
+          "softer material",
+          frame + 1, t, h, *rejection);
+    advance_over(t, 0.5 * h, halvings - 1, report);
+    advance_over(t + 0.5 * h, 0.5 * h, halvings - 1, report);
+    return;
+  }
+  stepper.accept(now, h);
+  std::swap(now, next);
+  ++report.steps;
+}
+
+FrameReport Simulation::Impl::advance() {
+  FrameReport report;
+  {
+    const Stopwatch watch(report.simulate_wall_s, report.simulate_cpu_s);
+    // Frame k is at k / fps exactly, whatever the steps between.
+    const double t_t0 = frame / scene.time.fps, t_t1 = (frame + 1) / scene.time.fps;
+    const int steps = std::max(1, static_cast<int>(std::ceil((t_t1 - t_t0) / scene.time.step - 1e-9)));
+    const double h = (t_t1 - t_t0) / steps;
+    const integrator::State start = now;
+    const integrator::Stepper stepper_start = stepper;
+    try {
+      for (int s = 0; s < steps; ++s) advance_over(t_t0 + s * h, h, scene.solver.halvings, report);
+    } catch (const Error&) {
+      now = start;
+      stepper = stepper_start;
+      throw;
+    }
+    environment.move_to(t_t1);
+    ++frame;
+    write_back();
+  }
+  report.frame = frame;
+  report.time = frame / scene.time.fps;
+  measure(report);
+  current = make_snapshot();
+  return report;
+}
+
+// The environment holds what the frame shows; accelerations are the mean over the last step.
+void Simulation::Impl::write_back() {
+  for (std::size_t c = 0; c < environment.cloths.size(); ++c) {
+    environment::Motion& motion = environment.cloths[c].motion;
+    const auto first = static_cast<std::size_t>(system.first_particle(c));
+    for (std::size_t i = 0; i < motion.positions.size(); ++i) {
+      motion.positions[i] = now.x[first + i];
+      motion.velocities[i] = now.v[first + i];
+    }
+  }
+}
+
+void Simulation::Impl::measure(FrameReport& report) const {
+  report.max_strain = system.max_strain(now.x);
+  report.kinetic_energy = system.kinetic_energy(now.v);
+  report.elastic_energy = system.elastic_energy(now.x);
+  report.constraints = static_cast<int>(held.size());
+  report.min_distance = std::numeric_limits<double>::infinity();
+  if (!collisions) return;
+  report.proximities = collisions->proximities();
+  report.constraints += collisions->contacts().active(now.x);
+  report.min_distance = collisions->min_distance();
+}
+
+frame::SnapshotPtr Simulation::Impl::make_snapshot() const {
+  std::vector<std::vector<float>> heat;
+  for (std::size_t c = 0; c < scene.cloths.size() && scene.render.heat != scene::HeatQuantity::none; ++c) {
+    if (scene.render.heat == scene::HeatQuantity::strain) {
+      heat.push_back(system.strain_per_particle(c, now.x));
+      continue;
+    }
+    heat.emplace_back();
+    for (const Vec3& v : environment.cloths[c].motion.velocities) heat.back().push_back(static_cast<float>(v.norm()));
+  }
+  return snapshots.make(frame, frame / scene.time.fps, environment, std::move(heat));
+}
+
+Simulation::Simulation(const scene::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
+Simulation::~Simulation() = default;
+
+frame::SnapshotPtr Simulation::snapshot() const {
+  return impl_->current;
+}
+FrameReport Simulation::advance() {
+  return impl_->advance();
+}
+std::size_t Simulation::particles() const {
+  return impl_->now.x.size();
+}
+
+FrameReport Simulation::initial_report() const {
+  FrameReport report;
+  impl_->measure(report);
+  return report;
+}
+
+std::vector<ObjectInfo> Simulation::objects() const {
+  std::vector<ObjectInfo> objects;
+  for (const environment::ClothObject& cloth : impl_->environment.cloths)
+    objects.push_back(
+        {cloth.name, frame::ObjectKind::cloth, cloth.mesh.positions.size(),
+         cloth.mesh.topology.quads.empty() ? cloth.mesh.topology.triangles.size() : cloth.mesh.topology.quads.size()});
+  for (const environment::RigidObject& rigid : impl_->environment.rigids)
+    objects.push_back(
+        {rigid.name, frame::ObjectKind::obstacle, rigid.mesh.positions.size(), rigid.mesh.topology.triangles.size()});
+  return objects;
+}
+
+}  // namespace weft::simulation

@@ -1,0 +1,150 @@
+#include "simulation/snapshots.hpp"
+
+namespace weft::simulation {
+namespace {
+
+using CameraValue = environment::Spline<7>::Value;
+using LightValue = environment::Spline<10>::Value;
+
+// How much paler the back of a cloth is than its front where the scene does not say.
+constexpr double kBackPaleness = 0.35;
+
+frame::Appearance appearance(const scene::Look& look) {
+  frame::Appearance result;
+  result.color = look.color;
+  result.back_color = look.back_color.value_or(look.color + kBackPaleness * (Vec3::Ones() - look.color));
+  result.roughness = look.roughness;
+  result.thread_spacing = look.thread_spacing;
+  result.checker = look.checker;
+  return result;
+}
+
+std::shared_ptr<const frame::Surface> make_surface(const std::string& name, frame::ObjectKind kind,
+                                                   const mesh::Mesh& mesh, const scene::Look& look) {
+  auto surface = std::make_shared<frame::Surface>();
+  surface->name = name;
+  surface->kind = kind;
+  surface->visible = look.visible;
+  surface->triangles = mesh.topology.triangles;
+  surface->quads = mesh.topology.quads;
+  surface->uv = mesh.uv;
+  surface->appearance = appearance(look);
+  if (kind == frame::ObjectKind::cloth) {
+    surface->crease_angle = 180;
+  } else {
+    surface->appearance.thread_spacing = 0;
+  }
+  return surface;
+}
+
+std::shared_ptr<const frame::Stage> make_stage(const scene::Scene& scene) {
+  auto stage = std::make_shared<frame::Stage>();
+  stage->up = scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+  stage->sky_color = scene.render.sky_color.value_or(stage->sky_color);
+  stage->ground_color = scene.render.ground_color.value_or(stage->ground_color);
+  stage->sky_intensity = scene.render.sky_intensity.value_or(stage->sky_intensity);
+  switch (scene.render.heat) {
+    case scene::HeatQuantity::none:
+      stage->heat = frame::Stage::Heat::none;
+      break;
+    case scene::HeatQuantity::strain:
+      stage->heat = frame::Stage::Heat::strain;
+      break;
+    case scene::HeatQuantity::speed:
+      stage->heat = frame::Stage::Heat::speed;
+      break;
+  }
+  stage->heat_max = scene.render.heat_max;
+  return stage;
+}
+
+environment::Spline<7> camera_track(const scene::Camera& camera) {
+  std::vector<double> times;
+  std::vector<CameraValue> values;
+  for (const scene::CameraKey& key : camera.keys) {
+    times.push_back(key.time);
+    values.push_back((CameraValue() << key.position, key.target, key.field_of_view).finished());
+  }
+  return {camera.interpolation, std::move(times), std::move(values)};
+}
+
+environment::Spline<10> light_track(const scene::Light& light) {
+  std::vector<double> times;
+  std::vector<LightValue> values;
+  for (const scene::LightKey& key : light.keys) {
+    times.push_back(key.time);
+    values.push_back((LightValue() << key.direction, key.position, key.target, key.intensity).finished());
+  }
+  return {light.interpolation, std::move(times), std::move(values)};
+}
+
+}  // namespace
+
+SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment)
+    : stage_(make_stage(scene)) {
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    surfaces_.push_back(
+        make_surface(scene.cloths[c].name, frame::ObjectKind::cloth, environment.cloths[c].mesh, scene.cloths[c].look));
+  for (std::size_t r = 0; r < scene.obstacles.size(); ++r) {
+    auto surface = std::make_shared<frame::Surface>(*make_surface(scene.obstacles[r].name, frame::ObjectKind::obstacle,
+                                                                  environment.rigids[r].mesh, scene.obstacles[r].look));
+    surface->infinite_floor = environment.rigids[r].infinite_floor;
+    surfaces_.push_back(std::move(surface));
+  }
+  for (const scene::Camera& camera : scene.cameras) {
+    cameras_.push_back({.name = camera.name});
+    camera_tracks_.push_back(camera_track(camera));
+  }
+  for (const scene::Light& light : scene.lights) {
+    frame::Light result;
+    result.name = light.name;
+    result.kind = light.spot ? frame::Light::Kind::spot : frame::Light::Kind::sun;
+    result.cone_angle = light.cone_angle;
+    result.color = light.color;
+    result.softness = light.softness;
+    lights_.push_back(result);
+    light_tracks_.push_back(light_track(light));
+  }
+}
+
+std::vector<frame::Camera> SnapshotMaker::cameras_at(double time) const {
+  std::vector<frame::Camera> cameras = cameras_;
+  for (std::size_t c = 0; c < cameras.size(); ++c) {
+    const CameraValue value = camera_tracks_[c].at(time).value;
+    cameras[c].position = value.segment<3>(0);
+    cameras[c].target = value.segment<3>(3);
+    cameras[c].field_of_view = value[6];
+  }
+  return cameras;
+}
+
+std::vector<frame::Light> SnapshotMaker::lights_at(double time) const {
+  std::vector<frame::Light> lights = lights_;
+  for (std::size_t l = 0; l < lights.size(); ++l) {
+    const LightValue value = light_tracks_[l].at(time).value;
+    lights[l].direction = value.segment<3>(0);
+    lights[l].position = value.segment<3>(3);
+    lights[l].target = value.segment<3>(6);
+    lights[l].intensity = value[9];
+  }
+  return lights;
+}
+
+frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const environment::Environment& environment,
+                                       std::vector<std::vector<float>> heat) const {
+  auto snapshot = std::make_shared<frame::FrameSnapshot>();
+  snapshot->frame = frame;
+  snapshot->time = time;
+  snapshot->stage = stage_;
+  snapshot->surfaces = surfaces_;
+  for (const environment::ClothObject& cloth : environment.cloths)
+    snapshot->states.push_back({cloth.motion.positions, {}});
+  for (std::size_t c = 0; c < heat.size(); ++c) snapshot->states[c].heat = std::move(heat[c]);
+  for (const environment::RigidObject& rigid : environment.rigids)
+    snapshot->states.push_back({rigid.motion.positions, {}});
+  snapshot->cameras = cameras_at(time);
+  snapshot->lights = lights_at(time);
+  return snapshot;
+}
+
+}  // namespace weft::simulation
