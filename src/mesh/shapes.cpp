@@ -149,9 +149,9 @@ Mesh make_cylinder(double radius, double height, int segments) {
 
 Mesh make_torus(double radius, double tube_radius, int segments) {
   segments = std::max(segments, kMinSegments);
-  // The outer equator sets the width of a cell.
+  // The outer equator sets the width of a cell. A multiple of four puts a ring at the very bottom, to stand on.
   const double edge = 2 * kPi * (radius + tube_radius) / segments;
-  const int around_tube = std::max(kMinSegments, pieces(2 * kPi * tube_radius, edge, segments));
+  const int around_tube = 4 * std::max(2, static_cast<int>(std::lround(2 * kPi * tube_radius / edge / 4)));
   std::vector<ProfilePoint> circle;
   for (int k = 0; k < around_tube; ++k) {
     const double angle = 2 * kPi * k / around_tube;

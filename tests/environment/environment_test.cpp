@@ -1,0 +1,231 @@
+#include "environment/environment.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <numbers>
+#include <string>
+
+#include "core/error.hpp"
+#include "mesh/geometry.hpp"
+
+namespace weft::environment {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr double kPi = std::numbers::pi;
+
+// A few roundings of coordinates of some metres.
+constexpr double kRounding = 1e-13;
+
+Quat about(const Vec3& axis, double angle) {
+  return Quat(Eigen::AngleAxisd(angle, axis.normalized()));
+}
+
+scene::Scene scene_with(const scene::Shape& shape, scene::UpAxis up = scene::UpAxis::z) {
+  scene::Scene scene;
+  scene.file = "scenes/a.toml";
+  scene.up = up;
+  scene.obstacles.emplace_back();
+  scene.obstacles[0].name = "thing";
+  scene.obstacles[0].shape = shape;
+  return scene;
+}
+
+Box3 bounds_of(const RigidObject& object) {
+  return mesh::bounding_box(object.motion.positions);
+}
+
+TEST(Cloth, LiesInThePlaneOfItsPoseWithWeftAlongXAndWarpAlongY) {
+  scene::Scene scene;
+  scene.cloths.emplace_back();
+  scene::Cloth& cloth = scene.cloths[0];
+  cloth.name = "sheet";
+  cloth.size = {2, 3};
+  cloth.particles_weft = 5;
+  cloth.particles_warp = 7;
+  cloth.pose = {{10, 20, 30}, about({1, 0, 0}, kPi / 2)};  // y turns up
+  cloth.velocity = {1, 2, 3};
+  // The pose says all; the up axis does not turn cloth.
+  for (const auto up : {scene::UpAxis::z, scene::UpAxis::y}) {
+    scene.up = up;
+    const Environment environment(scene);
+    const ClothObject& object = environment.cloths.at(0);
+    EXPECT_EQ(object.name, "sheet");
+    EXPECT_EQ(object.grid.lu, 0.5);
+    EXPECT_EQ(object.grid.lv, 0.5);
+    ASSERT_EQ(object.mesh.positions.size(), 35u);
+    ASSERT_EQ(object.mesh.topology.quads.size(), 24u);
+    ASSERT_EQ(object.mesh.topology.triangles.size(), 48u);
+    for (int j = 0; j < 7; ++j) {
+      for (int i = 0; i < 5; ++i) {
+        const auto k = static_cast<std::size_t>(object.grid.index(i, j));
+        const Vec3 expected(10 - 1 + 0.5 * i, 20, 30 - 1.5 + 0.5 * j);
+        EXPECT_LT((object.mesh.positions[k] - expected).norm(), kRounding);
+        EXPECT_EQ(object.mesh.uv[k], Vec2(0.5 * i, 0.5 * j));
+        EXPECT_EQ(object.motion.positions[k], object.mesh.positions[k]);
+        EXPECT_EQ(object.motion.velocities[k], Vec3(1, 2, 3));
+        EXPECT_EQ(object.motion.accelerations[k], Vec3(0, 0, 0));
+      }
+    }
+  }
+}
+
+TEST(Shapes, TurnTheirAxisUpWhereYIsUp) {
+  const scene::Cone cone{.radius = 0.5, .height = 3};
+  const Environment z_up(scene_with(cone)), y_up(scene_with(cone, scene::UpAxis::y));
+  EXPECT_LT((bounds_of(z_up.rigids[0]).sizes() - Vec3(1, 1, 3)).norm(), kRounding);
+  EXPECT_LT((bounds_of(y_up.rigids[0]).sizes() - Vec3(1, 3, 1)).norm(), kRounding);
+  // The tip: alone at the top.
+  const auto& body = y_up.rigids[0].mesh.positions;
+  EXPECT_EQ(std::count_if(body.begin(), body.end(), [](const Vec3& x) { return x.y() > 1.499; }), 1);
+  EXPECT_GT(mesh::enclosed_volume(y_up.rigids[0].mesh.topology.triangles, body), 0);
+}
+
+TEST(Shapes, AreMadeAsTheSceneSaysInTheSameOrder) {
+  struct Case {
+    scene::Shape shape;
+    Vec3 z_up, y_up;  // sizes of the box around it
+  };
+  const std::vector<Case> cases{
+      {scene::Sphere{.radius = 0.5}, {1, 1, 1}, {1, 1, 1}},
+      {scene::BoxShape{.size = {1, 2, 3}, .bevel = 0.1}, {1, 2, 3}, {1, 2, 3}},  // sizes along the scene's axes
+      {scene::Cylinder{.radius = 1, .height = 5}, {2, 2, 5}, {2, 5, 2}},
+      {scene::Torus{.radius = 1, .tube_radius = 0.25}, {2.5, 2.5, 0.5}, {2.5, 0.5, 2.5}},
+      {scene::HalfPipe{.radius = 1, .length = 4, .thickness = 0.5}, {4, 3, 1.5}, {4, 1.5, 3}},
+      {scene::Plane{.size = {6, 8}}, {6, 8, 0}, {6, 0, 8}}};
+  for (const auto up : {scene::UpAxis::z, scene::UpAxis::y}) {
+    scene::Scene scene;
+    scene.up = up;
+    for (const Case& c : cases) {
+      scene.obstacles.emplace_back();
+      scene.obstacles.back().shape = c.shape;
+      scene.obstacles.back().segments = 16;
+    }
+    const Environment environment(scene);
+    ASSERT_EQ(environment.rigids.size(), cases.size());
+    for (std::size_t k = 0; k < cases.size(); ++k) {
+      const Vec3& expected = up == scene::UpAxis::z ? cases[k].z_up : cases[k].y_up;
+      EXPECT_LT((bounds_of(environment.rigids[k]).sizes() - expected).norm(), kRounding) << k;
+      EXPECT_EQ(environment.rigids[k].infinite_floor, k == 5);
+    }
+  }
+}
+
+TEST(HalfPipe, OpensAgainstGravityWhicheverAxisIsUp) {
+  const scene::HalfPipe pipe{.radius = 1, .length = 4, .thickness = 0.5};
+  EXPECT_NEAR(bounds_of(Environment(scene_with(pipe)).rigids[0]).max().z(), 0, kRounding);
+  EXPECT_NEAR(bounds_of(Environment(scene_with(pipe, scene::UpAxis::y)).rigids[0]).max().y(), 0, kRounding);
+}
+
+TEST(Plane, FacesUpAndIsNoFloorToTheHorizonIfFinite) {
+  for (const auto up : {scene::UpAxis::z, scene::UpAxis::y}) {
+    const Environment environment(scene_with(scene::Plane{.size = {2, 2}, .infinite = false}, up));
+    const RigidObject& plane = environment.rigids[0];
+    EXPECT_FALSE(plane.infinite_floor);
+    const Vec3 normal = up == scene::UpAxis::z ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
+    for (const auto& t : plane.mesh.topology.triangles)
+      EXPECT_LT((mesh::area_vector(t, plane.motion.positions) - 2 * normal).norm(), kRounding);
+  }
+}
+
+TEST(RigidObject, AtRestStandsAtItsPoseForAllTimes) {
+  scene::Scene scene = scene_with(scene::BoxShape{.size = {2, 4, 6}, .bevel = 0});
+  scene.obstacles[0].pose = {{1, 2, 3}, about({0, 0, 1}, kPi / 2)};
+  scene.obstacles[0].collide = false;
+  Environment environment(scene);
+  const RigidObject& box = environment.rigids[0];
+  EXPECT_FALSE(box.moving);
+  EXPECT_FALSE(box.collide);
+  for (const double t : {0.0, 5.0}) {
+    environment.move_to(t);
+    EXPECT_LT((bounds_of(box).min() - Vec3(-1, 1, 0)).norm(), kRounding);
+    EXPECT_LT((bounds_of(box).max() - Vec3(3, 3, 6)).norm(), kRounding);
+    for (const Vec3& v : box.motion.velocities) EXPECT_EQ(v, Vec3(0, 0, 0));
+    for (const Vec3& a : box.motion.accelerations) EXPECT_EQ(a, Vec3(0, 0, 0));
+  }
+}
+
+scene::Scene scene_with_tumbling_torus() {
+  scene::Scene scene = scene_with(scene::Torus{});
+  scene.obstacles[0].segments = 12;
+  scene.obstacles[0].motion.keys = {{0, {{0, 0, 1}, Quat::Identity()}},
+                                    {0.5, {{1, 0, 2}, about({1, 1, 0}, 1.5)}},
+                                    {2, {{1, 3, 0}, about({0, 1, 1}, -1)}}};
+  return scene;
+}
+
+TEST(RigidObject, InMotionStartsWithTheStateOfTimeZero) {
+  Environment environment(scene_with_tumbling_torus());
+  ASSERT_TRUE(environment.rigids[0].moving);
+  const Motion start = environment.rigids[0].motion;
+  EXPECT_GT(start.velocities[0].norm(), 0);
+  environment.move_to(1);
+  EXPECT_NE(environment.rigids[0].motion.positions, start.positions);
+  environment.move_to(0);
+  EXPECT_EQ(environment.rigids[0].motion.positions, start.positions);
+  EXPECT_EQ(environment.rigids[0].motion.velocities, start.velocities);
+}
+
+TEST(RigidObject, InMotionKeepsItsShapeAndFollowsItsPose) {
+  Environment environment(scene_with_tumbling_torus());
+  const RigidObject& torus = environment.rigids[0];
+  for (const double t : {0.2, 0.5, 1.7, 9.0}) {
+    environment.move_to(t);
+    const PoseSample pose = environment.pose(0, t);
+    for (std::size_t i = 0; i < torus.mesh.positions.size(); ++i) {
+      const Vec3 expected = pose.position + pose.rotation * torus.mesh.positions[i];
+      EXPECT_LT((torus.motion.positions[i] - expected).norm(), kRounding);
+    }
+  }
+}
+
+TEST(RigidObject, InMotionHasTheVelocityAndAccelerationOfEachVertex) {
+  Environment environment(scene_with_tumbling_torus());
+  const RigidObject& torus = environment.rigids[0];
+  const double h = 1e-4;
+  for (const double t : {0.25, 1.1}) {
+    environment.move_to(t - h);
+    const auto before = torus.motion.positions;
+    environment.move_to(t + h);
+    const auto after = torus.motion.positions;
+    environment.move_to(t);
+    for (std::size_t i = 0; i < before.size(); ++i) {
+      const Vec3 velocity = (after[i] - before[i]) / (2 * h);
+      const Vec3 acceleration = (after[i] - 2 * torus.motion.positions[i] + before[i]) / (h * h);
+      // h²/6 and h²/12 times derivatives below 500, and rounding 4e-16 / h² of the second difference.
+      EXPECT_LT((torus.motion.velocities[i] - velocity).norm(), 1e-6);
+      EXPECT_LT((torus.motion.accelerations[i] - acceleration).norm(), 1e-6);
+    }
+  }
+}
+
+TEST(MeshFile, IsLoadedScaledAndTakenAsItLiesWhicheverAxisIsUp) {
+  const fs::path file = fs::path(testing::TempDir()) / ("weft_environment_" + std::to_string(::getpid()) + ".obj");
+  std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n";
+  const Environment environment(scene_with(scene::MeshFile{.path = file, .scale = 0.5}, scene::UpAxis::y));
+  fs::remove(file);
+  EXPECT_EQ(environment.rigids[0].motion.positions, (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}}));
+}
+
+TEST(MeshFile, ThatIsMissingIsNamedWithTheSceneLine) {
+  scene::Scene scene = scene_with(scene::MeshFile{.path = "/nowhere/chair.obj"});
+  scene.obstacles[0].line = 12;
+  scene.obstacles[0].column = 3;
+  try {
+    const Environment environment(scene);
+    FAIL() << "loaded";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::asset_unreadable);
+    EXPECT_STREQ(error.what(),
+                 "scenes/a.toml:12:3: obstacle.thing: mesh file /nowhere/chair.obj: expected a readable "
+                 "file, got none at this path");
+  }
+}
+
+}  // namespace
+}  // namespace weft::environment
