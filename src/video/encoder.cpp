@@ -5,7 +5,10 @@ extern "C" {
 }
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <optional>
+#include <string_view>
 #include <utility>
 
 #include "core/error.hpp"
@@ -20,6 +23,9 @@ namespace {
 
 constexpr const char* kCodecName = "libx264";
 constexpr int kMaxSide = 16384;  // pixels; the limit of x264
+
+constexpr std::array<std::string_view, 10> kPresets = {"ultrafast", "superfast", "veryfast", "faster",   "fast",
+                                                       "medium",    "slow",      "slower",   "veryslow", "placebo"};
 
 // Players jump to key frames only, so one every two seconds keeps a video pleasant to step through. Bounded for very
 // slow and very fast rates; 250 is x264's own default.
@@ -38,6 +44,10 @@ void check_settings(const std::filesystem::path& file, const Settings& settings)
   require(settings.crf >= 1 && settings.crf <= 51, "crf", "1 to 51", settings.crf);
   // 0 would take the machine's cores, and the bytes would follow the machine.
   require(settings.threads >= 1 && settings.threads <= 128, "encoder threads", "1 to 128", settings.threads);
+  if (std::find(kPresets.begin(), kPresets.end(), settings.preset) == kPresets.end()) {
+    throw Error(ExitCode::output_failed, "{}: preset: expected one of {}, got {}", file.string(),
+                fmt::join(kPresets, ", "), settings.preset);
+  }
   // Found only by the last rename otherwise, after all the work.
   if (!file.has_filename() || std::filesystem::is_directory(file)) {
     throw Error(ExitCode::output_failed, "{}: expected the name of a video file, got a folder", file.string());
@@ -81,7 +91,7 @@ struct Encoder::Impl {
   std::filesystem::path file;
   Settings settings;
   AVRational rate;
-  TemporaryFile fragments;
+  std::optional<TemporaryFile> fragments;
   FrameConverter converter;
   FramePtr frame;
   PacketPtr packet;
@@ -100,7 +110,7 @@ Encoder::Impl::Impl(const std::filesystem::path& f, const Settings& s)
     : file(f),
       settings(s),
       rate(frame_rate(s.fps)),
-      fragments(rescue_name(f)),
+      fragments(std::in_place, rescue_name(f)),
       converter(s.width, s.height, f),
       frame(converter.make_frame()),
       packet(check_allocated(PacketPtr(av_packet_alloc()), f)),
@@ -108,7 +118,7 @@ Encoder::Impl::Impl(const std::filesystem::path& f, const Settings& s)
   const ParametersPtr parameters = check_allocated(ParametersPtr(avcodec_parameters_alloc()), file);
   check(avcodec_parameters_from_context(parameters.get(), codec.get()), file, "describe the video");
   writer =
-      std::make_unique<Mp4Writer>(fragments.path(), file, Mp4Layout::fragmented, *parameters, rate, settings.metadata);
+      std::make_unique<Mp4Writer>(fragments->path(), file, Mp4Layout::fragmented, *parameters, rate, settings.metadata);
 }
 
 // Gives the encoder a frame, or nullptr for the end, and writes the packets that are ready.
@@ -127,7 +137,7 @@ void Encoder::Impl::send(const AVFrame* next) {
 // Makes the finished file out of the fragments.
 void Encoder::Impl::publish() {
   TemporaryFile whole(file);
-  copy_to_fast_start(fragments.path(), whole.path(), file, rate, settings.metadata);
+  copy_to_fast_start(fragments->path(), whole.path(), file, rate, settings.metadata);
   verify_frames(whole.path(), file, rate, frames);
   whole.commit();
 }
@@ -167,9 +177,10 @@ void Encoder::finish() {
   self.writer->close();
   try {
     self.publish();
+    self.fragments.reset();
   } catch (const Error& error) {
     // The copy needs its own room on the disk. The fragments are whole and play, so they are not thrown away.
-    self.fragments.commit();
+    self.fragments->commit();
     throw Error(error.code(), "{}; all {} frames are kept in {}", error.what(), self.frames,
                 rescue_name(self.file).string());
   }

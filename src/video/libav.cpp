@@ -20,7 +20,7 @@ std::deque<std::string> g_log_lines;
 void remember(void* source, int level, const char* format, va_list arguments) {
   if (level > AV_LOG_WARNING) return;
   std::array<char, 512> text{};
-  int print_prefix = 1;
+  int print_prefix = 0;  // it would hold an address of memory
   av_log_format_line2(source, level, format, arguments, text.data(), static_cast<int>(text.size()), &print_prefix);
   std::string line(text.data());
   while (!line.empty() && line.back() == '\n') line.pop_back();
@@ -60,10 +60,6 @@ int check(int code, const std::filesystem::path& file, std::string_view step) {
   std::array<char, AV_ERROR_MAX_STRING_SIZE> reason{};
   av_strerror(code, reason.data(), reason.size());
   fail(file, step, reason.data());
-}
-
-std::string url_of(const std::filesystem::path& file) {
-  return "file:" + file.string();
 }
 
 }  // namespace weft::video

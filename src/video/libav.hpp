@@ -56,7 +56,4 @@ Pointer check_allocated(Pointer pointer, const std::filesystem::path& file) {
   return pointer;
 }
 
-/// The name as libav takes it: a path is never read as a protocol, whatever colons it has.
-std::string url_of(const std::filesystem::path& file);
-
 }  // namespace weft::video

@@ -23,7 +23,7 @@ struct Dictionary {
 
 InputPtr open_video(const std::filesystem::path& file, const std::filesystem::path& reported_file) {
   AVFormatContext* opened = nullptr;
-  check(avformat_open_input(&opened, url_of(file).c_str(), av_find_input_format("mp4"), nullptr), reported_file,
+  check(avformat_open_input(&opened, file.c_str(), av_find_input_format("mp4"), nullptr), reported_file,
         "read the frames back");
   InputPtr input(opened);
   if (input->nb_streams != 1) fail(reported_file, "read the frames back", "expected one stream");
@@ -45,8 +45,7 @@ Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path re
                      const std::map<std::string, std::string>& metadata)
     : reported_file_(std::move(reported_file)), frame_duration_(av_inv_q(rate)) {
   AVFormatContext* allocated = nullptr;
-  check(avformat_alloc_output_context2(&allocated, nullptr, "mp4", url_of(file).c_str()), reported_file_,
-        "start an MP4 file");
+  check(avformat_alloc_output_context2(&allocated, nullptr, "mp4", file.c_str()), reported_file_, "start an MP4 file");
   output_.reset(allocated);
 
   AVStream* stream = check_allocated(avformat_new_stream(output_.get(), nullptr), reported_file_);

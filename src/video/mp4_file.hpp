@@ -18,8 +18,9 @@ enum class Mp4Layout {
 /// An MP4 file being written.
 class Mp4Writer {
  public:
-  /// Opens `file` and writes its header. Packets come in units of one frame, 1 / `rate` seconds. Errors name
-  /// `reported_file`, the name that the user knows. Throws Error(output_failed).
+  /// Opens `file`, an absolute path lest libav take a colon in it for a protocol, and writes its header. Packets come
+  /// in units of one frame, 1 / `rate` seconds. Errors name `reported_file`, the name that the user knows. Throws
+  /// Error(output_failed).
   Mp4Writer(const std::filesystem::path& file, std::filesystem::path reported_file, Mp4Layout layout,
             const AVCodecParameters& codec, AVRational rate, const std::map<std::string, std::string>& metadata);
 
