@@ -10,18 +10,23 @@
 
 namespace weft::scene {
 
-/// Everything that is wrong with a scene, in file order.
+/// Mistakes listed at once; a file that is no scene may hold millions.
+inline constexpr std::size_t kMaxMistakes = 200;
+
+/// One thing that is wrong with a scene.
 struct Mistake {
-  int line = 0, column = 0;  ///< 1-based; 0 for a mistake of the command line
-  std::string key;           ///< such as cloth.band.thickness; empty for mistakes of the file as a whole
-  std::string text;          ///< "expected > 0 m, got -0.001"
+  int line = 0, column = 0;   ///< 1-based; 0 for a mistake of the command line or of the file as a whole
+  std::string key;            ///< such as cloth.band.material.thickness; empty for mistakes of the file as a whole
+  std::string text;           ///< "expected > 0 m, got -0.001"
+  std::string override_text;  ///< "--set key=value" where the command line brought it; empty for the file
 };
 
 struct LoadResult {
-  Scene scene;                    ///< meaningful only if there are no mistakes
-  std::vector<Mistake> mistakes;
+  Scene scene;  ///< meaningful only if there are no mistakes
+  std::vector<Mistake>
+      mistakes;  ///< in file order, then those of the overrides; at most kMaxMistakes and a count of the rest
   bool ok() const { return mistakes.empty(); }
-  /// One line a mistake: `file:line:column: key: text` (overrides: `--set key: text`).
+  /// One line a mistake: `file:line:column: key: text` (overrides: `--set key=value: key: text`).
   std::string describe() const;
   std::filesystem::path file;
 };

@@ -1,6 +1,7 @@
 // A scene after checking: plain values in SI units, every default filled in, every name resolved.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -34,44 +35,44 @@ struct Solver {
   int newton_iterations = 10;      ///< per step, before the step is halved
   double linear_tolerance = 5e-3;  ///< of the conjugate gradients, relative to the first residual
   int linear_iterations = 1000;
-  int halvings = 8;                ///< of a rejected step, before the run gives up
+  int halvings = 8;  ///< of a rejected step, before the run gives up
 };
 
 /// Contact of all surfaces.
 struct Contact {
-  bool self = true;          ///< cloth against itself and other cloths
-  bool obstacles = true;     ///< cloth against obstacles
-  double stiffness = 100;    ///< of one contact [N/m]
+  bool self = true;        ///< cloth against itself and other cloths
+  bool obstacles = true;   ///< cloth against obstacles
+  double stiffness = 100;  ///< of one contact [N/m]
 };
 
 /// A fabric in continuum units (seed, "Elastic Model").
 struct Material {
-  std::string fabric = "cotton";          ///< the named fabric that the numbers started from
-  double density = 0.2;                   ///< [kg/m²]
-  double stretch_weft = 1000;             ///< k1 [N/m]
-  double stretch_warp = 1000;             ///< k2 [N/m]
-  double shear = 100;                     ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
-  double bend = 5e-5;                     ///< B [N·m]
-  double stretch_viscosity = 0;           ///< stress per strain rate, weft and warp [N·s/m]
-  double shear_viscosity = 0;             ///< [N·s/m]
-  double bend_viscosity = 0;              ///< [N·m·s]
-  double thickness = 0.002;               ///< distance that contact keeps between two layers [m]
-  double friction = 0.3;                  ///< Coulomb coefficient; of a pair: the geometric mean of both
-  double drag = 1.0;                      ///< air resistance coefficient of the normal motion; 0 for none
+  std::string fabric = "cotton";  ///< the named fabric that the numbers started from
+  double density = 0.2;           ///< [kg/m²]
+  double stretch_weft = 1000;     ///< k1 [N/m]
+  double stretch_warp = 1000;     ///< k2 [N/m]
+  double shear = 100;             ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
+  double bend = 5e-5;             ///< B [N·m]
+  double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
+  double shear_viscosity = 0;     ///< [N·s/m]
+  double bend_viscosity = 0;      ///< [N·m·s]
+  double thickness = 0.002;       ///< distance that contact keeps between two layers [m]
+  double friction = 0.3;          ///< Coulomb coefficient; of a pair: the geometric mean of both
+  double drag = 1.0;              ///< air resistance coefficient of the normal motion; 0 for none
 };
 
 struct Look {
-  Vec3 color{0.8, 0.8, 0.8};                ///< sRGB
-  std::optional<Vec3> back_color;           ///< cloth: the other side; a paler `color` where absent
+  Vec3 color{0.8, 0.8, 0.8};       ///< sRGB
+  std::optional<Vec3> back_color;  ///< cloth: the other side; a paler `color` where absent
   double roughness = 0.6;
-  double thread_spacing = 0.004;            ///< of the drawn weave [m]; cloth only; 0 draws none
-  bool checker = false;                     ///< floors only
+  double thread_spacing = 0.004;  ///< of the drawn weave [m]; cloth only; 0 draws none
+  bool checker = false;           ///< floors only
   bool visible = true;
 };
 
 /// A rigid placement: rotation, then translation.
 struct Pose {
-  Vec3 position{0, 0, 0};         ///< [m]
+  Vec3 position{0, 0, 0};  ///< [m]
   Quat rotation{1, 0, 0, 0};
 };
 
@@ -90,38 +91,65 @@ struct Pin {
   /// Which particles, in fractions of the cloth's rest size along weft and warp: those inside [low, high].
   Vec2 low{0, 0}, high{1, 1};
   std::string follow;   ///< obstacle whose motion they share; empty: none
-  PoseTrack motion;     ///< else displacement of the held particles from where they start (position relative, rotation about the start centroid)
+  PoseTrack motion;     ///< else displacement of the held particles from where they start (position relative, rotation
+                        ///< about the start centroid)
   double release = -1;  ///< time at which they are let go [s]; negative: never
+
+  /// Whether the particle at fractions (u, v) of the rest size is held; the slack keeps i / (n - 1) inside a bound that
+  /// was written with fewer digits.
+  bool holds(double u, double v) const {
+    constexpr double kSlack = 1e-9;
+    return u >= low.x() - kSlack && u <= high.x() + kSlack && v >= low.y() - kSlack && v <= high.y() + kSlack;
+  }
 };
 
 struct Cloth {
   std::string name;
-  Vec2 size{1, 1};              ///< weft, warp [m]
+  Vec2 size{1, 1};  ///< weft, warp [m]
   int particles_weft = 41, particles_warp = 41;
-  Pose pose;                    ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
-  Vec3 velocity{0, 0, 0};       ///< at the start [m/s]
+  Pose pose;               ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
+  Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
   Material material;
   Look look;
   std::vector<Pin> pins;
 };
 
-struct Sphere { double radius = 0.5; };
-struct BoxShape { Vec3 size{1, 1, 1}; double bevel = 0; };
-struct Cone { double radius = 0.5, height = 1; };                    ///< base at -height/2, axis along the up axis
-struct Torus { double radius = 0.5, tube_radius = 0.15; };
-struct Cylinder { double radius = 0.5, height = 1; };
-struct HalfPipe { double radius = 1, length = 2, thickness = 0.05; };///< open upward, length along x
-struct Plane { Vec2 size{20, 20}; bool infinite = true; };           ///< drawn to the horizon where infinite
-struct MeshFile { std::filesystem::path path; double scale = 1; };   ///< path is absolute after checking
+struct Sphere {
+  double radius = 0.5;
+};
+struct BoxShape {
+  Vec3 size{1, 1, 1};
+  double bevel = 0;
+};
+struct Cone {
+  double radius = 0.5, height = 1;
+};  ///< base at -height/2, axis along the up axis
+struct Torus {
+  double radius = 0.5, tube_radius = 0.15;
+};
+struct Cylinder {
+  double radius = 0.5, height = 1;
+};
+struct HalfPipe {
+  double radius = 1, length = 2, thickness = 0.05;
+};  ///< open upward, length along x
+struct Plane {
+  Vec2 size{20, 20};
+  bool infinite = true;
+};  ///< drawn to the horizon where infinite
+struct MeshFile {
+  std::filesystem::path path;
+  double scale = 1;
+};  ///< path is absolute after checking
 
 using Shape = std::variant<Sphere, BoxShape, Cone, Torus, Cylinder, HalfPipe, Plane, MeshFile>;
 
 struct Obstacle {
   std::string name;
   Shape shape;
-  int segments = 48;    ///< round shapes: faces around
+  int segments = 48;  ///< round shapes: faces around
   Pose pose;
-  PoseTrack motion;     ///< absolute poses; empty: rests at `pose`
+  PoseTrack motion;  ///< absolute poses; empty: rests at `pose`
   double friction = 0.3;
   bool collide = true;
   Look look;
@@ -130,8 +158,8 @@ struct Obstacle {
 
 struct CameraKey {
   double time = 0;
-  Vec3 position, target;
-  double field_of_view = 35;
+  Vec3 position{0, 0, 0}, target{0, 0, 0};  ///< [m]
+  double field_of_view = 35;                ///< vertical [degrees]
 };
 
 struct Camera {
@@ -158,8 +186,8 @@ struct Light {
 
 struct Render {
   int width = 1280, height = 720;
-  std::string camera;                          ///< name; empty: the first, or automatic framing where there is none
-  std::optional<Vec3> sky_color, ground_color; ///< sRGB; the renderer's own where absent
+  std::string camera;                           ///< name; empty: the first, or automatic framing where there is none
+  std::optional<Vec3> sky_color, ground_color;  ///< sRGB; the renderer's own where absent
   std::optional<double> sky_intensity;
   HeatQuantity heat = HeatQuantity::none;
   double heat_max = 0;
@@ -167,7 +195,7 @@ struct Render {
 
 struct Scene {
   std::filesystem::path file;
-  std::string name;    ///< file name without its ending; names the output
+  std::string name;  ///< file name without its ending; names the output
   std::string title;
   std::uint64_t hash = 0;  ///< of the checked values, so that comments and order do not count
   UpAxis up = UpAxis::z;

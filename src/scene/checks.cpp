@@ -1,0 +1,142 @@
+#include "scene/checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "scene/reader.hpp"
+
+namespace weft::scene {
+
+namespace {
+
+constexpr double kMaxFrames = 100000;
+constexpr long kMaxParticles = 4'000'000;  // of all cloths; their solver state fits a large workstation
+
+template <class Entries>
+std::vector<std::string> names_of(const Entries& entries) {
+  std::vector<std::string> names;
+  for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+/// A key that names an entry of a list.
+void check_reference(const std::string& name, const std::vector<std::string>& names, const std::string& kind,
+                     const std::string& key, Findings& findings) {
+  if (name.empty() || std::find(names.begin(), names.end(), name) != names.end()) return;
+  findings.report(key,
+                  fmt::format("expected the name of {}, got {}{}", kind, in_quotes(name), suggestion(name, names)));
+}
+
+template <class Key>
+void check_times(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    const std::string key = fmt::format("{}.keys.{}.time", path, i);
+    if (!findings.has(key) || findings.faulty(fmt::format("{}.keys.{}.time", path, i - 1))) continue;
+    if (keys[i].time > keys[i - 1].time) continue;
+    findings.report(key,
+                    fmt::format("expected > {} s, the time of the key before, got {}", keys[i - 1].time, keys[i].time));
+  }
+}
+
+void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std::string& path, Findings& findings) {
+  check_times(pin.motion.keys, path, findings);
+  check_reference(pin.follow, names_of(scene.obstacles), "an obstacle", path + ".follow", findings);
+  for (int axis = 0; axis < 2; ++axis) {
+    if (pin.low[axis] <= pin.high[axis]) continue;
+    findings.report(path + ".high", fmt::format("expected >= {}, the low end, got {}", pin.low[axis], pin.high[axis]));
+    return;
+  }
+  // A part between two rows of particles would hold nothing, silently.
+  const auto holds_some = [](double low, double high, int count) {
+    for (int i = 0; i < count; ++i) {
+      const double at = static_cast<double>(i) / (count - 1);
+      const Pin along{.low = {low, 0}, .high = {high, 1}, .follow = {}, .motion = {}};
+      if (along.holds(at, 0)) return true;
+    }
+    return false;
+  };
+  if (!holds_some(pin.low.x(), pin.high.x(), cloth.particles_weft) ||
+      !holds_some(pin.low.y(), pin.high.y(), cloth.particles_warp)) {
+    findings.report(path, "expected a part that holds at least one particle, got one between two rows");
+  }
+}
+
+void check_cloths(const Scene& scene, Findings& findings) {
+  long particles = 0;
+  for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
+    const Cloth& cloth = scene.cloths[i];
+    const std::string& path = findings.entry("cloth", i);
+    particles += static_cast<long>(cloth.particles_weft) * cloth.particles_warp;
+    if (particles > kMaxParticles) {
+      findings.report(path + ".particles",
+                      fmt::format("expected at most {} in all cloths together, got {}", kMaxParticles, particles));
+    }
+    for (std::size_t p = 0; p < cloth.pins.size(); ++p) {
+      check_pin(scene, cloth, cloth.pins[p], findings.entry(path + ".pin", p), findings);
+    }
+  }
+}
+
+void check_shape(const Shape& shape, const std::string& path, Findings& findings) {
+  if (const auto* torus = std::get_if<Torus>(&shape); torus && torus->tube_radius >= torus->radius) {
+    findings.report(path + ".tube_radius",
+                    fmt::format("expected < {} m, the radius, got {}", torus->radius, torus->tube_radius));
+  }
+  if (const auto* box = std::get_if<BoxShape>(&shape); box && 2 * box->bevel >= box->size.minCoeff()) {
+    findings.report(path + ".bevel", fmt::format("expected < {} m, half the shortest edge, got {}",
+                                                 box->size.minCoeff() / 2, box->bevel));
+  }
+}
+
+void check_obstacles(const Scene& scene, Findings& findings) {
+  const std::vector<std::string> cloths = names_of(scene.cloths);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    const Obstacle& obstacle = scene.obstacles[i];
+    const std::string& path = findings.entry("obstacle", i);
+    check_shape(obstacle.shape, path, findings);
+    check_times(obstacle.motion.keys, path, findings);
+    // One name each: it names the object in pictures, statistics and mesh files.
+    if (!obstacle.name.empty() && std::find(cloths.begin(), cloths.end(), obstacle.name) != cloths.end()) {
+      findings.report(path + ".name",
+                      fmt::format("expected a name used once, got {}, which a cloth has", in_quotes(obstacle.name)));
+    }
+  }
+}
+
+void check_cameras(const Scene& scene, Findings& findings) {
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    const Camera& camera = scene.cameras[i];
+    const std::string& path = findings.entry("camera", i);
+    check_times(camera.keys, path, findings);
+    for (std::size_t k = 0; k < camera.keys.size(); ++k) {
+      if (camera.keys[k].position != camera.keys[k].target) continue;
+      const std::string in_key = fmt::format("{}.keys.{}", path, k);
+      const std::string& where = findings.has(in_key) ? in_key : path;
+      if (!findings.faulty(path + ".position") && !findings.faulty(path + ".target")) {
+        findings.report(where + ".target", "expected a point away from position, got the same");
+      }
+    }
+  }
+  check_reference(scene.render.camera, names_of(scene.cameras), "a camera", "render.camera", findings);
+}
+
+}  // namespace
+
+void check(const Scene& scene, Findings& findings) {
+  if (scene.cloths.empty() && scene.obstacles.empty() && !findings.has("cloth") && !findings.has("obstacle")) {
+    findings.report("", "expected at least one [[cloth]] or [[obstacle]], got none");
+  }
+  if (const double frames = scene.time.duration * scene.time.fps; frames > kMaxFrames) {
+    findings.report("time.duration",
+                    fmt::format("expected at most {} frames (duration * fps), got {:.0f}", kMaxFrames, frames));
+  }
+  check_cloths(scene, findings);
+  check_obstacles(scene, findings);
+  check_cameras(scene, findings);
+  for (std::size_t i = 0; i < scene.lights.size(); ++i) {
+    check_times(scene.lights[i].keys, findings.entry("light", i), findings);
+  }
+}
+
+}  // namespace weft::scene

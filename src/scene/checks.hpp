@@ -1,0 +1,12 @@
+// What a scene must fulfil beyond the rules of single keys.
+#pragma once
+
+#include "scene/findings.hpp"
+#include "scene/scene.hpp"
+
+namespace weft::scene {
+
+/// Reports references to names that do not exist, key times out of order, and combinations that cannot be built.
+void check(const Scene& scene, Findings& findings);
+
+}  // namespace weft::scene

@@ -1,0 +1,134 @@
+#include "scene/effective.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <fstream>
+
+#include "scene/loader.hpp"
+#include "scene/rule.hpp"
+
+namespace weft::scene {
+
+namespace {
+
+std::string toml_string(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (c == '"' || c == '\\') {
+      out += {'\\', c};
+    } else if (byte < 0x20 || byte == 0x7F) {
+      out += fmt::format("\\u{:04X}", byte);
+    } else {
+      out += c;
+    }
+  }
+  return out + "\"";
+}
+
+/// fmt writes the shortest digits that read back as the same double.
+std::string toml_value(const Value& value, const Rule& rule) {
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag ? "true" : "false";
+  if (const auto* text = std::get_if<std::string>(&value)) return toml_string(*text);
+  const auto& numbers = std::get<std::vector<double>>(value);
+  return rule.components.empty() ? fmt::format("{}", numbers[0]) : fmt::format("[{}]", fmt::join(numbers, ", "));
+}
+
+class Writer {
+ public:
+  std::string text;
+
+  /// One table: first its own keys, then the tables in it. `path` is empty for the root.
+  void write(const Table& table, void* target, const std::string& path) {
+    for_rules(table, target, [&](const Rule& rule) { write_value(rule, target); });
+    for_rules(table, target, [&](const Rule& rule) {
+      const std::string inner = path.empty() ? rule.key : path + "." + rule.key;
+      if (rule.type == Type::table) {
+        text += fmt::format("\n[{}]\n", inner);
+        write(*rule.table, rule.inner(target), inner);
+      } else if (rule.type == Type::list) {
+        for (std::size_t i = 0; i < rule.count(target); ++i) {
+          text += fmt::format("\n[[{}]]\n", inner);
+          write(*rule.table, rule.entry(target, i), inner);
+        }
+      }
+    });
+  }
+
+ private:
+  template <class Body>
+  static void for_rules(const Table& table, void* target, const Body& body) {
+    for (const Rule& rule : table.rules) body(rule);
+    if (const Variant* variant = table.variant_of(target)) {
+      for (const Rule& rule : variant->rules) body(rule);
+    }
+  }
+
+  void write_value(const Rule& rule, void* target) {
+    if (rule.type == Type::keys) {
+      write_keys(rule, target);
+    } else if (rule.get) {
+      const Value value = rule.get(target);
+      const auto* string = std::get_if<std::string>(&value);
+      const bool absent = std::holds_alternative<std::monostate>(value) || (string != nullptr && string->empty());
+      if (!absent) text += fmt::format("{} = {}\n", rule.key, toml_value(value, rule));
+    }
+  }
+
+  void write_keys(const Rule& rule, void* target) {
+    const std::size_t count = rule.count(target);
+    if (count == 0) return;
+    text += rule.key + " = [\n";
+    for (std::size_t i = 0; i < count; ++i) {
+      std::string members;
+      for (const Rule& member : rule.table->rules) {
+        const Value value = member.get(rule.entry(target, i));
+        if (std::holds_alternative<std::monostate>(value)) continue;
+        members += fmt::format("{}{} = {}", members.empty() ? "" : ", ", member.key, toml_value(value, member));
+      }
+      text += fmt::format("  {{ {} }},\n", members);
+    }
+    text += "]\n";
+  }
+};
+
+class Fnv1a {
+ public:
+  void add(std::string_view bytes) {
+    for (const char c : bytes) hash_ = (hash_ ^ static_cast<unsigned char>(c)) * 0x100000001b3ull;
+  }
+  std::uint64_t value() const { return hash_; }
+
+ private:
+  std::uint64_t hash_ = 0xcbf29ce484222325ull;
+};
+
+}  // namespace
+
+std::string effective_scene(const Scene& scene) {
+  // The rules reach members through plain pointers; a copy keeps the scene itself out of their hands.
+  Scene copy = scene;
+  Writer writer;
+  writer.write(scene_rules(), &copy, "");
+  return std::move(writer.text);
+}
+
+std::uint64_t hash_of(const Scene& scene) {
+  Fnv1a hash;
+  Scene copy = scene;
+  for (Obstacle& obstacle : copy.obstacles) {
+    auto* mesh = std::get_if<MeshFile>(&obstacle.shape);
+    if (mesh == nullptr) continue;
+    std::ifstream file(mesh->path, std::ios::binary);
+    std::array<char, 1 << 16> block;
+    while (file.read(block.data(), block.size()) || file.gcount() > 0) {
+      hash.add({block.data(), static_cast<std::size_t>(file.gcount())});
+    }
+    mesh->path = mesh->path.filename();
+  }
+  hash.add(effective_scene(copy));
+  return hash.value();
+}
+
+}  // namespace weft::scene

@@ -1,0 +1,91 @@
+#include "scene/fabrics.hpp"
+
+#include <array>
+#include <iterator>
+
+// Conversions. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
+//   bending     1 gf·cm²/cm    = 9.807e-5 N·m
+//   shear       1 gf/(cm·deg)  = 56.2 N/m per radian; our mu is twice the shear modulus
+//   extension   EMT is the strain at 500 gf/cm = 490.3 N/m, so the secant stiffness is 490.3 N/m / EMT
+// FAST (Minazio, "FAST – Fabric Assurance by Simple Testing", Int. J. Clothing Sci. Tech. 7(2/3), 1995):
+//   bending     B = 9.81e-6 W c³ µN·m, W in g/m², c the bending length in mm
+//   shear       G = 123 / EB5 N/m, EB5 the bias extension in percent
+//   extension   E100 is the strain at 100 gf/cm = 98.07 N/m
+// Cantilever rule (Peirce, "The 'Handle' of Cloth as a Measurable Quantity", J. Textile Inst. 21, 1930): a strip that
+// overhangs by two bending lengths c droops to 41.5°, and B = density * g * c³. Where no measured bending was at hand
+// we took B from it, with c chosen for the drape coefficient that such a fabric has in Cusick's test.
+//
+// Chosen by us for every fabric: friction (cloth on cloth is usually given as 0.2 to 0.6), contact thickness (several
+// times the fabric's own, which is below what contact can resolve), drag. No viscosity: what KES calls hysteresis is
+// dry friction between yarns, and implicit Euler already damps like a viscosity of half a time step times the
+// stiffness.
+
+namespace weft::scene {
+
+namespace {
+
+struct Figures {
+  double density, stretch_weft, stretch_warp, shear, bend, thickness, friction;
+};
+
+Fabric fabric(const char* name, const Figures& figures, const char* note) {
+  Material material;
+  material.fabric = name;
+  material.density = figures.density;
+  material.stretch_weft = figures.stretch_weft;
+  material.stretch_warp = figures.stretch_warp;
+  material.shear = figures.shear;
+  material.bend = figures.bend;
+  material.thickness = figures.thickness;
+  material.friction = figures.friction;
+  return {material, note};
+}
+
+}  // namespace
+
+std::span<const Fabric> fabrics() {
+  // Order: density [kg/m²], stretch weft, warp [N/m], shear mu [N/m], bend B [N·m], contact thickness [m], friction.
+  static const std::array kFabrics = {
+      Fabric{
+          Material{},
+          "firm plain sheeting; bending length 29 mm for a drape coefficient of 60 to 76 %; stretch at the lower end "
+          "of woven fabrics (1e3 to 1e4 N/m), which keeps time steps cheap; all chosen by us"},
+      fabric("silk", {0.07, 2000, 2000, 40, 4e-6, 0.001, 0.2},
+             "light dress silk; bending length 18 mm for a drape coefficient of 20 to 40 %; the rest chosen by us"),
+      fabric(
+          "wool", {0.22, 1700, 2100, 80, 1.2e-5, 0.002, 0.35},
+          "worsted suiting; bending and shear of the order that FAST reports for suitings (De Boos and Tester, "
+          "SiroFAST, CSIRO report WT92.02, 1994: some 1e-5 N·m and tens of N/m), stretch 98.07 N/m at E100 of 5.9 and "
+          "4.6 %; density chosen by us"),
+      fabric(
+          "denim", {0.4, 5000, 5000, 250, 6e-5, 0.0025, 0.45},
+          "shear inside the KES range of six denims, 1.5 to 3.4 gf/(cm·deg) = 84 to 191 N/m (Regenerated "
+          "Cellulose-Based Denim Fabric for Tropical Regions, J. Textiles 2016, 4614168, Table 5); their bending, 0.14 "
+          "to 0.23 gf·cm²/cm = 1.4e-5 to 2.2e-5 N·m, is that of light denim and ours is three times it for a drape "
+          "coefficient of 70 to 90 %; their EMT of 4.7 to 5.7 % gives 8600 to 10400 N/m, and we took half for cheaper "
+          "time steps; density chosen by us"),
+      fabric(
+          "leather", {0.5, 4000, 4000, 600, 1e-4, 0.003, 0.5},
+          "sheep garment leather 0.64 to 0.96 mm thick with a drape coefficient of 47 to 70 % (Memon et al., Study on "
+          "Effect of Leather Rigidity and Thickness on Drapability of Sheep Garment Leather, Materials 14(16) 4553, "
+          "2021), bending length 27 mm; the rest chosen by us"),
+      fabric("jersey", {0.18, 200, 300, 60, 5e-6, 0.002, 0.35},
+             "single jersey knit: a tenth of the stiffness of woven fabrics; bending length 14 mm; all chosen by us"),
+  };
+  return kFabrics;
+}
+
+const Fabric* find_fabric(std::string_view name) {
+  for (const Fabric& fabric : fabrics()) {
+    if (fabric.material.fabric == name) return &fabric;
+  }
+  return nullptr;
+}
+
+std::vector<std::string> fabric_names() {
+  std::vector<std::string> names;
+  for (const Fabric& fabric : fabrics()) names.push_back(fabric.material.fabric);
+  return names;
+}
+
+}  // namespace weft::scene

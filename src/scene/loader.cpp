@@ -1,0 +1,69 @@
+#include "scene/loader.hpp"
+
+#include <fmt/format.h>
+
+#include "scene/checks.hpp"
+#include "scene/document.hpp"
+#include "scene/effective.hpp"
+#include "scene/findings.hpp"
+#include "scene/reader.hpp"
+#include "scene/rule.hpp"
+
+namespace weft::scene {
+
+namespace {
+
+/// A wrong value of the command line may hit a key that the file has wrong too; the override is what counts.
+void read_document(toml::table document, const std::vector<std::string>& overrides, Scene& scene, Findings& findings) {
+  for (const std::string& text : overrides) apply_override(text, document, findings);
+  Reader reader(findings, scene.file.parent_path());
+  reader.read(document, scene_rules(), &scene, "");
+  check(scene, findings);
+}
+
+/// `text`: nothing where the file could not be read, which `findings` then knows.
+LoadResult load_from(const std::optional<std::string_view>& text, const std::filesystem::path& file,
+                     const std::vector<std::string>& overrides, Findings& findings) {
+  LoadResult result;
+  result.file = file;
+  result.scene.file = std::filesystem::absolute(file);
+  result.scene.name = file.stem().string();
+  if (text) {
+    if (auto document = parse(*text, findings)) {
+      read_document(std::move(*document), overrides, result.scene, findings);
+    }
+  }
+  result.mistakes = findings.take_mistakes();
+  if (result.ok()) result.scene.hash = hash_of(result.scene);
+  return result;
+}
+
+}  // namespace
+
+std::string LoadResult::describe() const {
+  std::string text;
+  for (const Mistake& mistake : mistakes) {
+    std::string where = file.string();
+    if (!mistake.override_text.empty()) {
+      where = mistake.override_text;
+    } else if (mistake.line > 0) {
+      where += fmt::format(":{}:{}", mistake.line, mistake.column);
+    }
+    text += where + ": " + (mistake.key.empty() ? "" : mistake.key + ": ") + mistake.text + "\n";
+  }
+  return text;
+}
+
+LoadResult load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  Findings findings;
+  const std::optional<std::string> text = read_file(file, findings);
+  return load_from(text ? std::optional<std::string_view>(*text) : std::nullopt, file, overrides, findings);
+}
+
+LoadResult load_text(std::string_view text, const std::filesystem::path& name,
+                     const std::vector<std::string>& overrides) {
+  Findings findings;
+  return load_from(text, name, overrides, findings);
+}
+
+}  // namespace weft::scene

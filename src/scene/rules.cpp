@@ -1,0 +1,488 @@
+// The rule table of the scene format: every key with its unit, range and documentation. Defaults are the initialisers
+// in scene.hpp. Upper bounds are sanity bounds: far outside use, and small enough that no scene can exhaust the
+// machine.
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "scene/fabrics.hpp"
+#include "scene/rule.hpp"
+#include "scene/table_builder.hpp"
+
+namespace weft::scene {
+
+void assign(Quat& target, const Value& value) {
+  const std::vector<double>& wxyz = numbers_of(value);
+  target = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
+  // Already of unit length up to rounding: left as it is, so that writing and reading again changes no bit.
+  if (std::abs(target.squaredNorm() - 1) > 1e-14) target.normalize();
+}
+
+namespace {
+
+const Range kPlace = within(-1e5, 1e5);   // [m]
+const Range kExtent = above(0, 1e4);      // [m]
+const Range kMoment = within(-1e5, 1e5);  // [s]
+const std::vector<std::string> kXyz = {"x", "y", "z"};
+const std::vector<std::string> kWeftWarp = {"weft", "warp"};
+const std::vector<std::string> kInterpolations = {"linear", "cubic"};
+
+/// Turns a vector that is meant for z up the way that the scene's up axis has it.
+Vec3 turned_up(UpAxis up, const Vec3& z_up) {
+  return up == UpAxis::z ? z_up : Vec3(z_up.x(), z_up.z(), -z_up.y());
+}
+
+/// Turns about the fixed x, then y, then z axis.
+Quat from_angles(const std::vector<double>& degrees) {
+  const auto turn = [&](std::size_t i, const Vec3& axis) {
+    return Quat(Eigen::AngleAxisd(degrees[i] * std::numbers::pi / 180, axis));
+  };
+  return turn(2, Vec3::UnitZ()) * turn(1, Vec3::UnitY()) * turn(0, Vec3::UnitX());
+}
+
+/// position, and quaternion or rotation. `otherwise` says what holds where they are absent.
+template <class S, class Member>
+void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
+  const auto rotation = [pose](S& s) -> Quat& { return std::invoke(pose, s).rotation; };
+  rows.vector(
+          "position", [pose](S& s) -> Vec3& { return std::invoke(pose, s).position; }, kXyz, kPlace, "m", position_of)
+      .by_default(otherwise);
+  rows.vector("quaternion", rotation, {"w", "x", "y", "z"}, within(-1e3, 1e3), "",
+              "rotation as a quaternion, of any length but 0")
+      .nonzero()
+      .by_default(otherwise);
+  rows.respelling("rotation", "quaternion", {"rx", "ry", "rz"}, within(-36000, 36000), "degrees",
+                  "rotation about the fixed x, then y, then z axis",
+                  [rotation](S& s, const std::vector<double>& angles) { rotation(s) = from_angles(angles); });
+}
+
+const std::string kHeld = "that of the key before; of the first key, that of the thing itself";
+
+const Table& time_rules() {
+  static const Table kTable =
+      TableBuilder<Time>("Length, frames and time steps.")
+          .number("duration", &Time::duration, within(0, 3600), "s", "length of the film; 0 shows the start alone")
+          .number("fps", &Time::fps, above(0, 1000), "Hz", "frames a second; frame k is the state at k / fps")
+          .number("step", &Time::step, within(1e-7, 1), "s",
+                  "largest time step; a frame is cut into equal steps no longer than this")
+          .choice("integrator", &Time::integrator, {"implicit_euler", "implicit_midpoint", "bdf2"},
+                  "method of time integration")
+          .build();
+  return kTable;
+}
+
+const Table& physics_rules() {
+  static const Table kTable =
+      TableBuilder<Physics>("The world around the cloth.")
+          .vector("gravity", &Physics::gravity, kXyz, within(-1e5, 1e5), "m/s²", "acceleration of free fall")
+          .by_default("9.81 m/s² against the up axis")
+          .number("air_density", &Physics::air_density, within(0, 1000), "kg/m³", "0 leaves the air out")
+          .vector("wind", &Physics::wind, kXyz, within(-1000, 1000), "m/s", "velocity of the air")
+          .build();
+  return kTable;
+}
+
+const Table& solver_rules() {
+  static const Table kTable =
+      TableBuilder<Solver>("How exactly each step is solved.")
+          .number("newton_tolerance", &Solver::newton_tolerance, above(0, 1), "",
+                  "residual relative to the weight and inertia of the cloth")
+          .whole_number("newton_iterations", &Solver::newton_iterations, within(1, 1000),
+                        "in a step, before it is halved")
+          .number("linear_tolerance", &Solver::linear_tolerance, above(0, 1), "",
+                  "of the conjugate gradients, relative to the first residual")
+          .whole_number("linear_iterations", &Solver::linear_iterations, within(1, 1e6), "of the conjugate gradients")
+          .whole_number("halvings", &Solver::halvings, within(0, 30), "of a rejected step, before the run gives up")
+          .build();
+  return kTable;
+}
+
+const Table& contact_rules() {
+  static const Table kTable = TableBuilder<Contact>("Contact of all surfaces.")
+                                  .plain(Type::boolean, "self", &Contact::self, "cloth against itself and other cloths")
+                                  .plain(Type::boolean, "obstacles", &Contact::obstacles, "cloth against obstacles")
+                                  .number("stiffness", &Contact::stiffness, above(0, 1e9), "N/m", "of one contact")
+                                  .build();
+  return kTable;
+}
+
+const Table& material_rules() {
+  const std::string of_fabric = "that of the fabric";
+  static const Table kTable =
+      TableBuilder<Material>("The fabric, by name, by numbers, or by name with some numbers of its own.")
+          .choice_by(
+              "fabric", fabric_names(), "named fabric that gives every number not written here",
+              [](Material& m) { return static_cast<std::size_t>(find_fabric(m.fabric) - fabrics().data()); },
+              [](Material& m, std::size_t index) { m = fabrics()[index].material; })
+          .number("density", &Material::density, above(0, 1e5), "kg/m²", "mass of a square metre")
+          .by_default(of_fabric)
+          .pair("stretch", &Material::stretch_weft, &Material::stretch_warp, within(0, 1e12), "N/m",
+                "stiffness against stretch along weft and warp (k1, k2)")
+          .by_default(of_fabric)
+          .number("shear", &Material::shear, within(0, 1e12), "N/m",
+                  "stiffness against shear (mu); twice the shear modulus of linear elasticity")
+          .by_default(of_fabric)
+          .number("bend", &Material::bend, within(0, 1e6), "N·m", "bending rigidity (B)")
+          .by_default(of_fabric)
+          .number("stretch_viscosity", &Material::stretch_viscosity, within(0, 1e9), "N·s/m",
+                  "stress per rate of stretch")
+          .by_default(of_fabric)
+          .number("shear_viscosity", &Material::shear_viscosity, within(0, 1e9), "N·s/m", "stress per rate of shear")
+          .by_default(of_fabric)
+          .number("bend_viscosity", &Material::bend_viscosity, within(0, 1e6), "N·m·s", "moment per rate of curvature")
+          .by_default(of_fabric)
+          .number("thickness", &Material::thickness, above(0, 1), "m", "distance that contact keeps between two layers")
+          .by_default(of_fabric)
+          .number("friction", &Material::friction, within(0, 10), "",
+                  "Coulomb coefficient; of a pair, the geometric mean of both")
+          .by_default(of_fabric)
+          .number("drag", &Material::drag, within(0, 100), "", "air resistance of motion along the normal; 0 for none")
+          .by_default(of_fabric)
+          .build();
+  return kTable;
+}
+
+const Table& cloth_look_rules() {
+  static const Table kTable =
+      TableBuilder<Look>("How the cloth is drawn.")
+          .color("color", &Look::color, "of the side from which weft x warp points to the viewer")
+          .color("back_color", &Look::back_color, "of the other side")
+          .by_default("a paler color")
+          .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
+          .number("thread_spacing", &Look::thread_spacing, within(0, 10), "m", "of the drawn weave; 0 draws none")
+          .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture")
+          .build();
+  return kTable;
+}
+
+const Table& obstacle_look_rules() {
+  static const Table kTable =
+      TableBuilder<Look>("How the obstacle is drawn.")
+          .color("color", &Look::color, "of the surface")
+          .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
+          .plain(Type::boolean, "checker", &Look::checker, "faint grid of 0.5 m tiles, to give a floor scale")
+          .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture; it still collides")
+          .build();
+  return kTable;
+}
+
+const Table& pose_key_rules() {
+  static const Table kTable = TableBuilder<PoseKey>("A pose at a time.")
+                                  .number("time", &PoseKey::time, kMoment, "s", "later than the key before")
+                                  .need(Need::required)
+                                  .with([](auto& rows) { pose_rows(rows, &PoseKey::pose, "where it is then", kHeld); })
+                                  .build();
+  return kTable;
+}
+
+/// interpolation and keys of the PoseTrack that `track` gives; the first key starts from the pose `start` gives.
+template <class S, class Member, class Start>
+void track_rows(TableBuilder<S>& rows, Member track, Start start) {
+  const auto keys = [track](S& s) -> std::vector<PoseKey>& { return std::invoke(track, s).keys; };
+  rows.choice(
+      "interpolation", [track](S& s) -> Interpolation& { return std::invoke(track, s).interpolation; }, kInterpolations,
+      "between its keys");
+  rows.list(Type::keys, "keys", keys, pose_key_rules(), [keys, start](S& s, std::size_t i) {
+    keys(s).push_back(i == 0 ? PoseKey{0, start(s)} : PoseKey(keys(s).back()));
+  });
+}
+
+const Table& pin_rules() {
+  static const Table kTable =
+      TableBuilder<Pin>("Particles held in place, or moved.")
+          .vector("low", &Pin::low, kWeftWarp, within(0, 1), "", "lower end of the held part, in fractions of the size")
+          .single_fills_all()
+          .vector("high", &Pin::high, kWeftWarp, within(0, 1), "",
+                  "upper end of the held part, in fractions of the size")
+          .single_fills_all()
+          .plain(Type::text, "follow", &Pin::follow, "name of the obstacle whose motion the particles share")
+          .by_default("none")
+          .excludes("keys")
+          .number("release", &Pin::release, within(-1, 1e5), "s", "time at which they are let go; negative: never")
+          .with([](auto& rows) { track_rows(rows, &Pin::motion, [](Pin&) { return Pose{}; }); })
+          .build();
+  return kTable;
+}
+
+const Table& cloth_rules() {
+  static const Table kTable =
+      TableBuilder<Cloth>("A rectangular sheet of cloth.")
+          .plain(Type::name, "name", &Cloth::name, "unlike that of any other cloth or obstacle")
+          .need(Need::required)
+          .vector("size", &Cloth::size, kWeftWarp, kExtent, "m", "along weft and warp, at rest")
+          .single_fills_all()
+          .pair("particles", &Cloth::particles_weft, &Cloth::particles_warp, within(2, 2000), "",
+                "number along weft and warp")
+          .whole()
+          .with([](auto& rows) {
+            pose_rows(rows, &Cloth::pose, "of the middle of the sheet, which lies in its x-y plane with weft along x");
+          })
+          .vector("velocity", &Cloth::velocity, kXyz, within(-1e4, 1e4), "m/s", "at the start")
+          .table("material", &Cloth::material, material_rules())
+          .table("look", &Cloth::look, cloth_look_rules())
+          .list(Type::list, "pin", &Cloth::pins, pin_rules())
+          .build();
+  return kTable;
+}
+
+/// Access to a member of the shape that an obstacle has.
+template <class Kind, class Field>
+auto of_shape(Field Kind::*field) {
+  return [field](Obstacle& o) -> Field& { return std::get<Kind>(o.shape).*field; };
+}
+
+/// The keys of each shape, in the order of scene::Shape.
+void shape_rows(TableBuilder<Obstacle>& rows) {
+  using Rows = TableBuilder<Obstacle>;
+  const auto segments = [](Rows& r) {
+    r.whole_number("segments", &Obstacle::segments, within(3, 512), "number of faces around");
+  };
+  rows.variant("sphere",
+               Rows().number("radius", of_shape(&Sphere::radius), kExtent, "m", "of the sphere").with(segments));
+  rows.variant("box", Rows()
+                          .vector("size", of_shape(&BoxShape::size), kXyz, kExtent, "m", "edge lengths")
+                          .number("bevel", of_shape(&BoxShape::bevel), within(0, 1e4), "m",
+                                  "width of the rounded edges; less than half the shortest edge"));
+  rows.variant("cone", Rows()
+                           .number("radius", of_shape(&Cone::radius), kExtent, "m", "of the base")
+                           .number("height", of_shape(&Cone::height), kExtent, "m",
+                                   "along the up axis, half of it below the middle")
+                           .with(segments));
+  rows.variant("torus",
+               Rows()
+                   .number("radius", of_shape(&Torus::radius), kExtent, "m", "of the middle of the tube")
+                   .number("tube_radius", of_shape(&Torus::tube_radius), kExtent, "m", "of the tube; less than radius")
+                   .with(segments));
+  rows.variant("cylinder", Rows()
+                               .number("radius", of_shape(&Cylinder::radius), kExtent, "m", "of the cylinder")
+                               .number("height", of_shape(&Cylinder::height), kExtent, "m", "along the up axis")
+                               .with(segments));
+  rows.variant("half_pipe", Rows()
+                                .number("radius", of_shape(&HalfPipe::radius), kExtent, "m", "of the inside")
+                                .number("length", of_shape(&HalfPipe::length), kExtent, "m", "along x")
+                                .number("thickness", of_shape(&HalfPipe::thickness), kExtent, "m", "of the wall")
+                                .with(segments));
+  rows.variant("plane", Rows()
+                            .vector("size", of_shape(&Plane::size), {"x", "y"}, kExtent, "m", "edge lengths")
+                            .single_fills_all()
+                            .plain(Type::boolean, "infinite", of_shape(&Plane::infinite), "drawn to the horizon"));
+  rows.variant(
+      "mesh",
+      Rows()
+          .plain(Type::file, "file", of_shape(&MeshFile::path), "mesh file; relative paths start at the scene's folder")
+          .need(Need::required)
+          .number("scale", of_shape(&MeshFile::scale), above(0, 1e6), "", "factor on all lengths of the file"));
+}
+
+const Table& obstacle_rules() {
+  static const std::array<Shape, 8> kShapes = {Sphere{},   BoxShape{}, Cone{},  Torus{},
+                                               Cylinder{}, HalfPipe{}, Plane{}, MeshFile{}};
+  static const Table kTable =
+      TableBuilder<Obstacle>("A rigid body, still or moved by key frames.")
+          .plain(Type::name, "name", &Obstacle::name, "unlike that of any other cloth or obstacle")
+          .need(Need::required)
+          .choice_by(
+              "shape", {"sphere", "box", "cone", "torus", "cylinder", "half_pipe", "plane", "mesh"},
+              "kind of body; decides which further keys it has", [](Obstacle& o) { return o.shape.index(); },
+              [](Obstacle& o, std::size_t index) { o.shape = kShapes[index]; })
+          .need(Need::required)
+          .selects()
+          .with(shape_rows)
+          .with([](auto& rows) { pose_rows(rows, &Obstacle::pose, "of its middle"); })
+          .number("friction", &Obstacle::friction, within(0, 10), "",
+                  "Coulomb coefficient; of a pair, the geometric mean of both")
+          .plain(Type::boolean, "collide", &Obstacle::collide, "false lets cloth pass through it")
+          .table("look", &Obstacle::look, obstacle_look_rules())
+          .with([](auto& rows) { track_rows(rows, &Obstacle::motion, [](Obstacle& o) { return o.pose; }); })
+          .build();
+  return kTable;
+}
+
+// A camera or light that stands still has one key, which its own values go into. With `keys`, the first of them starts
+// from these values and each later one from the key before.
+template <class S>
+void go_on_from_key_before(S& owner, std::size_t i) {
+  if (i == 0) return;
+  const auto last = owner.keys.back();
+  owner.keys.push_back(last);
+}
+template <class S>
+bool moves(S& owner) {
+  return owner.keys.size() > 1;
+}
+template <class S>
+bool stands_still(S& owner) {
+  return owner.keys.size() == 1;
+}
+/// Access to a member of the key that the own values of a camera or light go into.
+template <class Key, class Field>
+auto own(Field Key::*field) {
+  return [field](auto& owner) -> Field& { return owner.keys.front().*field; };
+}
+
+const Range kFieldOfView = within(1, 170);  // [degrees]
+const Range kIntensity = within(0, 1000);
+
+const Table& camera_key_rules() {
+  static const Table kTable =
+      TableBuilder<CameraKey>("A view at a time.")
+          .number("time", &CameraKey::time, kMoment, "s", "later than the key before")
+          .need(Need::required)
+          .vector("position", &CameraKey::position, kXyz, kPlace, "m", "of the eye")
+          .by_default(kHeld)
+          .vector("target", &CameraKey::target, kXyz, kPlace, "m", "point in the middle of the picture")
+          .by_default(kHeld)
+          .number("field_of_view", &CameraKey::field_of_view, kFieldOfView, "degrees", "vertical")
+          .by_default(kHeld)
+          .build();
+  return kTable;
+}
+
+const Table& camera_rules() {
+  static const Table kTable =
+      TableBuilder<Camera>("A camera, still or moved by key frames.")
+          .starting_from({.name = {}, .keys = {CameraKey{}}})
+          .plain(Type::name, "name", &Camera::name, "unlike that of any other camera")
+          .need(Need::required)
+          .vector("position", own(&CameraKey::position), kXyz, kPlace, "m", "of the eye")
+          .need(Need::here_or_in_first_key)
+          .written_if(stands_still<Camera>)
+          .vector("target", own(&CameraKey::target), kXyz, kPlace, "m", "point in the middle of the picture")
+          .need(Need::here_or_in_first_key)
+          .written_if(stands_still<Camera>)
+          .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
+          .written_if(stands_still<Camera>)
+          .choice("interpolation", &Camera::interpolation, kInterpolations, "between its keys")
+          .list(Type::keys, "keys", &Camera::keys, camera_key_rules(), go_on_from_key_before<Camera>)
+          .written_if(moves<Camera>)
+          .build();
+  return kTable;
+}
+
+/// What the keys of suns and spots have in common; `rows` adds the rest.
+Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
+  return TableBuilder<LightKey>("A light at a time.")
+      .number("time", &LightKey::time, kMoment, "s", "later than the key before")
+      .need(Need::required)
+      .with(rows)
+      .number("intensity", &LightKey::intensity, kIntensity, "", "1 lights a white surface that faces it to white")
+      .by_default(kHeld)
+      .build();
+}
+
+const Table& sun_key_rules() {
+  static const Table kTable = light_key_table([](auto& rows) {
+    rows.vector("direction", &LightKey::direction, kXyz, kPlace, "", "the way the light travels")
+        .nonzero()
+        .by_default(kHeld);
+  });
+  return kTable;
+}
+
+const Table& spot_key_rules() {
+  static const Table kTable = light_key_table([](auto& rows) {
+    rows.vector("position", &LightKey::position, kXyz, kPlace, "m", "of the lamp").by_default(kHeld);
+    rows.vector("target", &LightKey::target, kXyz, kPlace, "m", "point that it shines at").by_default(kHeld);
+  });
+  return kTable;
+}
+
+const Table& light_rules() {
+  using Rows = TableBuilder<Light>;
+  const auto keys_row = [](const Table& key_rules) {
+    return [&key_rules](Rows& rows) {
+      rows.list(Type::keys, "keys", &Light::keys, key_rules, go_on_from_key_before<Light>).written_if(moves<Light>);
+    };
+  };
+  static const Table kTable =
+      Rows("A light, still or moved by key frames.")
+          .starting_from({.name = {}, .color = {1, 1, 1}, .keys = {LightKey{}}})
+          .plain(Type::name, "name", &Light::name, "unlike that of any other light")
+          .need(Need::required)
+          .choice("kind", &Light::spot, {"sun", "spot"}, "parallel light, or light from one place")
+          .selects()
+          .color("color", &Light::color, "of the light")
+          .number("intensity", own(&LightKey::intensity), kIntensity, "",
+                  "1 lights a white surface that faces it to white")
+          .written_if(stands_still<Light>)
+          .number("softness", &Light::softness, within(0, 90), "degrees",
+                  "width of the source as seen from the scene; wider gives softer shadows")
+          .choice("interpolation", &Light::interpolation, kInterpolations, "between its keys")
+          .variant("sun",
+                   Rows()
+                       .vector("direction", own(&LightKey::direction), kXyz, kPlace, "", "the way the light travels")
+                       .nonzero()
+                       .by_default("[-0.4, -0.5, -1] where z is up, turned with the up axis")
+                       .written_if(stands_still<Light>)
+                       .with(keys_row(sun_key_rules())))
+          .variant("spot", Rows()
+                               .vector("position", own(&LightKey::position), kXyz, kPlace, "m", "of the lamp")
+                               .by_default("5 m up the up axis")
+                               .written_if(stands_still<Light>)
+                               .vector("target", own(&LightKey::target), kXyz, kPlace, "m", "point that it shines at")
+                               .written_if(stands_still<Light>)
+                               .number("cone_angle", &Light::cone_angle, within(1, 170), "degrees", "full opening")
+                               .with(keys_row(spot_key_rules())))
+          .build();
+  return kTable;
+}
+
+const Table& render_rules() {
+  static const Table kTable =
+      TableBuilder<Render>("The picture.")
+          .whole_number("width", &Render::width, within(16, 8192), "of the picture, in pixels")
+          .whole_number("height", &Render::height, within(16, 8192), "of the picture, in pixels")
+          .plain(Type::text, "camera", &Render::camera, "name of the camera that is looked through")
+          .by_default("the first camera; automatic framing where there is none")
+          .color("sky_color", &Render::sky_color, "of the light from above")
+          .by_default("the renderer's own")
+          .color("ground_color", &Render::ground_color, "of the light from below")
+          .by_default("the renderer's own")
+          .number("sky_intensity", &Render::sky_intensity, within(0, 100), "", "share of light from the sky")
+          .by_default("the renderer's own")
+          .choice("heat", &Render::heat, {"none", "strain", "speed"}, "quantity that colors the cloth")
+          .number("heat_max", &Render::heat_max, within(0, 1e6), "",
+                  "value at the hot end (strain: 1, speed: m/s); 0 follows each frame's largest")
+          .build();
+  return kTable;
+}
+
+void set_up_axis(Scene& s, std::size_t index) {
+  s.up = static_cast<UpAxis>(index);
+  s.physics.gravity = turned_up(s.up, Physics{}.gravity);
+}
+
+void append_light(Scene& s, std::size_t) {
+  LightKey key;
+  key.direction = turned_up(s.up, key.direction);
+  key.position = turned_up(s.up, key.position);
+  s.lights.push_back({.name = {}, .color = Light{}.color, .keys = {key}});
+}
+
+void append_camera(Scene& s, std::size_t) {
+  s.cameras.push_back({.name = {}, .keys = {CameraKey{}}});
+}
+
+}  // namespace
+
+const Table& scene_rules() {
+  // The up axis comes first: defaults of what is read after it depend on it.
+  static const Table kTable = TableBuilder<Scene>("A scene of Weft: SI units, angles in degrees, colors in sRGB.")
+                                  .choice_by(
+                                      "up", {"y", "z"}, "axis that points up",
+                                      [](Scene& s) { return static_cast<std::size_t>(s.up); }, set_up_axis)
+                                  .plain(Type::text, "title", &Scene::title, "for people")
+                                  .table("time", &Scene::time, time_rules())
+                                  .table("physics", &Scene::physics, physics_rules())
+                                  .table("solver", &Scene::solver, solver_rules())
+                                  .table("contact", &Scene::contact, contact_rules())
+                                  .table("render", &Scene::render, render_rules())
+                                  .list(Type::list, "obstacle", &Scene::obstacles, obstacle_rules())
+                                  .list(Type::list, "cloth", &Scene::cloths, cloth_rules())
+                                  .list(Type::list, "camera", &Scene::cameras, camera_rules(), append_camera)
+                                  .list(Type::list, "light", &Scene::lights, light_rules(), append_light)
+                                  .build();
+  return kTable;
+}
+
+}  // namespace weft::scene

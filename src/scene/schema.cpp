@@ -1,0 +1,126 @@
+// The JSON schema of the scene format: Draft 4, the newest that editors' TOML plugins read.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "scene/loader.hpp"
+#include "scene/rule.hpp"
+
+namespace weft::scene {
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json table_schema(const Table& table);
+
+Json number_schema(const Rule& rule) {
+  Json number = {{"type", rule.whole ? "integer" : "number"}, {"minimum", rule.range.low}};
+  if (rule.range.low_open) number["exclusiveMinimum"] = true;
+  number["maximum"] = rule.range.high;
+  return number;
+}
+
+Json numbers_schema(const Rule& rule) {
+  const Json number = number_schema(rule);
+  if (rule.components.empty()) return number;
+  const std::size_t count = rule.components.size();
+  const Json array = {{"type", "array"}, {"items", number}, {"minItems", count}, {"maxItems", count}};
+  return rule.single_fills_all ? Json{{"anyOf", {number, array}}} : array;
+}
+
+Json type_schema(const Rule& rule) {
+  switch (rule.type) {
+    case Type::boolean:
+      return {{"type", "boolean"}};
+    case Type::text:
+    case Type::file:
+      return {{"type", "string"}};
+    case Type::name:
+      return {{"type", "string"}, {"pattern", "^[A-Za-z][A-Za-z0-9_-]{0,63}$"}};
+    case Type::choice:
+      return {{"type", "string"}, {"enum", rule.choices}};
+    case Type::color:
+      return {{"anyOf", {numbers_schema(rule), {{"type", "string"}, {"pattern", "^#[0-9A-Fa-f]{6}$"}}}}};
+    case Type::number:
+      return numbers_schema(rule);
+    case Type::table:
+      return table_schema(*rule.table);
+    case Type::list:
+    case Type::keys:
+      return {{"type", "array"}, {"items", table_schema(*rule.table)}, {"maxItems", rule.range.high}};
+  }
+  return {};
+}
+
+/// "length of the film [s]", with the meaning of the components and of an absent key.
+std::string description(const Rule& rule) {
+  std::string text = rule.documentation;
+  if (rule.type == Type::number && !rule.components.empty())
+    text += fmt::format(": {}", fmt::join(rule.components, ", "));
+  if (!rule.unit.empty()) text += fmt::format(" [{}]", rule.unit);
+  if (!rule.default_note.empty()) text += "; by default " + rule.default_note;
+  if (!rule.excludes.empty()) text += fmt::format("; not beside {}", rule.excludes);
+  return text;
+}
+
+Json default_of(const Rule& rule, void* defaults) {
+  const Value value = rule.get(defaults);
+  if (const bool* flag = std::get_if<bool>(&value)) return *flag;
+  if (const auto* text = std::get_if<std::string>(&value)) return *text;
+  if (const auto* numbers = std::get_if<std::vector<double>>(&value)) {
+    return rule.components.empty() ? Json((*numbers)[0]) : Json(*numbers);
+  }
+  return nullptr;
+}
+
+/// Adds one rule to the properties and required keys of a table.
+void add_rule(Json& schema, const Rule& rule, void* defaults) {
+  Json property = type_schema(rule);
+  property["description"] = description(rule);
+  const bool has_default = rule.get && rule.need == Need::optional && rule.default_note.empty();
+  if (has_default) {
+    if (Json value = default_of(rule, defaults); !value.is_null() && value != "") property["default"] = value;
+  }
+  schema["properties"][rule.key] = std::move(property);
+  if (rule.need == Need::required) schema["required"].push_back(rule.key);
+}
+
+/// The schema of a table that has only the rules of one variant, or of one without variants.
+Json variant_schema(const Table& table, const Variant* variant) {
+  Json schema = {{"type", "object"}, {"description", table.documentation}, {"properties", Json::object()}};
+  const auto defaults = table.make();
+  if (variant != nullptr) table.find(table.selector)->set(defaults.get(), variant->name);
+  for (const Rule& rule : table.rules) add_rule(schema, rule, defaults.get());
+  if (variant != nullptr) {
+    schema["properties"][table.selector]["enum"] = {variant->name};
+    for (const Rule& rule : variant->rules) add_rule(schema, rule, defaults.get());
+  }
+  schema["additionalProperties"] = false;
+  return schema;
+}
+
+Json table_schema(const Table& table) {
+  if (table.variants.empty()) return variant_schema(table, nullptr);
+  Json schema = {{"description", table.documentation}, {"oneOf", Json::array()}};
+  for (const Variant& variant : table.variants) {
+    Json one = variant_schema(table, &variant);
+    // Without the selector, the variant of its default is meant.
+    const auto defaults = table.make();
+    if (table.find(table.selector)->need == Need::optional && table.variant_of(defaults.get()) != &variant) {
+      one["required"].push_back(table.selector);
+    }
+    schema["oneOf"].push_back(std::move(one));
+  }
+  return schema;
+}
+
+}  // namespace
+
+std::string json_schema() {
+  Json schema = {{"$schema", "http://json-schema.org/draft-04/schema#"}, {"title", "Weft scene"}};
+  schema.update(table_schema(scene_rules()));
+  return schema.dump(2) + "\n";
+}
+
+}  // namespace weft::scene
