@@ -1,0 +1,138 @@
+#include "cli/options.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace weft::cli {
+namespace {
+
+using Arguments = std::vector<std::string>;
+
+RunOptions parse_run(Arguments arguments) {
+  arguments.insert(arguments.begin(), "run");
+  return std::get<RunOptions>(parse_command_line(arguments));
+}
+
+// The message of the usage error that these arguments must give.
+std::string refusal(const Arguments& arguments) {
+  try {
+    parse_command_line(arguments);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::usage);
+    return error.what();
+  }
+  return "accepted";
+}
+
+TEST(Options, MayStandInAnyOrderAndMixWithTheScene) {
+  std::vector<Arguments> groups{{"a.toml"},        {"-o", "b.mp4"},      {"--frames", "2:9:3"}, {"--size", "64x36"},
+                                {"--set", "k=1"},  {"--quality=draft"},  {"--threads", "3"},    {"--overwrite"},
+                                {"--fps", "12.5"}, {"--backend", "egl"}, {"--set", "l=2"}};
+  // Every rotation, forward and backward: each option comes first, last and next to each kind of neighbour.
+  for (std::size_t shift = 0; shift < groups.size(); ++shift) {
+    std::rotate(groups.begin(), groups.begin() + 1, groups.end());
+    for (const bool backward : {false, true}) {
+      std::vector<Arguments> order = groups;
+      if (backward) std::reverse(order.begin(), order.end());
+      Arguments arguments;
+      for (const Arguments& group : order) arguments.insert(arguments.end(), group.begin(), group.end());
+      const RunOptions run = parse_run(arguments);
+      EXPECT_EQ(run.common.scene, "a.toml");
+      EXPECT_EQ(run.output, "b.mp4");
+      EXPECT_EQ(run.frames.begin, 2);
+      EXPECT_EQ(run.frames.end, 9);
+      EXPECT_EQ(run.frames.step, 3);
+      ASSERT_TRUE(run.common.size);
+      EXPECT_EQ(run.common.size->width, 64);
+      EXPECT_EQ(run.common.size->height, 36);
+      EXPECT_EQ(run.common.quality, render::Quality::draft);
+      EXPECT_EQ(run.common.threads, 3);
+      EXPECT_TRUE(run.common.overwrite);
+      EXPECT_EQ(run.common.fps, 12.5);
+      EXPECT_EQ(run.common.backend, render::Backend::egl);
+      Arguments sets = run.common.overrides;
+      std::sort(sets.begin(), sets.end());
+      EXPECT_EQ(sets, (Arguments{"k=1", "l=2"}));
+    }
+  }
+}
+
+TEST(Options, LeftOutLeaveTheChoiceToTheScene) {
+  const RunOptions run = parse_run({"a.toml"});
+  EXPECT_EQ(run.output, "");
+  EXPECT_FALSE(run.frames.begin || run.frames.end);
+  EXPECT_FALSE(run.common.size || run.common.fps);
+  EXPECT_EQ(run.common.quality, render::Quality::final);
+  EXPECT_EQ(run.common.backend, render::Backend::automatic);
+  EXPECT_EQ(run.common.threads, 0);
+  EXPECT_FALSE(run.common.overwrite);
+}
+
+TEST(Options, OverridesKeepTheirOrder) {
+  EXPECT_EQ(parse_run({"--set", "a=1", "s.toml", "--set", "a=2", "--set", "b=x=y"}).common.overrides,
+            (Arguments{"a=1", "a=2", "b=x=y"}));
+}
+
+TEST(Options, UnknownValuesAreRefusedNamingTheAllowedOnes) {
+  EXPECT_EQ(refusal({"run", "a.toml", "--quality", "fianl"}),
+            "--quality: expected draft or preview or final, got fianl; did you mean final?");
+  EXPECT_EQ(refusal({"run", "a.toml", "--backend", "glx"}), "--backend: expected auto or osmesa or egl, got glx");
+  EXPECT_EQ(refusal({"run", "a.toml", "--progress", "planin"}),
+            "--progress: expected auto or bar or plain or none, got planin; did you mean plain?");
+  EXPECT_EQ(refusal({"run", "a.toml", "--size", "1280"}),
+            "--size: expected WxH in pixels, each from 1 to 16384, such as 1280x720, got 1280");
+  EXPECT_EQ(refusal({"run", "a.toml", "--threads", "0"}), "--threads: expected a whole number from 1 to 1024, got 0");
+  EXPECT_EQ(refusal({"run", "a.toml", "--fps", "-5"}),
+            "--fps: expected a number of frames a second, above 0 and up to 1000, got -5");
+  EXPECT_EQ(refusal({"run", "a.toml", "--fps", "nan"}),
+            "--fps: expected a number of frames a second, above 0 and up to 1000, got nan");
+  EXPECT_EQ(refusal({"run", "a.toml", "--set", "stretch"}),
+            "--set: expected path.to.key=value such as cloth.band.material.stretch=1e6, got stretch");
+}
+
+TEST(Options, MisspeltOptionsAndCommandsNameTheNearest) {
+  EXPECT_EQ(refusal({"run", "a.toml", "--sise", "3x4"}),
+            "weft run: unknown option --sise; did you mean --size?; see weft run --help");
+  EXPECT_EQ(
+      refusal({"thumbnial", "a.toml"}),
+      "unknown command thumbnial; did you mean thumbnail?; the commands are run, check, thumbnail, schema, doctor");
+  EXPECT_EQ(refusal({"frobnicate"}),
+            "unknown command frobnicate; the commands are run, check, thumbnail, schema, doctor");
+  EXPECT_EQ(refusal({"a.toml"}), "expected a command before a.toml; did you mean weft run a.toml?");
+  EXPECT_EQ(refusal({"--versoin"}),
+            "unknown option --versoin before the command; did you mean --version?; see weft --help");
+  EXPECT_EQ(refusal({}), "expected a command: run, check, thumbnail, schema, doctor; see weft --help");
+}
+
+TEST(Options, MissingOrSurplusArgumentsAreRefused) {
+  EXPECT_EQ(refusal({"run"}), "weft run: SCENE is required; see weft run --help");
+  EXPECT_EQ(refusal({"run", "a.toml", "b.toml"}), "weft run: unexpected argument b.toml; see weft run --help");
+  EXPECT_NE(refusal({"run", "a.toml", "--size"}), "accepted");
+  EXPECT_NE(refusal({"run", "a.toml", "--size", "1x1", "--size", "2x2"}), "accepted");
+}
+
+TEST(Options, HelpOfEachCommandShowsItsOptionsAndAnExample) {
+  for (const std::string command : {"run", "check", "thumbnail"}) {
+    const std::string help = std::get<PrintText>(parse_command_line({command, "--help"})).text;
+    EXPECT_NE(help.find("SCENE"), std::string::npos) << help;
+    EXPECT_NE(help.find("--set"), std::string::npos) << help;
+    EXPECT_NE(help.find("Example"), std::string::npos) << help;
+    EXPECT_NE(help.find("weft " + command), std::string::npos) << help;
+  }
+}
+
+TEST(Size, TakesOnlyTwoPositiveWholeNumbers) {
+  EXPECT_EQ(parse_size("1x16384").height, 16384);
+  for (const char* text : {"", "x", "1280x", "x720", "0x720", "1280x0", "-1x5", "1280x720x3", "12.5x7", "16385x1",
+                           "99999999999x1", "1280X720", " 1x1"}) {
+    EXPECT_THROW(parse_size(text), Error) << text;
+  }
+}
+
+}  // namespace
+}  // namespace weft::cli
