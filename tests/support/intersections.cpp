@@ -1,0 +1,136 @@
+#include "support/intersections.hpp"
+
+#include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
+#include <CGAL/box_intersection_d.h>
+#include <CGAL/intersections.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+namespace weft::support {
+namespace {
+
+using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
+using Point = Kernel::Point_3;
+using Segment = Kernel::Segment_3;
+using Triangle = Kernel::Triangle_3;
+
+/// A face with what is needed to judge it.
+struct Face {
+  JudgedFace id;
+  std::array<Index, 3> vertices;
+  std::array<Point, 3> corners;
+  Triangle triangle() const { return {corners[0], corners[1], corners[2]}; }
+  Segment edge_opposite(std::size_t corner) const { return {corners[(corner + 1) % 3], corners[(corner + 2) % 3]}; }
+};
+
+using Box = CGAL::Box_intersection_d::Box_with_handle_d<double, 3, const Face*>;
+
+Point to_point(const JudgedObject& object, Index vertex) {
+  if (vertex < 0 || static_cast<std::size_t>(vertex) >= object.positions.size()) {
+    throw std::invalid_argument(object.name + ": a face names vertex " + std::to_string(vertex) + " of " +
+                                std::to_string(object.positions.size()));
+  }
+  const Vec3& p = object.positions[static_cast<std::size_t>(vertex)];
+  if (!p.allFinite()) {
+    throw std::invalid_argument(object.name + ": the position of vertex " + std::to_string(vertex) + " is not finite");
+  }
+  return {p.x(), p.y(), p.z()};
+}
+
+// Sorts the faces of the scene into those of cloths, of obstacles, and without area.
+struct Faces {
+  std::vector<Face> cloth, obstacles;
+  std::vector<JudgedFace> degenerate;
+
+  explicit Faces(std::span<const JudgedObject> objects) {
+    for (std::size_t o = 0; o < objects.size(); ++o) {
+      const JudgedObject& object = objects[o];
+      for (std::size_t f = 0; f < object.triangles.size(); ++f) {
+        Face face{{o, static_cast<Index>(f)}, object.triangles[f], {}};
+        for (std::size_t c = 0; c < 3; ++c) face.corners[c] = to_point(object, face.vertices[c]);
+        if (CGAL::collinear(face.corners[0], face.corners[1], face.corners[2])) {
+          degenerate.push_back(face.id);
+        } else {
+          (object.is_cloth ? cloth : obstacles).push_back(face);
+        }
+      }
+    }
+  }
+};
+
+std::vector<Box> boxes_of(const std::vector<Face>& faces) {
+  std::vector<Box> boxes;
+  boxes.reserve(faces.size());
+  for (const Face& face : faces) boxes.emplace_back(face.triangle().bbox(), &face);
+  return boxes;
+}
+
+// Corners (of a, of b) that are the same vertex.
+std::vector<std::pair<std::size_t, std::size_t>> shared_corners(const Face& a, const Face& b) {
+  std::vector<std::pair<std::size_t, std::size_t>> shared;
+  if (a.id.object != b.id.object) return shared;
+  for (std::size_t i = 0; i < 3; ++i) {
+    for (std::size_t j = 0; j < 3; ++j) {
+      if (a.vertices[i] == b.vertices[j]) shared.emplace_back(i, j);
+    }
+  }
+  return shared;
+}
+
+bool intersect(const Face& a, const Face& b) {
+  const auto shared = shared_corners(a, b);
+  if (shared.empty()) return CGAL::do_intersect(a.triangle(), b.triangle());
+  if (shared.size() > 1) return false;
+  // Two faces that share one vertex meet elsewhere too exactly if the opposite edge of one reaches the other: their
+  // common line leaves the shared vertex and ends on one of these edges.
+  const auto [i, j] = shared.front();
+  return CGAL::do_intersect(a.edge_opposite(i), b.triangle()) || CGAL::do_intersect(b.edge_opposite(j), a.triangle());
+}
+
+}  // namespace
+
+Judgement judge(std::span<const JudgedObject> objects) {
+  Faces faces(objects);
+  std::vector<Box> cloth = boxes_of(faces.cloth);
+  std::vector<Box> obstacles = boxes_of(faces.obstacles);
+
+  Judgement judgement;
+  const auto test = [&](const Box& box_a, const Box& box_b) {
+    const Face &a = *box_a.handle(), &b = *box_b.handle();
+    if (intersect(a, b)) judgement.pairs.push_back({std::min(a.id, b.id), std::max(a.id, b.id)});
+  };
+  // Both calls reorder the boxes and meet each pair of overlapping closed boxes once.
+  CGAL::box_intersection_d(cloth.begin(), cloth.end(), obstacles.begin(), obstacles.end(), test);
+  CGAL::box_self_intersection_d(cloth.begin(), cloth.end(), test);
+  std::sort(judgement.pairs.begin(), judgement.pairs.end());
+  judgement.degenerate = std::move(faces.degenerate);
+  return judgement;
+}
+
+std::vector<JudgedObject> objects_of(const frame::FrameSnapshot& snapshot) {
+  std::vector<JudgedObject> objects;
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    const frame::Surface& surface = *snapshot.surfaces[i];
+    objects.push_back(
+        {surface.name, surface.kind == frame::ObjectKind::cloth, snapshot.states[i].positions, surface.triangles});
+  }
+  return objects;
+}
+
+std::vector<PairCount> count_by_objects(const Judgement& judgement, std::span<const JudgedObject> objects) {
+  std::map<std::pair<std::string, std::string>, std::size_t> counts;
+  for (const IntersectingPair& pair : judgement.pairs) {
+    const auto names = std::minmax(objects[pair.a.object].name, objects[pair.b.object].name);
+    ++counts[{names.first, names.second}];
+  }
+  std::vector<PairCount> list;
+  for (const auto& [names, count] : counts) list.push_back({names.first, names.second, count});
+  return list;
+}
+
+}  // namespace weft::support
