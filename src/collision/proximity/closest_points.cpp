@@ -1,18 +1,22 @@
 #include "collision/proximity/closest_points.hpp"
 
+#include <algorithm>
 #include <limits>
 
 namespace weft::collision {
 
 namespace {
 
-/// Below this sine² between two edges their cross product has lost so many digits that the inner solution may lie:
-/// the boundary is then looked at as well. Any value well above the rounding 1e-16 and well below 1 will do.
-constexpr double kNearlyParallelSq = 1e-8;
+/// Below this sine² between two edges their cross product has lost so many digits that the inner solution is refined
+/// and the boundary looked at as well. At the limit 1e-16 / 1e-2 is lost in the plane, relative to the edges.
+constexpr double kNearlyParallelSq = 1e-4;
 
 /// Weights below this count as zero, so that a point above a shared edge is on the edge for both faces whatever the
 /// last bits say. Moves the closest point by 1e-13 of an edge; rounding is 1e-16 times a few.
 constexpr double kSnap = 1e-13;
+
+/// Relative rounding error of a squared distance.
+constexpr double kRounding = 2e-15;
 
 /// Parameter in [0, 1] of the point of segment o + t e closest to o + w.
 double along_segment(const Vec3& e, const Vec3& w) {
@@ -22,9 +26,13 @@ double along_segment(const Vec3& e, const Vec3& w) {
   return t < kSnap ? 0 : t > 1 - kSnap ? 1 : t;
 }
 
-void keep_closer(ClosestPoints& best, const std::array<double, 4>& weights, const Vec3& difference) {
+/// Takes a candidate if it is closer. A point inside an edge is in truth no farther than the edge's ends, so it wins
+/// where rounding leaves the two equal.
+void keep_closer(ClosestPoints& best, const std::array<double, 4>& weights, const Vec3& difference, double parameter) {
   const double distance_sq = difference.squaredNorm();
-  if (distance_sq < best.distance_sq) best = {weights, difference, distance_sq};
+  const bool inner = parameter > 0 && parameter < 1;
+  if (inner ? distance_sq <= best.distance_sq * (1 + kRounding) : distance_sq < best.distance_sq * (1 - kRounding))
+    best = {weights, difference, distance_sq};
 }
 
 ClosestPoints nothing_yet() {
@@ -43,20 +51,26 @@ ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1,
   ClosestPoints best = nothing_yet();
   const double snap = kSnap * n_sq;
   if (n_sq > 0 && b1 > snap && b2 > snap && b1 + b2 < n_sq - snap) {
-    const double u1 = b1 / n_sq, u2 = b2 / n_sq;
-    // The difference along the normal has all its digits where w - u1 e1 - u2 e2 would cancel.
-    const Vec3 difference = n * (w.dot(n) / n_sq);
-    best = {{1, -(1 - u1 - u2), -u1, -u2}, difference, difference.squaredNorm()};
-    if (n_sq > kNearlyParallelSq * e1.squaredNorm() * e2.squaredNorm()) return best;
+    double u1 = b1 / n_sq, u2 = b2 / n_sq;
+    if (n_sq > kNearlyParallelSq * e1.squaredNorm() * e2.squaredNorm()) {
+      // The difference along the normal has all its digits where w - u1 e1 - u2 e2 would cancel.
+      const Vec3 difference = n * (w.dot(n) / n_sq);
+      return {{1, -(1 - u1 - u2), -u1, -u2}, difference, difference.squaredNorm()};
+    }
+    // A needle: one round of refinement on what is left, and the edges are looked at as well.
+    const Vec3 rest = w - u1 * e1 - u2 * e2;
+    u1 = std::clamp(u1 + rest.cross(e2).dot(n) / n_sq, 0.0, 1.0);
+    u2 = std::clamp(u2 + e1.cross(rest).dot(n) / n_sq, 0.0, 1 - u1);
+    best.weights = {1, -(1 - u1 - u2), -u1, -u2};
     best.difference = w - u1 * e1 - u2 * e2;
     best.distance_sq = best.difference.squaredNorm();
   }
 
   const Vec3 e12 = t2 - t1, w1 = p - t1;
   const double s01 = along_segment(e1, w), s12 = along_segment(e12, w1), s02 = along_segment(e2, w);
-  keep_closer(best, {1, -(1 - s01), -s01, 0}, w - s01 * e1);
-  keep_closer(best, {1, 0, -(1 - s12), -s12}, w1 - s12 * e12);
-  keep_closer(best, {1, -(1 - s02), 0, -s02}, w - s02 * e2);
+  keep_closer(best, {1, -(1 - s01), -s01, 0}, w - s01 * e1, s01);
+  keep_closer(best, {1, 0, -(1 - s12), -s12}, w1 - s12 * e12, s12);
+  keep_closer(best, {1, -(1 - s02), 0, -s02}, w - s02 * e2, s02);
   return best;
 }
 
@@ -69,10 +83,15 @@ ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, 
   ClosestPoints best = nothing_yet();
   const double snap = kSnap * n_sq;
   if (n_sq > 0 && s_n > snap && s_n < n_sq - snap && t_n > snap && t_n < n_sq - snap) {
-    const double s = s_n / n_sq, t = t_n / n_sq;
-    const Vec3 difference = n * (-w.dot(n) / n_sq);
-    best = {{1 - s, s, -(1 - t), -t}, difference, difference.squaredNorm()};
-    if (n_sq > kNearlyParallelSq * d.squaredNorm() * e.squaredNorm()) return best;
+    double s = s_n / n_sq, t = t_n / n_sq;
+    if (n_sq > kNearlyParallelSq * d.squaredNorm() * e.squaredNorm()) {
+      const Vec3 difference = n * (-w.dot(n) / n_sq);
+      return {{1 - s, s, -(1 - t), -t}, difference, difference.squaredNorm()};
+    }
+    const Vec3 rest = w + t * e - s * d;
+    s = std::clamp(s + rest.cross(e).dot(n) / n_sq, 0.0, 1.0);
+    t = std::clamp(t + rest.cross(d).dot(n) / n_sq, 0.0, 1.0);
+    best.weights = {1 - s, s, -(1 - t), -t};
     best.difference = s * d - w - t * e;
     best.distance_sq = best.difference.squaredNorm();
   }
@@ -81,10 +100,10 @@ ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, 
   const Vec3 w_p1 = p1 - q0, w_q1 = q1 - p0;
   const double t_p0 = along_segment(e, -w), t_p1 = along_segment(e, w_p1);
   const double s_q0 = along_segment(d, w), s_q1 = along_segment(d, w_q1);
-  keep_closer(best, {1, 0, -(1 - t_p0), -t_p0}, -w - t_p0 * e);
-  keep_closer(best, {0, 1, -(1 - t_p1), -t_p1}, w_p1 - t_p1 * e);
-  keep_closer(best, {1 - s_q0, s_q0, -1, 0}, s_q0 * d - w);
-  keep_closer(best, {1 - s_q1, s_q1, 0, -1}, s_q1 * d - w_q1);
+  keep_closer(best, {1, 0, -(1 - t_p0), -t_p0}, -w - t_p0 * e, t_p0);
+  keep_closer(best, {0, 1, -(1 - t_p1), -t_p1}, w_p1 - t_p1 * e, t_p1);
+  keep_closer(best, {1 - s_q0, s_q0, -1, 0}, s_q0 * d - w, s_q0);
+  keep_closer(best, {1 - s_q1, s_q1, 0, -1}, s_q1 * d - w_q1, s_q1);
   return best;
 }
 

@@ -23,9 +23,9 @@ struct ClosestPoints {
   }
 };
 
-/// Point p (side a, weight 0) against triangle t0 t1 t2 (side b, weights 1 to 3). The triangle may be a segment or a
-/// point. The weights are always those of a point of the triangle; the distance to it is never below the true one by
-/// more than rounding, nor above it by more than about 1e-15 of the longest edge times its aspect ratio.
+/// Point p (side a, weight 0) against triangle t0 t1 t2 (side b, weights 1 to 3), which may be a segment or a point.
+/// The weights are always those of a point of the triangle. The distance is right to about 2e-14 of the longest edge for
+/// ordinary triangles and 2e-13 for needles of any aspect ratio, wherever in space they are.
 ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2);
 
 /// Segment p0 p1 (side a, weights 0, 1) against segment q0 q1 (side b, weights 2, 3), either of which may be a point.

@@ -1,0 +1,64 @@
+// Small surfaces for the tests of the hierarchy and of the proximities.
+#pragma once
+
+#include <random>
+#include <vector>
+
+#include "collision/hierarchy/surface.hpp"
+
+namespace weft::collision::testing {
+
+struct TestMesh {
+  std::vector<Vec3> x;
+  std::vector<Triangle> triangles;
+
+  Surface surface() const { return {triangles, 0, 0, static_cast<Index>(x.size())}; }
+};
+
+inline Vec3 random_vec(std::mt19937& generator) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const double a = unit(generator), b = unit(generator), c = unit(generator);
+  return {a, b, c};
+}
+
+/// Triangles between random ones of few vertices: many share a vertex or an edge, some are equal or name a vertex
+/// twice.
+inline TestMesh triangle_soup(unsigned seed, int vertices, int triangles, double size) {
+  std::mt19937 generator(seed);
+  TestMesh mesh;
+  for (int v = 0; v < vertices; ++v) {
+    const Vec3 centre = random_vec(generator);
+    // In clusters of five, so that triangles of one cluster are small.
+    for (int i = 0; i < 5; ++i) mesh.x.push_back(centre + size * random_vec(generator));
+  }
+  const auto pick = [&](int count) { return static_cast<Index>(generator() % static_cast<unsigned>(count)); };
+  for (int t = 0; t < triangles; ++t) {
+    const Index cluster = 5 * pick(vertices);
+    mesh.triangles.push_back({cluster + pick(5), cluster + pick(5), cluster + pick(5)});
+  }
+  return mesh;
+}
+
+/// A sheet of n × n vertices over the unit square, in `layers` layers `gap` apart, folded to and fro.
+inline TestMesh folded_sheet(int n, int layers, double gap) {
+  TestMesh mesh;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const double u = static_cast<double>(i) / (n - 1) * layers;
+      const int layer = std::min(static_cast<int>(u), layers - 1);
+      const double along = u - layer;
+      mesh.x.emplace_back((layer % 2 == 0 ? along : 1 - along) / layers, static_cast<double>(j) / (n - 1),
+                          gap * (layer + along * along));
+    }
+  }
+  for (int j = 0; j + 1 < n; ++j) {
+    for (int i = 0; i + 1 < n; ++i) {
+      const Index a = i + n * j;
+      mesh.triangles.push_back({a, a + 1, a + 1 + n});
+      mesh.triangles.push_back({a, a + 1 + n, a + n});
+    }
+  }
+  return mesh;
+}
+
+}  // namespace weft::collision::testing
