@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "scene/reader.hpp"
 
@@ -30,12 +31,14 @@ void check_reference(const std::string& name, const std::vector<std::string>& na
 
 template <class Key>
 void check_times(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
-  for (std::size_t i = 1; i < keys.size(); ++i) {
+  double latest = -std::numeric_limits<double>::infinity();
+  for (std::size_t i = 0; i < keys.size(); ++i) {
     const std::string key = fmt::format("{}.keys.{}.time", path, i);
-    if (!findings.has(key) || findings.faulty(fmt::format("{}.keys.{}.time", path, i - 1))) continue;
-    if (keys[i].time > keys[i - 1].time) continue;
-    findings.report(key,
-                    fmt::format("expected > {} s, the time of the key before, got {}", keys[i - 1].time, keys[i].time));
+    if (!findings.has(key) || findings.faulty(key)) continue;
+    if (keys[i].time <= latest) {
+      findings.report(key, fmt::format("expected > {} s, later than the keys before, got {}", latest, keys[i].time));
+    }
+    latest = std::max(latest, keys[i].time);
   }
 }
 

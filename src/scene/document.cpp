@@ -8,6 +8,8 @@
 #include <fstream>
 #include <system_error>
 
+#include "scene/reader.hpp"
+
 namespace weft::scene {
 
 namespace {
@@ -26,6 +28,16 @@ bool has_deep_key(std::string_view text) {
     }
   }
   return false;
+}
+
+/// The parser's words; what it says of a key that is there twice, in ours.
+std::string explain(std::string_view description) {
+  const std::string_view redefined = "cannot redefine existing ";
+  const auto found = description.find(redefined);
+  const auto begin = description.find('\'', found == std::string_view::npos ? 0 : found);
+  const auto end = description.find('\'', begin + 1);
+  if (found == std::string_view::npos || end == std::string_view::npos) return fmt::format("not TOML: {}", description);
+  return fmt::format("expected each key once, got {} again", in_quotes(description.substr(begin + 1, end - begin - 1)));
 }
 
 }  // namespace
@@ -72,7 +84,7 @@ std::optional<toml::table> parse(std::string_view text, Findings& findings) {
   try {
     return toml::parse(text, std::string_view{});
   } catch (const toml::parse_error& error) {
-    findings.report("", place_of(error.source()), fmt::format("not TOML: {}", error.description()));
+    findings.report("", place_of(error.source()), explain(error.description()));
     return std::nullopt;
   }
 }

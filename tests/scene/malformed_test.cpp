@@ -1,0 +1,262 @@
+// Malformed scenes with the exact messages that a user reads.
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "scene/loader.hpp"
+
+namespace weft::scene {
+namespace {
+
+struct Malformed {
+  std::string claim;
+  std::string text;
+  std::string messages;  ///< all of describe(), the file being s.toml
+};
+
+// Enough to make a scene; on one line, so that what follows starts on line 2.
+const std::string kFloor = "obstacle = [{ name = 'floor', shape = 'plane' }]\n";
+const std::string kBand = "cloth = [{ name = 'band' }]\n";
+
+const std::vector<Malformed> kMalformed = {
+    // The file as a whole.
+    {"EmptyFile", "", "s.toml: expected a scene, got an empty file\n"},
+    {"BlankFile", " \n\t\n", "s.toml: expected a scene, got an empty file\n"},
+    {"OnlyComments", "# nothing\n", "s.toml:1:1: expected at least one [[cloth]] or [[obstacle]], got none\n"},
+    {"NoObjects", "[time]\nfps = 24\n", "s.toml:1:1: expected at least one [[cloth]] or [[obstacle]], got none\n"},
+    {"BinaryData",
+     std::string("\x7f"
+                 "ELF\x02\0\0",
+                 7),
+     "s.toml: expected text, got binary data (byte 0 at offset 5)\n"},
+    {"InvalidUtf8", "title = '\xc3\x28'\n", "s.toml:1:9: not TOML: Encountered invalid utf-8 sequence\n"},
+    {"SyntaxError", "[time\nfps = 24\n",
+     "s.toml:1:6: not TOML: Error while parsing table header: expected ']', saw '\\n'\n"},
+    {"DuplicateKey", kFloor + "[time]\nfps = 24\nfps = 25\n",
+     "s.toml:4:7: expected each key once, got \"fps\" again\n"},
+    {"DuplicateTable", kFloor + "[time]\n[render]\n[time]\n",
+     "s.toml:4:1: expected each key once, got \"time\" again\n"},
+    {"NumberTooLarge", "a = 99999999999999999999\n",
+     "s.toml:1:25: not TOML: Error while parsing decimal integer: '99999999999999999999' is not representable in 64 "
+     "bits\n"},
+    {"NestedTooDeep", "a = " + std::string(300, '['),
+     "s.toml:1:261: not TOML: Error while parsing value: exceeded maximum nested value depth of 256 "
+     "(TOML_MAX_NESTED_VALUES)\n"},
+
+    // Keys.
+    {"UnknownTable", kFloor + "[phisics]\n", "s.toml:2:2: phisics: unknown key; did you mean physics?\n"},
+    {"MisspeltKey", kFloor + "[time]\nduraton = 3\n",
+     "s.toml:3:1: time.duraton: unknown key; did you mean duration?\n"},
+    {"KeyOfNoKind", kFloor + "[contact]\nzzzzzzzz = 3\n",
+     "s.toml:3:1: contact.zzzzzzzz: unknown key; known here: self, obstacles, stiffness\n"},
+    {"KeyOfAnInnerTable", "[[cloth]]\nname = 'band'\nthickness = 0.002\n",
+     "s.toml:3:1: cloth.band.thickness: unknown key; did you mean material.thickness?\n"},
+    {"KeyOfAnotherShape", "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\nradius = 1\nheight = 2\n",
+     "s.toml:5:1: obstacle.ball.height: unknown key of a sphere; it belongs to cone or cylinder\n"},
+    {"KeyOfAnotherLight", kFloor + "[[light]]\nname = 'sun'\ncone_angle = 30\n",
+     "s.toml:4:1: light.sun.cone_angle: unknown key of a sun; it belongs to spot\n"},
+    {"KeyWithOddCharacters", kFloor + "\"a b\\u0007\" = 3\n",
+     "s.toml:2:1: \"a b\\x07\": unknown key; known here: up, title, time, physics, solver, contact, render, obstacle, "
+     "cloth, camera, light\n"},
+    {"MissingName", "[[cloth]]\nsize = 1\n",
+     "s.toml:1:1: cloth.0.name: expected a name of letters, digits, _ and -, starting with a letter, at most 64 long, "
+     "got none\n"},
+    {"MissingShape", "\n[[obstacle]]\nname = 'ball'\nradius = 1\n",
+     "s.toml:2:1: obstacle.ball.shape: expected sphere, box, cone, torus, cylinder, half_pipe, plane or mesh, got "
+     "none\n"},
+    {"MissingCameraPosition", kFloor + "[[camera]]\nname = 'main'\ntarget = [0, 0, 1]\n",
+     "s.toml:2:1: camera.main.position: expected [x, y, z], each from -100000 to 100000 m, here or in the first of its "
+     "keys, got none\n"},
+    {"MissingKeyTime", "[[obstacle]]\nname = 'b'\nshape = 'box'\nkeys = [{ position = [0, 0, 1] }]\n",
+     "s.toml:4:9: obstacle.b.keys.0.time: expected a number from -100000 to 100000 s, got none\n"},
+    {"RotationTwice", "[[cloth]]\nname = 'band'\nquaternion = [1, 0, 0, 0]\nrotation = [0, 0, 90]\n",
+     "s.toml:4:12: cloth.band.rotation: expected either rotation or quaternion, got both\n"},
+    {"FollowBesideKeys", kFloor + "[[cloth]]\nname = 'a'\n[[cloth.pin]]\nfollow = 'floor'\nkeys = [{ time = 0 }]\n",
+     "s.toml:5:10: cloth.a.pin.0.follow: expected either follow or keys, got both\n"},
+
+    // Types.
+    {"TextForNumber", kFloor + "[time]\nfps = \"fast\"\n",
+     "s.toml:3:7: time.fps: expected a number > 0 and <= 1000 Hz, got the text \"fast\"\n"},
+    {"LongTextIsCut", kFloor + "[time]\nfps = '" + std::string(39, 'a') + "\xc3\xa9 and more'\n",
+     "s.toml:3:7: time.fps: expected a number > 0 and <= 1000 Hz, got the text \"" + std::string(39, 'a') + "...\"\n"},
+    {"NumberForFlag", kFloor + "[contact]\nself = 1\n", "s.toml:3:8: contact.self: expected true or false, got 1\n"},
+    {"DateForNumber", kFloor + "[time]\nfps = 2024-01-01\n",
+     "s.toml:3:7: time.fps: expected a number > 0 and <= 1000 Hz, got a date or time\n"},
+    {"NumberForText", "title = 3\n" + kFloor, "s.toml:1:9: title: expected a text, got 3\n"},
+    {"FractionForWholeNumber", kFloor + "[render]\nwidth = 640.5\n",
+     "s.toml:3:9: render.width: expected a whole number, got 640.5\n"},
+    {"ValueForTable", kFloor + "time = 5\n", "s.toml:2:8: time: expected a table ([time]), got 5\n"},
+    {"TableForList", "[cloth]\nname = 'band'\n",
+     "s.toml:1:1: cloth: expected a list of tables ([[cloth]]), got a table\n"},
+    {"NumberInList", kFloor + "cloth = [1]\n", "s.toml:2:10: cloth.0: expected a table, got 1\n"},
+    {"ValueForKeys", "[[obstacle]]\nname = 'b'\nshape = 'box'\nkeys = 1\n",
+     "s.toml:4:8: obstacle.b.keys: expected a list of tables (keys = [{ time = 0, ... }, ...]), got 1\n"},
+    {"ArrayTooShort", kFloor + "[physics]\ngravity = [0, -9.81]\n",
+     "s.toml:3:11: physics.gravity: expected [x, y, z], each from -100000 to 100000 m/s², got an array of 2 values\n"},
+    {"ArrayTooLong", "[[cloth]]\nname = 'band'\nparticles = [8, 8, 8]\n",
+     "s.toml:3:13: cloth.band.particles: expected a whole number or [weft, warp], each from 2 to 2000, got an array of "
+     "3 values\n"},
+    {"TextInArray", kFloor + "[physics]\nwind = [0, 'x', 0]\n",
+     "s.toml:3:12: physics.wind: expected [x, y, z], each from -1000 to 1000 m/s, got the text \"x\"\n"},
+    {"BadColor", kBand + "[render]\nsky_color = '#12345'\n",
+     "s.toml:3:13: render.sky_color: expected [r, g, b], each from 0 to 1, or \"#rrggbb\", got the text \"#12345\"\n"},
+
+    // Ranges.
+    {"NegativeThickness", "[[cloth]]\nname = 'band'\nmaterial = { thickness = -0.001 }\n",
+     "s.toml:3:26: cloth.band.material.thickness: expected > 0 m, got -0.001\n"},
+    {"ZeroFps", kFloor + "[time]\nfps = 0\n", "s.toml:3:7: time.fps: expected > 0 Hz, got 0\n"},
+    {"NotANumber", kFloor + "[time]\nstep = nan\n",
+     "s.toml:3:8: time.step: expected a number from 1e-07 to 1 s, got nan\n"},
+    {"Infinite", kFloor + "[physics]\nair_density = inf\n",
+     "s.toml:3:15: physics.air_density: expected a number from 0 to 1000 kg/m³, got inf\n"},
+    {"TooManyParticles", "[[cloth]]\nname = 'band'\nparticles = [2001, 2]\n",
+     "s.toml:3:14: cloth.band.particles: expected <= 2000, got 2001\n"},
+    {"TooManyParticlesTogether", "[[cloth]]\nname = 'a'\nparticles = 2000\n[[cloth]]\nname = 'b'\nparticles = [2, 3]\n",
+     "s.toml:6:13: cloth.b.particles: expected at most 4000000 in all cloths together, got 4000006\n"},
+    {"TooFewParticles", "[[cloth]]\nname = 'band'\nparticles = 1\n",
+     "s.toml:3:13: cloth.band.particles: expected >= 2, got 1\n"},
+    {"TooManyFrames", kFloor + "[time]\nduration = 3600\nfps = 1000\n",
+     "s.toml:3:12: time.duration: expected at most 100000 frames (duration * fps), got 3600000\n"},
+    {"ZeroQuaternion", "[[cloth]]\nname = 'band'\nquaternion = [0, 0, 0, 0]\n",
+     "s.toml:3:14: cloth.band.quaternion: expected at least one number that is not 0, got 0 in all\n"},
+    {"TorusWithoutHole", "[[obstacle]]\nname = 't'\nshape = 'torus'\nradius = 0.1\ntube_radius = 0.2\n",
+     "s.toml:5:15: obstacle.t.tube_radius: expected < 0.1 m, the radius, got 0.2\n"},
+    {"BevelTooWide", "[[obstacle]]\nname = 'b'\nshape = 'box'\nsize = [1, 0.2, 1]\nbevel = 0.1\n",
+     "s.toml:5:9: obstacle.b.bevel: expected < 0.1 m, half the shortest edge, got 0.1\n"},
+    {"PinUpsideDown", "[[cloth]]\nname = 'band'\npin = [{ low = [0.5, 0], high = [0.2, 1] }]\n",
+     "s.toml:3:33: cloth.band.pin.0.high: expected >= 0.5, the low end, got 0.2\n"},
+    {"PinBetweenParticles", "[[cloth]]\nname = 'band'\nparticles = 3\npin = [{ low = [0.6, 0], high = [0.9, 1] }]\n",
+     "s.toml:4:8: cloth.band.pin.0: expected a part that holds at least one particle, got one between two rows\n"},
+    {"CameraLooksAtItself", kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [1, 2, 3]\n",
+     "s.toml:5:10: camera.c.target: expected a point away from position, got the same\n"},
+
+    // Names and references.
+    {"NameTwice", "[[cloth]]\nname = 'band'\n[[cloth]]\nname = 'band'\nsize = 0\n",
+     "s.toml:4:8: cloth.1.name: expected a name used once, got \"band\" again\n"
+     "s.toml:5:8: cloth.1.size: expected > 0 m, got 0\n"},
+    {"NameOfClothAndObstacle", kBand + "[[obstacle]]\nname = 'band'\nshape = 'box'\n",
+     "s.toml:3:8: obstacle.band.name: expected a name used once, got \"band\", which a cloth has\n"},
+    {"NameThatIsAPath", "[[cloth]]\nname = '../band'\n",
+     "s.toml:2:8: cloth.0.name: expected a name of letters, digits, _ and -, starting with a letter, at most 64 long, "
+     "got \"../band\"\n"},
+    {"UnknownFabric", "[[cloth]]\nname = 'band'\n[cloth.material]\nfabric = 'coton'\n",
+     "s.toml:4:10: cloth.band.material.fabric: expected cotton, silk, wool, denim, leather or jersey, got \"coton\"; "
+     "did you mean cotton?\n"},
+    {"UnknownShape", "[[obstacle]]\nname = 'b'\nshape = 'shpere'\nradius = 1\n",
+     "s.toml:3:9: obstacle.b.shape: expected sphere, box, cone, torus, cylinder, half_pipe, plane or mesh, got "
+     "\"shpere\"; did you mean sphere?\n"},
+    {"UnknownIntegrator", kFloor + "[time]\nintegrator = 'bdf3'\n",
+     "s.toml:3:14: time.integrator: expected implicit_euler, implicit_midpoint or bdf2, got \"bdf3\"; did you mean "
+     "bdf2?\n"},
+    {"FollowsNothing", kFloor + "[[cloth]]\nname = 'a'\npin = [{ follow = 'flor' }]\n",
+     "s.toml:4:19: cloth.a.pin.0.follow: expected the name of an obstacle, got \"flor\"; did you mean floor?\n"},
+    {"UnknownCamera", kFloor + "[render]\ncamera = 'main'\n",
+     "s.toml:3:10: render.camera: expected the name of a camera, got \"main\"\n"},
+    {"KeysOutOfOrder",
+     "[[obstacle]]\nname = 'b'\nshape = 'box'\nkeys = [{ time = 0 }, { time = 2 }, { time = 2 }, { time = 1 }]\n",
+     "s.toml:4:46: obstacle.b.keys.2.time: expected > 2 s, later than the keys before, got 2\n"
+     "s.toml:4:60: obstacle.b.keys.3.time: expected > 2 s, later than the keys before, got 1\n"},
+    {"MissingMesh", "[[obstacle]]\nname = 'b'\nshape = 'mesh'\nfile = '/no/such.obj'\n",
+     "s.toml:4:8: obstacle.b.file: expected a readable file, got \"/no/such.obj\": there is no /no/such.obj\n"},
+    {"MeshIsAFolder", "[[obstacle]]\nname = 'b'\nshape = 'mesh'\nfile = '/'\n",
+     "s.toml:4:8: obstacle.b.file: expected a readable file, got \"/\": / is not a file\n"},
+
+    // All at once, in the order of the file, whatever the order of the rules.
+    {"AllMistakesInFileOrder",
+     "[render]\nwidth = 1\n[[light]]\nkind = 'spot'\n[[cloth]]\nname = 'band'\nsize = [0, 1]\nsise = 2\n[time]\nfps = "
+     "-1\nstep = 'x'\n",
+     "s.toml:2:9: render.width: expected >= 16, got 1\n"
+     "s.toml:3:1: light.0.name: expected a name of letters, digits, _ and -, starting with a letter, at most 64 long, "
+     "got none\n"
+     "s.toml:7:9: cloth.band.size: expected > 0 m, got 0\n"
+     "s.toml:8:1: cloth.band.sise: unknown key; did you mean size?\n"
+     "s.toml:10:7: time.fps: expected > 0 Hz, got -1\n"
+     "s.toml:11:8: time.step: expected a number from 1e-07 to 1 s, got the text \"x\"\n"},
+};
+
+class MalformedScene : public testing::TestWithParam<Malformed> {};
+
+TEST_P(MalformedScene, IsReportedInExactlyTheseWords) {
+  const LoadResult result = load_text(GetParam().text, "s.toml");
+  EXPECT_FALSE(result.ok());
+  EXPECT_EQ(result.describe(), GetParam().messages);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scene, MalformedScene, testing::ValuesIn(kMalformed),
+                         [](const auto& test) { return test.param.claim; });
+
+/// A folder that goes away with the test.
+class SceneFile : public testing::Test {
+ protected:
+  SceneFile() { std::filesystem::create_directories(folder_); }
+  ~SceneFile() override { std::filesystem::remove_all(folder_); }
+
+  std::string messages(const std::filesystem::path& file) { return load(file).describe(); }
+
+  std::filesystem::path folder_ =
+      std::filesystem::temp_directory_path() /
+      ("weft_scene_" + std::to_string(getpid()) + "_" + testing::UnitTest::GetInstance()->current_test_info()->name());
+};
+
+TEST_F(SceneFile, ThatIsMissingIsNamed) {
+  EXPECT_EQ(messages(folder_ / "no.toml"),
+            (folder_ / "no.toml").string() + ": expected a scene file, got no such file\n");
+}
+
+TEST_F(SceneFile, ThatIsAFolderIsRefused) {
+  EXPECT_EQ(messages(folder_), folder_.string() + ": expected a scene file, got a folder\n");
+}
+
+TEST_F(SceneFile, ThatIsAPipeIsRefusedWithoutWaitingForIt) {
+  const auto pipe = folder_ / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(messages(pipe), pipe.string() + ": expected a scene file, got a device or pipe\n");
+}
+
+TEST_F(SceneFile, OfAGigabyteIsRefusedByItsSize) {
+  const auto file = folder_ / "big.toml";
+  std::ofstream(file) << "# big";
+  std::filesystem::resize_file(file, std::uintmax_t{1} << 30);  // sparse: takes no disk
+  EXPECT_EQ(messages(file), file.string() + ": expected at most 16 MB, got 1024 MB\n");
+}
+
+TEST_F(SceneFile, ThatCannotBeOpenedSaysWhy) {
+  if (geteuid() == 0) GTEST_SKIP() << "root opens every file";
+  const auto file = folder_ / "secret.toml";
+  std::ofstream(file) << kFloor;
+  std::filesystem::permissions(file, std::filesystem::perms::none);
+  EXPECT_EQ(messages(file),
+            file.string() + ": expected a scene file, got a file that cannot be opened: Permission denied\n");
+}
+
+TEST_F(SceneFile, IsPrintedTheWayItWasGiven) {
+  std::ofstream(folder_ / "a.toml") << kFloor << "x = 1\n";
+  const auto before = std::filesystem::current_path();
+  std::filesystem::current_path(folder_);
+  const std::string text = messages("./../" / folder_.filename() / "a.toml");
+  std::filesystem::current_path(before);
+  EXPECT_EQ(text.substr(0, text.find(": ")), "./../" + folder_.filename().string() + "/a.toml:2:1");
+}
+
+TEST(Mistakes, BeyondTheFirstTwoHundredAreCounted) {
+  std::string text = kFloor;
+  for (int i = 0; i < 5000; ++i) text += "k" + std::to_string(i) + " = 1\n";
+  const LoadResult result = load_text(text, "s.toml");
+  ASSERT_EQ(result.mistakes.size(), kMaxMistakes + 1);
+  for (std::size_t i = 0; i < kMaxMistakes; ++i) EXPECT_EQ(result.mistakes[i].line, static_cast<int>(i) + 2);
+  EXPECT_EQ(result.mistakes.back().text, "4800 further mistakes are not listed");
+}
+
+TEST(Mistakes, OfADeeplyDottedKeyDoNotExhaustTheStack) {
+  std::string key = "a";
+  for (int i = 0; i < 1'000'000; ++i) key += ".a";
+  EXPECT_EQ(load_text(key + " = 1\n", "s.toml").describe(), "s.toml: expected at most 128 dots in a key, got more\n");
+}
+
+}  // namespace
+}  // namespace weft::scene
