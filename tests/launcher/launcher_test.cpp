@@ -52,7 +52,7 @@ class Launcher : public support::TestFolder {
     write_script(folder_ / "fakes/id", "cat \"$FAKES/uid\"\n");
     write(folder_ / "fakes/uid", "0\n");
     write_script(folder_ / "fakes/dpkg-query",
-                 "sed 's/$/ installed/' \"$FAKES/installed\"; echo 'libx-dev2 removed'\n");
+                 "sed 's/$/ installed/' \"$FAKES/installed\"; echo 'libx-dev config-files'\n");
     write_script(folder_ / "fakes/apt-get", log + "echo chatter of apt\n");
     // Called as: cmake -S TREE --preset release ...; ninja -C FOLDER -j N TARGET.
     write_script(folder_ / "fakes/cmake",
@@ -171,7 +171,7 @@ TEST_F(Launcher, TwoAtOnceBuildOnce) {
 
 TEST_F(Launcher, SignalsReachTheProgram) {
   write_script(folder_ / "fakes/program",
-               "trap 'exit 75' TERM; touch \"$FAKES/started\"; while :; do sleep 0.01; done\n");
+               "trap 'exit 75' TERM; touch \"$FAKES/started\"; while [ -e \"$FAKES/started\" ]; do sleep 0.01; done\n");
   const pid_t child = ::fork();
   if (child == 0) {
     ::execl("/bin/sh", "sh", "-c", command("2>/dev/null").c_str(), nullptr);
