@@ -1,6 +1,7 @@
 #include "collision/proximity/closest_points.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace weft::collision {
@@ -15,7 +16,7 @@ constexpr double kNearlyParallelSq = 1e-4;
 /// last bits say. Moves the closest point by 1e-13 of an edge; rounding is 1e-16 times a few.
 constexpr double kSnap = 1e-13;
 
-/// Relative rounding error of a squared distance.
+/// Relative rounding error of a squared distance, and of a distance in lengths of the edges.
 constexpr double kRounding = 2e-15;
 
 /// Parameter in [0, 1] of the point of segment o + t e closest to o + w.
@@ -39,64 +40,61 @@ ClosestPoints nothing_yet() {
   return {{}, Vec3::Zero(), std::numeric_limits<double>::infinity()};
 }
 
+/// Of the boundary's best and the inner solution of a nearly degenerate pair: the inner one only where it is closer by
+/// more than rounding, so that what lies in one line always comes out at an end or corner.
+ClosestPoints closer_inside(const ClosestPoints& boundary, const ClosestPoints& inside, double length) {
+  return std::sqrt(inside.distance_sq) < std::sqrt(boundary.distance_sq) - kRounding * length ? inside : boundary;
+}
+
 }  // namespace
 
 ClosestPoints closest_vertex_face(const Vec3& p, const Vec3& t0, const Vec3& t1, const Vec3& t2) {
   // Everything relative to t0, so that the place in space costs no digits.
   const Vec3 e1 = t1 - t0, e2 = t2 - t0, w = p - t0;
   const Vec3 n = e1.cross(e2);
-  const double n_sq = n.squaredNorm();
+  const double n_sq = n.squaredNorm(), sizes = e1.squaredNorm() * e2.squaredNorm();
   const double b1 = w.cross(e2).dot(n), b2 = e1.cross(w).dot(n);
-
-  ClosestPoints best = nothing_yet();
   const double snap = kSnap * n_sq;
-  if (n_sq > 0 && b1 > snap && b2 > snap && b1 + b2 < n_sq - snap) {
-    double u1 = b1 / n_sq, u2 = b2 / n_sq;
-    if (n_sq > kNearlyParallelSq * e1.squaredNorm() * e2.squaredNorm()) {
-      // The difference along the normal has all its digits where w - u1 e1 - u2 e2 would cancel.
-      const Vec3 difference = n * (w.dot(n) / n_sq);
-      return {{1, -(1 - u1 - u2), -u1, -u2}, difference, difference.squaredNorm()};
-    }
-    // A needle: one round of refinement on what is left, and the edges are looked at as well.
-    const Vec3 rest = w - u1 * e1 - u2 * e2;
-    u1 = std::clamp(u1 + rest.cross(e2).dot(n) / n_sq, 0.0, 1.0);
-    u2 = std::clamp(u2 + e1.cross(rest).dot(n) / n_sq, 0.0, 1 - u1);
-    best.weights = {1, -(1 - u1 - u2), -u1, -u2};
-    best.difference = w - u1 * e1 - u2 * e2;
-    best.distance_sq = best.difference.squaredNorm();
+  const bool inside = n_sq > 0 && b1 > snap && b2 > snap && b1 + b2 < n_sq - snap;
+  double u1 = b1 / n_sq, u2 = b2 / n_sq;
+  if (inside && n_sq > kNearlyParallelSq * sizes) {
+    // The difference along the normal has all its digits where w - u1 e1 - u2 e2 would cancel.
+    const Vec3 difference = n * (w.dot(n) / n_sq);
+    return {{1, -(1 - u1 - u2), -u1, -u2}, difference, difference.squaredNorm()};
   }
 
+  ClosestPoints best = nothing_yet();
   const Vec3 e12 = t2 - t1, w1 = p - t1;
   const double s01 = along_segment(e1, w), s12 = along_segment(e12, w1), s02 = along_segment(e2, w);
   keep_closer(best, {1, -(1 - s01), -s01, 0}, w - s01 * e1, s01);
   keep_closer(best, {1, 0, -(1 - s12), -s12}, w1 - s12 * e12, s12);
   keep_closer(best, {1, -(1 - s02), 0, -s02}, w - s02 * e2, s02);
-  return best;
+  if (!inside) return best;
+
+  // A needle: one round of refinement on what is left over.
+  const Vec3 rest = w - u1 * e1 - u2 * e2;
+  u1 = std::clamp(u1 + rest.cross(e2).dot(n) / n_sq, 0.0, 1.0);
+  u2 = std::clamp(u2 + e1.cross(rest).dot(n) / n_sq, 0.0, 1 - u1);
+  const Vec3 difference = w - u1 * e1 - u2 * e2;
+  const ClosestPoints refined{{1, -(1 - u1 - u2), -u1, -u2}, difference, difference.squaredNorm()};
+  return closer_inside(best, refined, std::sqrt(std::max(e1.squaredNorm(), e2.squaredNorm())));
 }
 
 ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1) {
   const Vec3 d = p1 - p0, e = q1 - q0, w = q0 - p0;
   const Vec3 n = d.cross(e);
-  const double n_sq = n.squaredNorm();
+  const double n_sq = n.squaredNorm(), sizes = d.squaredNorm() * e.squaredNorm();
   const double s_n = w.cross(e).dot(n), t_n = w.cross(d).dot(n);
-
-  ClosestPoints best = nothing_yet();
   const double snap = kSnap * n_sq;
-  if (n_sq > 0 && s_n > snap && s_n < n_sq - snap && t_n > snap && t_n < n_sq - snap) {
-    double s = s_n / n_sq, t = t_n / n_sq;
-    if (n_sq > kNearlyParallelSq * d.squaredNorm() * e.squaredNorm()) {
-      const Vec3 difference = n * (-w.dot(n) / n_sq);
-      return {{1 - s, s, -(1 - t), -t}, difference, difference.squaredNorm()};
-    }
-    const Vec3 rest = w + t * e - s * d;
-    s = std::clamp(s + rest.cross(e).dot(n) / n_sq, 0.0, 1.0);
-    t = std::clamp(t + rest.cross(d).dot(n) / n_sq, 0.0, 1.0);
-    best.weights = {1 - s, s, -(1 - t), -t};
-    best.difference = s * d - w - t * e;
-    best.distance_sq = best.difference.squaredNorm();
+  const bool inside = n_sq > 0 && s_n > snap && s_n < n_sq - snap && t_n > snap && t_n < n_sq - snap;
+  double s = s_n / n_sq, t = t_n / n_sq;
+  if (inside && n_sq > kNearlyParallelSq * sizes) {
+    const Vec3 difference = n * (-w.dot(n) / n_sq);
+    return {{1 - s, s, -(1 - t), -t}, difference, difference.squaredNorm()};
   }
 
   // The distance is convex in both parameters: without an inner minimum it is least where one of them is at an end.
+  ClosestPoints best = nothing_yet();
   const Vec3 w_p1 = p1 - q0, w_q1 = q1 - p0;
   const double t_p0 = along_segment(e, -w), t_p1 = along_segment(e, w_p1);
   const double s_q0 = along_segment(d, w), s_q1 = along_segment(d, w_q1);
@@ -104,7 +102,15 @@ ClosestPoints closest_edge_edge(const Vec3& p0, const Vec3& p1, const Vec3& q0, 
   keep_closer(best, {0, 1, -(1 - t_p1), -t_p1}, w_p1 - t_p1 * e, t_p1);
   keep_closer(best, {1 - s_q0, s_q0, -1, 0}, s_q0 * d - w, s_q0);
   keep_closer(best, {1 - s_q1, s_q1, 0, -1}, s_q1 * d - w_q1, s_q1);
-  return best;
+  if (!inside) return best;
+
+  // Nearly parallel: as for a needle.
+  const Vec3 rest = w + t * e - s * d;
+  s = std::clamp(s + rest.cross(e).dot(n) / n_sq, 0.0, 1.0);
+  t = std::clamp(t + rest.cross(d).dot(n) / n_sq, 0.0, 1.0);
+  const Vec3 difference = s * d - w - t * e;
+  const ClosestPoints refined{{1 - s, s, -(1 - t), -t}, difference, difference.squaredNorm()};
+  return closer_inside(best, refined, std::sqrt(std::max(d.squaredNorm(), e.squaredNorm())));
 }
 
 }  // namespace weft::collision
