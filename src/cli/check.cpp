@@ -29,7 +29,7 @@ ExitCode check(const CheckOptions& options) {
   for (const std::filesystem::path& file : options.scenes) {
     const scene::LoadResult loaded = scene::load(file, options.overrides);
     if (!loaded.ok()) {
-      log::info(loaded.describe());
+      log::info(mistakes_text(loaded));
       code = ExitCode::scene_invalid;
       continue;
     }

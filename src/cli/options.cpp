@@ -14,7 +14,7 @@
 namespace weft::cli {
 namespace {
 
-constexpr int kMaxPictureSide = 16384;  // what OpenGL 4.5 promises for textures
+constexpr int kMinPictureSide = 16, kMaxPictureSide = 8192;  // as render.width and render.height of a scene
 constexpr int kMaxThreads = 1024;
 constexpr double kMaxFps = 1000;
 
@@ -260,11 +260,11 @@ PictureSize parse_size(const std::string& text) {
     const auto width = std::from_chars(begin, middle, size.width);
     const auto height = std::from_chars(middle + 1, end, size.height);
     const bool whole = width.ec == std::errc() && width.ptr == middle && height.ec == std::errc() && height.ptr == end;
-    const auto good = [](int side) { return side >= 1 && side <= kMaxPictureSide; };
+    const auto good = [](int side) { return side >= kMinPictureSide && side <= kMaxPictureSide; };
     if (whole && good(size.width) && good(size.height)) return size;
   }
-  throw Error(ExitCode::usage, "--size: expected WxH in pixels, each from 1 to {}, such as 1280x720, got {}",
-              kMaxPictureSide, text);
+  throw Error(ExitCode::usage, "--size: expected WxH in pixels, each from {} to {}, such as 1280x720, got {}",
+              kMinPictureSide, kMaxPictureSide, text);
 }
 
 Command parse_command_line(const std::vector<std::string>& arguments) {

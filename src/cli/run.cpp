@@ -149,12 +149,7 @@ class Run {
 
   void end_early(ExitCode code, const std::string& reason) {
     report_.exit_code = code;
-    std::string text = reason;
-    if (code == ExitCode::simulation_failed && !report_.frames.empty()) {
-      const std::size_t failed = report_.frames.size();
-      text = fmt::format("the simulation failed at frame {} (t = {:.4g} s): {}", failed,
-                         static_cast<double>(failed) / scene_.time.fps, reason);
-    }
+    const std::string text = code == ExitCode::simulation_failed ? "the simulation failed: " + reason : reason;
     const char* plural = report_.written == 1 ? " is" : "s are";
     report_.message = report_.written > 0
                           ? fmt::format("{}; {} frame{} kept in {}", text, report_.written, plural, report_.output)

@@ -2,7 +2,6 @@
 
 #include "core/error.hpp"
 #include "core/nearest.hpp"
-#include "scene/loader.hpp"
 
 namespace weft::cli {
 namespace {
@@ -30,9 +29,15 @@ scene::Scene load_scene(const SceneOptions& options) {
   // As an override, so that the scene's hash tells runs at other frame times apart.
   if (options.fps) overrides.push_back(fmt::format("time.fps={}", *options.fps));
   scene::LoadResult loaded = scene::load(options.scene, overrides);
-  if (!loaded.ok()) throw Error(ExitCode::scene_invalid, loaded.describe());
+  if (!loaded.ok()) throw Error(ExitCode::scene_invalid, mistakes_text(loaded));
   if (!options.camera.empty()) check_camera(loaded.scene, options.camera);
   return std::move(loaded.scene);
+}
+
+std::string mistakes_text(const scene::LoadResult& loaded) {
+  std::string text = loaded.describe();
+  text.erase(text.find_last_not_of('\n') + 1);
+  return text;
 }
 
 render::Settings render_settings(const scene::Scene& scene, const SceneOptions& options) {

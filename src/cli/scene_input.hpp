@@ -5,6 +5,7 @@
 
 #include "cli/options.hpp"
 #include "render/renderer.hpp"
+#include "scene/loader.hpp"
 #include "scene/scene.hpp"
 
 namespace weft::cli {
@@ -12,6 +13,9 @@ namespace weft::cli {
 /// Reads the scene with the changes of the command line. Throws Error(scene_invalid) with all mistakes, one a line, and
 /// Error(usage) for a camera that the scene does not have.
 scene::Scene load_scene(const SceneOptions& options);
+
+/// The mistakes of a scene, one a line, without a line feed at the end.
+std::string mistakes_text(const scene::LoadResult& loaded);
 
 render::Settings render_settings(const scene::Scene& scene, const SceneOptions& options);
 

@@ -59,6 +59,11 @@ std::string at_largest(const std::vector<FrameRecord>& frames, const char* forma
          fmt::format(" (frame {})", largest->report.frame);
 }
 
+// Below a picojoule there is only rounding.
+std::string joule(double energy) {
+  return fmt::format("{:.3g} J", std::abs(energy) < 1e-12 ? 0.0 : energy);
+}
+
 std::string figures_table(const RunReport& report) {
   long long steps = 0, rejected = 0, newton = 0, linear = 0;
   for (const FrameRecord& record : report.frames) {

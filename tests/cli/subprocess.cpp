@@ -1,0 +1,101 @@
+#include "cli/subprocess.hpp"
+
+#include <fcntl.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <stdexcept>
+
+namespace weft::cli {
+namespace {
+
+[[noreturn]] void become_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder, int out,
+                              int err) {
+  std::vector<char*> argv{const_cast<char*>(WEFT_PROGRAM)};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  const int in = ::open("/dev/null", O_RDONLY);
+  if (in < 0 || ::dup2(in, 0) < 0 || ::dup2(out, 1) < 0 || ::dup2(err, 2) < 0 || ::chdir(folder.c_str()) != 0) {
+    ::_exit(126);
+  }
+  ::execv(WEFT_PROGRAM, argv.data());
+  ::_exit(127);
+}
+
+}  // namespace
+
+Subprocess::Subprocess(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
+  std::array<int, 2> out{}, err{};
+  if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(err.data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe2");
+  pid_ = ::fork();
+  if (pid_ < 0) throw std::runtime_error("fork");
+  if (pid_ == 0) become_weft(arguments, folder, out[1], err[1]);
+  ::close(out[1]);
+  ::close(err[1]);
+  out_ = out[0];
+  err_ = err[0];
+}
+
+Subprocess::~Subprocess() {
+  if (pid_ > 0) {
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, nullptr, 0);
+  }
+  if (out_ >= 0) ::close(out_);
+  if (err_ >= 0) ::close(err_);
+}
+
+bool Subprocess::read_some(int timeout_ms) {
+  std::array<pollfd, 2> ready{pollfd{out_, POLLIN, 0}, pollfd{err_, POLLIN, 0}};  // poll skips negative descriptors
+  if (out_ < 0 && err_ < 0) return false;
+  if (::poll(ready.data(), ready.size(), timeout_ms) <= 0) return true;
+  for (const pollfd& entry : ready) {
+    if ((entry.revents & (POLLIN | POLLHUP)) == 0) continue;
+    std::array<char, 4096> buffer{};
+    const ssize_t size = ::read(entry.fd, buffer.data(), buffer.size());
+    if (size > 0) {
+      (entry.fd == out_ ? outcome_.out : outcome_.err).append(buffer.data(), static_cast<std::size_t>(size));
+    } else if (size == 0 || errno != EINTR) {
+      ::close(entry.fd);
+      (entry.fd == out_ ? out_ : err_) = -1;
+    }
+  }
+  return true;
+}
+
+bool Subprocess::wait_for_output(const std::string& text) {
+  const auto deadline = std::chrono::steady_clock::now() + std::chrono::minutes(1);
+  const auto found = [&] {
+    return outcome_.out.find(text) != std::string::npos || outcome_.err.find(text) != std::string::npos;
+  };
+  while (!found()) {
+    if (std::chrono::steady_clock::now() > deadline || !read_some(200)) return found();
+  }
+  return true;
+}
+
+void Subprocess::send(int signal) const {
+  if (pid_ > 0) ::kill(pid_, signal);
+}
+
+Outcome Subprocess::wait() {
+  while (read_some(1000)) {
+  }
+  int status = 0;
+  while (::waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
+  }
+  pid_ = -1;
+  outcome_.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+  return outcome_;
+}
+
+Outcome run_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
+  return Subprocess(arguments, folder).wait();
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,40 @@
+// The real program in a process of its own, as a shell would start it.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace weft::cli {
+
+struct Outcome {
+  int exit_code = -1;  ///< 128 + signal if a signal ended it, as shells say
+  std::string out, err;
+};
+
+/// WEFT_PROGRAM with `arguments`, started in `folder`, which must exist. Standard input is empty.
+class Subprocess {
+ public:
+  Subprocess(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+  ~Subprocess();  ///< kills what still runs
+  Subprocess(const Subprocess&) = delete;
+  Subprocess& operator=(const Subprocess&) = delete;
+
+  /// Waits until the output so far contains `text`; false if the program ended, or a minute passed, without it.
+  bool wait_for_output(const std::string& text);
+  void send(int signal) const;
+  Outcome wait();
+
+ private:
+  bool read_some(int timeout_ms);  // false once both pipes are at their end
+
+  pid_t pid_ = -1;
+  int out_ = -1, err_ = -1;
+  Outcome outcome_;
+};
+
+Outcome run_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+
+}  // namespace weft::cli
