@@ -54,7 +54,8 @@ std::span<const Fabric> fabrics() {
              "light dress silk; bending length 18 mm for a drape coefficient of 20 to 40 %; the rest chosen by us"),
       fabric(
           "wool", {0.22, 1700, 2100, 80, 1.2e-5, 0.002, 0.35},
-          "worsted suiting; bending and shear of the order that FAST reports for suitings (De Boos and Tester, "
+          "worsted suiting, bending length 18 mm; bending and shear of the order that FAST reports for suitings (De "
+          "Boos and Tester, "
           "SiroFAST, CSIRO report WT92.02, 1994: some 1e-5 N·m and tens of N/m), stretch 98.07 N/m at E100 of 5.9 and "
           "4.6 %; density chosen by us"),
       fabric(

@@ -13,12 +13,16 @@ namespace weft::scene {
 
 namespace {
 
-/// A wrong value of the command line may hit a key that the file has wrong too; the override is what counts.
 void read_document(toml::table document, const std::vector<std::string>& overrides, Scene& scene, Findings& findings) {
   for (const std::string& text : overrides) apply_override(text, document, findings);
   Reader reader(findings, scene.file.parent_path());
   reader.read(document, scene_rules(), &scene, "");
   check(scene, findings);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    const Place place = findings.place(findings.entry("obstacle", i) + ".file");
+    scene.obstacles[i].line = place.line;
+    scene.obstacles[i].column = place.column;
+  }
 }
 
 /// `text`: nothing where the file could not be read, which `findings` then knows.

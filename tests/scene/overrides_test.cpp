@@ -1,0 +1,104 @@
+// --set path.to.key=value
+#include <gtest/gtest.h>
+
+#include <string>
+#include <vector>
+
+#include "scene/loader.hpp"
+
+namespace weft::scene {
+namespace {
+
+const std::string kScene =
+    "[[cloth]]\nname = 'band'\n[[cloth]]\nname = 'sheet'\nsize = [1, 2]\n"
+    "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\nkeys = [{ time = 0 }, { time = 1 }]\n";
+
+Scene load_with(const std::vector<std::string>& overrides) {
+  const LoadResult result = load_text(kScene, "s.toml", overrides);
+  EXPECT_EQ(result.describe(), "");
+  return result.scene;
+}
+
+std::string messages(const std::vector<std::string>& overrides) {
+  return load_text(kScene, "s.toml", overrides).describe();
+}
+
+TEST(Override, FindsListEntriesByNameAndByIndex) {
+  const Scene scene = load_with({"cloth.sheet.material.stretch=1e6", "cloth.0.size=[3, 4]"});
+  EXPECT_EQ(scene.cloths[1].material.stretch_weft, 1e6);
+  EXPECT_EQ(scene.cloths[0].material.stretch_weft, Material{}.stretch_weft);
+  EXPECT_EQ(scene.cloths[0].size, Vec2(3, 4));
+  EXPECT_EQ(scene.cloths[1].size, Vec2(1, 2));
+}
+
+TEST(Override, ReachesIntoKeysAndTablesThatTheFileLeavesOut) {
+  const Scene scene = load_with({"obstacle.ball.keys.1.time=2.5", "time.fps=50", "cloth.band.look.roughness=0.25"});
+  EXPECT_EQ(scene.obstacles[0].motion.keys[1].time, 2.5);
+  EXPECT_EQ(scene.time.fps, 50);
+  EXPECT_EQ(scene.cloths[0].look.roughness, 0.25);
+}
+
+TEST(Override, TakesPlainWordsAsText) {
+  const Scene scene = load_with({"cloth.band.material.fabric=silk", "cloth.sheet.material.fabric=\"wool\"",
+                                 "title=two words", "cloth.band.look.color=#ff0000"});
+  EXPECT_EQ(scene.cloths[0].material.fabric, "silk");
+  EXPECT_EQ(scene.cloths[1].material.fabric, "wool");
+  EXPECT_EQ(scene.title, "two words");
+  EXPECT_EQ(scene.cloths[0].look.color, Vec3(1, 0, 0));
+}
+
+TEST(Override, OfALaterOneWins) {
+  EXPECT_EQ(load_with({"time.fps=50", "time.fps=60"}).time.fps, 60);
+}
+
+TEST(Override, HashesLikeTheSameValueInTheFile) {
+  const auto in_file = load_text(kScene + "[time]\nfps = 50\n", "s.toml").scene.hash;
+  EXPECT_EQ(load_with({"time.fps=50"}).hash, in_file);
+}
+
+TEST(Override, CanMendWhatTheFileHasWrong) {
+  EXPECT_EQ(load_text(kScene + "[time]\nfps = 0\n", "s.toml", {"time.fps=50"}).describe(), "");
+}
+
+TEST(Override, IsCheckedLikeTheFile) {
+  EXPECT_EQ(messages({"cloth.band.material.stretch=-1"}),
+            "--set cloth.band.material.stretch=-1: cloth.band.material.stretch: expected >= 0 N/m, got -1\n");
+  EXPECT_EQ(messages({"time.fps=fast"}),
+            "--set time.fps=fast: time.fps: expected a number > 0 and <= 1000 Hz, got the text \"fast\"\n");
+  EXPECT_EQ(messages({"time.fsp=25"}), "--set time.fsp=25: time.fsp: unknown key; did you mean fps?\n");
+  EXPECT_EQ(messages({"tme.fps=25"}), "--set tme.fps=25: tme: unknown key; did you mean time?\n");
+  EXPECT_EQ(messages({"cloth.band.size=[1, nan]"}),
+            "--set cloth.band.size=[1, nan]: cloth.band.size: expected a number > 0 and <= 10000 m, got nan\n");
+  EXPECT_EQ(messages({"cloth.band.name=sheet"}),
+            "s.toml:4:8: cloth.1.name: expected a name used once, got \"sheet\" again\n");
+}
+
+TEST(Override, ThatLeadsNowhereSaysWhere) {
+  EXPECT_EQ(messages({"cloth.bnd.size=1"}),
+            "--set cloth.bnd.size=1: cloth.bnd: expected the name or index of an entry, got bnd; did you mean band?\n");
+  EXPECT_EQ(messages({"cloth.7.size=1"}),
+            "--set cloth.7.size=1: cloth.7: expected the name or index of an entry, got 7\n");
+  EXPECT_EQ(messages({"cloth.band.name.x=1"}),
+            "--set cloth.band.name.x=1: cloth.band.name.x: expected a key of a table\n");
+  EXPECT_EQ(messages({"cloth.band=1"}), "--set cloth.band=1: cloth.band: expected a key of a table\n");
+}
+
+TEST(Override, ThatIsNoAssignmentIsRefused) {
+  EXPECT_EQ(messages({"time.fps"}), "--set time.fps: expected path.to.key=value\n");
+  EXPECT_EQ(messages({"=3"}), "--set =3: expected path.to.key=value\n");
+  EXPECT_EQ(messages({"time..fps=3"}), "--set time..fps=3: time..fps: expected a key between the dots\n");
+  EXPECT_EQ(messages({"time.fps="}), "--set time.fps=: time.fps: expected a TOML value after =\n");
+  EXPECT_EQ(messages({"time.fps=[1"}), "--set time.fps=[1: time.fps: expected a TOML value after =\n");
+}
+
+TEST(Override, CannotSmuggleInFurtherKeys) {
+  EXPECT_FALSE(load_text(kScene, "s.toml", {"time.fps=30\n[render]\nwidth=20"}).ok());
+}
+
+TEST(Override, ComesAfterTheMistakesOfTheFile) {
+  EXPECT_EQ(load_text(kScene + "[render]\nwidth = 1\n", "s.toml", {"time.fps=0"}).describe(),
+            "s.toml:11:9: render.width: expected >= 16, got 1\n--set time.fps=0: time.fps: expected > 0 Hz, got 0\n");
+}
+
+}  // namespace
+}  // namespace weft::scene

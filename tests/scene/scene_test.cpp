@@ -1,0 +1,263 @@
+// What a good scene becomes: every key in its member, defaults, poses, fabrics.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "scene/fabrics.hpp"
+#include "scene/loader.hpp"
+
+namespace weft::scene {
+namespace {
+
+const std::string kFolder = WEFT_SOURCE_DIR "/tests/scene/";
+
+Scene load_good(const std::string& text) {
+  const LoadResult result = load_text(text, kFolder + "text.toml");
+  EXPECT_EQ(result.describe(), "");
+  return result.scene;
+}
+
+class EveryKey : public testing::Test {
+ protected:
+  const LoadResult result_ = load(kFolder + "every_key.toml");
+  const Scene& scene_ = result_.scene;
+  void SetUp() override {
+    ASSERT_EQ(result_.describe(), "");
+    ASSERT_EQ(scene_.cloths.size(), 2u);
+    ASSERT_EQ(scene_.obstacles.size(), 8u);
+    ASSERT_EQ(scene_.cameras.size(), 2u);
+    ASSERT_EQ(scene_.lights.size(), 2u);
+  }
+};
+
+TEST_F(EveryKey, OfTheRootFillsItsMember) {
+  EXPECT_EQ(scene_.name, "every_key");
+  EXPECT_EQ(scene_.file, kFolder + "every_key.toml");
+  EXPECT_EQ(scene_.up, UpAxis::y);
+  EXPECT_EQ(scene_.title, "Every \"key\"");
+  EXPECT_EQ(scene_.frame_count(), 76);
+}
+
+TEST_F(EveryKey, OfTimePhysicsSolverAndContactFillsItsMember) {
+  EXPECT_EQ(scene_.time.duration, 2.5);
+  EXPECT_EQ(scene_.time.fps, 30);
+  EXPECT_EQ(scene_.time.step, 0.004);
+  EXPECT_EQ(scene_.time.integrator, Integrator::bdf2);
+  EXPECT_EQ(scene_.physics.gravity, Vec3(0.1, -1.62, 0.2));
+  EXPECT_EQ(scene_.physics.air_density, 1.1);
+  EXPECT_EQ(scene_.physics.wind, Vec3(1, 2, 3));
+  EXPECT_EQ(scene_.solver.newton_tolerance, 1e-4);
+  EXPECT_EQ(scene_.solver.newton_iterations, 7);
+  EXPECT_EQ(scene_.solver.linear_tolerance, 1e-5);
+  EXPECT_EQ(scene_.solver.linear_iterations, 300);
+  EXPECT_EQ(scene_.solver.halvings, 5);
+  EXPECT_FALSE(scene_.contact.self);
+  EXPECT_FALSE(scene_.contact.obstacles);
+  EXPECT_EQ(scene_.contact.stiffness, 250);
+}
+
+TEST_F(EveryKey, OfRenderFillsItsMember) {
+  EXPECT_EQ(scene_.render.width, 640);
+  EXPECT_EQ(scene_.render.height, 360);
+  EXPECT_EQ(scene_.render.camera, "dolly");
+  EXPECT_EQ(scene_.render.sky_color, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(scene_.render.ground_color, Vec3(0x33 / 255.0, 0x66 / 255.0, 0x99 / 255.0));
+  EXPECT_EQ(scene_.render.sky_intensity, 0.7);
+  EXPECT_EQ(scene_.render.heat, HeatQuantity::speed);
+  EXPECT_EQ(scene_.render.heat_max, 4);
+}
+
+TEST_F(EveryKey, OfAClothFillsItsMember) {
+  const Cloth& cloth = scene_.cloths[0];
+  EXPECT_EQ(cloth.name, "sheet");
+  EXPECT_EQ(cloth.size, Vec2(1.5, 2.5));
+  EXPECT_EQ(cloth.particles_weft, 31);
+  EXPECT_EQ(cloth.particles_warp, 51);
+  EXPECT_EQ(cloth.pose.position, Vec3(0.1, 0.2, 0.3));
+  EXPECT_EQ(cloth.velocity, Vec3(4, 5, 6));
+  const Material& m = cloth.material;
+  EXPECT_EQ(m.fabric, "denim");
+  EXPECT_EQ(m.density, 0.31);
+  EXPECT_EQ(m.stretch_weft, 1100);
+  EXPECT_EQ(m.stretch_warp, 1200);
+  EXPECT_EQ(m.shear, 130);
+  EXPECT_EQ(m.bend, 1.4e-5);
+  EXPECT_EQ(m.stretch_viscosity, 0.15);
+  EXPECT_EQ(m.shear_viscosity, 0.16);
+  EXPECT_EQ(m.bend_viscosity, 1.7e-6);
+  EXPECT_EQ(m.thickness, 0.0018);
+  EXPECT_EQ(m.friction, 0.19);
+  EXPECT_EQ(m.drag, 1.21);
+  EXPECT_EQ(cloth.look.color, Vec3(0.11, 0.12, 0.13));
+  EXPECT_EQ(cloth.look.back_color, Vec3(0.14, 0.15, 0.16));
+  EXPECT_EQ(cloth.look.roughness, 0.17);
+  EXPECT_EQ(cloth.look.thread_spacing, 0.018);
+  EXPECT_FALSE(cloth.look.visible);
+}
+
+TEST_F(EveryKey, OfAPinFillsItsMember) {
+  ASSERT_EQ(scene_.cloths[0].pins.size(), 2u);
+  const Pin& following = scene_.cloths[0].pins[0];
+  EXPECT_EQ(following.low, Vec2(0.1, 0.2));
+  EXPECT_EQ(following.high, Vec2(0.3, 0.4));
+  EXPECT_EQ(following.follow, "ball");
+  EXPECT_EQ(following.release, 1.5);
+  EXPECT_TRUE(following.motion.keys.empty());
+
+  const PoseTrack& motion = scene_.cloths[0].pins[1].motion;
+  EXPECT_EQ(motion.interpolation, Interpolation::linear);
+  ASSERT_EQ(motion.keys.size(), 3u);
+  EXPECT_EQ(motion.keys[0].time, 0.5);
+  EXPECT_EQ(motion.keys[0].pose.position, Vec3(0, 0, 1));
+  EXPECT_EQ(motion.keys[2].pose.position, Vec3(0, 0, 1)) << "a key holds what the one before has";
+  EXPECT_EQ(motion.keys[1].pose.rotation.coeffs(), Quat(1, 0, 0, 0).coeffs());
+  EXPECT_EQ(motion.keys[2].pose.rotation.coeffs(), Quat(0, 1, 0, 0).coeffs());
+}
+
+TEST_F(EveryKey, OfAnObstacleFillsItsMember) {
+  const Obstacle& ball = scene_.obstacles[0];
+  EXPECT_EQ(ball.name, "ball");
+  EXPECT_EQ(std::get<Sphere>(ball.shape).radius, 0.21);
+  EXPECT_EQ(ball.segments, 33);
+  EXPECT_EQ(ball.pose.position, Vec3(1, 2, 3));
+  EXPECT_EQ(ball.friction, 0.44);
+  EXPECT_FALSE(ball.collide);
+  EXPECT_EQ(ball.look.color, Vec3(0, 0, 0));
+  EXPECT_EQ(ball.look.roughness, 0.05);
+  EXPECT_TRUE(ball.look.checker);
+  EXPECT_FALSE(ball.look.visible);
+  EXPECT_EQ(ball.motion.interpolation, Interpolation::linear);
+  ASSERT_EQ(ball.motion.keys.size(), 2u);
+  EXPECT_EQ(ball.motion.keys[0].time, 0.25);
+  EXPECT_EQ(ball.motion.keys[0].pose.position, Vec3(1, 2, 3)) << "the first key holds what the obstacle has";
+  EXPECT_EQ(ball.motion.keys[1].pose.position, Vec3(4, 5, 6));
+}
+
+TEST_F(EveryKey, OfEachShapeFillsItsMember) {
+  const auto shape = [&](std::size_t i) -> const Shape& { return scene_.obstacles[i].shape; };
+  EXPECT_EQ(std::get<BoxShape>(shape(1)).size, Vec3(1.1, 1.2, 1.3));
+  EXPECT_EQ(std::get<BoxShape>(shape(1)).bevel, 0.02);
+  EXPECT_EQ(std::get<Cone>(shape(2)).radius, 0.61);
+  EXPECT_EQ(std::get<Cone>(shape(2)).height, 0.62);
+  EXPECT_EQ(std::get<Torus>(shape(3)).radius, 0.71);
+  EXPECT_EQ(std::get<Torus>(shape(3)).tube_radius, 0.072);
+  EXPECT_EQ(std::get<Cylinder>(shape(4)).radius, 0.081);
+  EXPECT_EQ(std::get<Cylinder>(shape(4)).height, 2.82);
+  EXPECT_EQ(std::get<HalfPipe>(shape(5)).radius, 1.91);
+  EXPECT_EQ(std::get<HalfPipe>(shape(5)).length, 3.92);
+  EXPECT_EQ(std::get<HalfPipe>(shape(5)).thickness, 0.093);
+  EXPECT_EQ(std::get<Plane>(shape(6)).size, Vec2(7, 8));
+  EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
+  EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
+  EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
+  EXPECT_EQ(scene_.obstacles[7].line, 140) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].column, 8);
+}
+
+TEST_F(EveryKey, OfCamerasAndLightsFillsItsMember) {
+  const Camera& still = scene_.cameras[0];
+  ASSERT_EQ(still.keys.size(), 1u);
+  EXPECT_EQ(still.keys[0].position, Vec3(1, 2, 3));
+  EXPECT_EQ(still.keys[0].target, Vec3(4, 5, 6));
+  EXPECT_EQ(still.keys[0].field_of_view, 28);
+  const Camera& dolly = scene_.cameras[1];
+  EXPECT_EQ(dolly.interpolation, Interpolation::linear);
+  ASSERT_EQ(dolly.keys.size(), 2u);
+  EXPECT_EQ(dolly.keys[0].target, Vec3(0, 1, 0));
+  EXPECT_EQ(dolly.keys[1].time, 2);
+  EXPECT_EQ(dolly.keys[1].position, Vec3(6, 0, 0));
+  EXPECT_EQ(dolly.keys[1].target, Vec3(0, 2, 0));
+  EXPECT_EQ(dolly.keys[1].field_of_view, 40);
+
+  const Light& sun = scene_.lights[0];
+  EXPECT_FALSE(sun.spot);
+  EXPECT_EQ(sun.color, Vec3(0.9, 0.8, 0.7));
+  EXPECT_EQ(sun.softness, 3);
+  ASSERT_EQ(sun.keys.size(), 1u);
+  EXPECT_EQ(sun.keys[0].direction, Vec3(1, -2, 3));
+  EXPECT_EQ(sun.keys[0].intensity, 1.5);
+  const Light& lamp = scene_.lights[1];
+  EXPECT_TRUE(lamp.spot);
+  EXPECT_EQ(lamp.cone_angle, 60);
+  ASSERT_EQ(lamp.keys.size(), 2u);
+  EXPECT_EQ(lamp.keys[0].position, Vec3(7, 8, 9));
+  EXPECT_EQ(lamp.keys[1].position, Vec3(8, 8, 9));
+  EXPECT_EQ(lamp.keys[1].target, Vec3(1, 0, 1));
+  EXPECT_EQ(lamp.keys[1].intensity, 0.5);
+}
+
+TEST(Scene, RotatesAboutTheFixedAxesInTheOrderXyz) {
+  const Scene scene = load_good("cloth = [{ name = 'a', rotation = [90, 0, 90] }]\n");
+  const Quat& q = scene.cloths[0].pose.rotation;
+  // About x by 90°: y -> z, which the turn about z leaves; x goes to y by the turn about z alone.
+  // Three products of unit quaternions: rounding of a few 1e-16.
+  EXPECT_LT((q * Vec3(0, 1, 0) - Vec3(0, 0, 1)).norm(), 1e-15);
+  EXPECT_LT((q * Vec3(1, 0, 0) - Vec3(0, 1, 0)).norm(), 1e-15);
+}
+
+TEST(Scene, TakesQuaternionsOfAnyLength) {
+  const Scene scene = load_good("cloth = [{ name = 'a', quaternion = [0, 0, 3, 4] }]\n");
+  EXPECT_LT((scene.cloths[0].pose.rotation.coeffs() - Quat(0, 0, 0.6, 0.8).coeffs()).norm(), 1e-15);
+}
+
+TEST(Scene, TakesOneNumberForBothDirections) {
+  const Scene scene =
+      load_good("cloth = [{ name = 'a', size = 0.4, particles = 9, material.stretch = 700, pin = [{ low = 0.5 }] }]\n");
+  EXPECT_EQ(scene.cloths[0].size, Vec2(0.4, 0.4));
+  EXPECT_EQ(scene.cloths[0].particles_weft, 9);
+  EXPECT_EQ(scene.cloths[0].particles_warp, 9);
+  EXPECT_EQ(scene.cloths[0].material.stretch_weft, 700);
+  EXPECT_EQ(scene.cloths[0].material.stretch_warp, 700);
+  EXPECT_EQ(scene.cloths[0].pins[0].low, Vec2(0.5, 0.5));
+}
+
+TEST(Scene, DefaultsFollowTheUpAxisWhereverItIsWritten) {
+  const std::string objects = "[[cloth]]\nname = 'a'\n[[light]]\nname = 'sun'\n";
+  const Scene z = load_good(objects);
+  EXPECT_EQ(z.physics.gravity, Vec3(0, 0, -9.81));
+  EXPECT_EQ(z.lights[0].keys[0].direction, Vec3(-0.4, -0.5, -1));
+  const Scene y = load_good("up = 'y'\n" + objects);
+  EXPECT_EQ(y.physics.gravity, Vec3(0, -9.81, 0));
+  EXPECT_EQ(y.lights[0].keys[0].direction, Vec3(-0.4, -1, 0.5));
+}
+
+TEST(Fabrics, GiveTheNumbersThatASceneLeavesOut) {
+  const Scene scene = load_good("cloth = [{ name = 'a', material = { density = 0.5, fabric = 'silk' } }]\n");
+  const Material& material = scene.cloths[0].material;
+  EXPECT_EQ(material.density, 0.5) << "a number of its own stands, wherever the fabric is written";
+  EXPECT_EQ(material.bend, find_fabric("silk")->material.bend);
+  EXPECT_EQ(material.thickness, find_fabric("silk")->material.thickness);
+}
+
+TEST(Fabrics, TheDefaultIsCotton) {
+  EXPECT_EQ(fabrics().front().material.fabric, "cotton");
+  EXPECT_EQ(load_good("cloth = [{ name = 'a' }]\n").cloths[0].material.density, Material{}.density);
+}
+
+TEST(Fabrics, HaveTheBendingLengthsThatTheirNotesState) {
+  // c = (B / (density g))^(1/3) [mm]; the notes round to 1 mm.
+  const auto bending_length = [](const char* name) {
+    const Material& m = find_fabric(name)->material;
+    return 1000 * std::cbrt(m.bend / (m.density * 9.81));
+  };
+  EXPECT_NEAR(bending_length("cotton"), 29, 0.5);
+  EXPECT_NEAR(bending_length("silk"), 18, 0.5);
+  EXPECT_NEAR(bending_length("wool"), 18, 0.5);
+  EXPECT_NEAR(bending_length("denim"), 25, 0.5);
+  EXPECT_NEAR(bending_length("leather"), 27, 0.5);
+  EXPECT_NEAR(bending_length("jersey"), 14, 0.5);
+}
+
+TEST(Pins, HoldTheParticlesOnTheirBoundsDespiteRounding) {
+  Pin pin;
+  pin.low = {0.1, 0};
+  pin.high = {0.3, 1};
+  EXPECT_TRUE(pin.holds(3 * 0.1, 0.5)) << "3 * 0.1 is a bit above 0.3";
+  EXPECT_TRUE(pin.holds(0.1, 1));
+  EXPECT_FALSE(pin.holds(0.3 + 1e-6, 0.5));
+  EXPECT_FALSE(pin.holds(0.2, -1e-6));
+}
+
+}  // namespace
+}  // namespace weft::scene
