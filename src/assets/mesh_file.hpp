@@ -13,11 +13,14 @@ namespace weft::assets {
 /// Larger files are refused: they would be scans, far beyond what cloth can collide with frame by frame.
 inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{256} << 20;
 
+/// Coordinates from here on are taken for damage [m]: no scene is a thousand kilometres wide.
+inline constexpr double kMaxCoordinate = 1e6;
+
 /// A mesh and what was done to it.
 struct LoadedMesh {
-  mesh::Mesh mesh;                  ///< metres; no uv. Quads stay quads if the file holds nothing else
-  std::size_t removed_faces = 0;    ///< without area: a corner named twice, or all corners on a line
-  std::size_t joined_vertices = 0;  ///< copies at the same place, as made by seams of texture or normals
+  mesh::Mesh mesh;                    ///< metres; no uv. Quads stay quads if the file holds nothing else
+  std::size_t removed_triangles = 0;  ///< without area: a corner named twice, or all corners on a line
+  std::size_t joined_vertices = 0;    ///< copies at the same place, as made by seams of texture or normals
 };
 
 /// Reads every surface of the file (OBJ, PLY, STL, glTF and what else assimp knows), all meshes merged with the

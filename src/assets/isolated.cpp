@@ -1,0 +1,164 @@
+#include "assets/isolated.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <stdexcept>
+#include <string_view>
+#include <system_error>
+
+namespace weft::assets {
+namespace {
+
+constexpr rlim_t kAddressLimit = rlim_t{16} << 30;  // [bytes]
+
+/// First byte of the answer: what follows are the bytes of `work`, or the text of its exception.
+constexpr char kDone = 'D', kFailed = 'F';
+
+[[noreturn]] void fail(const char* what) {
+  throw std::runtime_error(fmt::format("{}: {}", what, std::generic_category().message(errno)));
+}
+
+/// Descriptors of a pipe, closed at the end of the scope.
+class Pipe {
+ public:
+  Pipe() {
+    if (::pipe2(ends_.data(), O_CLOEXEC) != 0) fail("no pipe to a child process");
+  }
+  ~Pipe() {
+    close_end(0);
+    close_end(1);
+  }
+  Pipe(const Pipe&) = delete;
+  Pipe& operator=(const Pipe&) = delete;
+
+  int read_end() const { return ends_[0]; }
+  int write_end() const { return ends_[1]; }
+  void close_write_end() { close_end(1); }
+
+ private:
+  void close_end(std::size_t k) {
+    if (ends_[k] >= 0) ::close(ends_[k]);
+    ends_[k] = -1;
+  }
+  std::array<int, 2> ends_{-1, -1};
+};
+
+void limit(__rlimit_resource resource, rlim_t soft, rlim_t hard) {
+  const rlimit both{soft, hard};
+  // A stricter limit than ours may stand already; then it stays.
+  static_cast<void>(::setrlimit(resource, &both));
+}
+
+void send(int descriptor, std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t sent = ::write(descriptor, bytes.data(), bytes.size());
+    if (sent < 0 && errno == EINTR) continue;
+    if (sent <= 0) ::_exit(1);
+    bytes.remove_prefix(static_cast<std::size_t>(sent));
+  }
+}
+
+/// The child: never returns and runs no destructors of the parent's objects, whose files and threads are not its own.
+[[noreturn]] void run_child(const std::function<std::string()>& work, unsigned cpu_seconds, int answer) {
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);
+  for (const int crash : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGTERM}) std::signal(crash, SIG_DFL);
+  // Ctrl-C reaches all of the terminal's processes; the parent decides what becomes of it.
+  std::signal(SIGINT, SIG_IGN);
+  limit(RLIMIT_CORE, 0, 0);
+  limit(RLIMIT_CPU, cpu_seconds, cpu_seconds + 1);  // first XCPU, a second later KILL
+#ifndef __SANITIZE_ADDRESS__                        // the address sanitizer reserves terabytes
+  limit(RLIMIT_AS, kAddressLimit, kAddressLimit);
+#endif
+  char kind = kDone;
+  std::string bytes;
+  try {
+    bytes = work();
+  } catch (const std::bad_alloc&) {
+    kind = kFailed;
+    bytes = "it takes more memory than a mesh may";
+  } catch (const std::exception& error) {
+    kind = kFailed;
+    bytes = error.what();
+  } catch (...) {
+    kind = kFailed;
+    bytes = "an exception without words";
+  }
+  send(answer, {&kind, 1});
+  send(answer, bytes);
+  ::_exit(0);
+}
+
+std::string receive(int descriptor) {
+  std::string bytes;
+  std::array<char, 1 << 16> buffer{};
+  for (;;) {
+    const ssize_t got = ::read(descriptor, buffer.data(), buffer.size());
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) fail("reading from a child process");
+    if (got == 0) return bytes;
+    bytes.append(buffer.data(), static_cast<std::size_t>(got));
+  }
+}
+
+/// Waits for a child at the end of the scope at the latest, so that none is left behind.
+class Child {
+ public:
+  explicit Child(pid_t process) : process_(process) {}
+  ~Child() {
+    if (process_ <= 0) return;
+    ::kill(process_, SIGKILL);
+    wait();
+  }
+  Child(const Child&) = delete;
+  Child& operator=(const Child&) = delete;
+
+  int wait() {
+    int status = 0;
+    while (::waitpid(process_, &status, 0) < 0 && errno == EINTR) {
+    }
+    process_ = -1;
+    return status;
+  }
+
+ private:
+  pid_t process_;
+};
+
+}  // namespace
+
+std::string run_isolated(const std::function<std::string()>& work, unsigned cpu_seconds) {
+  Pipe pipe;
+  const pid_t process = ::fork();
+  if (process < 0) fail("no child process");
+  if (process == 0) run_child(work, cpu_seconds, pipe.write_end());
+  Child child(process);
+  pipe.close_write_end();
+  std::string answer = receive(pipe.read_end());
+  const int status = child.wait();
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    if (signal == SIGXCPU)
+      throw std::runtime_error(fmt::format("the reader was stopped after {} s of processor time", cpu_seconds));
+    if (signal == SIGKILL) throw std::runtime_error("the reader was killed from outside, as for want of memory");
+    throw std::runtime_error(fmt::format("the reader crashed: {}", ::strsignal(signal)));
+  }
+  if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty())
+    throw std::runtime_error("the reader ended without a word");
+  const char kind = answer.front();
+  answer.erase(0, 1);
+  if (kind == kFailed) throw std::runtime_error(answer);
+  return answer;
+}
+
+}  // namespace weft::assets

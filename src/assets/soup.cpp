@@ -1,0 +1,122 @@
+#include "assets/soup.hpp"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <cstddef>
+#include <cstring>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <utility>
+
+#include "mesh/polygon.hpp"
+
+namespace weft::assets {
+namespace {
+
+using Transform = Eigen::Matrix4d;
+
+Transform to_eigen(const aiMatrix4x4& m) {
+  Transform result;
+  for (unsigned r = 0; r < 4; ++r)
+    for (unsigned c = 0; c < 4; ++c) result(r, c) = static_cast<double>(m[r][c]);
+  return result;
+}
+
+void append_face(Soup& soup, std::span<const Index> corners) {
+  if (corners.size() == 4) {
+    soup.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
+  } else {
+    mesh::triangulate_polygon(corners, soup.positions, soup.triangles);
+  }
+}
+
+/// Appends one mesh under a node's transform.
+void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
+  const std::size_t base = soup.positions.size();
+  if (base + part.mNumVertices > static_cast<std::size_t>(std::numeric_limits<Index>::max()))
+    throw std::runtime_error("expected fewer than 2^31 vertices");
+  for (unsigned v = 0; v < part.mNumVertices; ++v) {
+    const aiVector3D& x = part.mVertices[v];
+    const Eigen::Vector4d world = to_world * Eigen::Vector4d(x.x, x.y, x.z, 1);
+    soup.positions.push_back(world.head<3>());
+  }
+  // A mirroring transform turns faces inside out; reverse them to keep their outside.
+  const bool mirrored = to_world.topLeftCorner<3, 3>().determinant() < 0;
+  std::vector<Index> corners;
+  for (const aiFace& face : std::span(part.mFaces, part.mNumFaces)) {
+    if (face.mNumIndices < 3) continue;
+    corners.clear();
+    for (const unsigned v : std::span(face.mIndices, face.mNumIndices)) {
+      if (v >= part.mNumVertices)
+        throw std::runtime_error(
+            fmt::format("mesh \"{}\": a face names vertex {} of {}", part.mName.C_Str(), v, part.mNumVertices));
+      corners.push_back(static_cast<Index>(base + v));
+    }
+    if (mirrored) std::reverse(corners.begin(), corners.end());
+    append_face(soup, corners);
+  }
+}
+
+template <class T>
+void put(std::string& bytes, const std::vector<T>& list) {
+  const std::size_t count = list.size();
+  bytes.append(reinterpret_cast<const char*>(&count), sizeof count);
+  bytes.append(reinterpret_cast<const char*>(list.data()), count * sizeof(T));
+}
+
+template <class T>
+void take(std::string_view& bytes, std::vector<T>& list) {
+  std::size_t count = 0;
+  if (bytes.size() >= sizeof count) std::memcpy(&count, bytes.data(), sizeof count);
+  if (bytes.size() < sizeof count || (bytes.size() - sizeof count) / sizeof(T) < count)
+    throw std::runtime_error("the reader's answer was cut short");
+  bytes.remove_prefix(sizeof count);
+  list.resize(count);
+  if (count > 0) std::memcpy(static_cast<void*>(list.data()), bytes.data(), count * sizeof(T));
+  bytes.remove_prefix(count * sizeof(T));
+}
+
+}  // namespace
+
+Soup read_soup(const std::filesystem::path& file) {
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
+  if (scene == nullptr || scene->mRootNode == nullptr) throw std::runtime_error(importer.GetErrorString());
+  Soup soup;
+  // The walk keeps its own stack: files can nest nodes deeper than ours is.
+  const aiNode* root = scene->mRootNode;
+  std::vector<std::pair<const aiNode*, Transform>> stack{{root, to_eigen(root->mTransformation)}};
+  while (!stack.empty()) {
+    const auto [node, to_world] = stack.back();
+    stack.pop_back();
+    for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) append_mesh(soup, *scene->mMeshes[m], to_world);
+    for (unsigned c = node->mNumChildren; c-- > 0;) {
+      const aiNode* child = node->mChildren[c];
+      stack.emplace_back(child, to_world * to_eigen(child->mTransformation));
+    }
+  }
+  return soup;
+}
+
+std::string to_bytes(const Soup& soup) {
+  std::string bytes;
+  put(bytes, soup.positions);
+  put(bytes, soup.triangles);
+  put(bytes, soup.quads);
+  return bytes;
+}
+
+Soup from_bytes(std::string_view bytes) {
+  Soup soup;
+  take(bytes, soup.positions);
+  take(bytes, soup.triangles);
+  take(bytes, soup.quads);
+  return soup;
+}
+
+}  // namespace weft::assets

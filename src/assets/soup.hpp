@@ -1,0 +1,29 @@
+// Faces as they come out of a file, before anything is joined or removed.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "mesh/topology.hpp"
+
+namespace weft::assets {
+
+/// Triangles and quads over vertices that may repeat; all indices are in range.
+struct Soup {
+  std::vector<Vec3> positions;  ///< in the unit of the file
+  std::vector<mesh::Triangle> triangles;
+  std::vector<mesh::Quad> quads;
+};
+
+/// Reads all meshes of a file with the transforms of their nodes. Larger polygons are triangulated, points and lines
+/// ignored. Throws std::runtime_error with assimp's words. Damaged files can crash assimp or keep it busy for ever:
+/// call it through run_isolated.
+Soup read_soup(const std::filesystem::path& file);
+
+/// A soup as plain bytes, for the way between two processes of the same program, and back.
+std::string to_bytes(const Soup& soup);
+Soup from_bytes(std::string_view bytes);
+
+}  // namespace weft::assets
