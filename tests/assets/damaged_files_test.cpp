@@ -1,0 +1,82 @@
+// Files cut short and with bytes changed: each is loaded or refused by name, whatever it holds, and what is loaded is a
+// sound mesh.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <string>
+#include <utility>
+
+#include "assets/mesh_file.hpp"
+#include "assets/small_files.hpp"
+#include "core/error.hpp"
+#include "mesh/topology.hpp"
+
+namespace weft::assets {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// File name ending and the bytes of a whole file.
+using Format = std::pair<const char*, std::string (*)()>;
+
+class DamagedFiles : public testing::TestWithParam<Format> {
+ protected:
+  DamagedFiles()
+      : folder_(fs::path(testing::TempDir()) / ("weft_damaged_" + std::to_string(::getpid()))),
+        file_(folder_ / (std::string("mesh.") + GetParam().first)),
+        whole_(GetParam().second()) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~DamagedFiles() override { fs::remove_all(folder_); }
+
+  /// Loads these bytes; returns true if they were taken. Anything but a sound mesh or an asset error fails the test.
+  bool try_to_load(const std::string& bytes) {
+    std::ofstream(file_, std::ios::binary) << bytes;
+    try {
+      const mesh::Mesh mesh = load_mesh(file_, 1, "scene").mesh;
+      const auto report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
+      EXPECT_TRUE(report.out_of_range.empty() && report.degenerate.empty());
+      EXPECT_FALSE(mesh.topology.triangles.empty());
+      for (const Vec3& x : mesh.positions) EXPECT_TRUE(x.allFinite());
+      return true;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::asset_unreadable) << error.what();
+      return false;
+    }
+  }
+
+  fs::path folder_, file_;
+  std::string whole_;
+};
+
+TEST_P(DamagedFiles, CutShortAnywhereAreLoadedOrRefused) {
+  EXPECT_TRUE(try_to_load(whole_));
+  for (std::size_t length = 0; length < whole_.size(); length += 3) try_to_load(whole_.substr(0, length));
+  EXPECT_FALSE(try_to_load(whole_.substr(0, whole_.size() / 4)));
+}
+
+TEST_P(DamagedFiles, WithBytesChangedAreLoadedOrRefused) {
+  std::mt19937 random(20240601);
+  int refused = 0;
+  for (int trial = 0; trial < 500; ++trial) {
+    std::string bytes = whole_;
+    const std::uint32_t changes = 1 + random() % 4;
+    for (std::uint32_t k = 0; k < changes; ++k) bytes[random() % bytes.size()] = static_cast<char>(random() % 256);
+    refused += try_to_load(bytes) ? 0 : 1;
+  }
+  EXPECT_GT(refused, 0);  // else the changes would not have been seen at all
+}
+
+INSTANTIATE_TEST_SUITE_P(Formats, DamagedFiles,
+                         testing::Values(Format{"obj", obj_cube}, Format{"ply", ply_tetrahedron},
+                                         Format{"stl", stl_tetrahedron}, Format{"gltf", gltf_tetrahedron}),
+                         [](const auto& format) { return format.param.first; });
+
+}  // namespace
+}  // namespace weft::assets

@@ -1,0 +1,73 @@
+#include "assets/isolated.hpp"
+
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace weft::assets {
+namespace {
+
+std::string reason(const std::function<std::string()>& work, unsigned cpu_seconds = 60) {
+  try {
+    run_isolated(work, cpu_seconds);
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return "none";
+}
+
+TEST(Isolated, WorkReturnsItsBytesWhateverTheyAre) {
+  std::string bytes(3'000'000, '\0');  // more than a pipe holds at once
+  for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = static_cast<char>(k * k % 251);
+  EXPECT_EQ(run_isolated([&] { return bytes; }, 60), bytes);
+  EXPECT_EQ(run_isolated([] { return std::string(); }, 60), "");
+}
+
+TEST(Isolated, WorkChangesNothingInThisProcess) {
+  int touched = 0;
+  run_isolated([&] { return std::to_string(++touched); }, 60);
+  EXPECT_EQ(touched, 0);
+}
+
+TEST(Isolated, WorkThatThrowsIsReportedInItsWords) {
+  EXPECT_EQ(reason([]() -> std::string { throw std::runtime_error("line 7 is odd"); }), "line 7 is odd");
+  EXPECT_EQ(reason([]() -> std::string { throw 7; }), "an exception without words");
+  EXPECT_EQ(reason([]() -> std::string { throw std::bad_alloc(); }), "it takes more memory than a mesh may");
+}
+
+TEST(Isolated, WorkThatCrashesIsReportedBySignal) {
+  EXPECT_EQ(reason([]() -> std::string {
+              std::raise(SIGSEGV);
+              return "";
+            }),
+            "the reader crashed: Segmentation fault");
+  EXPECT_EQ(reason([]() -> std::string { std::abort(); }), "the reader crashed: Aborted");
+  EXPECT_EQ(reason([]() -> std::string { std::_Exit(3); }), "the reader ended without a word");
+}
+
+TEST(Isolated, WorkWithoutEndIsStopped) {
+  const auto endless = []() -> std::string {
+    volatile bool on = true;
+    while (on) {
+    }
+    return "";
+  };
+  EXPECT_EQ(reason(endless, 1), "the reader was stopped after 1 s of processor time");
+}
+
+#ifndef __SANITIZE_ADDRESS__
+TEST(Isolated, WorkThatWantsTooMuchMemoryIsRefused) {
+  const auto greedy = [] {
+    std::vector<std::string> hoard(17);
+    for (std::string& gigabyte : hoard) gigabyte.reserve(std::size_t{1} << 30);  // addresses only, no memory
+    return std::to_string(hoard.size());
+  };
+  EXPECT_EQ(reason(greedy), "it takes more memory than a mesh may");
+}
+#endif
+
+}  // namespace
+}  // namespace weft::assets

@@ -1,0 +1,191 @@
+#include "assets/mesh_file.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cstddef>
+#include <filesystem>
+#include <fstream>
+#include <string>
+
+#include "assets/small_files.hpp"
+#include "core/error.hpp"
+#include "mesh/geometry.hpp"
+
+namespace weft::assets {
+namespace {
+
+namespace fs = std::filesystem;
+using Quads = std::vector<mesh::Quad>;
+using Triangles = std::vector<mesh::Triangle>;
+
+/// A folder of its own for each test.
+class MeshFiles : public testing::Test {
+ protected:
+  MeshFiles() : folder_(fs::path(testing::TempDir()) / ("weft_assets_" + std::to_string(::getpid()))) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  ~MeshFiles() override { fs::remove_all(folder_); }
+
+  fs::path put(const std::string& name, const std::string& bytes) const {
+    std::ofstream(folder_ / name, std::ios::binary) << bytes;
+    return folder_ / name;
+  }
+
+  LoadedMesh load(const std::string& name, const std::string& bytes, double scale = 1) const {
+    return load_mesh(put(name, bytes), scale, "scenes/a.toml:12:8: obstacle.chair");
+  }
+
+  /// The words after scene, file and `mesh file`, or "loaded".
+  std::string refusal(const std::string& name, const std::string& bytes) const { return refusal_of(put(name, bytes)); }
+
+  static std::string refusal_of(const fs::path& file) {
+    try {
+      load_mesh(file, 1, "scenes/a.toml:12:8: obstacle.chair");
+      return "loaded";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::asset_unreadable);
+      const std::string start = "scenes/a.toml:12:8: obstacle.chair: mesh file " + file.string() + ": ";
+      const std::string text = error.what();
+      EXPECT_EQ(text.substr(0, start.size()), start);
+      return text.substr(std::min(start.size(), text.size()));
+    }
+  }
+
+  fs::path folder_;
+};
+
+mesh::TopologyReport inspected(const LoadedMesh& loaded) {
+  return mesh::inspect(loaded.mesh.topology.triangles, loaded.mesh.positions.size());
+}
+
+double volume(const LoadedMesh& loaded) {
+  return mesh::enclosed_volume(loaded.mesh.topology.triangles, loaded.mesh.positions);
+}
+
+TEST_F(MeshFiles, OfQuadsAloneStayQuadsAndLoseTheirSeams) {
+  const LoadedMesh cube = load("cube.obj", obj_cube());
+  EXPECT_EQ(cube.mesh.positions.size(), 8u);
+  EXPECT_EQ(cube.joined_vertices, 16u);  // each corner had three normals
+  EXPECT_EQ(cube.mesh.topology.quads.size(), 6u);
+  EXPECT_EQ(cube.mesh.topology.triangles.size(), 12u);
+  EXPECT_TRUE(inspected(cube).watertight());
+  EXPECT_NEAR(volume(cube), 1, 1e-15);
+  EXPECT_TRUE(cube.mesh.uv.empty());
+}
+
+TEST_F(MeshFiles, KeepTheOrderInWhichFacesNameVertices) {
+  const LoadedMesh loaded = load("two.obj", "v 9 9 9\nv 1 0 0\nv 0 0 0\nv 0 1 0\nv 1 1 0\nf 3 2 4\nf 2 5 4\n");
+  EXPECT_EQ(loaded.mesh.positions, (std::vector<Vec3>{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}}));
+  EXPECT_EQ(loaded.mesh.topology.triangles, (Triangles{{0, 1, 2}, {1, 3, 2}}));
+  EXPECT_TRUE(loaded.mesh.topology.quads.empty());
+}
+
+TEST_F(MeshFiles, OfTrianglesAndQuadsBecomeTriangles) {
+  const LoadedMesh loaded = load("mixed.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2 5 3\n");
+  EXPECT_TRUE(loaded.mesh.topology.quads.empty());
+  EXPECT_EQ(loaded.mesh.topology.triangles.size(), 3u);
+  EXPECT_EQ(mesh::surface_area(loaded.mesh.topology.triangles, loaded.mesh.positions), 1.5);
+}
+
+TEST_F(MeshFiles, WithLargerPolygonsAreTriangulatedInsideThem) {
+  // An L of six corners, area 3.
+  const LoadedMesh loaded = load("l.obj", "v 0 0 0\nv 2 0 0\nv 2 1 0\nv 1 1 0\nv 1 2 0\nv 0 2 0\nf 1 2 3 4 5 6\n");
+  EXPECT_EQ(loaded.mesh.topology.triangles.size(), 4u);
+  EXPECT_EQ(mesh::surface_area(loaded.mesh.topology.triangles, loaded.mesh.positions), 3);
+  for (const auto& t : loaded.mesh.topology.triangles) EXPECT_GT(mesh::area_vector(t, loaded.mesh.positions).z(), 0);
+}
+
+TEST_F(MeshFiles, OfAsciiPlyAreReadAndScaled) {
+  const LoadedMesh loaded = load("t.ply", ply_tetrahedron(), 10);
+  EXPECT_TRUE(inspected(loaded).watertight());
+  EXPECT_NEAR(volume(loaded), 1000.0 / 6, 1e-12 * 1000);
+}
+
+TEST_F(MeshFiles, OfStlAreWatertightThoughTheirTrianglesShareNothing) {
+  const LoadedMesh loaded = load("t.stl", stl_tetrahedron());
+  EXPECT_EQ(loaded.mesh.positions.size(), 4u);
+  EXPECT_EQ(loaded.joined_vertices, 8u);
+  EXPECT_TRUE(inspected(loaded).watertight());
+  EXPECT_NEAR(volume(loaded), 1.0 / 6, 1e-15);
+}
+
+TEST_F(MeshFiles, OfGltfFollowTheirNodesAndFaceOutwardThoughMirrored) {
+  const LoadedMesh loaded = load("t.gltf", gltf_tetrahedron());
+  EXPECT_TRUE(inspected(loaded).watertight());
+  EXPECT_NEAR(volume(loaded), 1.0 / 6, 1e-15);
+  const Box3 box = mesh::bounding_box(loaded.mesh.positions);
+  EXPECT_EQ(Vec3(box.min()), Vec3(0, 0, 1));
+  EXPECT_EQ(Vec3(box.max()), Vec3(1, 1, 2));
+}
+
+TEST_F(MeshFiles, WithSeveralMeshesAreMergedAndJoinedWhereTheyTouch) {
+  const LoadedMesh loaded = load("two.obj",
+                                 "o a\nv 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n"
+                                 "o b\nv 0 0 0\nv 1 1 0\nv 0 1 0\nf 4 5 6\n");
+  EXPECT_EQ(loaded.mesh.positions.size(), 4u);
+  EXPECT_EQ(inspected(loaded).border.size(), 4u);
+}
+
+TEST_F(MeshFiles, JoinZeroAndMinusZero) {
+  const LoadedMesh loaded =
+      load("zero.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv -0 -0 -0\nv 1 1 -0\nv 0 1 0\nf 1 2 3\nf 4 5 6\n");
+  EXPECT_EQ(loaded.mesh.positions.size(), 4u);
+}
+
+TEST_F(MeshFiles, LoseFacesWithoutAreaAndSaySo) {
+  const LoadedMesh loaded = load("flat.obj",
+                                 "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 2 0 0\nv 0.5 1e-9 0\n"
+                                 "f 1 2 3\n"    // sound
+                                 "f 1 4 3\n"    // twice the same place
+                                 "f 1 2 5\n"    // on a line
+                                 "f 1 2 6\n");  // nearly so
+  EXPECT_EQ(loaded.removed_triangles, 3u);
+  EXPECT_EQ(loaded.mesh.topology.triangles.size(), 1u);
+}
+
+TEST_F(MeshFiles, OfQuadsWithOneWithoutAreaBecomeTriangles) {
+  // The second quad has collapsed to a triangle: corners 2 and 3 coincide.
+  const LoadedMesh loaded =
+      load("collapsed.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nv 2 0 0\nf 1 2 3 4\nf 2 5 6 3\n");
+  EXPECT_TRUE(loaded.mesh.topology.quads.empty());
+  EXPECT_EQ(loaded.mesh.topology.triangles.size(), 3u);
+  EXPECT_EQ(loaded.removed_triangles, 1u);
+}
+
+TEST_F(MeshFiles, WithoutFacesAreRefused) {
+  EXPECT_EQ(refusal("lines.obj", "v 0 0 0\nv 1 0 0\nl 1 2\n"), "expected faces, got none");
+  EXPECT_EQ(refusal("flat.obj", "v 0 0 0\nv 1 0 0\nv 2 0 0\nf 1 2 3\n"), "expected faces with an area, got none");
+}
+
+TEST_F(MeshFiles, WithInfiniteOrHugeCoordinatesAreRefused) {
+  const std::string expected = "expected coordinates below 1e+06 m, got (";
+  for (const char* number : {"inf", "-inf", "nan", "1e39", "-2e6"}) {
+    const std::string text = refusal("far.obj", std::string("v 0 0 0\nv 1 0 0\nv 0 ") + number + " 0\nf 1 2 3\n");
+    EXPECT_EQ(text.substr(0, expected.size()), expected) << number << ": " << text;
+  }
+}
+
+TEST_F(MeshFiles, ThatAssimpCannotReadAreRefusedInItsWords) {
+  EXPECT_EQ(refusal("a.ply", "ply\nnonsense\nend_header\n"), "Invalid .ply file: Missing format specification");
+  EXPECT_NE(refusal("a.unheard_of", "text").find("No suitable reader found"), std::string::npos);
+}
+
+TEST_F(MeshFiles, OfPlyWithoutAnEndOfTheirHeaderAreRefusedAtOnce) {
+  const std::string whole = ply_tetrahedron();
+  EXPECT_EQ(refusal("cut.ply", whole.substr(0, whole.find("end_header"))),
+            "expected a line end_header in the first 64 kB of a PLY file, got none");
+}
+
+TEST_F(MeshFiles, ThatAreEmptyMissingFoldersOrTooLargeAreRefusedBeforeReading) {
+  EXPECT_EQ(refusal("empty.obj", ""), "expected a mesh, got an empty file");
+  EXPECT_EQ(refusal_of(folder_ / "absent.obj"), "expected a readable file, got none at this path");
+  EXPECT_EQ(refusal_of(folder_), "expected a regular file, got a folder or a device");
+  const fs::path large = put("large.obj", "v 0 0 0\n");
+  fs::resize_file(large, kMaxMeshFileBytes + 1);  // sparse: takes no room
+  EXPECT_EQ(refusal_of(large), "expected at most 268435456 bytes, got 268435457; reduce the mesh");
+}
+
+}  // namespace
+}  // namespace weft::assets

@@ -1,0 +1,71 @@
+#include "assets/small_files.hpp"
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
+
+namespace weft::assets {
+namespace {
+
+constexpr std::array<std::array<float, 3>, 4> kCorners{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
+constexpr std::array<std::array<std::uint16_t, 3>, 4> kFaces{{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}}};
+
+template <class T>
+void append(std::string& bytes, const T& value) {
+  bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+std::string base64(const std::string& bytes) {
+  constexpr char kDigits[] = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  std::string text;
+  for (std::size_t i = 0; i < bytes.size(); i += 3) {  // the length is a multiple of three here
+    std::uint32_t group = 0;
+    for (std::size_t k = 0; k < 3; ++k) group = group << 8 | static_cast<std::uint8_t>(bytes[i + k]);
+    for (const int shift : {18, 12, 6, 0}) text += kDigits[group >> shift & 63];
+  }
+  return text;
+}
+
+}  // namespace
+
+std::string obj_cube() {
+  return "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 0 0 1\nv 1 0 1\nv 1 1 1\nv 0 1 1\n"
+         "vt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+         "vn 0 0 -1\nvn 0 0 1\nvn 0 -1 0\nvn 1 0 0\nvn 0 1 0\nvn -1 0 0\n"
+         "f 1/1/1 4/2/1 3/3/1 2/4/1\nf 5/1/2 6/2/2 7/3/2 8/4/2\nf 1/1/3 2/2/3 6/3/3 5/4/3\n"
+         "f 2/1/4 3/2/4 7/3/4 6/4/4\nf 3/1/5 4/2/5 8/3/5 7/4/5\nf 4/1/6 1/2/6 5/3/6 8/4/6\n";
+}
+
+std::string ply_tetrahedron() {
+  return "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float z\n"
+         "element face 4\nproperty list uchar int vertex_indices\nend_header\n"
+         "0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n";
+}
+
+std::string stl_tetrahedron() {
+  std::string bytes(80, ' ');
+  append(bytes, static_cast<std::uint32_t>(kFaces.size()));
+  for (const auto& face : kFaces) {
+    bytes.append(12, '\0');  // the normal may be left zero
+    for (const auto corner : face) append(bytes, kCorners[corner]);
+    bytes.append(2, '\0');
+  }
+  return bytes;
+}
+
+std::string gltf_tetrahedron() {
+  std::string buffer;
+  for (const auto& corner : kCorners) append(buffer, corner);
+  for (const auto& face : kFaces) append(buffer, face);
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"mesh":0,"scale":[1,1,-1],"translation":[0,0,2]}],
+"meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
+"buffers":[{"byteLength":72,"uri":"data:application/octet-stream;base64,)" +
+         base64(buffer) + R"("}],
+"bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
+{"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}]})";
+}
+
+}  // namespace weft::assets

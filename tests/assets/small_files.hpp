@@ -1,0 +1,20 @@
+// Small mesh files of several formats, made in memory.
+#pragma once
+
+#include <string>
+
+namespace weft::assets {
+
+/// A unit cube over the origin: 8 vertices, 6 quads, each with its own normal and texture corner.
+std::string obj_cube();
+
+/// A tetrahedron over the unit axes, in ASCII.
+std::string ply_tetrahedron();
+
+/// The same as binary STL: every triangle brings its own three vertices.
+std::string stl_tetrahedron();
+
+/// The same as self-contained glTF; one node mirrors it by a scale of -1 along z and moves it up by 2.
+std::string gltf_tetrahedron();
+
+}  // namespace weft::assets
