@@ -1,6 +1,7 @@
 // Tests of one k-DOP against several at once: bounds stored by row, one lane per bound.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 
@@ -52,8 +53,52 @@ inline std::uint32_t overlap_mask(const LaneBounds<K, N>& bounds, const float* q
   return mask;
 }
 
-/// A point in float, for first looks; the fourth lane is unused and zero.
+/// Four or eight numbers side by side.
 typedef float Lanes4 __attribute__((vector_size(16)));
+typedef float Lanes8 __attribute__((vector_size(32)));
+typedef std::int32_t IntLanes8 __attribute__((vector_size(32)));
+
+inline Lanes8 smaller(const Lanes8& a, const Lanes8& b) {
+  return a < b ? a : b;
+}
+inline Lanes8 larger(const Lanes8& a, const Lanes8& b) {
+  return a > b ? a : b;
+}
+
+/// Bit l is set where lane l is negative.
+inline std::uint32_t sign_mask(const Lanes8& lanes) {
+#if defined(__AVX__)
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(reinterpret_cast<const __m256&>(lanes)));
+#else
+  std::uint32_t mask = 0;
+  for (int l = 0; l < 8; ++l) mask |= (std::bit_cast<std::uint32_t>(lanes[l]) >> 31) << l;
+  return mask;
+#endif
+}
+
+/// Bit l is set where lane l is negative; all bits of a lane are set where a comparison of whole numbers holds.
+inline std::uint32_t sign_mask(const IntLanes8& lanes) {
+  return sign_mask(reinterpret_cast<const Lanes8&>(lanes));
+}
+
+/// x, y and z of eight points that come as rows (x, y, z, unused).
+struct Points8 {
+  Lanes8 axis[3];
+};
+
+inline Points8 transpose(const Lanes4* const (&row)[8]) {
+  const auto beside = [&](int low) {
+    return __builtin_shufflevector(*row[low], *row[low + 4], 0, 1, 2, 3, 4, 5, 6, 7);
+  };
+  const Lanes8 a = beside(0), b = beside(1), c = beside(2), d = beside(3);
+  const Lanes8 xy_ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes8 xy_cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
+  const Lanes8 z_ab = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);
+  const Lanes8 z_cd = __builtin_shufflevector(c, d, 2, 10, 3, 11, 6, 14, 7, 15);
+  return {{__builtin_shufflevector(xy_ab, xy_cd, 0, 1, 8, 9, 4, 5, 12, 13),
+           __builtin_shufflevector(xy_ab, xy_cd, 2, 3, 10, 11, 6, 7, 14, 15),
+           __builtin_shufflevector(z_ab, z_cd, 0, 1, 8, 9, 4, 5, 12, 13)}};
+}
 
 /// Corner numbers of eight triangles: corner c of triangle l is corner[c][l].
 struct alignas(32) LaneCorners {

