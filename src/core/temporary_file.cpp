@@ -44,6 +44,13 @@ std::string reason(int error) {
 }  // namespace
 
 TemporaryFile::TemporaryFile(std::filesystem::path final_name) : final_name_(std::move(final_name)) {
+  // A rename onto a folder would fail after all the work, and one onto /dev/null would replace the device.
+  std::error_code status_error;
+  const auto status = std::filesystem::status(final_name_, status_error);
+  if (!final_name_.has_filename() || (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))) {
+    throw Error(ExitCode::output_failed, "{}: expected the name of a file to write, got a folder or a device",
+                final_name_.string());
+  }
   // Absolute, so that the name stays right whatever happens to the working folder.
   std::error_code error;
   const std::filesystem::path absolute = std::filesystem::absolute(final_name_, error);

@@ -48,10 +48,6 @@ void check_settings(const std::filesystem::path& file, const Settings& settings)
     throw Error(ExitCode::output_failed, "{}: preset: expected one of {}, got {}", file.string(),
                 fmt::join(kPresets, ", "), settings.preset);
   }
-  // Found only by the last rename otherwise, after all the work.
-  if (!file.has_filename() || std::filesystem::is_directory(file)) {
-    throw Error(ExitCode::output_failed, "{}: expected the name of a video file, got a folder", file.string());
-  }
 }
 
 // Where the fragments go, and the name under which they stay if the finished file cannot be made of them.
@@ -91,7 +87,8 @@ struct Encoder::Impl {
   std::filesystem::path file;
   Settings settings;
   AVRational rate;
-  std::optional<TemporaryFile> fragments;
+  TemporaryFile whole;                     // written at the end, from the fragments
+  std::optional<TemporaryFile> fragments;  // until then
   FrameConverter converter;
   FramePtr frame;
   PacketPtr packet;
@@ -110,6 +107,7 @@ Encoder::Impl::Impl(const std::filesystem::path& f, const Settings& s)
     : file(f),
       settings(s),
       rate(frame_rate(s.fps)),
+      whole(f),
       fragments(std::in_place, rescue_name(f)),
       converter(s.width, s.height, f),
       frame(converter.make_frame()),
@@ -136,7 +134,6 @@ void Encoder::Impl::send(const AVFrame* next) {
 
 // Makes the finished file out of the fragments.
 void Encoder::Impl::publish() {
-  TemporaryFile whole(file);
   copy_to_fast_start(fragments->path(), whole.path(), file, rate, settings.metadata);
   verify_frames(whole.path(), file, rate, frames);
   whole.commit();

@@ -19,19 +19,23 @@ struct Settings {
   std::map<std::string, std::string> metadata;
 };
 
-/// Writes one MP4 file: H.264, yuv420p, BT.709, fast start. Nothing appears under the final name before finish().
+/// Writes one MP4 file: H.264, yuv420p, BT.709, fast start. Nothing appears under the final name before finish(). Until
+/// then a hidden temporary file beside it holds the frames in fragments, which play even if the process is killed.
 class Encoder {
  public:
-  /// Opens the temporary file. Throws Error(output_failed).
+  /// Opens the temporary file. Throws Error(output_failed) for settings out of range and places not to be written.
   Encoder(const std::filesystem::path& file, const Settings& settings);
   ~Encoder();  ///< without finish(): removes the temporary file
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
 
-  /// Appends the next frame. The size must be that of the settings.
+  /// Appends the next frame. Throws Error(internal) if its size is not that of the settings, Error(output_failed) with
+  /// libav's words, as for a full disk.
   void add(const image::Image& image);
 
-  /// Flushes, moves the index to the front, renames to the final name. At least one frame must have been added.
+  /// Flushes, moves the index to the front, reads the file again to see that each frame is there at its time, renames
+  /// to the final name. At least one frame must have been added. Throws Error(output_failed); if all frames are encoded
+  /// but the finished file cannot be made, they stay as `<name>.partial.mp4` and the error says so.
   void finish();
 
   int frames() const;

@@ -49,6 +49,7 @@ void OutputDeleter::operator()(AVFormatContext* output) const {
 void collect_log() {
   static std::once_flag once;
   std::call_once(once, [] { av_log_set_callback(remember); });
+  take_log();
 }
 
 void fail(const std::filesystem::path& file, std::string_view step, std::string_view reason) {

@@ -39,11 +39,11 @@ using ScalerPtr = std::unique_ptr<SwsContext, LibavDeleter>;
 using OutputPtr = std::unique_ptr<AVFormatContext, OutputDeleter>;
 using InputPtr = std::unique_ptr<AVFormatContext, InputDeleter>;
 
-/// Sends libav's log, and that of x264, to a short memory of warnings and errors instead of standard error. The log
-/// belongs to the process, and so does the memory. Safe to call again and from any thread.
+/// Sends libav's log, and that of x264, to a short memory of warnings and errors instead of standard error, and empties
+/// that memory. The log belongs to the process, and so does the memory. Safe from any thread.
 void collect_log();
 
-/// Throws Error(output_failed): "file: cannot <step>: <reason>", followed by libav's warnings since the last failure.
+/// Throws Error(output_failed): "file: cannot <step>: <reason>", followed by libav's latest warnings.
 [[noreturn]] void fail(const std::filesystem::path& file, std::string_view step, std::string_view reason);
 
 /// Returns `code` if it is no error, else fails with av_strerror's words.

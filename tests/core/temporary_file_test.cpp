@@ -45,6 +45,18 @@ TEST_F(TemporaryFileTest, NothingAppearsUnderTheFinalNameBeforeCommit) {
   EXPECT_EQ(content(file), "half");
 }
 
+TEST_F(TemporaryFileTest, FoldersAndDevicesAreNeverReplaced) {
+  for (const fs::path& name : {folder_, folder_ / "", fs::path("/dev/null")}) {
+    try {
+      TemporaryFile temporary(name);
+      ADD_FAILURE() << name;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::output_failed);
+      EXPECT_EQ(error.what(), name.string() + ": expected the name of a file to write, got a folder or a device");
+    }
+  }
+}
+
 TEST_F(TemporaryFileTest, LeavesNothingBehindWithoutCommit) {
   {
     TemporaryFile temporary(folder_ / "a.txt");

@@ -247,7 +247,7 @@ TEST_F(EncoderTest, NamesMayLookLikeProtocolsAndPatterns) {
 TEST_F(EncoderTest, PlacesThatCannotBeWrittenAreNamedAtTheStart) {
   support::write_bytes(folder_ / "file", "");
   expect_error(ExitCode::output_failed, "Not a directory", [&] { Encoder(folder_ / "file" / "a.mp4", small()); });
-  expect_error(ExitCode::output_failed, "expected the name of a video file, got a folder",
+  expect_error(ExitCode::output_failed, "expected the name of a file to write, got a folder or a device",
                [&] { Encoder(folder_, small()); });
   // The kernel's own file system takes no files, even from root.
   expect_error(ExitCode::output_failed,
