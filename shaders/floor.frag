@@ -1,9 +1,6 @@
 // The floor without end: lit like any matte surface near the subjects, the backdrop's own colour far away.
 #include "shading.glsl"
 #include "stage.glsl"
-in vec3 surface_world;
-uniform vec3 front_color;  // linear
-uniform bool checker;
 layout(location = 0) out vec4 color;
 
 // Tiles of 0.5 m as a faint two-tone pattern, averaged over the pixel (box filter of a triangle wave, as in Quilez,
@@ -15,20 +12,24 @@ float tiles(vec2 at) {
 }
 
 void main() {
-  vec3 up = frame.up_world.xyz, to_surface = surface_world - frame.eye_world.xyz;
-  vec3 albedo = front_color;
-  if (checker) {
+  Seen seen = look_up_seen();
+  vec3 up = frame.up_world.xyz, n = seen.normal_world, surface_world = seen.position_world;
+  vec3 albedo = seen.front_roughness.rgb;
+  if (seen.heat_checker.y > 0.0) {
     vec3 east = abs(up.x) > 0.5 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), north = cross(up, east);
     albedo *= mix(0.94, 1.0, tiles(vec2(dot(surface_world, east), dot(surface_world, north)) / 0.5));
   }
-  vec3 diffuse = ambient_light(up, openness());
+  Softness soft = look_up_softness(seen.distance_view);
+  vec3 diffuse = ambient_light(n, soft.open);
   for (int i = 0; i < light_count.x; ++i) {
     float cone;
     vec3 l = toward_light(i, surface_world, cone);
-    float n_l = dot(up, l);
-    if (n_l > 0.0 && cone > 0.0) diffuse += lights[i].color.rgb * cone * n_l * visibility(i, surface_world, up);
+    float n_l = max(dot(n, l), 0.0);
+    bool known = i == 0 && soft.first_known;
+    float lit = visibility(i, surface_world, n, !known && n_l > 0.0);
+    diffuse += lights[i].color.rgb * (cone * n_l * (known ? soft.first_lit : lit));
   }
   float away = length(surface_world - frame.center_world.xyz) / frame.eye_world.w;
   float far = smoothstep(2.0, 9.0, away);
-  color = vec4(display(mix(albedo * diffuse, backdrop_color(normalize(to_surface)), far)), 1.0);
+  color = vec4(display(mix(albedo * diffuse, backdrop_color(normalize(surface_world - frame.eye_world.xyz)), far)), 1.0);
 }

@@ -15,18 +15,23 @@ layout(std140, binding = 0) uniform Frame {
   mat4 below_from_world;   // and from below
 } frame;
 
-// Distance along the view axis [m] of a depth-buffer value.
-float view_distance(float depth) {
-  float near = frame.frustum.z, far = frame.frustum.w;
-  return near * far / (far - depth * (far - near));
+// Position of what is seen at `uv` (0 to 1 across the picture), `distance` metres away along the view axis.
+vec3 position_view(vec2 uv, float distance) {
+  return vec3((uv * 2.0 - 1.0) * frame.frustum.xy * distance, -distance);
 }
+vec3 world_from_view(vec3 direction_view) { return transpose(mat3(frame.view_from_world)) * direction_view; }
 
 // Interleaved gradient noise (Jimenez, "Next Generation Post Processing in Call of Duty: Advanced Warfare", 2014):
 // the values of any 3x3 pixels are spread evenly over [0,1).
 float pixel_noise(vec2 pixel) { return fract(52.9829189 * fract(dot(pixel, vec2(0.06711056, 0.00583715)))); }
 
-// Point i of n on a disc of radius 1, evenly spread (Vogel 1979), turned by `turn` revolutions.
-vec2 disc_point(int i, int n, float turn) {
-  float angle = 2.39996323 * float(i) + 6.28318531 * turn;
-  return sqrt((float(i) + 0.5) / float(n)) * vec2(cos(angle), sin(angle));
+// Points evenly spread over a disc of radius 1 (Vogel 1979), one after the other, as a sine and cosine for each would
+// cost more than the look-ups they are for: point k of n is sqrt((k + 1/2) / n) times a direction that turns by the
+// golden angle each time. `turn` in [0,1) starts the directions somewhere in the round.
+vec2 first_direction(float turn) {
+  vec2 corner = vec2(abs(4.0 * turn - 2.0) - 1.0, abs(4.0 * fract(turn + 0.25) - 2.0) - 1.0);
+  return normalize(corner);
+}
+vec2 next_direction(vec2 direction) {
+  return mat2(-0.73736888, 0.67549029, -0.67549029, -0.73736888) * direction;
 }

@@ -16,10 +16,11 @@ float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, float turn) {
   float radius = 0.16 * frame.eye_world.w;
   vec2 reach_uv = min(radius / (2.0 * frame.frustum.xy * -p_view.z), vec2(0.12));
   float sum = 0.0;
+  vec2 direction = first_direction(turn);
   for (int k = 0; k < NEARBY_TAPS; ++k) {
-    vec2 point = disc_point(k, NEARBY_TAPS, turn);
-    // Squared spacing: contacts a few millimetres wide get as many taps as the wide surroundings.
-    vec2 tap_uv = uv + point * length(point) * reach_uv;
+    // Evenly spaced along the radius, not over the disc: contacts a few millimetres wide get their share of taps.
+    vec2 tap_uv = uv + (float(k) + 0.5) / float(NEARBY_TAPS) * direction * reach_uv;
+    direction = next_direction(direction);
     vec3 v = position_view(tap_uv, view_distance(textureLod(depth_map, tap_uv, 0.0).r)) - p_view;
     float d_sq = dot(v, v), fall = max(1.0 - d_sq / (radius * radius), 0.0);
     sum += fall * max(dot(v, n_view) + 4e-4 * p_view.z, 0.0) * inversesqrt(d_sq + 1e-8);
@@ -37,11 +38,12 @@ float sky_openness(vec3 p_world, vec3 n_world, float turn) {
   mat2 above_axes = mat2((mat3(frame.above_from_world) * across).xy, (mat3(frame.above_from_world) * along).xy);
   mat2 below_axes = mat2((mat3(frame.below_from_world) * across).xy, (mat3(frame.below_from_world) * along).xy);
   float covered = 0.0;
+  vec2 direction = first_direction(turn);
   for (int k = 0; k < SKY_TAPS; ++k) {
-    vec2 point = disc_point(k, SKY_TAPS, turn);
     // Radius r = reach t^2 for t = (k + 1/2) / n, denser towards the zenith; patch area 2 pi r dr follows.
-    float t = dot(point, point), r = reach * t * t;
-    vec2 offset = point * (r * inversesqrt(t));
+    float t = (float(k) + 0.5) / float(SKY_TAPS), r = reach * t * t;
+    vec2 offset = direction * r;
+    direction = next_direction(direction);
     float area = 12.5663706 * reach * r * t / float(SKY_TAPS);
     float height = (above.z - textureLod(sky_maps, vec3(above.xy + above_axes * offset, 0.0), 0.0).r) * depth_metres;
     if (height < 2e-3) continue;

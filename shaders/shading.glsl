@@ -1,31 +1,80 @@
 // Light from the sky, ambient occlusion, reflections and the way to the screen; used by all drawn surfaces.
 #include "frame.glsl"
 #include "lights.glsl"
-layout(binding = 3) uniform sampler2D occlusion_map;
+layout(binding = 4) uniform sampler2D normals_and_distances;
+layout(binding = 5) uniform sampler2D uv_heat_materials;
+layout(binding = 7) uniform sampler2D materials;  // a row for each: front colour, roughness; back colour, thread spacing;
+                                                  // heat scale, checker
+layout(binding = 3) uniform sampler2D soft_light;  // openness, share of light 0, -, distance; see soft_light.frag
 
-// Nearby openness and sky openness at this pixel, from the four half-size neighbours of like distance.
-vec2 openness() {
-#ifdef OCCLUSION
-  vec2 uv = gl_FragCoord.xy * frame.viewport.zw;
-  vec4 distances = textureGather(occlusion_map, uv, 2);
-  float distance_view = 1.0 / gl_FragCoord.w;
-  vec2 f = fract(uv * vec2(textureSize(occlusion_map, 0)) - 0.5);
-  vec4 weights = vec4((1.0 - f.x) * f.y, f.x * f.y, f.x * (1.0 - f.y), (1.0 - f.x) * (1.0 - f.y)) + 0.02;
-  weights *= max(1.0 - abs(distances - distance_view) / (0.03 * distance_view), 1e-3);
-  weights /= dot(weights, vec4(1.0));
-  return vec2(dot(weights, textureGather(occlusion_map, uv, 0)), dot(weights, textureGather(occlusion_map, uv, 1)));
+struct Seen {
+  vec3 position_world;
+  vec3 normal_world;  // unit, toward the viewer
+  float distance_view;
+  vec2 rest_uv;
+  float heat;
+  bool front;
+  vec4 front_roughness, back_spacing, heat_checker;  // of its material
+};
+
+Seen look_up_seen() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec4 normal_distance = texelFetch(normals_and_distances, pixel, 0);
+  vec4 other = texelFetch(uv_heat_materials, pixel, 0);
+  int row = int(other.w);
+  Seen seen;
+  seen.distance_view = normal_distance.w;
+  seen.position_world =
+      world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, normal_distance.w)) + frame.eye_world.xyz;
+  seen.normal_world = normalize(normal_distance.xyz);
+  seen.rest_uv = other.xy;
+  seen.heat = other.z;
+  seen.front = other.w - float(row) < 0.25;
+  seen.front_roughness = texelFetch(materials, ivec2(0, row), 0);
+  seen.back_spacing = texelFetch(materials, ivec2(1, row), 0);
+  seen.heat_checker = texelFetch(materials, ivec2(2, row), 0);
+  return seen;
+}
+
+struct Softness {
+  float open;        // share of the surroundings that light this point
+  float first_lit;   // share of light 0 that reaches it
+  bool first_known;  // false where the neighbours disagree, as along the edge of a crisp shadow
+};
+
+// What the small picture knows of this pixel, from its four neighbours there, as far as they lie on the same surface.
+Softness look_up_softness(float distance_view) {
+#ifdef SOFT_LIGHT
+  vec2 at = gl_FragCoord.xy * frame.viewport.zw * vec2(textureSize(soft_light, 0)) - 0.5;
+  ivec2 corner = ivec2(floor(at)), last = textureSize(soft_light, 0) - 1;
+  vec2 f = at - floor(at);
+  float nearness = 1.0 / (0.02 * distance_view);
+  float weight_sum = 0.0, open = 0.0, lit = 0.0, least = 1.0, most = 0.0;
+  for (int i = 0; i < 4; ++i) {
+    ivec2 step = ivec2(i & 1, i >> 1);
+    vec4 texel = texelFetch(soft_light, clamp(corner + step, ivec2(0), last), 0);
+    vec2 side = mix(1.0 - f, f, vec2(step));
+    float same = max(1.0 - abs(texel.w - distance_view) * nearness, 0.0);
+    float weight = (side.x * side.y + 0.01) * max(same, 1e-4);
+    weight_sum += weight;
+    open += weight * texel.x;
+    lit += weight * texel.y;
+    least = min(least, same > 0.0 ? texel.y : least);
+    most = max(most, same > 0.0 ? texel.y : most);
+  }
+  return Softness(open / weight_sum, lit / weight_sum, most >= least && most - least < 0.4);
 #else
-  return vec2(1.0);
+  return Softness(1.0, 1.0, false);
 #endif
 }
 
 // Light that a matte white surface takes from its surroundings: the sky above, the ground below, a little more from the
 // camera's left, as a big window would give, so that shadowed folds keep their relief.
-vec3 ambient_light(vec3 n_world, vec2 open) {
+vec3 ambient_light(vec3 n_world, float open) {
   float upward = 0.5 + 0.5 * dot(n_world, frame.up_world.xyz);
   vec3 light = mix(frame.ground_light.rgb, frame.sky_light.rgb, upward);
   light *= 1.0 - 0.18 * dot(n_world, frame.right_world.xyz) * (1.0 - abs(2.0 * upward - 1.0));
-  return light * open.x * open.y;
+  return light * open;
 }
 
 // Linear light to the sRGB bytes of the picture. Below 0.8 nothing changes; brighter light is bent towards 1 by its
@@ -33,7 +82,10 @@ vec3 ambient_light(vec3 n_world, vec2 open) {
 vec3 display(vec3 linear) {
   float peak = max(max(linear.r, linear.g), linear.b);
   if (peak > 0.8) linear *= (1.0 - 0.2 * exp((0.8 - peak) * 5.0)) / peak;
-  vec3 encoded = mix(12.92 * linear, 1.055 * pow(max(linear, 1e-6), vec3(1.0 / 2.4)) - 0.055, greaterThan(linear, vec3(0.0031308)));
+  // The curve of IEC 61966-2-1 by roots, fitted to within 0.1/255 on [0.0031, 1]: three powers cost 25 ns a pixel more.
+  vec3 root = sqrt(linear);
+  vec3 curve = 0.833761273 * root + 0.298103297 * sqrt(root) - 0.055321666 * linear - 0.076902919;
+  vec3 encoded = mix(12.92 * linear, curve, greaterThan(linear, vec3(0.0031308)));
   // Half a level of noise keeps wide gradients from showing their steps.
   return encoded + (pixel_noise(gl_FragCoord.yx) - 0.5) / 255.0;
 }

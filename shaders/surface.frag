@@ -3,16 +3,7 @@
 #ifdef CLOTH
 #include "weave.glsl"
 #endif
-in vec3 surface_world;
-in vec3 surface_normal_world;
-in vec2 surface_uv;
-in float surface_heat;
-uniform vec3 front_color;  // linear
-uniform vec3 back_color;
-uniform float roughness;
-uniform float thread_spacing;  // [m], 0: none
-uniform float heat_scale;      // 1 / hottest value; 0: no heat
-layout(binding = 4) uniform sampler2D heat_colors;
+layout(binding = 6) uniform sampler2D heat_colors;
 layout(location = 0) out vec4 color;
 
 // Microfacet highlight (GGX, Walter et al. 2007; visibility term by Hammon 2017), for reflectance f0 head-on.
@@ -20,47 +11,59 @@ float highlight(vec3 n, vec3 v, vec3 l, float alpha, float f0) {
   vec3 h = normalize(v + l);
   float n_h = max(dot(n, h), 0.0), n_l = max(dot(n, l), 0.0), n_v = max(dot(n, v), 1e-3), l_h = max(dot(l, h), 0.0);
   float a_sq = alpha * alpha, d = n_h * n_h * (a_sq - 1.0) + 1.0;
-  float fresnel = f0 + (1.0 - f0) * pow(1.0 - l_h, 5.0);
+  float grazing = 1.0 - l_h, fresnel = f0 + (1.0 - f0) * grazing * grazing * grazing * grazing * grazing;
   return fresnel * a_sq / (d * d) * 0.25 / mix(2.0 * n_l * n_v, n_l + n_v, alpha) * 2.0 * n_l;
 }
 
 void main() {
-  vec3 v = normalize(frame.eye_world.xyz - surface_world);
-  vec3 n = normalize(surface_normal_world) * (gl_FrontFacing ? 1.0 : -1.0);
+  Seen seen = look_up_seen();
+  vec3 v = normalize(frame.eye_world.xyz - seen.position_world);
   // Near outlines a smooth normal may lean away from the eye; bend it back to the horizon.
-  n = normalize(n + v * max(0.02 - dot(n, v), 0.0));
-  vec3 albedo = gl_FrontFacing ? front_color : back_color;
+  vec3 n = normalize(seen.normal_world + v * max(0.02 - dot(seen.normal_world, v), 0.0));
+  float roughness = seen.front_roughness.w;
+#ifdef CLOTH
+  vec3 albedo = seen.front ? seen.front_roughness.rgb : seen.back_spacing.rgb;
+#else
+  vec3 albedo = seen.front_roughness.rgb;
+#endif
   vec3 n_smooth = n;
 #ifdef CLOTH
-  vec3 behind = gl_FrontFacing ? back_color : front_color;
+  vec3 behind = seen.front ? seen.back_spacing.rgb : seen.front_roughness.rgb;
   float shine = 1.0;
-  if (thread_spacing > 0.0) {
-    Weave woven = weave(surface_uv, thread_spacing, n, surface_world);
+  float spacing = seen.back_spacing.w;
+  if (spacing > 0.0) {
+    Weave woven = weave(seen.rest_uv, spacing, n, seen.position_world);
     n = woven.normal_world;
     albedo *= woven.tone;
     shine = woven.shine;
   }
 #endif
+  float heat_scale = seen.heat_checker.x;
   if (heat_scale > 0.0) {
-    albedo = textureLod(heat_colors, vec2(clamp(surface_heat * heat_scale, 0.0, 1.0) * (255.0 / 256.0) + 0.5 / 256.0, 0.5), 0.0).rgb;
+    float hot = clamp(seen.heat * heat_scale, 0.0, 1.0);
+    albedo = textureLod(heat_colors, vec2((hot * 255.0 + 0.5) / 256.0, 0.5), 0.0).rgb;
 #ifdef CLOTH
     behind = albedo;
 #endif
   }
 
-  vec2 open = openness();
-  vec3 diffuse = ambient_light(n, open);
+  Softness soft = look_up_softness(seen.distance_view);
+  vec3 diffuse = ambient_light(n, soft.open);
   vec3 through = vec3(0.0), gloss = vec3(0.0);
   float alpha = max(roughness * roughness, 0.02), f0 = 0.04 * (1.0 - 0.9 * roughness * roughness);
   for (int i = 0; i < light_count.x; ++i) {
     float cone;
-    vec3 l = toward_light(i, surface_world, cone);
+    vec3 l = toward_light(i, seen.position_world, cone);
     float side = dot(n_smooth, l);
-    if (cone <= 0.0) continue;
-#ifndef CLOTH
-    if (side <= 0.0) continue;
+    bool known = i == 0 && soft.first_known;
+    // Solid surfaces take nothing from behind; cloth lets some through.
+#ifdef CLOTH
+    bool wanted = !known && cone > 0.0;
+#else
+    bool wanted = !known && cone > 0.0 && side > 0.0;
 #endif
-    vec3 strength = lights[i].color.rgb * cone * visibility(i, surface_world, side < 0.0 ? -n_smooth : n_smooth);
+    float lit = visibility(i, seen.position_world, side < 0.0 ? -n_smooth : n_smooth, wanted);
+    vec3 strength = lights[i].color.rgb * (cone * (known ? soft.first_lit : lit));
     float n_l = max(dot(n, l), 0.0) * smoothstep(0.0, 0.06, side);
     diffuse += strength * n_l;
 #ifdef CLOTH
@@ -72,7 +75,7 @@ void main() {
 #endif
   }
 
-  float rim = pow(1.0 - max(dot(n_smooth, v), 0.0), 4.0);
+  float edge = 1.0 - max(dot(n_smooth, v), 0.0), rim = edge * edge * edge * edge;
 #ifdef CLOTH
   // Fibres that stand out catch light at grazing angles: a soft sheen in a paler tone of the cloth.
   vec3 sheen = mix(albedo, vec3(0.5), 0.35) * 0.55 * rim * diffuse;
@@ -82,7 +85,7 @@ void main() {
   vec3 r = reflect(-v, n);
   float r_up = dot(r, frame.up_world.xyz);
   vec3 surroundings = mix(frame.ground_light.rgb * 0.6, frame.sky_light.rgb * 1.3, smoothstep(-0.25, 0.5, r_up));
-  float mirror = (f0 + (1.0 - f0) * rim * (1.0 - roughness)) * open.x * open.y;
+  float mirror = (f0 + (1.0 - f0) * rim * (1.0 - roughness)) * soft.open;
   vec3 linear = albedo * diffuse * (1.0 - mirror) + surroundings * mirror + gloss;
 #endif
   color = vec4(display(linear), 1.0);

@@ -18,7 +18,8 @@ struct Weave {
 float visible_feature(float footprint, float size) { return 1.0 - smoothstep(0.22, 0.5, footprint / size); }
 
 Weave weave(vec2 rest_uv, float spacing, vec3 n_world, vec3 p_world) {
-  vec2 thread = rest_uv / spacing;
+  // Pixels of other surfaces take part in the derivatives, with no spacing at all.
+  vec2 thread = rest_uv / max(spacing, 1e-6);
   vec2 across = dFdx(thread), down = dFdy(thread);
   float footprint = max(length(across), length(down));
   Weave result = Weave(n_world, 1.0, 1.0);

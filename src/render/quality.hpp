@@ -10,7 +10,7 @@ struct QualitySettings {
   int shadow_size;        ///< texels of a shadow map's side; a multiple of 16
   int blocker_taps;       ///< of the search for what makes a penumbra
   int filter_taps;        ///< of the penumbra itself
-  int occlusion_divisor;  ///< the occlusion picture is this much smaller; 0: none
+  int soft_divisor;  ///< the occlusion picture is this much smaller; 0: none
   int nearby_taps, sky_taps;
 };
 

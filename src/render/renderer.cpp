@@ -5,11 +5,14 @@
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
-#include "render/ambient_occlusion.hpp"
+#include "render/soft_light.hpp"
 #include "render/framing.hpp"
-#include "render/picture.hpp"
+#include "render/outlines.hpp"
+#include "render/shading.hpp"
 #include "render/view.hpp"
 
+#define PROF(n) if(getenv("PROF")){gl.Finish();double t=process_cpu_seconds();static double last=0;if(prof_last>0)printf("  %s %.1f\n",n,1e3*(t-prof_last));prof_last=t;(void)last;}
+static double prof_last=0;
 namespace weft::render {
 namespace {
 
@@ -54,8 +57,10 @@ struct Renderer::Impl {
   struct Passes {
     DepthProgram depth;
     ShadowMaps shadows;
-    std::optional<AmbientOcclusion> occlusion;
-    Picture picture;
+    std::optional<SoftLight> soft_light;
+    GeometryBuffer geometry;
+    Shading shading;
+    std::optional<Outlines> outlines;
     FloorBuffers floor;
     Buffer frame_block;
     std::vector<SurfaceBuffers> surfaces;
@@ -63,10 +68,12 @@ struct Renderer::Impl {
     Passes(const Gl& gl, const QualitySettings& quality, const Settings& settings)
         : depth(gl),
           shadows(gl, quality),
-          picture(gl, quality, settings.width, settings.height),
+          geometry(gl, settings.width, settings.height),
+          shading(gl, quality, settings.width, settings.height, geometry),
           floor(gl),
           frame_block(gl) {
-      if (quality.occlusion_divisor > 0) occlusion.emplace(gl, quality, settings.width, settings.height);
+      if (quality.samples > 1) outlines.emplace(gl, settings.width, settings.height, quality.samples);
+      if (quality.soft_divisor > 0) soft_light.emplace(gl, quality, settings.width, settings.height);
     }
   };
   std::optional<Passes> passes;
@@ -77,6 +84,7 @@ struct Renderer::Impl {
   double aspect() const { return static_cast<double>(settings.width) / settings.height; }
   void update_surfaces(const frame::FrameSnapshot& snapshot);
   void draw(const frame::FrameSnapshot& snapshot);
+  image::Image read() const;
 };
 
 Renderer::Impl::Impl(const Settings& wanted)
@@ -121,6 +129,7 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot) {
 }
 
 void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
+  PROF("start")
   const frame::Stage stage = snapshot.stage ? *snapshot.stage : frame::Stage{};
   const Vec3 up = up_of(snapshot);
   const Box3 subjects = subject_bounds(snapshot);
@@ -141,6 +150,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
     for (const SurfaceBuffers& surface : passes->surfaces) surface.draw();
   };
 
+  PROF("cpu")
   // Shadows.
   std::vector<Vec3> caster_positions;
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
@@ -155,23 +165,44 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
   const FrameUniform block = pack_frame(view, stage, up, subjects, settings.width, settings.height);
   gl.NamedBufferData(passes->frame_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
-  if (passes->occlusion) {
-    const double reach = 0.8 * radius;
-    passes->occlusion->draw(fit_sky(subjects, up, reach, true), fit_sky(subjects, up, reach, false), passes->depth,
-                            casters, [&] {
-                              casters();
-                              if (has_floor) passes->floor.draw();
-                            });
-  }
   passes->shadows.draw(lights, caster_positions, up, share, passes->depth, casters);
 
-  std::vector<const SurfaceBuffers*> drawn;
-  for (const SurfaceBuffers& surface : passes->surfaces) drawn.push_back(&surface);
-  const frame::Appearance* floor_appearance = nullptr;
-  for (const auto& surface : snapshot.surfaces) {
-    if (surface->visible && surface->infinite_floor && !floor_appearance) floor_appearance = &surface->appearance;
+  PROF("shadows")
+  const FloorBuffers* drawn_floor = has_floor ? &passes->floor : nullptr;
+  passes->geometry.draw(passes->surfaces, drawn_floor, view.far);
+  PROF("geometry")
+  if (passes->soft_light) {
+    const double reach = 0.8 * radius;
+    passes->soft_light->draw(fit_sky(subjects, up, reach, true), fit_sky(subjects, up, reach, false), passes->depth,
+                             casters);
   }
-  passes->picture.draw(drawn, has_floor ? &passes->floor : nullptr, floor_appearance, heat_scale(snapshot, stage));
+  PROF("soft")
+  std::vector<Shading::Material> materials;
+  for (const SurfaceBuffers& surface : passes->surfaces) {
+    materials.push_back({surface.surface().appearance, surface.surface().kind == frame::ObjectKind::cloth});
+  }
+  for (const auto& surface : snapshot.surfaces) {
+    if (surface->visible && surface->infinite_floor) materials.push_back({surface->appearance, false});
+  }
+  passes->shading.draw(materials, heat_scale(snapshot, stage));
+  PROF("shading")
+  if (passes->outlines) passes->outlines->draw(passes->surfaces, drawn_floor, passes->shading.picture(), view.far);
+  PROF("picture")
+}
+
+image::Image Renderer::Impl::read() const {
+  const Texture& picture = passes->outlines ? passes->outlines->picture() : passes->shading.picture();
+  const std::size_t width = static_cast<std::size_t>(settings.width), height = static_cast<std::size_t>(settings.height);
+  std::vector<std::uint8_t> rgba(width * height * 4);
+  gl.GetTextureImage(picture.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(rgba.size()), rgba.data());
+  image::Image image(settings.width, settings.height);
+  // OpenGL's first row is the lowest.
+  for (std::size_t y = 0; y < height; ++y) {
+    const std::uint8_t* from = rgba.data() + (height - 1 - y) * width * 4;
+    std::uint8_t* to = image.rgb.data() + y * width * 3;
+    for (std::size_t x = 0; x < width; ++x, from += 4, to += 3) std::copy_n(from, 3, to);
+  }
+  return image;
 }
 
 Renderer::Renderer(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}
@@ -188,7 +219,7 @@ image::Image Renderer::draw(const frame::FrameSnapshot& snapshot) {
   const double cpu_start = process_cpu_seconds();
   const CurrentContext current(*impl_->context);
   impl_->draw(snapshot);
-  image::Image image = impl_->passes->picture.read();
+  image::Image image = impl_->read();
   check_errors(impl_->gl, "drawing");
   impl_->times = {wall.seconds(), process_cpu_seconds() - cpu_start};
   return image;

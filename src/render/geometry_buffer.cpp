@@ -1,0 +1,55 @@
+#include "render/geometry_buffer.hpp"
+
+namespace weft::render {
+
+GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
+    : gl_(&gl),
+      width_(width),
+      height_(height),
+      program_(gl, "geometry.vert", "geometry.frag"),
+      material_(program_.uniform("material")),
+      normal_distance_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
+      uv_heat_material_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
+      depth_stencil_(make_texture(gl, GL_DEPTH24_STENCIL8, width, height, GL_NEAREST)),
+      target_(gl) {
+  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT0, normal_distance_.name(), 0);
+  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT1, uv_heat_material_.name(), 0);
+  gl.NamedFramebufferTexture(target_.name(), GL_DEPTH_STENCIL_ATTACHMENT, depth_stencil_.name(), 0);
+  const GLenum outputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
+  gl.NamedFramebufferDrawBuffers(target_.name(), 2, outputs);
+  check_framebuffer(gl, target_, "geometry buffer");
+}
+
+void GeometryBuffer::set_class(PixelClass pixel_class) const {
+  gl_->StencilFunc(GL_ALWAYS, static_cast<GLint>(pixel_class), 0xFF);
+}
+
+void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, double far) {
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
+  gl_->Viewport(0, 0, width_, height_);
+  const float nothing[] = {0, 0, 0, static_cast<float>(far)};
+  gl_->ClearBufferfv(GL_COLOR, 0, nothing);
+  gl_->ClearBufferfi(GL_DEPTH_STENCIL, 0, 1.0f, static_cast<GLint>(PixelClass::backdrop));
+  gl_->Enable(GL_DEPTH_TEST);
+  gl_->Enable(GL_STENCIL_TEST);
+  gl_->StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  program_.use();
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    set_class(surfaces[i].surface().kind == frame::ObjectKind::cloth ? PixelClass::cloth : PixelClass::solid);
+    gl_->Uniform1f(material_, static_cast<float>(i));
+    surfaces[i].draw();
+  }
+  if (floor) {
+    set_class(PixelClass::floor);
+    gl_->Uniform1f(material_, static_cast<float>(surfaces.size()));
+    // From below one looks through the floor.
+    gl_->Enable(GL_CULL_FACE);
+    floor->draw();
+    gl_->Disable(GL_CULL_FACE);
+  }
+  gl_->Disable(GL_STENCIL_TEST);
+  gl_->BindTextureUnit(4, normal_distance_.name());
+  gl_->BindTextureUnit(5, uv_heat_material_.name());
+}
+
+}  // namespace weft::render

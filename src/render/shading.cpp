@@ -1,0 +1,91 @@
+#include "render/shading.hpp"
+
+#include <algorithm>
+
+#include "render/color.hpp"
+
+namespace weft::render {
+namespace {
+
+std::vector<std::string> shading_defines(const QualitySettings& quality, bool cloth = false) {
+  std::vector<std::string> defines = ShadowMaps::defines(quality);
+  if (quality.soft_divisor > 0) defines.push_back("SOFT_LIGHT");
+  if (cloth) defines.push_back("CLOTH");
+  return defines;
+}
+
+Texture make_heat_colors(const Gl& gl) {
+  std::vector<float> texels;
+  for (const Vec3& color : heat_table()) {
+    for (const double channel : color) texels.push_back(static_cast<float>(channel));
+  }
+  Texture texture = make_texture(gl, GL_RGB32F, kHeatColors, 1, GL_LINEAR);
+  gl.TextureSubImage2D(texture.name(), 0, 0, 0, kHeatColors, 1, GL_RGB, GL_FLOAT, texels.data());
+  return texture;
+}
+
+Eigen::Vector4f texel(const Vec3& color, double fourth) {
+  Eigen::Vector4f result;
+  result << linear_from_srgb(color).cast<float>(), static_cast<float>(fourth);
+  return result;
+}
+
+}  // namespace
+
+Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry)
+    : gl_(&gl),
+      width_(width),
+      height_(height),
+      cloth_(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, true)),
+      solid_(gl, "fullscreen.vert", "surface.frag", shading_defines(quality)),
+      floor_(gl, "fullscreen.vert", "floor.frag", shading_defines(quality)),
+      backdrop_(gl, "fullscreen.vert", "backdrop.frag", shading_defines(quality)),
+      picture_(make_texture(gl, GL_RGBA8, width, height, GL_NEAREST)),
+      heat_colors_(make_heat_colors(gl)),
+      target_(gl),
+      no_vertices_(gl) {
+  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT0, picture_.name(), 0);
+  gl.NamedFramebufferTexture(target_.name(), GL_DEPTH_STENCIL_ATTACHMENT, geometry.depth_stencil().name(), 0);
+  check_framebuffer(gl, target_, "picture");
+}
+
+void Shading::upload_materials(std::span<const Material> materials, double heat_scale) {
+  constexpr int kColumns = 3;  // of shading.glsl
+  std::vector<Eigen::Vector4f> texels;
+  for (const auto& [look, cloth] : materials) {
+    texels.push_back(texel(look.color, std::clamp(look.roughness, 0.0, 1.0)));
+    texels.push_back(texel(look.back_color, look.thread_spacing));
+    texels.emplace_back(cloth ? static_cast<float>(heat_scale) : 0.0f, look.checker ? 1.0f : 0.0f, 0.0f, 0.0f);
+  }
+  const int rows = static_cast<int>(materials.size());
+  if (rows > material_rows_) {
+    materials_ = make_texture(*gl_, GL_RGBA32F, kColumns, rows, GL_NEAREST);
+    material_rows_ = rows;
+  }
+  if (rows > 0) gl_->TextureSubImage2D(materials_.name(), 0, 0, 0, kColumns, rows, GL_RGBA, GL_FLOAT, texels.data());
+}
+
+void Shading::draw(std::span<const Material> materials, double heat_scale) {
+  upload_materials(materials, heat_scale);
+  gl_->BindTextureUnit(6, heat_colors_.name());
+  gl_->BindTextureUnit(7, materials_.name());
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
+  gl_->Viewport(0, 0, width_, height_);
+  gl_->BindVertexArray(no_vertices_.name());
+  gl_->Disable(GL_DEPTH_TEST);
+  gl_->Enable(GL_STENCIL_TEST);
+  gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  // Blocks without a pixel of the class are left after the stencil test.
+  const std::pair<PixelClass, const Program*> passes[] = {{PixelClass::cloth, &cloth_},
+                                                          {PixelClass::solid, &solid_},
+                                                          {PixelClass::floor, &floor_},
+                                                          {PixelClass::backdrop, &backdrop_}};
+  for (const auto& [pixel_class, program] : passes) {
+    gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(pixel_class), 0xFF);
+    program->use();
+    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  gl_->Disable(GL_STENCIL_TEST);
+}
+
+}  // namespace weft::render
