@@ -42,6 +42,7 @@ class Engine {
   void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h);
 
   /// The contacts found, to act inside the solve.
+  ContactSet& contacts() { return contacts_; }
   const ContactSet& contacts() const { return contacts_; }
 
   /// Makes contacts of the pairs that would meet on the way to x_t1; returns how many are new.

@@ -4,6 +4,21 @@
 #include <cmath>
 
 namespace weft::integrator {
+namespace {
+
+// Share of Newton's goal to which a linear system is solved at most.
+constexpr double kLinearShare = 0.3;
+// Slope behind the minimum, against that at the start, from which a step counts as overshooting.
+constexpr double kOvershoot = 0.7;
+constexpr int kLineTrials = 6;
+
+double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+}  // namespace
 
 std::string_view describe(Verdict verdict) {
   switch (verdict) {
@@ -21,7 +36,7 @@ std::string_view describe(Verdict verdict) {
 
 Stepper::Stage Stepper::begin(const State& now, double h) {
   const std::size_t n = now.x.size();
-  for (auto* vector : {&x_hat_, &v_hat_, &x_, &v_, &x_end_, &constant_force_, &force_, &residual_, &delta_})
+  for (auto* vector : {&x_hat_, &v_hat_, &x_, &v_, &x_end_, &constant_force_, &force_, &residual_, &delta_, &scale_})
     vector->resize(n);
   x_hat_ = now.x;
   v_hat_ = now.v;
@@ -61,15 +76,50 @@ double Stepper::residual(const System& system, const State& now, const Stage& st
   return cg_.norm(residual_);
 }
 
-StepReport Stepper::step(const System& system, const State& now, double h, const Vec3& gravity,
-                         std::span<const HeldParticle> held, solver::LinearSystem& scratch, State& next) {
+// Norm of what the residual is measured against: the weight of the particles, or the force that their change of
+// velocity takes, whichever is more.
+double Stepper::force_scale(std::span<const double> masses, const Vec3& gravity, const Stage& stage) {
+  const double least = std::max(gravity.norm(), 1.0);
+  for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = Vec3(0, 0, masses[i] * least);
+  cg_.filter(scale_);
+  const double weight = cg_.norm(scale_);
+  for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = masses[i] / stage.beta * (v_[i] - v_hat_[i]);
+  cg_.filter(scale_);
+  return std::max(weight, cg_.norm(scale_));
+}
+
+// Moves x along delta_: the whole way, or less where the whole way overshoots. Returns the norm of the residual there.
+double Stepper::search_along_delta(const System& system, const State& now, const Stage& stage) {
+  // The residual is minus the gradient of the step's energy (where there is one), so residual · delta is the slope:
+  // positive before the minimum along delta, negative behind. Where contacts or compressed edges switch on the way it
+  // can turn steeply negative, and full steps would then go to and fro.
+  const std::size_t n = x_.size();
+  const double start_slope = dot(residual_, delta_);
+  line_start_ = x_;
+  double fraction = 1, low = 0, low_slope = start_slope, high = 0, high_slope = 0, norm = 0;
+  for (int trial = 0; trial < kLineTrials; ++trial) {
+    for (std::size_t i = 0; i < n; ++i) x_[i] = line_start_[i] + fraction * delta_[i];
+    norm = residual(system, now, stage);
+    const double slope = dot(residual_, delta_);
+    if (!(slope < -kOvershoot * start_slope)) {
+      if (high == 0 || slope <= kOvershoot * start_slope) break;
+      low = fraction, low_slope = slope;
+    } else {
+      high = fraction, high_slope = slope;
+    }
+    // Regula falsi, kept away from the ends.
+    const double guess = low + (high - low) * low_slope / (low_slope - high_slope);
+    fraction = std::clamp(guess, low + 0.1 * (high - low), high - 0.1 * (high - low));
+  }
+  return norm;
+}
+
+// First guess: unchanged velocity. It is also where the non-stiff forces are taken, with the velocity extrapolated from
+// the last step, so that they keep the method's order.
+void Stepper::prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity,
+                            State& guess) {
   const std::size_t n = now.x.size();
   const auto masses = system.masses();
-  const Stage stage = begin(now, h);
-
-  // First guess: unchanged velocity. It is also where the non-stiff forces are taken, with the velocity extrapolated
-  // from the last step, so that they keep the method's order.
-  State& guess = next;
   guess.x.resize(n);
   guess.v.resize(n);
   const double trend = previous_h_ > 0 && method_ != Method::implicit_euler ? stage.extrapolation * h / previous_h_ : 0;
@@ -80,8 +130,11 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
     constant_force_[i] = masses[i] * gravity;
   }
   system.explicit_forces(guess, h, constant_force_);
+}
 
-  // Held directions start at their target and stay there.
+// Held directions start at their target and stay there.
+void Stepper::hold(const State& now, const Stage& stage, std::span<const HeldParticle> held,
+                   solver::LinearSystem& scratch) {
   scratch.constraints.clear();
   for (const HeldParticle& particle : held) {
     const auto i = static_cast<std::size_t>(particle.constraint.particle);
@@ -89,44 +142,44 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
     x_[i] = target + particle.constraint.free * (x_[i] - target);
     scratch.constraints.push_back(particle.constraint);
   }
+}
+
+StepReport Stepper::step(const System& system, const State& now, double h, const Vec3& gravity,
+                         std::span<const HeldParticle> held, solver::LinearSystem& scratch, State& next) {
+  const std::size_t n = now.x.size();
+  const auto masses = system.masses();
+  const Stage stage = begin(now, h);
+  prepare_guess(system, now, stage, h, gravity, next);
+  hold(now, stage, held, scratch);
 
   StepReport report;
-  double goal = 0;
   for (;;) {
     evaluate(now, stage);
     std::fill(force_.begin(), force_.end(), Vec3::Zero());
     system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, force_, scratch);
     cg_.prepare(scratch);
     gather_residual(masses, stage);
-    if (report.newton_iterations == 0) {
-      report.first_residual = cg_.norm(residual_);
-      // Without the weight as a second measure a cloth at rest would be solved down to rounding, and a hanging one that
-      // starts from equilibrium of everything but gravity would never move.
-      const double weight = cg_.norm(constant_force_);
-      goal = parameters_.tolerance * std::max(report.first_residual, weight);
-    }
+    double goal = parameters_.tolerance * force_scale(masses, gravity, stage);
     const double before = cg_.norm(residual_);
-    const solver::LinearReport linear =
-        cg_.solve(residual_, std::max(parameters_.linear_tolerance * before, 0.1 * goal),
-                  parameters_.max_linear_iterations, delta_);
+    if (report.newton_iterations == 0) report.first_residual = before;
+    const auto goal = [&] {
+      return parameters_.tolerance * std::max(report.first_residual, force_scale(masses, gravity, stage));
+    };
+    const double target = std::max(parameters_.linear_tolerance * before, kLinearShare * goal());
+    const solver::LinearReport linear = cg_.solve(residual_, target, parameters_.max_linear_iterations, delta_);
     ++report.newton_iterations;
     report.linear_iterations += linear.iterations;
-    for (std::size_t i = 0; i < n; ++i) x_[i] += delta_[i];
 
-    report.last_residual = residual(system, now, stage);
-    if (!std::isfinite(report.last_residual)) {
+    report.last_residual = search_along_delta(system, now, stage);
+    if (!std::isfinite(report.last_residual))
       report.verdict = Verdict::not_finite;
-      return report;
-    }
-    if (report.last_residual <= goal) break;
-    if (!linear.definite) {
+    else if (report.last_residual <= goal())
+      break;
+    else if (!linear.definite)
       report.verdict = Verdict::indefinite;
-      return report;
-    }
-    if (report.newton_iterations >= parameters_.max_iterations) {
+    else if (report.newton_iterations >= parameters_.max_iterations)
       report.verdict = Verdict::newton_stalled;
-      return report;
-    }
+    if (report.verdict != Verdict::solved) return report;
   }
 
   for (std::size_t i = 0; i < n; ++i) {

@@ -13,11 +13,13 @@ namespace weft::integrator {
 enum class Method { implicit_euler, implicit_midpoint, bdf2 };
 
 struct NewtonParameters {
-  /// The step is solved when the residual's norm, weighed by the inverse block diagonal, is below this share of the
-  /// larger of two: the residual of the first guess, and the weight and inertia of all particles.
-  double tolerance = 1e-2;
+  /// The step is solved when the residual is below this share of the largest of three: the residual of the first guess,
+  /// the particles' weight (m · 1 m/s² where there is less gravity), and the force that changes their velocity; all in
+  /// the norm weighed by the inverse block diagonal. The last two keep a cloth at rest from being solved down to
+  /// rounding, and let a hanging one start from an equilibrium of everything but gravity.
+  double tolerance = 0.05;
   int max_iterations = 10;
-  double linear_tolerance = 5e-3;  ///< of one linear solve, relative to its own right hand side
+  double linear_tolerance = 0.02;  ///< of one linear solve, relative to its own right hand side
   int max_linear_iterations = 1000;
 };
 
@@ -60,6 +62,11 @@ class Stepper {
     double extrapolation;  // of the explicit forces: fraction of h at which the stage lies
   };
   Stage begin(const State& now, double h);
+  void prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity,
+                     State& guess);
+  void hold(const State& now, const Stage& stage, std::span<const HeldParticle> held, solver::LinearSystem& scratch);
+  double force_scale(std::span<const double> masses, const Vec3& gravity, const Stage& stage);
+  double search_along_delta(const System& system, const State& now, const Stage& stage);
   double residual(const System& system, const State& now, const Stage& stage);
   void evaluate(const State& now, const Stage& stage);
   void gather_residual(std::span<const double> masses, const Stage& stage);
@@ -71,7 +78,7 @@ class Stepper {
 
   // Scratch of one step.
   solver::ConjugateGradient cg_;
-  std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_;
+  std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, scale_;
 };
 
 }  // namespace weft::integrator

@@ -28,7 +28,7 @@ class ClothSystem final : public integrator::System {
   void linearise(const integrator::StagePoint& at, std::span<Vec3> force, solver::LinearSystem& system) const override;
 
   /// Contacts of the current step, or nullptr where the scene can have none. Must outlive the steps.
-  void use_contacts(const collision::ContactSet* contacts) { contacts_ = contacts; }
+  void use_contacts(collision::ContactSet* contacts) { contacts_ = contacts; }
 
   /// An empty system with the pattern of this one.
   solver::LinearSystem make_linear_system() const;
@@ -50,7 +50,7 @@ class ClothSystem final : public integrator::System {
   std::vector<std::unique_ptr<forces::Shear>> shear_;
   std::vector<forces::Air> air_;
   std::vector<const forces::Force*> forces_;  // all of the stiff ones
-  const collision::ContactSet* contacts_ = nullptr;
+  collision::ContactSet* contacts_ = nullptr;
 
   // rate² M plus the constant part of the bending, kept as long as the step does not change.
   mutable solver::BlockMatrix base_;

@@ -26,6 +26,7 @@ class CollisionStage {
   void begin_step(environment::Environment& environment, const integrator::State& now,
                   std::span<const integrator::HeldParticle> held, double t, double h);
 
+  collision::ContactSet& contacts() { return engine_.contacts(); }
   const collision::ContactSet& contacts() const { return engine_.contacts(); }
 
   /// Looks for pairs that would meet on the way to `next` and makes contacts of them: how many were new. If there are

@@ -91,6 +91,7 @@ struct Simulation::Impl {
 
   int frame = 0;
   integrator::State now, next;
+  std::vector<Vec3> acceleration;  // mean over the last step [m/s²]
   std::vector<integrator::HeldParticle> held;
   frame::SnapshotPtr current;
 };
@@ -107,6 +108,7 @@ Simulation::Impl::Impl(const scene::Scene& s)
     now.x.insert(now.x.end(), cloth.motion.positions.begin(), cloth.motion.positions.end());
     now.v.insert(now.v.end(), cloth.motion.velocities.begin(), cloth.motion.velocities.end());
   }
+  acceleration.assign(now.x.size(), Vec3::Zero());
   pins.held_at(0, environment, held);
   for (const integrator::HeldParticle& particle : held)
     now.v[static_cast<std::size_t>(particle.constraint.particle)] = particle.v_end;
@@ -157,6 +159,7 @@ void Simulation::Impl::advance_over(double t, double h, int halvings, FrameRepor
     return;
   }
   stepper.accept(now, h);
+  for (std::size_t i = 0; i < acceleration.size(); ++i) acceleration[i] = (next.v[i] - now.v[i]) / h;
   std::swap(now, next);
   ++report.steps;
 }
@@ -189,7 +192,7 @@ FrameReport Simulation::Impl::advance() {
   return report;
 }
 
-// The environment holds what the frame shows; accelerations are the mean over the last step.
+// The environment holds what the frame shows.
 void Simulation::Impl::write_back() {
   for (std::size_t c = 0; c < environment.cloths.size(); ++c) {
     environment::Motion& motion = environment.cloths[c].motion;
@@ -197,6 +200,7 @@ void Simulation::Impl::write_back() {
     for (std::size_t i = 0; i < motion.positions.size(); ++i) {
       motion.positions[i] = now.x[first + i];
       motion.velocities[i] = now.v[first + i];
+      motion.accelerations[i] = acceleration[first + i];
     }
   }
 }

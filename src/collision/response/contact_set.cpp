@@ -1,5 +1,6 @@
 #include "collision/response/contact_set.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace weft::collision {
@@ -13,6 +14,17 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
 
 }  // namespace
 
+void ContactSet::set_step(double h) {
+  stick_slip_ = kStickSpeed * h;
+  first_ = true;
+}
+
+void ContactSet::add(const Contact& contact) {
+  contacts_.push_back(contact);
+  contacts_.back().load =
+      std::max(0.0, contact.stiffness * (contact.range - contact.normal.dot(contact.relative_start)));
+}
+
 ContactSet::Response ContactSet::respond(const Contact& contact, std::span<const Vec3> x_end) const {
   const Vec3 relative = weighted_sum(contact, x_end) + contact.obstacle_end;
   const double gap = contact.normal.dot(relative);
@@ -22,13 +34,13 @@ ContactSet::Response ContactSet::respond(const Contact& contact, std::span<const
   response.active = true;
   response.load = contact.stiffness * (contact.range - gap);
   response.force = response.load * contact.normal;
-  if (contact.friction > 0) {
+  if (contact.friction > 0 && contact.load > 0) {
     Vec3 slip = relative - contact.relative_start;
     slip -= contact.normal.dot(slip) * contact.normal;
     const double size = slip.norm();
     // Force over slip: 2/ε − s/ε² while sticking, 1/s while sliding; continuous with its first derivative.
     const double over_slip = size < stick_slip_ ? (2 - size / stick_slip_) / stick_slip_ : 1 / size;
-    response.sliding = contact.friction * response.load * over_slip;
+    response.sliding = contact.friction * contact.load * over_slip;
     response.force -= response.sliding * slip;
   }
   return response;
@@ -44,8 +56,9 @@ void ContactSet::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) 
 }
 
 void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
-                           solver::LinearSystem& system) const {
-  for (const Contact& contact : contacts_) {
+                           solver::LinearSystem& system) {
+  for (Contact& contact : contacts_) {
+    if (!first_) contact.load = respond(contact, x_end).load;
     const Response response = respond(contact, x_end);
     if (!response.active) continue;
     int involved = 0, last = 0;
@@ -64,6 +77,7 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, std::sp
       system.terms.push_back({contact.particles, contact.weights, stiffness});
     }
   }
+  first_ = false;
 }
 
 int ContactSet::active(std::span<const Vec3> x_end) const {

@@ -20,6 +20,7 @@ struct Contact {
   double range = 0;                           ///< r: the spring acts below this distance [m]
   double stiffness = 0;                       ///< k [N/m]
   double friction = 0;                        ///< Coulomb coefficient of the pair
+  double load = 0;                            ///< that friction goes by [N]; kept by ContactSet
 };
 
 /// Energy of a contact: ½ k (r − g)² for a gap g = n·(a − b) < r, with n kept from the start of the step: convex, with
@@ -32,8 +33,9 @@ class ContactSet {
   static constexpr double kStickSpeed = 2e-4;
 
   void clear() { contacts_.clear(); }
-  void add(const Contact& contact) { contacts_.push_back(contact); }
-  void set_step(double h) { stick_slip_ = kStickSpeed * h; }
+  void add(const Contact& contact);
+  /// Before the first solve of a step over h [s].
+  void set_step(double h);
   std::span<const Contact> contacts() const { return contacts_; }
 
   /// force += contact forces [N] with the particles at x_end.
@@ -41,8 +43,7 @@ class ContactSet {
 
   /// As add_forces, and adds −∂f/∂x to the system, where x_end changes by `end_rate` per change of the unknown. The
   /// change of the friction with the load is left out: it is unsymmetric.
-  void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
-                 solver::LinearSystem& system) const;
+  void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force, solver::LinearSystem& system);
 
   /// Number of contacts that push with the particles at x_end.
   int active(std::span<const Vec3> x_end) const;
@@ -51,13 +52,14 @@ class ContactSet {
   struct Response {
     bool active = false;
     Vec3 force;          // on point a
-    double load = 0;     // k (r − g) [N]
+    double load = 0;     // now [N]
     double sliding = 0;  // friction force per slip [N/m]
   };
   Response respond(const Contact& contact, std::span<const Vec3> x_end) const;
 
   std::vector<Contact> contacts_;
   double stick_slip_ = 1e-6;  // ε of the friction [m]
+  bool first_ = true;         // no linearisation of this step yet
 };
 
 }  // namespace weft::collision
