@@ -1,6 +1,7 @@
 #include "collision/proximity/features.hpp"
 
 #include <algorithm>
+#include <tuple>
 
 namespace weft::collision {
 
@@ -49,10 +50,18 @@ void Features::own_edges() {
   });
 
   // The first of a run of equal edges owns it; any two of the run are a hinge.
+  edge_.resize(triangles_.size());
+  apexes_begin_ = {0};
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     while (end < sides.size() && sides[end].same_edge(sides[begin])) ++end;
     const Side& owner = sides[begin];
     owned_[static_cast<std::size_t>(owner.triangle)] |= static_cast<std::uint8_t>(8U << owner.corner);
+    edge_[static_cast<std::size_t>(owner.triangle)][static_cast<std::size_t>(owner.corner)] =
+        static_cast<Index>(apexes_begin_.size() - 1);
+    for (std::size_t i = begin; i < end; ++i)
+      apexes_.push_back(
+          triangles_[static_cast<std::size_t>(sides[i].triangle)][static_cast<std::size_t>(sides[i].corner + 2) % 3]);
+    apexes_begin_.push_back(apexes_.size());
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t j = i + 1; j < end; ++j)
         if (sides[i].triangle != sides[j].triangle) hinges_.push_back({sides[i].triangle, sides[j].triangle});

@@ -27,6 +27,12 @@ class Features {
   /// Bits 0 to 2: corner c is owned; bits 3 to 5: the edge from corner c to corner c + 1 is owned.
   std::uint8_t owned(Index t) const { return owned_[static_cast<std::size_t>(t)]; }
 
+  /// Third corners of all triangles at the edge that triangle t owns from corner c to corner c + 1.
+  std::span<const Index> apexes(Index t, std::size_t c) const {
+    const auto edge = static_cast<std::size_t>(edge_[static_cast<std::size_t>(t)][c]);
+    return std::span(apexes_).subspan(apexes_begin_[edge], apexes_begin_[edge + 1] - apexes_begin_[edge]);
+  }
+
   /// Triangles at a vertex, lowest number first.
   std::span<const Index> triangles_at(Index vertex) const {
     const auto v = static_cast<std::size_t>(vertex);
@@ -42,6 +48,9 @@ class Features {
 
   std::vector<Triangle> triangles_;
   std::vector<std::uint8_t> owned_;
+  std::vector<std::array<Index, 3>> edge_;  // number of the edge, where owned
+  std::vector<std::size_t> apexes_begin_;   // by edge
+  std::vector<Index> apexes_;
   std::vector<std::size_t> around_begin_;
   std::vector<Index> around_;
   std::vector<TrianglePair> hinges_;

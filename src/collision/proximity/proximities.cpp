@@ -16,9 +16,10 @@ constexpr double kTie = 1e-9;
 
 /// Unit vector along v, or along a fallback where the two features touch and v has no direction.
 Vec3 direction(const Vec3& v, const Vec3& fallback) {
-  for (const Vec3& candidate : {v, fallback}) {
-    const double length = candidate.stableNorm();
-    if (length > 0) return candidate / length;
+  if (const double length_sq = v.squaredNorm(); length_sq > 1e-280) return v / std::sqrt(length_sq);
+  for (const Vec3& tiny : {v, fallback}) {
+    const double length = tiny.stableNorm();
+    if (length > 0) return tiny / length;
   }
   return Vec3::UnitZ();
 }
@@ -119,11 +120,11 @@ class ProximityFinder::Search {
     for (std::size_t i = 0, i1 = 1; i < 3; ++i, i1 = (i + 1) % 3) {
       for (std::size_t j = 0, j1 = 1; j < 3; ++j, j1 = (j + 1) % 3) {
         const std::uint32_t common = same[i][j] | same[i][j1] | same[i1][j] | same[i1][j1];
-        for_each_bit(
-            near(a.edge[i].low, a.edge[i].high, b.edge[j]) & a.owned[3 + i] & b.owned[3 + j] & together & ~common,
-            [&](std::size_t l) {
-              edges({a.corner[i][l], a.corner[i1][l], b.corner[j][l], b.corner[j1][l]});
-            });
+        const std::uint32_t near_pairs = near(a.edge[i].low, a.edge[i].high, b.edge[j]) & together & ~common;
+        for_each_bit(near_pairs & a.owned[3 + i] & b.owned[3 + j], [&](std::size_t l) {
+          edges({a.corner[i][l], a.corner[i1][l], b.corner[j][l], b.corner[j1][l]}, features_.apexes(number_a[l], i),
+                features_.apexes(number_b[l], j));
+        });
       }
     }
   }
@@ -166,8 +167,8 @@ class ProximityFinder::Search {
     return false;
   }
 
-  /// v are the ends of the one edge, then those of the other.
-  void edges(const std::array<Index, 4>& v) {
+  /// v are the ends of the one edge, then those of the other; the apexes are the third corners of their faces.
+  void edges(const std::array<Index, 4>& v, std::span<const Index> apexes_a, std::span<const Index> apexes_b) {
     if (surely_not_inside(at(v[0]), at(v[1]), at(v[2]), at(v[3]), reach_sq_)) return;
     const ClosestPoints points = closest_edge_edge(at(v[0]), at(v[1]), at(v[2]), at(v[3]));
     // With an end as closest point the vertex and the faces at the other edge represent the pair.
@@ -175,22 +176,19 @@ class ProximityFinder::Search {
     const Vec3 across = (at(v[1]) - at(v[0])).cross(at(v[3]) - at(v[2]));
     const Vec3 normal = direction(points.difference, across);
     add(ProximityKind::edge_edge, v, points, across,
-        {outside_wedge(v[0], v[1], -normal), outside_wedge(v[2], v[3], normal)});
+        {outside_wedge(v[0], v[1], apexes_a, -normal), outside_wedge(v[2], v[3], apexes_b, normal)});
   }
 
-  /// Largest sine by which going from the edge in the unit direction `outward` has a part into one of its faces.
-  double outside_wedge(Index e0, Index e1, const Vec3& outward) const {
-    const Vec3 along = direction(at(e1) - at(e0), Vec3::Zero());
+  /// Largest sine of the angle by which the unit direction `outward`, which is perpendicular to the edge, points to the
+  /// inside of one of its faces: |e| (arm · outward) / |e × arm|.
+  double outside_wedge(Index e0, Index e1, std::span<const Index> apexes, const Vec3& outward) const {
+    const Vec3 edge = at(e1) - at(e0);
+    const double length = edge.norm();
     double most = -1;
-    for (const Index t : features_.triangles_at(e0)) {
-      const Triangle& face = features_.triangle(t);
-      if (!has_vertex(face, e1)) continue;
-      for (const Index corner : face) {
-        if (corner == e0 || corner == e1) continue;
-        const Vec3 arm = at(corner) - at(e0);
-        const Vec3 inward = direction(arm - along * along.dot(arm), Vec3::Zero());
-        most = std::max(most, inward.dot(outward));
-      }
+    for (const Index apex : apexes) {
+      const Vec3 arm = at(apex) - at(e0);
+      const double across = edge.cross(arm).norm();
+      if (across > 0) most = std::max(most, length * arm.dot(outward) / across);
     }
     return most;
   }
