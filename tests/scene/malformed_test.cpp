@@ -19,6 +19,10 @@ struct Malformed {
   std::string messages;  ///< all of describe(), the file being s.toml
 };
 
+void PrintTo(const Malformed& malformed, std::ostream* out) {
+  *out << malformed.claim;
+}
+
 // Enough to make a scene; on one line, so that what follows starts on line 2.
 const std::string kFloor = "obstacle = [{ name = 'floor', shape = 'plane' }]\n";
 const std::string kBand = "cloth = [{ name = 'band' }]\n";

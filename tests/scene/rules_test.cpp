@@ -57,7 +57,7 @@ std::string another_value(const Rule& rule, const Value& now) {
   std::string text;
   const std::size_t count = std::max<std::size_t>(1, rule.components.size());
   for (std::size_t i = 0; i < count; ++i) {
-    const double share = 0.03 * static_cast<double>(i + 1);
+    const double share = 0.031 * static_cast<double>(i + 1);
     const double number = rule.whole ? from + 3 + static_cast<double>(i) : from + width * share;
     text += (i > 0 ? ", " : "") + std::to_string(number);
     if (rule.whole) text.resize(text.find('.', text.rfind(' ') == std::string::npos ? 0 : text.rfind(' ')));
