@@ -12,8 +12,8 @@ namespace weft::video {
 
 struct Settings {
   int width = 1280, height = 720;   ///< pixels; odd sizes are padded by one repeated column or row for yuv420p
-  double fps = 25;                  ///< frames a second; frame k is shown at exactly k / fps
-  int crf = 18;                     ///< x264 constant quality; smaller is better
+  double fps = 25;                  ///< frames a second; frame k is shown at exactly k / fps (23.976: 24000/1001)
+  int crf = 18;                     ///< x264 constant quality, 1 to 51; smaller is better
   std::string preset = "veryfast";  ///< x264 preset
   int threads = 1;                  ///< of the encoder; fixed, because x264's bytes depend on it
   std::map<std::string, std::string> metadata;
