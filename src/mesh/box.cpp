@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "mesh/quads.hpp"
 #include "mesh/shapes.hpp"
@@ -51,12 +52,12 @@ class RoundedBox {
     return corner * octant + before + p[1];
   }
 
-  /// Adds a face given as seen with an even number of mirrored axes; `mirrored` reverses it.
-  void add(Quad q, bool mirrored) {
-    if (mirrored) std::reverse(q.begin(), q.end());
+  void add(Quad q, bool reversed) {
+    if (reversed) std::reverse(q.begin(), q.end());
     for (const Triangle& t : split_quad(q, true)) mesh_.topology.triangles.push_back(t);
   }
 
+  /// An odd number of negative signs: faces given for the corner (+, +, +) then run clockwise.
   static bool mirrored(int corner) { return ((corner & 1) + (corner >> 1 & 1) + (corner >> 2)) % 2 == 0; }
 
   void add_octant(int corner) {

@@ -8,8 +8,8 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
   return (b.x() - a.x()) * (c.y() - a.y()) - (b.y() - a.y()) * (c.x() - a.x());
 }
 
-/// The polygon seen along its normal, so that it is counter-clockwise. The normal is the sum of cross products (Newell),
-/// which weighs all corners and so stands for polygons that are not quite flat.
+/// The polygon seen along its normal, so that it is counter-clockwise. The normal is the sum of cross products
+/// (Newell), which weighs all corners and so stands for polygons that are not quite flat.
 std::vector<Vec2> flattened(std::span<const Index> corners, std::span<const Vec3> positions) {
   const auto corner = [&](std::size_t k) -> const Vec3& {
     return positions[static_cast<std::size_t>(corners[k % corners.size()])];

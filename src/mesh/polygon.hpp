@@ -8,9 +8,9 @@
 
 namespace weft::mesh {
 
-/// Cuts a simple polygon, convex or not and nearly flat, into n - 2 triangles of its own orientation by clipping ears, and
-/// appends them. Self-crossing or collapsed polygons give n - 2 triangles too, of whatever shape. Time O(n²) for usual
-/// polygons, O(n³) at worst.
+/// Cuts a simple polygon, convex or not and nearly flat, into n - 2 triangles of its own orientation by clipping ears,
+/// and appends them. Self-crossing or collapsed polygons give n - 2 triangles too, of whatever shape. Time O(n²) for
+/// usual polygons, O(n³) at worst.
 void triangulate_polygon(std::span<const Index> corners, std::span<const Vec3> positions,
                          std::vector<Triangle>& triangles);
 
