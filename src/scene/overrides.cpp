@@ -66,6 +66,8 @@ toml::node* find_entry(toml::array& list, const std::string& part, std::vector<s
 void apply_override(const std::string& override_text, toml::table& document, Findings& findings) {
   // Shown in messages, and the sign by which nodes are later known to come from here.
   std::string source = "--set " + override_text;
+  std::replace_if(
+      source.begin(), source.end(), [](unsigned char c) { return c < 0x20 || c == 0x7F; }, ' ');
   if (source.size() > 80) source = source.substr(0, 77) + "...";
   const auto refuse = [&](const std::string& key, const std::string& text) {
     findings.report(key, {0, 0, source}, text);
