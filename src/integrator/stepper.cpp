@@ -159,7 +159,6 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
     system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, force_, scratch);
     cg_.prepare(scratch);
     gather_residual(masses, stage);
-    double goal = parameters_.tolerance * force_scale(masses, gravity, stage);
     const double before = cg_.norm(residual_);
     if (report.newton_iterations == 0) report.first_residual = before;
     const auto goal = [&] {
