@@ -21,14 +21,15 @@ void main() {
   }
   Softness soft = look_up_softness(seen.distance_view);
   vec3 diffuse = ambient_light(n, soft.open);
-  for (int i = 0; i < light_count.x; ++i) {
+  int i = 0;
+  do {
     float cone;
     vec3 l = toward_light(i, surface_world, cone);
     float n_l = max(dot(n, l), 0.0);
     bool known = i == 0 && soft.first_known;
     float lit = visibility(i, surface_world, n, !known && n_l > 0.0);
     diffuse += lights[i].color.rgb * (cone * n_l * (known ? soft.first_lit : lit));
-  }
+  } while (++i < light_count.x);
   float away = length(surface_world - frame.center_world.xyz) / frame.eye_world.w;
   float far = smoothstep(2.0, 9.0, away);
   color = vec4(display(mix(albedo * diffuse, backdrop_color(normalize(surface_world - frame.eye_world.xyz)), far)), 1.0);

@@ -2,17 +2,17 @@
 layout(std140, binding = 0) uniform Frame {
   mat4 clip_from_world;
   mat4 view_from_world;
+  mat4 above_from_world;   // to texture space of the map seen from above
+  mat4 below_from_world;   // and from below
   vec4 eye_world;          // w: radius of the subjects [m]
-  vec4 center_world;       // of the subjects; w: height of the floor above the origin along up [m]
-  vec4 up_world;           // w: 1 where there is a floor
+  vec4 center_world;       // of the subjects
+  vec4 up_world;
   vec4 right_world;        // of the camera
   vec4 sky_light;          // linear, times the sky's share of all light; w: reach of sky occlusion [m]
   vec4 ground_light;       // the same from below; w: metres of one unit of depth of the sky maps
   vec4 backdrop;           // linear colour at the horizon
   vec4 viewport;           // width, height [pixels], and their inverses
   vec4 frustum;            // tangents of half the opening, near, far [m]
-  mat4 above_from_world;   // texture space of the map seen from above
-  mat4 below_from_world;   // and from below
 } frame;
 
 // Position of what is seen at `uv` (0 to 1 across the picture), `distance` metres away along the view axis.

@@ -9,6 +9,8 @@ struct Light {
   vec4 color;                     // linear; w: 1 / width of the soft edge of the cone
   vec4 shadow;                    // penumbra width for each unit of depth, depth bias, texel size
 };
+// There is always one light at least: loops over them test at the end, as llvmpipe runs the round that finds a test at
+// the start false all the same, with all pixels masked.
 layout(std140, binding = 1) uniform Lights {
   Light lights[4];
   ivec4 light_count;

@@ -9,12 +9,13 @@ layout(location = 0) out vec4 soft_light;  // x: openness, y: share of light 0, 
 
 // Scalable ambient obscurance (McGuire, Mara, Luebke 2012, Eq. 1): the mean of how far neighbours stand out of the
 // tangent plane, so that it hardly depends on the distance at which taps happen to land.
-float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, float turn) {
+float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, float turn, bool wanted) {
   float radius = 0.16 * frame.eye_world.w;
   vec2 reach_uv = min(radius / (2.0 * frame.frustum.xy * -p_view.z), vec2(0.12));
   float sum = 0.0;
   vec2 direction = first_direction(turn);
-  for (int k = 0; k < NEARBY_TAPS; ++k) {
+  int taps = wanted ? NEARBY_TAPS : 0;
+  for (int k = 0; k < taps; ++k) {
     // Evenly spaced along the radius, not over the disc: contacts a few millimetres wide get their share of taps.
     vec2 tap_uv = uv + (float(k) + 0.5) / float(NEARBY_TAPS) * direction * reach_uv;
     direction = next_direction(direction);
@@ -22,12 +23,12 @@ float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, float turn) {
     float d_sq = dot(v, v), fall = max(1.0 - d_sq / (radius * radius), 0.0);
     sum += fall * max(dot(v, n_view) + 4e-4 * p_view.z, 0.0) * inversesqrt(d_sq + 1e-8);
   }
-  return clamp(1.0 - 1.6 * sum / float(NEARBY_TAPS), 0.0, 1.0);
+  return clamp(1.0 - 2.1 * sum / float(NEARBY_TAPS), 0.0, 1.0);
 }
 
 // Share of the sky left free by what the maps show above the point, taken as horizontal patches: one of area A at height
 // h and distance d covers A cos_receiver (h / d) / (pi d^2), its form factor.
-float sky_openness(vec3 p_world, vec3 n_world, float turn) {
+float sky_openness(vec3 p_world, vec3 n_world, float turn, bool wanted) {
   float reach = frame.sky_light.w, depth_metres = frame.ground_light.w;
   vec3 up = frame.up_world.xyz, across = frame.right_world.xyz, along = cross(up, across);
   vec3 above = (frame.above_from_world * vec4(p_world, 1.0)).xyz;
@@ -36,19 +37,20 @@ float sky_openness(vec3 p_world, vec3 n_world, float turn) {
   mat2 below_axes = mat2((mat3(frame.below_from_world) * across).xy, (mat3(frame.below_from_world) * along).xy);
   float covered = 0.0;
   vec2 direction = first_direction(turn);
-  for (int k = 0; k < SKY_TAPS; ++k) {
+  int taps = wanted ? SKY_TAPS : 0;
+  for (int k = 0; k < taps; ++k) {
     // Radius r = reach t^2 for t = (k + 1/2) / n, denser towards the zenith; patch area 2 pi r dr follows.
     float t = (float(k) + 0.5) / float(SKY_TAPS), r = reach * t * t;
     vec2 offset = direction * r;
     direction = next_direction(direction);
     float area = 12.5663706 * reach * r * t / float(SKY_TAPS);
     float height = (above.z - textureLod(sky_maps, vec3(above.xy + above_axes * offset, 0.0), 0.0).r) * depth_metres;
-    if (height < 2e-3) continue;
+    float covers = step(2e-3, height);
     float lowest = (textureLod(sky_maps, vec3(below.xy + below_axes * offset, 1.0), 0.0).r - below.z) * depth_metres;
     if (lowest > 2e-3) height = lowest;
     vec3 w = across * offset.x + along * offset.y + up * height;
     float d_sq = dot(w, w);
-    covered += area * max(dot(n_world, w), 0.0) * height / (d_sq * (3.14159265 * d_sq + area));
+    covered += covers * area * max(dot(n_world, w), 0.0) * height / (d_sq * (3.14159265 * d_sq + area));
   }
   return clamp(1.0 - covered, 0.0, 1.0);
 }
@@ -62,8 +64,12 @@ void main() {
   vec3 n_world = surface ? normalize(seen.xyz) : frame.up_world.xyz;
   vec3 p_view = position_view(uv, seen.w), p_world = world_from_view(p_view) + frame.eye_world.xyz;
   float turn = pixel_noise(gl_FragCoord.xy);
-  float open = nearby_openness(uv, p_view, mat3(frame.view_from_world) * n_world, turn);
-  open *= sky_openness(p_world, n_world, turn);
+  // Far from all subjects nothing is hidden from anything.
+  vec3 away = p_world - frame.center_world.xyz;
+  float beyond = frame.eye_world.w + frame.sky_light.w;
+  bool near = surface && dot(away, away) < beyond * beyond;
+  float open = nearby_openness(uv, p_view, mat3(frame.view_from_world) * n_world, turn, near);
+  open *= sky_openness(p_world, n_world, turn, near);
   float cone;
   vec3 l = toward_light(0, p_world, cone);
   bool wanted = surface && light_count.x > 0 && cone > 0.0;

@@ -51,7 +51,8 @@ void main() {
   vec3 diffuse = ambient_light(n, soft.open);
   vec3 through = vec3(0.0), gloss = vec3(0.0);
   float alpha = max(roughness * roughness, 0.02), f0 = 0.04 * (1.0 - 0.9 * roughness * roughness);
-  for (int i = 0; i < light_count.x; ++i) {
+  int i = 0;
+  do {
     float cone;
     vec3 l = toward_light(i, seen.position_world, cone);
     float side = dot(n_smooth, l);
@@ -73,7 +74,7 @@ void main() {
 #else
     gloss += strength * highlight(n, v, l, alpha, f0) * smoothstep(0.0, 0.06, side);
 #endif
-  }
+  } while (++i < light_count.x);
 
   float edge = 1.0 - max(dot(n_smooth, v), 0.0), rim = edge * edge * edge * edge;
 #ifdef CLOTH

@@ -66,9 +66,9 @@ struct Light {
 struct Stage {
   enum class Heat { none, strain, speed };
   Vec3 up{0, 0, 1};
-  Vec3 sky_color{0.93, 0.95, 1.0};      ///< sRGB; light from above and background near the horizon
-  Vec3 ground_color{0.80, 0.78, 0.76};  ///< sRGB; light reflected from below
-  double sky_intensity = 0.6;           ///< share of light that comes from the sky term
+  Vec3 sky_color{0.95, 0.97, 1.0};      ///< sRGB; light from above and background near the horizon
+  Vec3 ground_color{0.78, 0.75, 0.71};  ///< sRGB; light reflected from below
+  double sky_intensity = 0.45;          ///< share of all light that comes from the sky, 0 to 1; the lights give the rest
   Heat heat = Heat::none;
   double heat_max = 0;  ///< value at the hot end of the scale (strain: 1, speed: m/s); 0 follows the frame's largest
 };

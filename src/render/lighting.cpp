@@ -11,8 +11,8 @@ namespace {
 
 double radians(double degrees) { return degrees * std::numbers::pi / 180; }
 
-// Free texels at each edge of a shadow map, so that filters at the edge find nothing in the way.
-constexpr double kBorderTexels = 4;
+// Share of a shadow map left free at each edge, so that penumbrae end inside it.
+constexpr double kBorder = 1.0 / 32;
 
 Vec3 travel_direction(const frame::Light& light) {
   const bool spot = light.kind == frame::Light::Kind::spot;
@@ -34,7 +34,7 @@ ShadowView fit_sun(const frame::Light& light, std::span<const Vec3> casters, con
   // A flat or tiny set of casters still needs room across and along the light.
   const double least = std::max(1e-3, 1e-3 * bounds.sizes().norm());
   const Vec3 size = bounds.sizes().cwiseMax(least);
-  const Vec3 margin(size.x() * kBorderTexels / map_size, size.y() * kBorderTexels / map_size, 0.01 * size.z());
+  const Vec3 margin(kBorder * size.x(), kBorder * size.y(), 0.01 * size.z());
   const Vec3 half = 0.5 * size + margin;
   const Box3 fitted(bounds.center() - half, bounds.center() + half);
 

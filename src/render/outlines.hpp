@@ -5,6 +5,7 @@
 
 #include "render/gl/program.hpp"
 #include "render/surface_buffers.hpp"
+#include "render/view.hpp"
 
 namespace weft::render {
 
@@ -12,17 +13,16 @@ class Outlines {
  public:
   Outlines(const Gl& gl, int width, int height, int samples);
 
-  /// Expects the geometry buffer bound to unit 4 and the frame block. Backdrop: what is at `far` metres.
-  void draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, const Texture& shaded, double far);
-
-  /// The antialiased picture, lowest row first.
-  const Texture& picture() const { return picture_; }
+  /// Antialiases the part of `shaded` inside `area`, in place. Expects the geometry buffer bound to unit 4 and the
+  /// frame block. `far` is the distance at which the geometry buffer has the backdrop [m].
+  void draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, const Texture& shaded,
+            const PixelArea& area, double far);
 
  private:
   const Gl* gl_;
   int width_, height_;
   Program surface_, rest_;
-  Texture color_, depth_, picture_;
+  Texture color_, depth_;
   Framebuffer target_, resolved_;
   VertexArray no_vertices_;
 };

@@ -162,7 +162,15 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
   gl.Enable(GL_MULTISAMPLE);
   const std::vector<frame::Light> lights = effective_lights(snapshot, view.axes, up);
   const double share = 1 - std::clamp(stage.sky_intensity, 0.0, 1.0);
-  const FrameUniform block = pack_frame(view, stage, up, subjects, settings.width, settings.height);
+  frame::Appearance floor_look;
+  for (const auto& surface : snapshot.surfaces) {
+    if (surface->visible && surface->infinite_floor) {
+      floor_look = surface->appearance;
+      break;
+    }
+  }
+  const Vec3 backdrop = backdrop_color(stage, has_floor ? &floor : nullptr, floor_look, lights, share);
+  const FrameUniform block = pack_frame(view, stage, up, subjects, backdrop, settings.width, settings.height);
   gl.NamedBufferData(passes->frame_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
   passes->shadows.draw(lights, caster_positions, up, share, passes->depth, casters);
@@ -172,7 +180,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
   passes->geometry.draw(passes->surfaces, drawn_floor, view.far);
   PROF("geometry")
   if (passes->soft_light) {
-    const double reach = 0.8 * radius;
+    const double reach = sky_reach(subjects);
     passes->soft_light->draw(fit_sky(subjects, up, reach, true), fit_sky(subjects, up, reach, false), passes->depth,
                              casters);
   }
@@ -181,17 +189,18 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
   for (const SurfaceBuffers& surface : passes->surfaces) {
     materials.push_back({surface.surface().appearance, surface.surface().kind == frame::ObjectKind::cloth});
   }
-  for (const auto& surface : snapshot.surfaces) {
-    if (surface->visible && surface->infinite_floor) materials.push_back({surface->appearance, false});
-  }
+  materials.push_back({floor_look, false});
   passes->shading.draw(materials, heat_scale(snapshot, stage));
   PROF("shading")
-  if (passes->outlines) passes->outlines->draw(passes->surfaces, drawn_floor, passes->shading.picture(), view.far);
+  if (passes->outlines) {
+    const PixelArea area = visible_area(view, caster_positions, settings.width, settings.height);
+    passes->outlines->draw(passes->surfaces, drawn_floor, passes->shading.picture(), area, view.far);
+  }
   PROF("picture")
 }
 
 image::Image Renderer::Impl::read() const {
-  const Texture& picture = passes->outlines ? passes->outlines->picture() : passes->shading.picture();
+  const Texture& picture = passes->shading.picture();
   const std::size_t width = static_cast<std::size_t>(settings.width), height = static_cast<std::size_t>(settings.height);
   std::vector<std::uint8_t> rgba(width * height * 4);
   gl.GetTextureImage(picture.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(rgba.size()), rgba.data());

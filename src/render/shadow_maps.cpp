@@ -1,7 +1,6 @@
 #include "render/shadow_maps.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace weft::render {
 namespace {
@@ -77,8 +76,7 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
     gl_->Viewport(0, 0, size, size);
     gl_->Enable(GL_DEPTH_TEST);
     depth.draw(view.clip_from_world, casters);
-    const double widest = std::min(view.penumbra_uv.maxCoeff() * size, static_cast<double>(filter_limit(size)));
-    reduce(i, static_cast<int>(std::ceil((widest + 2) / kBlock)));
+    reduce(i);
   }
   gl_->NamedBufferData(light_block_.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl_->BindBufferBase(GL_UNIFORM_BUFFER, 1, light_block_.name());
@@ -90,7 +88,7 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
   gl_->BindSampler(2, 0);
 }
 
-void ShadowMaps::reduce(int layer, int spread_radius) {
+void ShadowMaps::reduce(int layer) {
   struct Step {
     const Program& program;
     const Texture &from, &to;
@@ -98,6 +96,7 @@ void ShadowMaps::reduce(int layer, int spread_radius) {
     int axis_x;
   };
   const int size = quality_.shadow_size;
+  const int spread_radius = filter_limit(size) / kBlock + 1;
   const Step steps[] = {{reduce_depth_, depth_, range_quarter_, size / 4, 0},
                         {reduce_range_, range_quarter_, range_, size / kBlock, 0},
                         {spread_, range_, range_spread_, size / kBlock, 1},

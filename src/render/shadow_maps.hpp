@@ -40,7 +40,7 @@ class ShadowMaps {
 
  private:
   void reserve(int layers);
-  void reduce(int layer, int spread_radius);
+  void reduce(int layer);
 
   const Gl* gl_;
   QualitySettings quality_;

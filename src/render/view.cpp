@@ -53,13 +53,46 @@ View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const
   return view;
 }
 
-FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects, int width,
-                        int height) {
+PixelArea visible_area(const View& view, std::span<const Vec3> points, int width, int height) {
+  Eigen::AlignedBox2d seen;
+  for (const Vec3& point : points) {
+    const Eigen::Vector4d clip = view.clip_from_world * point.homogeneous();
+    if (clip.w() < view.near) return {0, 0, width, height};
+    seen.extend(Vec2(clip.head<2>() / clip.w()));
+  }
+  if (seen.isEmpty()) return {};
+  const auto pixel = [](double ndc, int size, double margin) {
+    return static_cast<int>(std::clamp((0.5 + 0.5 * ndc) * size + margin, 0.0, static_cast<double>(size)));
+  };
+  PixelArea area{pixel(seen.min().x(), width, -1), pixel(seen.min().y(), height, -1), 0, 0};
+  area.width = pixel(seen.max().x(), width, 2) - area.x;
+  area.height = pixel(seen.max().y(), height, 2) - area.y;
+  return area;
+}
+
+double sky_reach(const Box3& subjects) { return 0.4 * subjects.diagonal().norm(); }
+
+Vec3 backdrop_color(const frame::Stage& stage, const FloorPlane* floor, const frame::Appearance& look,
+                    std::span<const frame::Light> lights, double share) {
+  const Vec3 sky = linear_from_srgb(stage.sky_color);
+  if (!floor) return 0.62 * sky;
+  Vec3 light = (1 - share) * sky;
+  for (const frame::Light& each : lights) {
+    // Far away no spot reaches.
+    if (each.kind != frame::Light::Kind::sun || each.direction.squaredNorm() == 0) continue;
+    const double facing = std::max(0.0, -each.direction.normalized().dot(floor->normal));
+    light += share * each.intensity * facing * linear_from_srgb(each.color);
+  }
+  return linear_from_srgb(look.color).cwiseProduct(light);
+}
+
+FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,
+                        const Vec3& backdrop, int width, int height) {
   const auto four = [](const Vec3& v, double w) {
     return Eigen::Vector4f(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
                            static_cast<float>(w));
   };
-  const double radius = 0.5 * subjects.diagonal().norm(), reach = 0.8 * radius;
+  const double radius = 0.5 * subjects.diagonal().norm(), reach = sky_reach(subjects);
   const double share = std::clamp(stage.sky_intensity, 0.0, 1.0);
   const SkyView above = fit_sky(subjects, up, reach, true), below = fit_sky(subjects, up, reach, false);
   const Vec3 sky = linear_from_srgb(stage.sky_color), ground = linear_from_srgb(stage.ground_color);
@@ -73,7 +106,7 @@ FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3&
   frame.right_world = four(view.axes.right, 0);
   frame.sky_light = four(share * sky, reach);
   frame.ground_light = four(share * ground, above.depth_metres);
-  frame.backdrop = four(0.62 * sky, 0);
+  frame.backdrop = four(backdrop, 0);
   frame.viewport = {static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),
                     1.0f / static_cast<float>(height)};
   frame.frustum = {static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height),

@@ -1,6 +1,9 @@
 // Where a picture is taken from, and the block of shaders/frame.glsl.
 #pragma once
 
+#include <cstddef>
+#include <span>
+
 #include "frame/frame_snapshot.hpp"
 #include "render/lighting.hpp"
 #include "render/transforms.hpp"
@@ -28,15 +31,34 @@ struct View {
 View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
                const FloorPlane* floor);
 
-/// Frame block, std140.
-struct alignas(16) FrameUniform {
-  Eigen::Matrix4f clip_from_world, view_from_world;
-  Eigen::Vector4f eye_world, center_world, up_world, right_world;
-  Eigen::Vector4f sky_light, ground_light, backdrop, viewport, frustum;
-  Eigen::Matrix4f above_from_world, below_from_world;
+/// A rectangle of pixels, counted from the lower left.
+struct PixelArea {
+  int x = 0, y = 0, width = 0, height = 0;
 };
 
-FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects, int width,
-                        int height);
+/// Smallest area that holds what the view shows of the points, and a pixel more on each side; all of the picture where
+/// one of them is not in front of the viewer.
+PixelArea visible_area(const View& view, std::span<const Vec3> points, int width, int height);
+
+/// Frame block, std140.
+struct alignas(16) FrameUniform {
+  // Matrices first: Eigen aligns them to 32 bytes, std140 to 16.
+  Eigen::Matrix4f clip_from_world, view_from_world, above_from_world, below_from_world;
+  Eigen::Vector4f eye_world, center_world, up_world, right_world;
+  Eigen::Vector4f sky_light, ground_light, backdrop, viewport, frustum;
+};
+static_assert(offsetof(FrameUniform, eye_world) == 4 * 64 && offsetof(FrameUniform, frustum) == 4 * 64 + 8 * 16);
+
+/// How far the sky occlusion looks for things overhead [m].
+double sky_reach(const Box3& subjects);
+
+/// `backdrop`: linear colour of the studio at the horizon.
+FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,
+                        const Vec3& backdrop, int width, int height);
+
+/// Linear colour at which the floor runs out into the backdrop: its own in open light, or that of the sky where there
+/// is no floor (`floor` null). Lights are those of the picture, `share` their part of all light.
+Vec3 backdrop_color(const frame::Stage& stage, const FloorPlane* floor, const frame::Appearance& look,
+                    std::span<const frame::Light> lights, double share);
 
 }  // namespace weft::render
