@@ -39,8 +39,10 @@ void report(const Failure& failure) {
 
 int run_program(int argc, char** argv) noexcept {
   try {
-    // A closed pipe is an error of the write that meets it, not a reason to die with half a file.
+    // A closed pipe or a file past its size limit is an error of the write that meets it, not a reason to die with half
+    // a file.
     ::signal(SIGPIPE, SIG_IGN);
+    ::signal(SIGXFSZ, SIG_IGN);
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
     return static_cast<int>(std::visit(Dispatch{}, parse_command_line(arguments)));
   } catch (...) {

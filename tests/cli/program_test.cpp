@@ -245,6 +245,13 @@ TEST_F(Program, OutputThatCannotBeWrittenIsRefusedBeforeSimulating) {
   EXPECT_EQ(tree(), (std::set<std::string>{"plain", "s.toml"}));
 }
 
+TEST_F(Program, DiskThatFillsUpLeavesNoHalfVideo) {
+  const Outcome outcome = Subprocess(run_arguments({"-o", "a.mp4"}), folder_, 500).wait();
+  EXPECT_EQ(outcome.exit_code, 6) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "File too large; no frame was written")) << outcome.err;
+  EXPECT_EQ(tree(), std::set<std::string>{"s.toml"});
+}
+
 TEST_F(Program, OverridesAreCheckedLikeTheFile) {
   EXPECT_EQ(run({"--set", "cloth.cloth.particles=[3,3]", "--stats", "s.json"}).exit_code, 0);
   EXPECT_EQ(json("s.json").at("particles"), 9);

@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <poll.h>
 #include <signal.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -15,7 +16,7 @@ namespace weft::cli {
 namespace {
 
 [[noreturn]] void become_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder, int out,
-                              int err) {
+                              int err, std::size_t file_size_limit) {
   std::vector<char*> argv{const_cast<char*>(WEFT_PROGRAM)};
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
@@ -23,18 +24,21 @@ namespace {
   if (in < 0 || ::dup2(in, 0) < 0 || ::dup2(out, 1) < 0 || ::dup2(err, 2) < 0 || ::chdir(folder.c_str()) != 0) {
     ::_exit(126);
   }
+  const rlimit limit{file_size_limit, file_size_limit};
+  if (file_size_limit > 0 && ::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
   ::execv(WEFT_PROGRAM, argv.data());
   ::_exit(127);
 }
 
 }  // namespace
 
-Subprocess::Subprocess(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
+Subprocess::Subprocess(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+                       std::size_t file_size_limit) {
   std::array<int, 2> out{}, err{};
   if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(err.data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe2");
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("fork");
-  if (pid_ == 0) become_weft(arguments, folder, out[1], err[1]);
+  if (pid_ == 0) become_weft(arguments, folder, out[1], err[1], file_size_limit);
   ::close(out[1]);
   ::close(err[1]);
   out_ = out[0];

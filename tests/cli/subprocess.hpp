@@ -17,7 +17,9 @@ struct Outcome {
 /// WEFT_PROGRAM with `arguments`, started in `folder`, which must exist. Standard input is empty.
 class Subprocess {
  public:
-  Subprocess(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
+  /// `file_size_limit`: bytes that any file may have, as on a full disk; 0 for no limit.
+  Subprocess(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
+             std::size_t file_size_limit = 0);
   ~Subprocess();  ///< kills what still runs
   Subprocess(const Subprocess&) = delete;
   Subprocess& operator=(const Subprocess&) = delete;

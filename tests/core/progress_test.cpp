@@ -55,12 +55,17 @@ TEST(RemainingTime, IsZeroWhenAllIsDone) {
 }
 
 TEST(ProgressBar, FillsWithTheFramesOfAllStages) {
-  EXPECT_EQ(progress_bar({0, 0, 0}, {4, 4, 4}, std::nullopt, 200),
-            "[------------------------]   0 %  simulated 0/4  drawn 0/4  written 0");
+  EXPECT_EQ(progress_bar({0, 0, 0}, {4, 4, 3}, std::nullopt, 200),
+            "[--------------------]   0 %  simulated 0  drawn 0  written 0 of 3");
   EXPECT_EQ(progress_bar({3, 2, 1}, {4, 4, 4}, 12.0, 200),
-            "[############------------]  50 %  simulated 3/4  drawn 2/4  written 1  12 s left");
+            "[##########----------]  50 %  12 s left  simulated 3  drawn 2  written 1 of 4");
   EXPECT_EQ(progress_bar({4, 4, 4}, {4, 4, 4}, 0.0, 200),
-            "[########################] 100 %  simulated 4/4  drawn 4/4  written 4  0 s left");
+            "[####################] 100 %  0 s left  simulated 4  drawn 4  written 4 of 4");
+}
+
+TEST(ProgressBar, OfAHundredThousandFramesFitsAnOldTerminal) {
+  const std::string bar = progress_bar({99999, 9999, 9998}, {100000, 10000, 10000}, 3599, 80);
+  EXPECT_NE(bar.find("written 9998 of 10000"), std::string::npos) << bar;
 }
 
 TEST(ProgressBar, StaysOneColumnNarrowerThanTheTerminal) {
