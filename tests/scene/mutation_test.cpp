@@ -21,7 +21,8 @@ std::string read_text(const std::string& file) {
 
 /// Damages a text in a few places, as bad typing, bad merges and bad disks do.
 std::string damaged(std::string text, std::mt19937& random) {
-  static const std::string kBytes("[]{}=.,\"'#\n\0\xff-+e0159 \t_nan", 29);
+  using namespace std::string_literals;
+  static const std::string kBytes = "[]{}=.,\"'#\n\0\xff-+e0159 \t_nan"s;
   const auto below = [&](std::size_t count) {
     return static_cast<std::size_t>(random() % std::max<std::size_t>(1, count));
   };

