@@ -36,9 +36,11 @@ float visibility(int i, vec3 position_world, vec3 normal_world, bool wanted) {
   vec2 range = texture(shadow_range, vec3(at.xy, i)).rg;
   vec2 reach = lights[i].shadow.xy * max(at.z - range.x, 0.0);
   reach = clamp(reach, vec2(FILTER_FLOOR_TEXELS * texel), vec2(FILTER_LIMIT_TEXELS * texel));
-  float lift = dot(abs(slope), reach + texel) + bias;
+  // What the tangent plane may rise or fall over the filter.
+  float lift = dot(abs(slope), reach + texel);
   bool outside = homogeneous.w <= 0.0 || any(greaterThan(abs(at.xy - 0.5), vec2(0.5)));
-  bool all_lit = !wanted || outside || at.z - bias <= range.x, all_dark = at.z - lift > range.y;
+  bool all_lit = !wanted || outside || range.x == 1.0 || at.z + lift - bias <= range.x;
+  bool all_dark = at.z - lift - bias > range.y;
 
   vec2 direction = first_direction(pixel_noise(gl_FragCoord.xy));
   float margin = bias + texel * length(slope), blocker_sum = 0.0, blocker_count = 0.0;

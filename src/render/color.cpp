@@ -17,7 +17,9 @@ Vec3 linear_from_lab(double lightness, double a, double b) {
   return rgb_from_xyz * xyz;
 }
 
-bool in_gamut(const Vec3& rgb) { return rgb.minCoeff() >= 0 && rgb.maxCoeff() <= 1; }
+bool in_gamut(const Vec3& rgb) {
+  return rgb.minCoeff() >= 0 && rgb.maxCoeff() <= 1;
+}
 
 }  // namespace
 

@@ -16,7 +16,9 @@ constexpr double kElevation = 17;    // degrees above the subject: the floor sho
 constexpr double kAzimuth = 33;      // degrees to the right of the front: three-quarter view
 constexpr double kMargin = 0.14;     // share of each half picture left free round the subject
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+double radians(double degrees) {
+  return degrees * std::numbers::pi / 180;
+}
 
 template <class Visit>
 void for_each_subject_vertex(const frame::FrameSnapshot& snapshot, const Visit& visit) {
@@ -47,7 +49,9 @@ class FrustumFit {
 
 }  // namespace
 
-bool is_subject(const frame::Surface& surface) { return surface.visible && !surface.infinite_floor; }
+bool is_subject(const frame::Surface& surface) {
+  return surface.visible && !surface.infinite_floor;
+}
 
 Box3 subject_bounds(const frame::FrameSnapshot& snapshot) {
   Box3 bounds;

@@ -9,7 +9,9 @@
 namespace weft::render {
 namespace {
 
-double radians(double degrees) { return degrees * std::numbers::pi / 180; }
+double radians(double degrees) {
+  return degrees * std::numbers::pi / 180;
+}
 
 // Share of a shadow map left free at each edge, so that penumbrae end inside it.
 constexpr double kBorder = 1.0 / 32;
@@ -20,10 +22,14 @@ Vec3 travel_direction(const frame::Light& light) {
   return direction.squaredNorm() > 0 ? Vec3(direction.normalized()) : Vec3(-Vec3::UnitZ());
 }
 
-double half_cone(const frame::Light& light) { return radians(std::clamp(light.cone_angle, 1.0, 160.0)) / 2; }
+double half_cone(const frame::Light& light) {
+  return radians(std::clamp(light.cone_angle, 1.0, 160.0)) / 2;
+}
 
 /// Tangent of half the angle under which the light's source is seen; a floor keeps edges from being razor sharp.
-double source_tangent(const frame::Light& light) { return std::tan(radians(std::clamp(light.softness, 0.1, 40.0)) / 2); }
+double source_tangent(const frame::Light& light) {
+  return std::tan(radians(std::clamp(light.softness, 0.1, 40.0)) / 2);
+}
 
 ShadowView fit_sun(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size) {
   const ViewAxes axes = view_axes(travel_direction(light), up);

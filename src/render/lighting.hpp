@@ -14,14 +14,15 @@ namespace weft::render {
 inline constexpr int kMaxLights = 4;
 
 /// The snapshot's lights, at most kMaxLights; where it has none, a warm key light from above, beside the camera.
-std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, const ViewAxes& camera, const Vec3& up);
+std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, const ViewAxes& camera,
+                                           const Vec3& up);
 
 /// A parallel or central projection onto a shadow map.
 struct ShadowView {
   Mat4 clip_from_world = Mat4::Identity();
-  Vec2 penumbra_uv{0, 0};   ///< width of the penumbra, in texture coordinates, for each unit of depth between blocker
-                            ///< and receiver: the same for both kinds of light, as depth goes with 1/distance in a
-                            ///< central projection, and so does the blur
+  Vec2 penumbra_uv{0, 0};  ///< width of the penumbra, in texture coordinates, for each unit of depth between blocker
+                           ///< and receiver: the same for both kinds of light, as depth goes with 1/distance in a
+                           ///< central projection, and so does the blur
   double depth_per_metre = 1;  ///< of the depth buffer, in the middle of the subjects
   double texel_metres = 0;     ///< width of one texel there
 };
@@ -43,8 +44,8 @@ struct alignas(16) LightUniform {
   Eigen::Matrix4f shadow_planes_from_world;  ///< inverse transpose of the above: carries planes instead of points
   Eigen::Vector4f toward_light;              ///< unit; w: 1 for a spot
   Eigen::Vector4f position;                  ///< [m]; w: cosine of half the cone
-  Eigen::Vector4f color;                     ///< linear, times intensity; w: 1 / (cosine inside which all is lit - position.w)
-  Eigen::Vector4f shadow;                    ///< penumbra_uv; depth bias; texel size in texture coordinates
+  Eigen::Vector4f color;   ///< linear, times intensity; w: 1 / (cosine inside which all is lit - position.w)
+  Eigen::Vector4f shadow;  ///< penumbra_uv; depth bias; texel size in texture coordinates
 };
 struct LightsUniform {
   std::array<LightUniform, kMaxLights> lights;

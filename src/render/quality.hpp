@@ -6,10 +6,10 @@
 namespace weft::render {
 
 struct QualitySettings {
-  int samples;            ///< for antialiasing; 1 or 4, more llvmpipe has not
-  int shadow_size;        ///< texels of a shadow map's side; a multiple of 16
-  int blocker_taps;       ///< of the search for what makes a penumbra
-  int filter_taps;        ///< of the penumbra itself
+  int samples;       ///< for antialiasing; 1 or 4, more llvmpipe has not
+  int shadow_size;   ///< texels of a shadow map's side; a multiple of 16
+  int blocker_taps;  ///< of the search for what makes a penumbra
+  int filter_taps;   ///< of the penumbra itself
   int soft_divisor;  ///< the occlusion picture is this much smaller; 0: none
   int nearby_taps, sky_taps;
 };

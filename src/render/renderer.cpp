@@ -5,14 +5,22 @@
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
-#include "render/soft_light.hpp"
 #include "render/framing.hpp"
 #include "render/outlines.hpp"
 #include "render/shading.hpp"
+#include "render/soft_light.hpp"
 #include "render/view.hpp"
 
-#define PROF(n) if(getenv("PROF")){gl.Finish();double t=process_cpu_seconds();static double last=0;if(prof_last>0)printf("  %s %.1f\n",n,1e3*(t-prof_last));prof_last=t;(void)last;}
-static double prof_last=0;
+#define PROF(n)                                                         \
+  if (getenv("PROF")) {                                                 \
+    gl.Finish();                                                        \
+    double t = process_cpu_seconds();                                   \
+    static double last = 0;                                             \
+    if (prof_last > 0) printf("  %s %.1f\n", n, 1e3 * (t - prof_last)); \
+    prof_last = t;                                                      \
+    (void)last;                                                         \
+  }
+static double prof_last = 0;
 namespace weft::render {
 namespace {
 
@@ -201,7 +209,8 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
 
 image::Image Renderer::Impl::read() const {
   const Texture& picture = passes->shading.picture();
-  const std::size_t width = static_cast<std::size_t>(settings.width), height = static_cast<std::size_t>(settings.height);
+  const std::size_t width = static_cast<std::size_t>(settings.width),
+                    height = static_cast<std::size_t>(settings.height);
   std::vector<std::uint8_t> rgba(width * height * 4);
   gl.GetTextureImage(picture.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(rgba.size()), rgba.data());
   image::Image image(settings.width, settings.height);
@@ -234,8 +243,12 @@ image::Image Renderer::draw(const frame::FrameSnapshot& snapshot) {
   return image;
 }
 
-DrawTimes Renderer::last_times() const { return impl_->times; }
+DrawTimes Renderer::last_times() const {
+  return impl_->times;
+}
 
-std::string Renderer::description() const { return impl_->context->description(); }
+std::string Renderer::description() const {
+  return impl_->context->description();
+}
 
 }  // namespace weft::render

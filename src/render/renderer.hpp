@@ -13,11 +13,11 @@ enum class Quality { draft, preview, final };
 enum class Backend { automatic, osmesa, egl };
 
 struct Settings {
-  int width = 1280, height = 720;          ///< pixels
+  int width = 1280, height = 720;  ///< pixels
   Quality quality = Quality::final;
   Backend backend = Backend::automatic;
-  std::string camera;                      ///< by name; empty: the first, or automatic framing
-  int threads = 0;                         ///< of the software rasteriser; 0: its own choice
+  std::string camera;  ///< by name; empty: the first, or automatic framing
+  int threads = 0;     ///< of the software rasteriser; 0: its own choice
 };
 
 /// Time one picture took.

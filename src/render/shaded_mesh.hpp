@@ -33,9 +33,9 @@ std::vector<Vec3> area_normals(std::span<const Triangle> triangles, std::span<co
 
 /// A mesh in which a vertex on a crease appears once for each normal it has.
 struct ShadedMesh {
-  std::vector<Index> source;       ///< per drawn vertex: the vertex of the surface it stands for
-  std::vector<Vec3> normals;       ///< per drawn vertex, unit length
-  std::vector<Triangle> triangles; ///< of drawn vertices; same order as the surface's
+  std::vector<Index> source;        ///< per drawn vertex: the vertex of the surface it stands for
+  std::vector<Vec3> normals;        ///< per drawn vertex, unit length
+  std::vector<Triangle> triangles;  ///< of drawn vertices; same order as the surface's
 };
 
 /// Each corner averages those triangles round its vertex that its own triangle meets at less than `crease_angle`

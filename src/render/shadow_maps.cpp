@@ -8,7 +8,9 @@ namespace {
 constexpr int kBlock = 16;  // texels of a shadow map's side that share one range: two reductions by 4
 
 // Widest filter, in texels: a penumbra may take this much to each side. Wider ones would need more taps to stay smooth.
-constexpr int filter_limit(int map_size) { return map_size / 24; }
+constexpr int filter_limit(int map_size) {
+  return map_size / 24;
+}
 
 }  // namespace
 

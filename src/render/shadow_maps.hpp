@@ -17,7 +17,8 @@ using DrawCasters = std::function<void()>;
 /// One program that draws depth alone.
 class DepthProgram {
  public:
-  explicit DepthProgram(const Gl& gl) : gl_(&gl), program_(gl, "depth.vert", ""), place_(program_.uniform("clip_from_world")) {}
+  explicit DepthProgram(const Gl& gl)
+      : gl_(&gl), program_(gl, "depth.vert", ""), place_(program_.uniform("clip_from_world")) {}
   /// Clears the depth of the bound framebuffer and draws the casters into it.
   void draw(const Mat4& clip_from_world, const DrawCasters& casters) const;
 

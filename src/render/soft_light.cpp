@@ -47,7 +47,8 @@ void SoftLight::draw_sky_maps(const SkyView& above, const SkyView& below, const 
   }
 }
 
-void SoftLight::draw(const SkyView& above, const SkyView& below, const DepthProgram& depth, const DrawCasters& casters) {
+void SoftLight::draw(const SkyView& above, const SkyView& below, const DepthProgram& depth,
+                     const DrawCasters& casters) {
   gl_->Enable(GL_DEPTH_TEST);
   draw_sky_maps(above, below, depth, casters);
 

@@ -1,4 +1,5 @@
-// What changes slowly over the picture (ambient occlusion, the first light's share), drawn small; shaders/soft_light.frag.
+// What changes slowly over the picture (ambient occlusion, the first light's share), drawn small;
+// shaders/soft_light.frag.
 #pragma once
 
 #include "render/quality.hpp"

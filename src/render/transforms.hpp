@@ -12,7 +12,8 @@ struct ViewAxes {
   Vec3 right, up, forward;
 };
 
-/// Axes looking along `forward` with `up` upright; where the two are parallel or `forward` is zero, some upright choice.
+/// Axes looking along `forward` with `up` upright; where the two are parallel or `forward` is zero, some upright
+/// choice.
 ViewAxes view_axes(const Vec3& forward, const Vec3& up);
 
 /// view_from_world of a viewer at `eye`.

@@ -70,7 +70,9 @@ PixelArea visible_area(const View& view, std::span<const Vec3> points, int width
   return area;
 }
 
-double sky_reach(const Box3& subjects) { return 0.4 * subjects.diagonal().norm(); }
+double sky_reach(const Box3& subjects) {
+  return 0.4 * subjects.diagonal().norm();
+}
 
 Vec3 backdrop_color(const frame::Stage& stage, const FloorPlane* floor, const frame::Appearance& look,
                     std::span<const frame::Light> lights, double share) {

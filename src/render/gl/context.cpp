@@ -52,9 +52,10 @@ std::unique_ptr<Context> make_context(Backend backend, int threads) {
   try {
     return make_egl_context();
   } catch (const Error& error) {
-    throw Error(ExitCode::internal,
-                "no OpenGL without a window on this machine: install libosmesa6, or libegl1 and libegl-mesa0\n  {}\n  {}",
-                osmesa_said, error.what());
+    throw Error(
+        ExitCode::internal,
+        "no OpenGL without a window on this machine: install libosmesa6, or libegl1 and libegl-mesa0\n  {}\n  {}",
+        osmesa_said, error.what());
   }
 }
 

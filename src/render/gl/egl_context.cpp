@@ -79,6 +79,8 @@ class EglContext : public Context {
 
 }  // namespace
 
-std::unique_ptr<Context> make_egl_context() { return std::make_unique<EglContext>(); }
+std::unique_ptr<Context> make_egl_context() {
+  return std::make_unique<EglContext>();
+}
 
 }  // namespace weft::render

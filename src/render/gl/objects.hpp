@@ -16,8 +16,7 @@ class GlObject {
   template <class... Args>
   explicit GlObject(const Gl& gl, Args... args) : gl_(&gl), name_(Kind::create(gl, args...)) {}
   ~GlObject() { reset(); }
-  GlObject(GlObject&& other) noexcept
-      : gl_(std::exchange(other.gl_, nullptr)), name_(std::exchange(other.name_, 0)) {}
+  GlObject(GlObject&& other) noexcept : gl_(std::exchange(other.gl_, nullptr)), name_(std::exchange(other.name_, 0)) {}
   GlObject& operator=(GlObject&& other) noexcept {
     std::swap(gl_, other.gl_);
     std::swap(name_, other.name_);

@@ -17,8 +17,17 @@ constexpr const char* kLibrary = "libOSMesa.so.8";
 class OsmesaContext : public Context {
  public:
   OsmesaContext() {
-    const int attributes[] = {OSMESA_FORMAT, OSMESA_RGBA, OSMESA_DEPTH_BITS, 0, OSMESA_PROFILE, OSMESA_CORE_PROFILE,
-                              OSMESA_CONTEXT_MAJOR_VERSION, 4, OSMESA_CONTEXT_MINOR_VERSION, 5, 0};
+    const int attributes[] = {OSMESA_FORMAT,
+                              OSMESA_RGBA,
+                              OSMESA_DEPTH_BITS,
+                              0,
+                              OSMESA_PROFILE,
+                              OSMESA_CORE_PROFILE,
+                              OSMESA_CONTEXT_MAJOR_VERSION,
+                              4,
+                              OSMESA_CONTEXT_MINOR_VERSION,
+                              5,
+                              0};
     context_ = create_(attributes, nullptr);
     if (!context_) throw Error(ExitCode::internal, "{}: makes no OpenGL 4.5 core context", kLibrary);
     make_current();
@@ -53,6 +62,8 @@ class OsmesaContext : public Context {
 
 }  // namespace
 
-std::unique_ptr<Context> make_osmesa_context() { return std::make_unique<OsmesaContext>(); }
+std::unique_ptr<Context> make_osmesa_context() {
+  return std::make_unique<OsmesaContext>();
+}
 
 }  // namespace weft::render

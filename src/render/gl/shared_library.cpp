@@ -6,7 +6,8 @@
 
 namespace weft::render {
 
-SharedLibrary::SharedLibrary(const std::string& file) : file_(file), handle_(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
+SharedLibrary::SharedLibrary(const std::string& file)
+    : file_(file), handle_(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
   if (!handle_) throw Error(ExitCode::internal, "{}: cannot be opened: {}", file, dlerror());
 }
 

@@ -1,0 +1,90 @@
+#include "render/framing.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+#include "render/snapshots.hpp"
+#include "render/view.hpp"
+
+namespace weft::render {
+namespace {
+
+/// Largest |x| and |y| in the picture (1 at its edges) over all vertices that are no floor.
+Vec2 extent(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, const Vec3& up, double aspect) {
+  const View view = make_view(camera, up, aspect, subject_bounds(snapshot), nullptr);
+  Vec2 largest(0, 0);
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    if (snapshot.surfaces[i]->infinite_floor) continue;
+    for (const Vec3& position : snapshot.states[i].positions) {
+      const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
+      EXPECT_GT(clip.w(), 0);
+      largest = largest.cwiseMax((clip.head<2>() / clip.w()).cwiseAbs());
+    }
+  }
+  return largest;
+}
+
+TEST(Framing, EveryVertexIsInFrameAndTheTighterDirectionReachesTheMargin) {
+  for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
+    for (const double aspect : {16.0 / 9, 1.0, 0.5}) {
+      frame::FrameSnapshot snapshot;
+      add_floor(snapshot);
+      add_sphere(snapshot, Vec3(3, 1, 0.5), 0.5, 12);
+      add_square(snapshot, frame::ObjectKind::cloth, Vec3(-2, 0, 4), Vec3::UnitY(), Vec3::UnitX(), 1.5);
+      const Vec2 largest = extent(snapshot, frame_subjects(snapshot, up, aspect), up, aspect);
+      // The margin is 14 percent of the half picture; the fit is exact, so only rounding is left.
+      EXPECT_NEAR(largest.maxCoeff(), 0.86, 1e-9) << up.transpose() << " " << aspect;
+    }
+  }
+}
+
+TEST(Framing, LooksDownOnTheFloorFromTheFrontRight) {
+  frame::FrameSnapshot snapshot;
+  add_sphere(snapshot, Vec3::Zero(), 1, 8);
+  const frame::Camera z_up = frame_subjects(snapshot, Vec3::UnitZ(), 1.5);
+  EXPECT_LT(z_up.position.y(), 0);
+  EXPECT_GT(z_up.position.z(), 0.5);
+  EXPECT_GT(z_up.position.x(), 0);
+  const frame::Camera y_up = frame_subjects(snapshot, Vec3::UnitY(), 1.5);
+  EXPECT_GT(y_up.position.z(), 0);
+  EXPECT_GT(y_up.position.y(), 0.5);
+  EXPECT_GT(y_up.position.x(), 0);
+}
+
+TEST(Framing, NothingOrOnePointStillGivesACamera) {
+  frame::FrameSnapshot nothing;
+  const frame::Camera of_nothing = frame_subjects(nothing, Vec3::UnitZ(), 1.5);
+  EXPECT_GT((of_nothing.position - of_nothing.target).norm(), 0.01);
+  frame::FrameSnapshot point;
+  add_surface(point, frame::ObjectKind::cloth, {Vec3(1, 2, 3)}, {});
+  const frame::Camera of_point = frame_subjects(point, Vec3::UnitZ(), 1.5);
+  EXPECT_TRUE(of_point.position.allFinite());
+  EXPECT_GT((of_point.position - of_point.target).norm(), 0.01);
+}
+
+TEST(Framing, InvisibleSurfacesDoNotCount) {
+  frame::FrameSnapshot snapshot;
+  add_sphere(snapshot, Vec3::Zero(), 1, 8);
+  add_sphere(snapshot, Vec3(50, 0, 0), 1, 8).visible = false;
+  EXPECT_LT(subject_bounds(snapshot).max().x(), 1.001);
+}
+
+TEST(Framing, CameraIsFoundByNameAndAWrongNameListsThoseThereAre) {
+  frame::FrameSnapshot snapshot;
+  EXPECT_EQ(find_camera(snapshot, ""), nullptr);
+  snapshot.cameras = {camera_at(Vec3::Zero(), Vec3::UnitX(), 30), camera_at(Vec3::UnitX(), Vec3::Zero(), 40)};
+  snapshot.cameras[0].name = "front";
+  snapshot.cameras[1].name = "side";
+  EXPECT_EQ(find_camera(snapshot, "")->name, "front");
+  EXPECT_EQ(find_camera(snapshot, "side")->name, "side");
+  try {
+    find_camera(snapshot, "top");
+    FAIL();
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::usage);
+    EXPECT_STREQ(error.what(), "--camera: expected one of the scene's cameras (front, side), got 'top'");
+  }
+}
+
+}  // namespace
+}  // namespace weft::render
