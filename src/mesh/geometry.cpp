@@ -26,7 +26,7 @@ void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> p
     const Vec3 weighted = area_vector(t, positions);
     for (Index v : t) normals[static_cast<std::size_t>(v)] += weighted;
   }
-  for (Vec3& normal : normals) normal.stableNormalize();
+  for (Vec3& normal : normals) normal.normalize();
 }
 
 Box3 bounding_box(std::span<const Vec3> positions) {

@@ -101,7 +101,8 @@ PlyMesh read_ply(const std::filesystem::path& file) {
     std::memcpy(triangle.data(), at + 1, kFaceBytes - 1);
     at += kFaceBytes;
     for (const Index v : triangle)
-      if (v < 0 || static_cast<std::size_t>(v) >= vertices) fail("a face names a vertex that is not there");
+      if (static_cast<std::size_t>(v) >= vertices)  // negative ones become huge
+        fail("a face names a vertex that is not there");
   }
   return mesh;
 }

@@ -27,10 +27,12 @@ TEST(Volume, OfATetrahedronIsASixthOfItsBoxAndNegativeInsideOut) {
   EXPECT_NEAR(enclosed_volume(inside_out, kCorners), -1, kRounding);
 }
 
-TEST(Volume, DoesNotLoseDigitsFarFromTheOrigin) {
+TEST(Volume, OfATinyBodyFarFromTheOriginKeepsItsDigits) {
+  // A third of a millimetre, rounded so that adding the distance is exact: only the sum itself can lose digits.
+  const double size = std::round(std::ldexp(1.0 / 3, 30)) * std::ldexp(1.0, -40);
   auto far = kCorners;
-  for (Vec3& x : far) x += Vec3(1024, -2048, 4096);  // sums without rounding
-  EXPECT_NEAR(enclosed_volume(kTetrahedron, far), 1, kRounding);
+  for (Vec3& x : far) x = size * x + Vec3(1024, -2048, 4096);
+  EXPECT_NEAR(enclosed_volume(kTetrahedron, far) / (size * size * size), 1, kRounding);
 }
 
 TEST(VertexNormals, WeighTrianglesByTheirArea) {

@@ -121,6 +121,15 @@ TEST_F(Ply, WithAVertexIndexOutOfRangeIsRefused) {
   }
 }
 
+TEST_F(Ply, WithAFaceOfFourCornersIsRefused) {
+  write_ply(file(), kPositions, kTriangles);
+  std::string bytes = bytes_of(file());
+  bytes[bytes.size() - 13] = 4;
+  put(bytes);
+  EXPECT_EQ(error_of([&] { read_ply(file()); }),
+            "4 " + file().string() + ": expected a PLY file written by Weft: a face is no triangle");
+}
+
 TEST_F(Ply, WithCountsThatOverflowIsRefusedWithoutAllocating) {
   write_ply(file(), kPositions, kTriangles);
   std::string bytes = bytes_of(file());

@@ -183,6 +183,20 @@ TEST(Box, WithManyBevelFacesConvergesToTheRoundedBox) {
   EXPECT_NEAR((bounds.sizes() - Vec3(1, 2, 3)).norm(), 0, kRounding);
 }
 
+TEST(Box, RoundsItsEdgesInEqualSteps) {
+  const double b = 0.1;
+  int on_edge = 0;
+  for (const Vec3& x : make_box({1, 2, 3}, b, 48).positions) {  // six steps of 15 degrees
+    const double y = x.y() - (1 - b), z = x.z() - (1.5 - b);
+    if (std::abs(x.x() - (0.5 - b)) > kRounding || y < -kRounding || z < -kRounding) continue;
+    const double steps = std::atan2(z, y) * 12 / kPi;
+    EXPECT_NEAR(steps, std::round(steps), kRounding);
+    EXPECT_NEAR(std::hypot(y, z), b, kRounding);
+    ++on_edge;
+  }
+  EXPECT_EQ(on_edge, 7);
+}
+
 TEST(Cylinder, IsThePrismOverItsPolygon) {
   for (const int segments : {3, 13, 48}) {
     const Mesh cylinder = make_cylinder(0.5, 2, segments);
