@@ -58,11 +58,12 @@ typedef float Lanes4 __attribute__((vector_size(16)));
 typedef float Lanes8 __attribute__((vector_size(32)));
 typedef std::int32_t IntLanes8 __attribute__((vector_size(32)));
 
-inline Lanes8 smaller(const Lanes8& a, const Lanes8& b) {
-  return a < b ? a : b;
+/// Lane by lane the smaller (larger) one of both. A vector returned by value would have another ABI without AVX.
+inline void lower_to(Lanes8& a, const Lanes8& b) {
+  a = a < b ? a : b;
 }
-inline Lanes8 larger(const Lanes8& a, const Lanes8& b) {
-  return a > b ? a : b;
+inline void raise_to(Lanes8& a, const Lanes8& b) {
+  a = a > b ? a : b;
 }
 
 /// Bit l is set where lane l is negative.
@@ -87,10 +88,9 @@ struct Points8 {
 };
 
 inline Points8 transpose(const Lanes4* const (&row)[8]) {
-  const auto beside = [&](int low) {
-    return __builtin_shufflevector(*row[low], *row[low + 4], 0, 1, 2, 3, 4, 5, 6, 7);
-  };
-  const Lanes8 a = beside(0), b = beside(1), c = beside(2), d = beside(3);
+  Lanes8 pair[4];  // row l beside row l + 4
+  for (int l = 0; l < 4; ++l) pair[l] = __builtin_shufflevector(*row[l], *row[l + 4], 0, 1, 2, 3, 4, 5, 6, 7);
+  const Lanes8 &a = pair[0], &b = pair[1], &c = pair[2], &d = pair[3];
   const Lanes8 xy_ab = __builtin_shufflevector(a, b, 0, 8, 1, 9, 4, 12, 5, 13);
   const Lanes8 xy_cd = __builtin_shufflevector(c, d, 0, 8, 1, 9, 4, 12, 5, 13);
   const Lanes8 z_ab = __builtin_shufflevector(a, b, 2, 10, 3, 11, 6, 14, 7, 15);

@@ -80,11 +80,14 @@ class ProximityFinder::Search {
       }
       for (std::size_t axis = 0; axis < 3; ++axis) {
         for (std::size_t i = 0; i < 3; ++i) {
-          edge[i].low.axis[axis] = smaller(at[i].axis[axis], at[(i + 1) % 3].axis[axis]);
-          edge[i].high.axis[axis] = larger(at[i].axis[axis], at[(i + 1) % 3].axis[axis]);
+          Lanes8 &low = edge[i].low.axis[axis] = at[i].axis[axis], &high = edge[i].high.axis[axis] = at[i].axis[axis];
+          lower_to(low, at[(i + 1) % 3].axis[axis]);
+          raise_to(high, at[(i + 1) % 3].axis[axis]);
         }
-        face.low.axis[axis] = smaller(edge[0].low.axis[axis], edge[1].low.axis[axis]);
-        face.high.axis[axis] = larger(edge[0].high.axis[axis], edge[1].high.axis[axis]);
+        face.low.axis[axis] = edge[0].low.axis[axis];
+        face.high.axis[axis] = edge[0].high.axis[axis];
+        lower_to(face.low.axis[axis], edge[1].low.axis[axis]);
+        raise_to(face.high.axis[axis], edge[1].high.axis[axis]);
       }
       IntLanes8 bits;
       for (std::size_t l = 0; l < 8; ++l) bits[l] = features.owned(triangles[l]);
@@ -94,9 +97,12 @@ class ProximityFinder::Search {
 
   /// Bit l is set where the boxes in lane l are within reach.
   std::uint32_t near(const Points8& a_low, const Points8& a_high, const Boxes& b) const {
-    Lanes8 gap = larger(a_low.axis[0] - b.high.axis[0], b.low.axis[0] - a_high.axis[0]);
-    for (std::size_t axis = 1; axis < 3; ++axis)
-      gap = larger(gap, larger(a_low.axis[axis] - b.high.axis[axis], b.low.axis[axis] - a_high.axis[axis]));
+    Lanes8 gap = a_low.axis[0] - b.high.axis[0];
+    raise_to(gap, b.low.axis[0] - a_high.axis[0]);
+    for (std::size_t axis = 1; axis < 3; ++axis) {
+      raise_to(gap, a_low.axis[axis] - b.high.axis[axis]);
+      raise_to(gap, b.low.axis[axis] - a_high.axis[axis]);
+    }
     return sign_mask(gap - reach_rounded_);
   }
 
