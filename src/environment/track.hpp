@@ -1,7 +1,6 @@
 // Key-framed motion of rigid bodies, pins and whatever else has a pose.
 #pragma once
 
-#include <optional>
 #include <vector>
 
 #include "environment/spline.hpp"

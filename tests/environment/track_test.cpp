@@ -182,12 +182,11 @@ TEST(Track, GoesOnThroughHalfTurnsInTheSameDirection) {
   for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
     for (const double way : {1.0, -1.0}) {
       const double quarter = way * kPi / 2;
-      scene::PoseTrack keys =
-          spin(interpolation, {0, 0, 1}, {0, 1, 3, 5, 7}, {0, quarter, 3 * quarter, 5 * quarter, 7 * quarter});
-      keys.keys[3].pose.rotation.coeffs() *= -1;  // the same key; its half turn now points the other way
-      const Track track(keys);
+      // Rounding may leave a little more than half a turn, whose shortest way is back.
+      const double more = 3 * quarter + way * 1e-9;
+      const Track track(spin(interpolation, {0, 0, 1}, {0, 1, 3, 5, 7}, {0, quarter, more, 5 * quarter, 7 * quarter}));
       for (const double t : {0.5, 1.5, 2.5, 4.0, 6.5})
-        EXPECT_LT((track.at(t).angular_velocity - Vec3(0, 0, quarter)).norm(), 1e-9) << t;
+        EXPECT_LT((track.at(t).angular_velocity - Vec3(0, 0, quarter)).norm(), 1e-8) << t;
     }
   }
 }
