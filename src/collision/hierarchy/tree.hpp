@@ -75,8 +75,8 @@ class Tree {
 };
 
 /// The tree of the simulation. Measured with tests/bench/collision.cpp, refit + self pairs in CPU ms on one core,
-/// sheets of 64×64 particles flat / in 8 layers: boxes 8-ary 0.43 / 0.81, 4-ary 0.43 / 0.83, 2-ary 0.51 / 0.97; 14-DOPs
-/// 8-ary 0.61 / 2.4, 18-DOPs 0.72 / 2.8, 26-DOPs 1.27 / 3.4; leaves of 4 instead of 8 cost 25 to 50 % more. More
+/// sheets of 64×64 particles flat / in 8 layers: boxes 8-ary 0.44 / 0.81, 4-ary 0.43 / 0.83, 2-ary 0.51 / 0.97; 14-DOPs
+/// 8-ary 0.61 / 2.6, 18-DOPs 0.72 / 3.0, 26-DOPs 1.27 / 3.8; leaves of 4 instead of 8 take 20 to 80 % longer. More
 /// directions drop up to 43 % of the pairs between layers but cost more than the pairs saved, in part because the
 /// longest side of a sheet is then its diagonal, and halves cut along it have worse bounds.
 using SurfaceTree = Tree<6, 8>;
