@@ -132,7 +132,10 @@ class Run {
     report_.gl = result.painter;
     const bool video = target_.kind == OutputTarget::Kind::video;
     // A video that could not be finished holds nothing; pictures are whole one by one.
-    if (video && !result.finished_output) report_.written = 0;
+    if (video && !result.finished_output) {
+      report_.written = 0;
+      for (FrameRecord& record : report_.frames) record.written = false;
+    }
     if (video && result.finished_output) {
       std::error_code error;
       const std::uintmax_t bytes = fs::file_size(target_.file(0), error);

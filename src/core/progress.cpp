@@ -71,14 +71,14 @@ std::string progress_bar(const StageCounts& done, const StageCounts& totals, std
   // Each frame of each stage counts the same: the bar moves from the start and is full only when all is written.
   const int all = std::max(1, totals[kSimulate] + totals[kDraw] + totals[kWrite]);
   const double share = static_cast<double>(done[kSimulate] + done[kDraw] + done[kWrite]) / all;
-  constexpr int kCells = 20;
+  constexpr int kCells = 12;
   const int filled = std::clamp(static_cast<int>(share * kCells), 0, kCells);
   std::string line =
       fmt::format("[{:#>{}}{:->{}}] {:3.0f} %", "", filled, "", kCells - filled, std::floor(100 * share));
   // Before the counts: it is what people look for, and a narrow terminal cuts the end.
   if (seconds_left) line += fmt::format("  {} left", format_duration(*seconds_left));
-  line += fmt::format("  simulated {}  drawn {}  written {} of {}", done[kSimulate], done[kDraw], done[kWrite],
-                      totals[kWrite]);
+  line +=
+      fmt::format("  sim {}  drawn {}  written {} of {}", done[kSimulate], done[kDraw], done[kWrite], totals[kWrite]);
   // One column less than there are: a full line would wrap and could not be redrawn in place.
   if (columns > 0 && line.size() >= static_cast<std::size_t>(columns))
     line.resize(static_cast<std::size_t>(columns - 1));

@@ -42,7 +42,7 @@ class RemainingTime {
   std::deque<Sample> samples_;
 };
 
-/// `[##########----------]  50 %  12 s left  simulated 60  drawn 57  written 55 of 120`, cut to `columns`.
+/// `[######------]  50 %  12 s left  sim 60  drawn 57  written 55 of 120`, cut to `columns`.
 std::string progress_bar(const StageCounts& done, const StageCounts& totals, std::optional<double> seconds_left,
                          int columns);
 

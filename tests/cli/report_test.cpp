@@ -1,0 +1,79 @@
+// What statistics and summary say of made-up runs.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "cli/stats.hpp"
+#include "cli/summary.hpp"
+
+namespace weft::cli {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+// Frame 0, and a frame that took 20 ms to simulate, 5 of them for collisions.
+std::vector<FrameRecord> two_frames() {
+  std::vector<FrameRecord> frames(2);
+  frames[0].report.min_distance = kInfinity;
+  simulation::FrameReport& report = frames[1].report;
+  report.frame = 1;
+  report.time = 0.04;
+  report.simulate_wall_s = 0.020;
+  report.simulate_cpu_s = 0.018;
+  report.collide_wall_s = 0.005;
+  report.steps = 4;
+  report.rejected_steps = 1;
+  report.min_distance = 0.002;
+  report.max_strain = 0.05;
+  frames[1].written = true;
+  frames[1].encode = {0.007, 0.006};
+  return frames;
+}
+
+TEST(FrameJson, GivesMillisecondsAndNoInfinity) {
+  const auto frames = two_frames();
+  EXPECT_TRUE(frame_json(frames[0]).at("min_distance_m").is_null());
+  const auto json = frame_json(frames[1]);
+  EXPECT_DOUBLE_EQ(json.at("simulate_ms"), 20);
+  EXPECT_DOUBLE_EQ(json.at("collide_ms"), 5);
+  EXPECT_DOUBLE_EQ(json.at("encode_ms"), 7);
+  EXPECT_DOUBLE_EQ(json.at("encode_cpu_ms"), 6);
+  EXPECT_DOUBLE_EQ(json.at("min_distance_m"), 0.002);
+}
+
+TEST(Summary, NamesTheFramesOfTheExtremes) {
+  RunReport report;
+  report.output = "a.mp4";
+  report.frames = two_frames();
+  report.written = 1;
+  report.width = 64;
+  report.height = 36;
+  report.fps = 25;
+  report.output_bytes = 1'234'567;
+  const std::string text = summary(report);
+  for (const char* part : {"a.mp4: 1 frame, 64x36 at 25 fps, 1.2 MB\n", "2 mm (frame 1)\n", "5.00 % (frame 1)\n",
+                           "4 and 1 rejected;", "  simulate      0.02 s  0.02 s      18.0 ms\n"}) {
+    EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
+  }
+}
+
+TEST(Summary, OfARunWithoutFramesSaysSo) {
+  RunReport report;
+  report.output = "a.mp4";
+  EXPECT_EQ(summary(report).substr(0, 31), "a.mp4: no frame was written\n   ");
+}
+
+TEST(Warnings, ComeOnlyWithFiguresThatLookWrong) {
+  auto frames = two_frames();
+  EXPECT_TRUE(find_warnings(frames).empty());  // one rejected step for four good ones is well
+  frames[1].report.rejected_steps = 2;
+  ASSERT_EQ(find_warnings(frames).size(), 1u);
+  EXPECT_EQ(find_warnings(frames)[0], "2 of 6 steps were rejected: a smaller time.step would be faster");
+  frames[1].report.max_strain = 0.4;
+  frames[1].report.min_distance = 0;
+  EXPECT_EQ(find_warnings(frames).size(), 3u);
+  EXPECT_TRUE(find_warnings({}).empty());
+}
+
+}  // namespace
+}  // namespace weft::cli
