@@ -1,14 +1,14 @@
 // The shaded picture once more on the multisampled geometry, for clean outlines: each fragment takes the colour of its
 // own surface from the pixel it lies in, or, where that shows another surface, from the neighbour most like it.
-layout(binding = 4) uniform sampler2D normals_and_distances;
-layout(binding = 8) uniform sampler2D shaded;
+layout(binding = 8) uniform sampler2D distances;
+layout(binding = 9) uniform sampler2D shaded;
 layout(location = 0) out vec4 color;
 #ifdef REST
 uniform float rest_distance;
 #endif
 
 float unlike(ivec2 pixel, float distance_view) {
-  return abs(texelFetch(normals_and_distances, pixel, 0).w - distance_view);
+  return abs(texelFetch(distances, pixel, 0).r - distance_view);
 }
 
 void main() {

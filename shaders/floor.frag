@@ -26,9 +26,8 @@ void main() {
     float cone;
     vec3 l = toward_light(i, surface_world, cone);
     float n_l = max(dot(n, l), 0.0);
-    bool known = i == 0 && soft.first_known;
-    float lit = visibility(i, surface_world, n, !known && n_l > 0.0);
-    diffuse += lights[i].color.rgb * (cone * n_l * (known ? soft.first_lit : lit));
+    float lit = share_of_light(i, soft, surface_world, n, n_l > 0.0);
+    diffuse += lights[i].color.rgb * (cone * n_l * lit);
   } while (++i < light_count.x);
   float away = length(surface_world - frame.center_world.xyz) / frame.eye_world.w;
   float far = smoothstep(2.0, 9.0, away);

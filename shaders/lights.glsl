@@ -49,7 +49,8 @@ float visibility(int i, vec3 position_world, vec3 normal_world, bool wanted) {
     vec2 offset = sqrt((float(k) + 0.5) / float(BLOCKER_TAPS)) * direction * reach;
     direction = next_direction(direction);
     float depth = textureLod(shadow_depth, vec3(at.xy + offset, i), 0.0).r;
-    float blocks = float(depth < at.z + dot(slope, offset) - margin);
+    // Depth 1 is no caster, also for what lies beyond the map's far plane.
+    float blocks = float(depth < min(at.z + dot(slope, offset) - margin, 1.0));
     blocker_sum += depth * blocks;
     blocker_count += blocks;
   }

@@ -1,8 +1,9 @@
 // Light from the sky, ambient occlusion, reflections and the way to the screen; used by all drawn surfaces.
 #include "frame.glsl"
 #include "lights.glsl"
-layout(binding = 4) uniform sampler2D normals_and_distances;
+layout(binding = 4) uniform sampler2D normals;
 layout(binding = 5) uniform sampler2D uv_heat_materials;
+layout(binding = 8) uniform sampler2D distances;
 layout(binding = 7) uniform sampler2D materials;  // a row for each: front colour, roughness; back colour, thread spacing;
                                                   // heat scale, checker
 layout(binding = 3) uniform sampler2D soft_light;  // openness, share of light 0, -, distance; see soft_light.frag
@@ -19,14 +20,13 @@ struct Seen {
 
 Seen look_up_seen() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec4 normal_distance = texelFetch(normals_and_distances, pixel, 0);
   vec4 other = texelFetch(uv_heat_materials, pixel, 0);
   int row = int(other.w);
   Seen seen;
-  seen.distance_view = normal_distance.w;
+  seen.distance_view = texelFetch(distances, pixel, 0).r;
   seen.position_world =
-      world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, normal_distance.w)) + frame.eye_world.xyz;
-  seen.normal_world = normalize(normal_distance.xyz);
+      world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, seen.distance_view)) + frame.eye_world.xyz;
+  seen.normal_world = normalize(texelFetch(normals, pixel, 0).xyz);
   seen.rest_uv = other.xy;
   seen.heat = other.z;
   seen.front = other.w - float(row) < 0.25;
@@ -42,29 +42,55 @@ struct Softness {
   bool first_known;  // false where the neighbours disagree, as along the edge of a crisp shadow
 };
 
-// What the small picture knows of this pixel, from its four neighbours there, as far as they lie on the same surface.
+#ifdef SOFT_LIGHT
+// Sums over texels of the small picture, each weighted by how surely it shows the surface `distance_view` away.
+struct SoftSums {
+  float weight, open, lit, least, most;
+};
+
+void add_soft_texel(inout SoftSums sums, ivec2 at, float weight, float distance_view) {
+  vec4 texel = texelFetch(soft_light, clamp(at, ivec2(0), textureSize(soft_light, 0) - 1), 0);
+  float same = max(1.0 - abs(texel.w - distance_view) / (0.02 * distance_view), 0.0);
+  weight *= max(same, 1e-4);
+  sums.weight += weight;
+  sums.open += weight * texel.x;
+  sums.lit += weight * texel.y;
+  sums.least = min(sums.least, same > 0.0 ? texel.y : 1.0);
+  sums.most = max(sums.most, same > 0.0 ? texel.y : 0.0);
+}
+#endif
+
+// What the small picture knows of this pixel, from its neighbours there, as far as they lie on the same surface.
 Softness look_up_softness(float distance_view) {
 #ifdef SOFT_LIGHT
   vec2 at = gl_FragCoord.xy * frame.viewport.zw * vec2(textureSize(soft_light, 0)) - 0.5;
-  ivec2 corner = ivec2(floor(at)), last = textureSize(soft_light, 0) - 1;
+  ivec2 corner = ivec2(floor(at));
   vec2 f = at - floor(at);
-  float nearness = 1.0 / (0.02 * distance_view);
-  float weight_sum = 0.0, open = 0.0, lit = 0.0, least = 1.0, most = 0.0;
+  SoftSums sums = SoftSums(0.0, 0.0, 0.0, 1.0, 0.0);
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
-    vec4 texel = texelFetch(soft_light, clamp(corner + step, ivec2(0), last), 0);
     vec2 side = mix(1.0 - f, f, vec2(step));
-    float same = max(1.0 - abs(texel.w - distance_view) * nearness, 0.0);
-    float weight = (side.x * side.y + 0.01) * max(same, 1e-4);
-    weight_sum += weight;
-    open += weight * texel.x;
-    lit += weight * texel.y;
-    least = min(least, same > 0.0 ? texel.y : least);
-    most = max(most, same > 0.0 ? texel.y : most);
+    add_soft_texel(sums, corner + step, side.x * side.y + 0.01, distance_view);
   }
-  return Softness(open / weight_sum, lit / weight_sum, most >= least && most - least < 0.4);
+  // Where none of the four is of this surface, as beside a nearer thing, the four around them are asked as well.
+  int more = sums.weight < 2e-3 ? 4 : 0;
+  for (int i = 0; i < more; ++i) add_soft_texel(sums, corner + ivec2(i & 1, i >> 1) * 3 - 1, 0.1, distance_view);
+  bool known = sums.most >= sums.least && sums.most - sums.least < 0.4;
+  return Softness(sums.open / sums.weight, sums.lit / sums.weight, known);
 #else
   return Softness(1.0, 1.0, false);
+#endif
+}
+
+// Share of light i at a point, from the small picture where that knows it. The search at full size is left out of
+// programs without FULL_SHADOWS, as llvmpipe would run a round of it for every pixel: 40 ns.
+float share_of_light(int i, Softness soft, vec3 position_world, vec3 n_toward_light, bool wanted) {
+#ifdef FULL_SHADOWS
+  bool known = i == 0 && soft.first_known;
+  float searched = visibility(i, position_world, n_toward_light, wanted && !known);
+  return known ? soft.first_lit : searched;
+#else
+  return soft.first_lit;
 #endif
 }
 

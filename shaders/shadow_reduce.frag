@@ -10,7 +10,8 @@ void main() {
     for (int x = 0; x < 4; ++x) {
       vec2 d = texelFetch(depths, ivec3(block + ivec2(x, y), layer), 0).rg;
 #ifdef FROM_DEPTH
-      d.g = d.r;
+      // Where no caster is, nothing is dark, however far.
+      d.g = d.r == 1.0 ? 1e9 : d.r;
 #endif
       found = vec2(min(found.x, d.x), max(found.y, d.y));
     }

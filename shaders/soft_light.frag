@@ -3,7 +3,8 @@
 // scene from straight above and below (the soft dark under large things).
 #include "frame.glsl"
 #include "lights.glsl"
-layout(binding = 4) uniform sampler2D normals_and_distances;
+layout(binding = 4) uniform sampler2D normals;
+layout(binding = 8) uniform sampler2D distances;
 layout(binding = 6) uniform sampler2DArray sky_maps;  // layer 0 from above, 1 from below
 layout(location = 0) out vec4 soft_light;  // x: openness, y: share of light 0, w: distance along the view axis [m]
 
@@ -19,7 +20,7 @@ float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, float turn, bool wanted
     // Evenly spaced along the radius, not over the disc: contacts a few millimetres wide get their share of taps.
     vec2 tap_uv = uv + (float(k) + 0.5) / float(NEARBY_TAPS) * direction * reach_uv;
     direction = next_direction(direction);
-    vec3 v = position_view(tap_uv, textureLod(normals_and_distances, tap_uv, 0.0).w) - p_view;
+    vec3 v = position_view(tap_uv, textureLod(distances, tap_uv, 0.0).r) - p_view;
     float d_sq = dot(v, v), fall = max(1.0 - d_sq / (radius * radius), 0.0);
     sum += fall * max(dot(v, n_view) + 4e-4 * p_view.z, 0.0) * inversesqrt(d_sq + 1e-8);
   }
@@ -59,10 +60,11 @@ void main() {
   // The pixel of the full picture at the centre of this one.
   ivec2 pixel = ivec2(gl_FragCoord.xy * float(REDUCTION));
   vec2 uv = (vec2(pixel) + 0.5) * frame.viewport.zw;
-  vec4 seen = texelFetch(normals_and_distances, min(pixel, ivec2(frame.viewport.xy) - 1), 0);
-  bool surface = seen.w < frame.frustum.w;
-  vec3 n_world = surface ? normalize(seen.xyz) : frame.up_world.xyz;
-  vec3 p_view = position_view(uv, seen.w), p_world = world_from_view(p_view) + frame.eye_world.xyz;
+  pixel = min(pixel, ivec2(frame.viewport.xy) - 1);
+  float distance_view = texelFetch(distances, pixel, 0).r;
+  bool surface = distance_view < frame.frustum.w;
+  vec3 n_world = surface ? normalize(texelFetch(normals, pixel, 0).xyz) : frame.up_world.xyz;
+  vec3 p_view = position_view(uv, distance_view), p_world = world_from_view(p_view) + frame.eye_world.xyz;
   float turn = pixel_noise(gl_FragCoord.xy);
   // Far from all subjects nothing is hidden from anything.
   vec3 away = p_world - frame.center_world.xyz;
@@ -74,5 +76,5 @@ void main() {
   vec3 l = toward_light(0, p_world, cone);
   bool wanted = surface && light_count.x > 0 && cone > 0.0;
   float lit = visibility(0, p_world, dot(n_world, l) < 0.0 ? -n_world : n_world, wanted);
-  soft_light = vec4(surface ? open : 1.0, lit, 0.0, seen.w);
+  soft_light = vec4(surface ? open : 1.0, lit, 0.0, distance_view);
 }

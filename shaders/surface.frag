@@ -56,15 +56,14 @@ void main() {
     float cone;
     vec3 l = toward_light(i, seen.position_world, cone);
     float side = dot(n_smooth, l);
-    bool known = i == 0 && soft.first_known;
     // Solid surfaces take nothing from behind; cloth lets some through.
 #ifdef CLOTH
-    bool wanted = !known && cone > 0.0;
+    bool wanted = cone > 0.0;
 #else
-    bool wanted = !known && cone > 0.0 && side > 0.0;
+    bool wanted = cone > 0.0 && side > 0.0;
 #endif
-    float lit = visibility(i, seen.position_world, side < 0.0 ? -n_smooth : n_smooth, wanted);
-    vec3 strength = lights[i].color.rgb * (cone * (known ? soft.first_lit : lit));
+    float lit = share_of_light(i, soft, seen.position_world, side < 0.0 ? -n_smooth : n_smooth, wanted);
+    vec3 strength = lights[i].color.rgb * (cone * lit);
     float n_l = max(dot(n, l), 0.0) * smoothstep(0.0, 0.06, side);
     diffuse += strength * n_l;
 #ifdef CLOTH

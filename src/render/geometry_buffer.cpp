@@ -8,15 +8,17 @@ GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
       height_(height),
       program_(gl, "geometry.vert", "geometry.frag"),
       material_(program_.uniform("material")),
-      normal_distance_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
+      normal_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
       uv_heat_material_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
+      distance_(make_texture(gl, GL_R32F, width, height, GL_NEAREST)),
       depth_stencil_(make_texture(gl, GL_DEPTH24_STENCIL8, width, height, GL_NEAREST)),
       target_(gl) {
-  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT0, normal_distance_.name(), 0);
+  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT0, normal_.name(), 0);
   gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT1, uv_heat_material_.name(), 0);
+  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT2, distance_.name(), 0);
   gl.NamedFramebufferTexture(target_.name(), GL_DEPTH_STENCIL_ATTACHMENT, depth_stencil_.name(), 0);
-  const GLenum outputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1};
-  gl.NamedFramebufferDrawBuffers(target_.name(), 2, outputs);
+  const GLenum outputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
+  gl.NamedFramebufferDrawBuffers(target_.name(), 3, outputs);
   check_framebuffer(gl, target_, "geometry buffer");
 }
 
@@ -27,8 +29,8 @@ void GeometryBuffer::set_class(PixelClass pixel_class) const {
 void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, double far) {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
   gl_->Viewport(0, 0, width_, height_);
-  const float nothing[] = {0, 0, 0, static_cast<float>(far)};
-  gl_->ClearBufferfv(GL_COLOR, 0, nothing);
+  const float nothing[] = {static_cast<float>(far), 0, 0, 0};
+  gl_->ClearBufferfv(GL_COLOR, 2, nothing);
   gl_->ClearBufferfi(GL_DEPTH_STENCIL, 0, 1.0f, static_cast<GLint>(PixelClass::backdrop));
   gl_->Enable(GL_DEPTH_TEST);
   gl_->Enable(GL_STENCIL_TEST);
@@ -48,8 +50,16 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorB
     gl_->Disable(GL_CULL_FACE);
   }
   gl_->Disable(GL_STENCIL_TEST);
-  gl_->BindTextureUnit(4, normal_distance_.name());
+  gl_->BindTextureUnit(4, normal_.name());
   gl_->BindTextureUnit(5, uv_heat_material_.name());
+  gl_->BindTextureUnit(8, distance_.name());
+}
+
+std::vector<float> GeometryBuffer::read_distances() const {
+  std::vector<float> distances(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  gl_->GetTextureImage(distance_.name(), 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(distances.size() * sizeof(float)),
+                       distances.data());
+  return distances;
 }
 
 }  // namespace weft::render

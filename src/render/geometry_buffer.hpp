@@ -17,8 +17,12 @@ class GeometryBuffer {
   GeometryBuffer(const Gl& gl, int width, int height);
 
   /// Draws all surfaces and, where not null, the floor. Surface i gets material i, the floor the one after the last.
-  /// `far` is the distance stored where nothing is [m]. Leaves the results bound to units 4 and 5.
+  /// `far` is the distance stored where nothing is [m]. Leaves the results bound to units 4 and 5, distances
+  /// to unit 8.
   void draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, double far);
+
+  /// Distances along the view axis [m], lowest row first.
+  std::vector<float> read_distances() const;
 
   /// Depth and stencil, for the passes that shade by class.
   const Texture& depth_stencil() const { return depth_stencil_; }
@@ -30,7 +34,7 @@ class GeometryBuffer {
   int width_, height_;
   Program program_;
   GLint material_;
-  Texture normal_distance_, uv_heat_material_, depth_stencil_;
+  Texture normal_, uv_heat_material_, distance_, depth_stencil_;
   Framebuffer target_;
 };
 

@@ -5,13 +5,13 @@ namespace weft::render {
 QualitySettings quality_settings(Quality quality) {
   switch (quality) {
     case Quality::draft:
-      return {1, 512, 4, 6, 0, 1, 1};
+      return {1, 512, 4, 6, 4, 3, 3, false};
     case Quality::preview:
-      return {1, 1024, 8, 10, 3, 7, 7};
+      return {1, 768, 8, 10, 4, 7, 7, false};
     case Quality::final:
       break;
   }
-  return {4, 1536, 10, 16, 2, 10, 9};
+  return {4, 1536, 10, 16, 2, 10, 9, true};
 }
 
 }  // namespace weft::render

@@ -10,8 +10,9 @@ struct QualitySettings {
   int shadow_size;   ///< texels of a shadow map's side; a multiple of 16
   int blocker_taps;  ///< of the search for what makes a penumbra
   int filter_taps;   ///< of the penumbra itself
-  int soft_divisor;  ///< the occlusion picture is this much smaller; 0: none
+  int soft_divisor;  ///< the picture of soft light is this much smaller; 0: none
   int nearby_taps, sky_taps;
+  bool crisp_shadows;  ///< search at full size along the edges of the first light's shadows on the subjects
 };
 
 QualitySettings quality_settings(Quality quality);

@@ -11,16 +11,6 @@
 #include "render/soft_light.hpp"
 #include "render/view.hpp"
 
-#define PROF(n)                                                         \
-  if (getenv("PROF")) {                                                 \
-    gl.Finish();                                                        \
-    double t = process_cpu_seconds();                                   \
-    static double last = 0;                                             \
-    if (prof_last > 0) printf("  %s %.1f\n", n, 1e3 * (t - prof_last)); \
-    prof_last = t;                                                      \
-    (void)last;                                                         \
-  }
-static double prof_last = 0;
 namespace weft::render {
 namespace {
 
@@ -49,6 +39,41 @@ double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stag
   }
   // A frame without any heat is drawn all cold.
   return hottest > 0 ? 1 / hottest : 1;
+}
+
+/// One snapshot as the passes need it.
+struct Plan {
+  frame::Stage stage;
+  Vec3 up;
+  Box3 subjects;
+  std::optional<Floor> floor;
+  View view;
+  std::vector<frame::Light> lights;
+  double direct_share;  ///< of all light: what does not come from the sky
+  std::vector<Vec3> caster_positions;
+};
+
+std::vector<Vec3> subject_positions(const frame::FrameSnapshot& snapshot) {
+  std::vector<Vec3> all;
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    if (!is_subject(*snapshot.surfaces[i])) continue;
+    const auto& positions = snapshot.states[i].positions;
+    all.insert(all.end(), positions.begin(), positions.end());
+  }
+  return all;
+}
+
+Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, double aspect) {
+  Plan plan;
+  if (snapshot.stage) plan.stage = *snapshot.stage;
+  plan.up = up_of(snapshot);
+  plan.subjects = subject_bounds(snapshot);
+  plan.floor = find_floor(snapshot, plan.up);
+  plan.view = make_view(camera, plan.up, aspect, plan.subjects, plan.floor);
+  plan.lights = effective_lights(snapshot, plan.view.axes, plan.up);
+  plan.direct_share = 1 - std::clamp(plan.stage.sky_intensity, 0.0, 1.0);
+  plan.caster_positions = subject_positions(snapshot);
+  return plan;
 }
 
 }  // namespace
@@ -90,7 +115,11 @@ struct Renderer::Impl {
   ~Impl();
 
   double aspect() const { return static_cast<double>(settings.width) / settings.height; }
+  const frame::Camera& choose_camera(const frame::FrameSnapshot& snapshot);
   void update_surfaces(const frame::FrameSnapshot& snapshot);
+  void update_floor(const Plan& plan);
+  void upload_frame(const Plan& plan);
+  void shade(const Plan& plan, double heat);
   void draw(const frame::FrameSnapshot& snapshot);
   image::Image read() const;
 };
@@ -136,75 +165,61 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot) {
   passes->surfaces = std::move(next);
 }
 
-void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
-  PROF("start")
-  const frame::Stage stage = snapshot.stage ? *snapshot.stage : frame::Stage{};
-  const Vec3 up = up_of(snapshot);
-  const Box3 subjects = subject_bounds(snapshot);
-  FloorPlane floor;
-  const bool has_floor = find_floor(snapshot, up, floor);
-  const frame::Camera* camera = find_camera(snapshot, settings.camera);
-  if (!camera) {
-    if (!automatic_camera) automatic_camera = frame_subjects(snapshot, up, aspect());
-    camera = &*automatic_camera;
-  }
-  const View view = make_view(*camera, up, aspect(), subjects, has_floor ? &floor : nullptr);
-  const double radius = 0.5 * subjects.diagonal().norm();
+const frame::Camera& Renderer::Impl::choose_camera(const frame::FrameSnapshot& snapshot) {
+  if (const frame::Camera* camera = find_camera(snapshot, settings.camera)) return *camera;
+  if (!automatic_camera) automatic_camera = frame_subjects(snapshot, up_of(snapshot), aspect());
+  return *automatic_camera;
+}
 
-  update_surfaces(snapshot);
-  const Vec3 under = subjects.center() - floor.normal.dot(subjects.center() - floor.point) * floor.normal;
-  if (has_floor) passes->floor.update(under, floor.normal, kFloorReach * (radius + (view.eye - under).norm()));
-  const DrawCasters casters = [&] {
-    for (const SurfaceBuffers& surface : passes->surfaces) surface.draw();
-  };
+void Renderer::Impl::update_floor(const Plan& plan) {
+  if (!plan.floor) return;
+  const Vec3 center = plan.subjects.center();
+  const Vec3 under = center - plan.floor->normal.dot(center - plan.floor->point) * plan.floor->normal;
+  const double radius = 0.5 * plan.subjects.diagonal().norm();
+  passes->floor.update(under, plan.floor->normal, kFloorReach * (radius + (plan.view.eye - under).norm()));
+}
 
-  PROF("cpu")
-  // Shadows.
-  std::vector<Vec3> caster_positions;
-  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
-    if (!is_subject(*snapshot.surfaces[i])) continue;
-    const auto& positions = snapshot.states[i].positions;
-    caster_positions.insert(caster_positions.end(), positions.begin(), positions.end());
-  }
-  gl.Disable(GL_DITHER);
-  gl.Enable(GL_MULTISAMPLE);
-  const std::vector<frame::Light> lights = effective_lights(snapshot, view.axes, up);
-  const double share = 1 - std::clamp(stage.sky_intensity, 0.0, 1.0);
-  frame::Appearance floor_look;
-  for (const auto& surface : snapshot.surfaces) {
-    if (surface->visible && surface->infinite_floor) {
-      floor_look = surface->appearance;
-      break;
-    }
-  }
-  const Vec3 backdrop = backdrop_color(stage, has_floor ? &floor : nullptr, floor_look, lights, share);
-  const FrameUniform block = pack_frame(view, stage, up, subjects, backdrop, settings.width, settings.height);
+void Renderer::Impl::upload_frame(const Plan& plan) {
+  const Vec3 backdrop = backdrop_color(plan.stage, plan.floor, plan.lights, plan.direct_share);
+  const FrameUniform block =
+      pack_frame(plan.view, plan.stage, plan.up, plan.subjects, backdrop, settings.width, settings.height);
   gl.NamedBufferData(passes->frame_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
-  passes->shadows.draw(lights, caster_positions, up, share, passes->depth, casters);
+}
 
-  PROF("shadows")
-  const FloorBuffers* drawn_floor = has_floor ? &passes->floor : nullptr;
-  passes->geometry.draw(passes->surfaces, drawn_floor, view.far);
-  PROF("geometry")
-  if (passes->soft_light) {
-    const double reach = sky_reach(subjects);
-    passes->soft_light->draw(fit_sky(subjects, up, reach, true), fit_sky(subjects, up, reach, false), passes->depth,
-                             casters);
-  }
-  PROF("soft")
+void Renderer::Impl::shade(const Plan& plan, double heat) {
   std::vector<Shading::Material> materials;
   for (const SurfaceBuffers& surface : passes->surfaces) {
     materials.push_back({surface.surface().appearance, surface.surface().kind == frame::ObjectKind::cloth});
   }
-  materials.push_back({floor_look, false});
-  passes->shading.draw(materials, heat_scale(snapshot, stage));
-  PROF("shading")
-  if (passes->outlines) {
-    const PixelArea area = visible_area(view, caster_positions, settings.width, settings.height);
-    passes->outlines->draw(passes->surfaces, drawn_floor, passes->shading.picture(), area, view.far);
+  if (plan.floor) materials.push_back({plan.floor->look, false});
+  passes->shading.draw(materials, heat, plan.lights.size());
+}
+
+/// Shadow maps, then what is seen, then its soft light at reduced size, then colours, then clean outlines.
+void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
+  const Plan plan = make_plan(snapshot, choose_camera(snapshot), aspect());
+  update_surfaces(snapshot);
+  update_floor(plan);
+  upload_frame(plan);
+  gl.Disable(GL_DITHER);
+  const DrawCasters casters = [&] {
+    for (const SurfaceBuffers& surface : passes->surfaces) surface.draw();
+  };
+  const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
+
+  passes->shadows.draw(plan.lights, plan.caster_positions, plan.up, plan.direct_share, passes->depth, casters);
+  passes->geometry.draw(passes->surfaces, floor, plan.view.far);
+  if (passes->soft_light) {
+    const double reach = sky_reach(plan.subjects);
+    passes->soft_light->draw(fit_sky(plan.subjects, plan.up, reach, true),
+                             fit_sky(plan.subjects, plan.up, reach, false), passes->depth, casters);
   }
-  PROF("picture")
+  shade(plan, heat_scale(snapshot, plan.stage));
+  if (passes->outlines) {
+    const PixelArea area = visible_area(plan.view, plan.caster_positions, settings.width, settings.height);
+    passes->outlines->draw(passes->surfaces, floor, passes->geometry, passes->shading.picture(), plan.view, area);
+  }
 }
 
 image::Image Renderer::Impl::read() const {

@@ -7,9 +7,10 @@
 namespace weft::render {
 namespace {
 
-std::vector<std::string> shading_defines(const QualitySettings& quality, bool cloth = false) {
+std::vector<std::string> shading_defines(const QualitySettings& quality, bool full_shadows, bool cloth = false) {
   std::vector<std::string> defines = ShadowMaps::defines(quality);
   if (quality.soft_divisor > 0) defines.push_back("SOFT_LIGHT");
+  if (full_shadows) defines.push_back("FULL_SHADOWS");
   if (cloth) defines.push_back("CLOTH");
   return defines;
 }
@@ -36,10 +37,7 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
     : gl_(&gl),
       width_(width),
       height_(height),
-      cloth_(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, true)),
-      solid_(gl, "fullscreen.vert", "surface.frag", shading_defines(quality)),
-      floor_(gl, "fullscreen.vert", "floor.frag", shading_defines(quality)),
-      backdrop_(gl, "fullscreen.vert", "backdrop.frag", shading_defines(quality)),
+      quality_(quality),
       picture_(make_texture(gl, GL_RGBA8, width, height, GL_NEAREST)),
       heat_colors_(make_heat_colors(gl)),
       target_(gl),
@@ -48,6 +46,14 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
   gl.NamedFramebufferTexture(target_.name(), GL_DEPTH_STENCIL_ATTACHMENT, geometry.depth_stencil().name(), 0);
   check_framebuffer(gl, target_, "picture");
 }
+
+Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, bool many_lights)
+    : cloth(gl, "fullscreen.vert", "surface.frag",
+            shading_defines(quality, many_lights || quality.crisp_shadows, true)),
+      solid(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, many_lights || quality.crisp_shadows)),
+      // The floor takes the first light's shadows as soft as the small picture has them, where there is one.
+      floor(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, many_lights || quality.soft_divisor == 0)),
+      backdrop(gl, "fullscreen.vert", "backdrop.frag", shading_defines(quality, false)) {}
 
 void Shading::upload_materials(std::span<const Material> materials, double heat_scale) {
   constexpr int kColumns = 3;  // of shading.glsl
@@ -65,7 +71,9 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
   if (rows > 0) gl_->TextureSubImage2D(materials_.name(), 0, 0, 0, kColumns, rows, GL_RGBA, GL_FLOAT, texels.data());
 }
 
-void Shading::draw(std::span<const Material> materials, double heat_scale) {
+void Shading::draw(std::span<const Material> materials, double heat_scale, std::size_t light_count) {
+  std::optional<Programs>& programs = light_count > 1 ? many_lights_ : one_light_;
+  if (!programs) programs.emplace(*gl_, quality_, light_count > 1);
   upload_materials(materials, heat_scale);
   gl_->BindTextureUnit(6, heat_colors_.name());
   gl_->BindTextureUnit(7, materials_.name());
@@ -76,10 +84,10 @@ void Shading::draw(std::span<const Material> materials, double heat_scale) {
   gl_->Enable(GL_STENCIL_TEST);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   // Blocks without a pixel of the class are left after the stencil test.
-  const std::pair<PixelClass, const Program*> passes[] = {{PixelClass::cloth, &cloth_},
-                                                          {PixelClass::solid, &solid_},
-                                                          {PixelClass::floor, &floor_},
-                                                          {PixelClass::backdrop, &backdrop_}};
+  const std::pair<PixelClass, const Program*> passes[] = {{PixelClass::cloth, &programs->cloth},
+                                                          {PixelClass::solid, &programs->solid},
+                                                          {PixelClass::floor, &programs->floor},
+                                                          {PixelClass::backdrop, &programs->backdrop}};
   for (const auto& [pixel_class, program] : passes) {
     gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(pixel_class), 0xFF);
     program->use();

@@ -1,6 +1,7 @@
 // Light and colour of every pixel of the geometry buffer.
 #pragma once
 
+#include <optional>
 #include <span>
 
 #include "render/geometry_buffer.hpp"
@@ -19,7 +20,7 @@ class Shading {
     frame::Appearance appearance;
     bool cloth = false;
   };
-  void draw(std::span<const Material> materials, double heat_scale);
+  void draw(std::span<const Material> materials, double heat_scale, std::size_t light_count);
 
   /// The picture in sRGB bytes, lowest row first.
   const Texture& picture() const { return picture_; }
@@ -27,9 +28,15 @@ class Shading {
  private:
   void upload_materials(std::span<const Material> materials, double heat_scale);
 
+  struct Programs {
+    Program cloth, solid, floor, backdrop;
+    Programs(const Gl& gl, const QualitySettings& quality, bool many_lights);
+  };
+
   const Gl* gl_;
   int width_, height_;
-  Program cloth_, solid_, floor_, backdrop_;
+  QualitySettings quality_;
+  std::optional<Programs> one_light_, many_lights_;  // made when first needed
   Texture picture_, heat_colors_, materials_;
   Framebuffer target_;
   VertexArray no_vertices_;

@@ -34,7 +34,7 @@ void describe_vertices(const Gl& gl, const VertexArray& array, const Buffer& ver
 }  // namespace
 
 SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface)
-    : gl_(&gl), surface_(std::move(surface)), array_(gl), vertices_(gl), triangles_(gl) {
+    : gl_(&gl), surface_(std::move(surface)), array_(gl), vertices_(gl), triangles_(gl), some_triangles_(gl) {
   describe_vertices(gl, array_, vertices_);
   gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
 }
@@ -45,24 +45,34 @@ void SurfaceBuffers::update(const frame::SurfaceState& state) {
     vertex_count_ = state.positions.size();
     mapped_ = true;
   }
-  const ShadedMesh mesh = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
-  std::vector<DrawnVertex> vertices(mesh.source.size());
+  mesh_ = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
+  std::vector<DrawnVertex> vertices(mesh_.source.size());
+  positions_.resize(vertices.size());
   const bool has_uv = surface_->uv.size() == vertex_count_, has_heat = state.heat.size() == vertex_count_;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const Index v = mesh.source[i];
-    vertices[i] = {state.positions[v].cast<float>(), mesh.normals[i].cast<float>(),
+    const Index v = mesh_.source[i];
+    positions_[i] = state.positions[v];
+    vertices[i] = {state.positions[v].cast<float>(), mesh_.normals[i].cast<float>(),
                    has_uv ? surface_->uv[v].cast<float>().eval() : Eigen::Vector2f::Zero(),
                    has_heat ? state.heat[v] : 0.0f};
   }
   upload<DrawnVertex>(*gl_, vertices_, vertices);
-  upload<Triangle>(*gl_, triangles_, mesh.triangles);
-  index_count_ = static_cast<GLsizei>(3 * mesh.triangles.size());
+  upload<Triangle>(*gl_, triangles_, mesh_.triangles);
 }
 
 void SurfaceBuffers::draw() const {
-  if (index_count_ == 0) return;
+  if (mesh_.triangles.empty()) return;
   gl_->BindVertexArray(array_.name());
-  gl_->DrawElements(GL_TRIANGLES, index_count_, GL_UNSIGNED_INT, nullptr);
+  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * mesh_.triangles.size()), GL_UNSIGNED_INT, nullptr);
+}
+
+void SurfaceBuffers::draw_triangles(std::span<const Triangle> triangles) const {
+  if (triangles.empty()) return;
+  upload<Triangle>(*gl_, some_triangles_, triangles);
+  gl_->VertexArrayElementBuffer(array_.name(), some_triangles_.name());
+  gl_->BindVertexArray(array_.name());
+  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles.size()), GL_UNSIGNED_INT, nullptr);
+  gl_->VertexArrayElementBuffer(array_.name(), triangles_.name());
 }
 
 FloorBuffers::FloorBuffers(const Gl& gl) : gl_(&gl), array_(gl), vertices_(gl) {

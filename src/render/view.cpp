@@ -8,13 +8,12 @@
 
 namespace weft::render {
 
-bool find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up, FloorPlane& floor) {
+std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up) {
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
     const auto& positions = snapshot.states[i].positions;
     if (!surface.visible || !surface.infinite_floor || positions.empty()) continue;
-    floor.point = positions.front();
-    floor.normal = up;
+    Floor floor{positions.front(), up, surface.appearance};
     for (const auto& [a, b, c] : surface.triangles) {
       const Vec3 normal = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
       if (normal.squaredNorm() > 0) {
@@ -22,13 +21,13 @@ bool find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up, FloorPlane
         break;
       }
     }
-    return true;
+    return floor;
   }
-  return false;
+  return std::nullopt;
 }
 
 View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
-               const FloorPlane* floor) {
+               const std::optional<Floor>& floor) {
   View view;
   view.eye = camera.position;
   view.axes = view_axes(camera.target - camera.position, up);
@@ -74,8 +73,8 @@ double sky_reach(const Box3& subjects) {
   return 0.4 * subjects.diagonal().norm();
 }
 
-Vec3 backdrop_color(const frame::Stage& stage, const FloorPlane* floor, const frame::Appearance& look,
-                    std::span<const frame::Light> lights, double share) {
+Vec3 backdrop_color(const frame::Stage& stage, const std::optional<Floor>& floor, std::span<const frame::Light> lights,
+                    double share) {
   const Vec3 sky = linear_from_srgb(stage.sky_color);
   if (!floor) return 0.62 * sky;
   Vec3 light = (1 - share) * sky;
@@ -85,7 +84,7 @@ Vec3 backdrop_color(const frame::Stage& stage, const FloorPlane* floor, const fr
     const double facing = std::max(0.0, -each.direction.normalized().dot(floor->normal));
     light += share * each.intensity * facing * linear_from_srgb(each.color);
   }
-  return linear_from_srgb(look.color).cwiseProduct(light);
+  return linear_from_srgb(floor->look.color).cwiseProduct(light);
 }
 
 FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "frame/frame_snapshot.hpp"
@@ -10,13 +11,14 @@
 
 namespace weft::render {
 
-/// A plane that carries everything: a point on it and its unit normal, upward.
-struct FloorPlane {
+/// The ground: a point on it, its unit normal, upward, and its looks.
+struct Floor {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
+  frame::Appearance look;
 };
 
-/// Plane of the first visible infinite floor; false where there is none.
-bool find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up, FloorPlane& floor);
+/// The first visible infinite floor, where there is one.
+std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up);
 
 /// A camera made ready to draw.
 struct View {
@@ -27,9 +29,9 @@ struct View {
   Mat4 view_from_world = Mat4::Identity(), clip_from_world = Mat4::Identity();
 };
 
-/// `floor` may be null. The near plane is as far as the subjects and the floor in the picture allow.
+/// The near plane is as far as the subjects and the floor in the picture allow.
 View make_view(const frame::Camera& camera, const Vec3& up, double aspect, const Box3& subjects,
-               const FloorPlane* floor);
+               const std::optional<Floor>& floor);
 
 /// A rectangle of pixels, counted from the lower left.
 struct PixelArea {
@@ -57,8 +59,8 @@ FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3&
                         const Vec3& backdrop, int width, int height);
 
 /// Linear colour at which the floor runs out into the backdrop: its own in open light, or that of the sky where there
-/// is no floor (`floor` null). Lights are those of the picture, `share` their part of all light.
-Vec3 backdrop_color(const frame::Stage& stage, const FloorPlane* floor, const frame::Appearance& look,
-                    std::span<const frame::Light> lights, double share);
+/// is no floor. Lights are those of the picture, `share` their part of all light.
+Vec3 backdrop_color(const frame::Stage& stage, const std::optional<Floor>& floor, std::span<const frame::Light> lights,
+                    double share);
 
 }  // namespace weft::render

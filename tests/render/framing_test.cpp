@@ -11,7 +11,7 @@ namespace {
 
 /// Largest |x| and |y| in the picture (1 at its edges) over all vertices that are no floor.
 Vec2 extent(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, const Vec3& up, double aspect) {
-  const View view = make_view(camera, up, aspect, subject_bounds(snapshot), nullptr);
+  const View view = make_view(camera, up, aspect, subject_bounds(snapshot), std::nullopt);
   Vec2 largest(0, 0);
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     if (snapshot.surfaces[i]->infinite_floor) continue;

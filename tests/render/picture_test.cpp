@@ -182,13 +182,10 @@ frame::FrameSnapshot box_over_floor(const frame::Light& light) {
   return snapshot;
 }
 
-std::pair<int, int> floor_pixel(double across, double along) {
-  const double scale = 100 / (4 * std::tan(20 * std::numbers::pi / 180));
-  return {static_cast<int>(std::lround(160 + scale * across)), static_cast<int>(std::lround(100 - scale * along))};
-}
-
 int brightness(const image::Image& image, double across, double along) {
-  const auto [x, y] = floor_pixel(across, along);
+  const double scale = 0.5 * image.height / (4 * std::tan(20 * std::numbers::pi / 180));
+  const int x = static_cast<int>(std::lround(0.5 * image.width + scale * across));
+  const int y = static_cast<int>(std::lround(0.5 * image.height - scale * along));
   return image.pixel(x, y)[1];
 }
 
@@ -223,8 +220,10 @@ TEST(Picture, SpotShadowGrowsWithDistance) {
   spot.cone_angle = 90;
   spot.softness = 0.5;
   frame::FrameSnapshot snapshot = box_over_floor(spot);
-  // Seen from below the square, which would hide its shadow from above: the floor's own level, past its outline.
-  const image::Image image = Renderer(settings()).draw(snapshot);
+  Settings large = settings();
+  large.width = 1280;
+  large.height = 800;
+  const image::Image image = Renderer(large).draw(snapshot);
   // Outline of the square itself as the camera sees it: 0.2 * 4 / 3.5 = 0.229 m on the floor.
   EXPECT_LT(brightness(image, 0.248, 0), 60);
   EXPECT_GT(brightness(image, 0.30, 0), 120);
