@@ -1,4 +1,4 @@
-// What each quality spends. Figures beside them: CPU ms at 1280x720 of the whole picture.
+// What each quality spends.
 #pragma once
 
 #include "render/renderer.hpp"
