@@ -3,7 +3,7 @@
 
 #include <cstdint>
 #include <limits>
-#include <memory>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -82,7 +82,7 @@ class Engine {
   CandidatePairs candidates_;
   std::vector<Vec3> collected_for_;  // x_t1 of the candidates
   std::vector<Proximity> proximities_;
-  std::vector<std::array<Index, 4>> adopted_;  // features that are contacts because their triangles would have met
+  std::set<std::array<Index, 4>> adopted_;  // features that are contacts because their triangles would have met
   ContactSet contacts_;
 };
 

@@ -161,9 +161,7 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
     gather_residual(masses, stage);
     const double before = cg_.norm(residual_);
     if (report.newton_iterations == 0) report.first_residual = before;
-    const auto goal = [&] {
-      return parameters_.tolerance * std::max(report.first_residual, force_scale(masses, gravity, stage));
-    };
+    const auto goal = [&] { return parameters_.tolerance * force_scale(masses, gravity, stage); };
     const double target = std::max(parameters_.linear_tolerance * before, kLinearShare * goal());
     const solver::LinearReport linear = cg_.solve(residual_, target, parameters_.max_linear_iterations, delta_);
     ++report.newton_iterations;

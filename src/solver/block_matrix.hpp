@@ -39,6 +39,15 @@ class BlockMatrix {
   void add_scalar(Slot slot, double value);
   Mat3 block(Slot slot) const { return Eigen::Map<const Mat3>(values_.data() + 9 * static_cast<std::size_t>(slot)); }
 
+  /// Calls body(row, column, block) for every block, row by row.
+  template <class Body>
+  void for_each_block(const Body& body) const {
+    for (Index row = 0; row < rows(); ++row)
+      for (Slot s = row_start_[static_cast<std::size_t>(row)]; s < row_start_[static_cast<std::size_t>(row) + 1]; ++s)
+        body(row, columns_[static_cast<std::size_t>(s)],
+             Eigen::Map<const Mat3>(values_.data() + 9 * static_cast<std::size_t>(s)));
+  }
+
   /// y = A x over the rows [begin, end); x and y have one entry per block row and must not overlap.
   void multiply(std::span<const Vec3> x, std::span<Vec3> y, std::size_t begin, std::size_t end) const;
 

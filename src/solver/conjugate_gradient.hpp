@@ -1,6 +1,7 @@
 // Filtered, preconditioned conjugate gradients.
 #pragma once
 
+#include <Eigen/Cholesky>
 #include <span>
 #include <vector>
 
@@ -10,7 +11,7 @@ namespace weft::solver {
 
 struct LinearReport {
   int iterations = 0;
-  double first_residual = 0, last_residual = 0;  ///< norms √(rᵀ P⁻¹ r), P the block diagonal
+  double first_residual = 0, last_residual = 0;  ///< norms √(rᵀ P⁻¹ r), P the preconditioner
   bool converged = false;
   bool definite = true;  ///< false: a direction of no or negative curvature came up and the iteration ended there
 };
@@ -23,8 +24,9 @@ class ConjugateGradient {
   /// Prepares the preconditioner for this system, which must outlive the calls that follow.
   void prepare(const LinearSystem& system);
 
-  /// The norm √(bᵀ P⁻¹ b) of the constrained part of b: a residual weighed so that soft and stiff particles compare.
-  double norm(std::span<const Vec3> b) const;
+  /// The norm √(bᵀ P⁻¹ b) of the constrained part of b, close to the energy norm of the error it stands for: a residual
+  /// weighed so that soft and stiff motions compare.
+  double norm(std::span<const Vec3> b);
 
   /// x (in: anything, out: the solution) until the residual's norm is at most `target`, or after `max_iterations`.
   LinearReport solve(std::span<const Vec3> b, double target, int max_iterations, std::span<Vec3> x);
@@ -34,10 +36,15 @@ class ConjugateGradient {
 
  private:
   double multiply(std::span<const Vec3> p, std::span<Vec3> q) const;
-  double precondition(std::span<const Vec3> r, std::span<Vec3> z) const;
+  double precondition(std::span<const Vec3> r, std::span<Vec3> z);
+  void prepare_patches();
 
   const LinearSystem* system_ = nullptr;
   std::vector<Mat3> inverse_diagonal_;  // already filtered: S P⁻¹ S
+  std::vector<Index> constraint_of_;    // per particle, −1 for none
+  Eigen::MatrixXd patch_matrix_;
+  Eigen::LLT<Eigen::MatrixXd> patch_solver_;
+  Eigen::VectorXd patch_residual_, patch_correction_;
   std::vector<Vec3> r_, z_, p_, q_;
 };
 

@@ -28,6 +28,9 @@ struct LinearSystem {
   BlockMatrix matrix;  ///< positive definite on the free directions
   std::vector<StencilTerm> terms;
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
+  /// Patch of each particle, 0 to patches − 1: the preconditioner's coarse level moves patches as a whole.
+  std::vector<Index> patch_of;
+  Index patches = 0;  ///< 0: no coarse level
 };
 
 }  // namespace weft::solver
