@@ -1,0 +1,112 @@
+// Systems of one or two particles whose motion is known.
+#pragma once
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+#include "integrator/stepper.hpp"
+#include "integrator/system.hpp"
+
+namespace weft::integrator::testing {
+
+/// Solved to rounding, so that only the method itself is left to see.
+inline const NewtonParameters kTight{
+    .tolerance = 1e-12, .max_iterations = 40, .linear_tolerance = 1e-12, .max_linear_iterations = 1000};
+
+/// Particles that do not know of each other.
+class Particles : public System {
+ public:
+  explicit Particles(std::vector<double> masses) : masses_(std::move(masses)) {}
+
+  std::span<const double> masses() const override { return masses_; }
+  void explicit_forces(const State&, double, std::span<Vec3>) const override {}
+  void forces(const StagePoint& at, std::span<Vec3> force) const override {
+    for (std::size_t i = 0; i < masses_.size(); ++i) force[i] += force_on(at.x[i]);
+  }
+  void linearise(const StagePoint& at, std::span<Vec3> force, solver::LinearSystem& system) const override {
+    forces(at, force);
+    system.matrix.set_zero();
+    system.terms.clear();
+    for (std::size_t i = 0; i < masses_.size(); ++i) {
+      const solver::Slot slot = system.matrix.diagonal(static_cast<Index>(i));
+      system.matrix.add_scalar(slot, at.rate * at.rate * masses_[i]);
+      system.matrix.add(slot, stiffness_of(at.x[i]));
+    }
+  }
+
+  solver::LinearSystem make_linear_system() const {
+    solver::LinearSystem system;
+    system.matrix = solver::BlockMatrix(static_cast<Index>(masses_.size()), {});
+    return system;
+  }
+
+ protected:
+  virtual Vec3 force_on(const Vec3& x) const = 0;      ///< [N]
+  virtual Mat3 stiffness_of(const Vec3& x) const = 0;  ///< −df/dx [N/m]
+
+ private:
+  std::vector<double> masses_;
+};
+
+/// f = −k x on one particle of 1 kg, or on several.
+class Spring : public Particles {
+ public:
+  explicit Spring(double k, std::vector<double> masses = {1}) : Particles(std::move(masses)), k_(k) {}
+
+ protected:
+  Vec3 force_on(const Vec3& x) const override { return -k_ * x; }
+  Mat3 stiffness_of(const Vec3&) const override { return k_ * Mat3::Identity(); }
+
+ private:
+  double k_;
+};
+
+/// f = −(1 + ‖x‖²) x: smooth, nonlinear, with a definite stiffness.
+class HardeningSpring : public Particles {
+ public:
+  HardeningSpring() : Particles({1}) {}
+  static Vec3 force_at(const Vec3& x) { return -(1 + x.squaredNorm()) * x; }
+
+ protected:
+  Vec3 force_on(const Vec3& x) const override { return force_at(x); }
+  Mat3 stiffness_of(const Vec3& x) const override {
+    return (1 + x.squaredNorm()) * Mat3::Identity() + 2 * x * x.transpose();
+  }
+};
+
+/// Two particles of 1 kg with f0 = −s x1 and f1 = −s x0: they flee from each other ever faster where s > 0, and the
+/// matrix is indefinite with a definite diagonal where s is above rate².
+class Saddle final : public System {
+ public:
+  explicit Saddle(double s) : s_(s) {}
+  std::span<const double> masses() const override { return masses_; }
+  void explicit_forces(const State&, double, std::span<Vec3>) const override {}
+  void forces(const StagePoint& at, std::span<Vec3> force) const override {
+    force[0] -= s_ * at.x[1];
+    force[1] -= s_ * at.x[0];
+  }
+  void linearise(const StagePoint& at, std::span<Vec3> force, solver::LinearSystem& system) const override {
+    forces(at, force);
+    system.matrix = solver::BlockMatrix(2, {{0, 1}});
+    for (Index i : {0, 1}) {
+      system.matrix.add_scalar(system.matrix.diagonal(i), at.rate * at.rate);
+      system.matrix.add_scalar(system.matrix.slot(i, 1 - i), s_);
+    }
+  }
+
+ private:
+  double s_;
+  std::vector<double> masses_{1, 1};
+};
+
+/// The hardening spring with a drag −c ‖v‖ v taken as a force outside of the implicit solve.
+class DraggedSpring : public HardeningSpring {
+ public:
+  static constexpr double kDrag = 0.4;
+  static Vec3 drag_at(const Vec3& v) { return -kDrag * v.norm() * v; }
+  void explicit_forces(const State& at, double, std::span<Vec3> force) const override { force[0] += drag_at(at.v[0]); }
+};
+
+}  // namespace weft::integrator::testing

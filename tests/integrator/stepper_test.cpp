@@ -1,0 +1,159 @@
+// Held particles, free fall, and what the stepper reports.
+#include "integrator/stepper.hpp"
+
+#include <gtest/gtest.h>
+
+#include "integrator/small_systems.hpp"
+
+namespace weft::integrator {
+namespace {
+
+using testing::kTight;
+using testing::Spring;
+
+constexpr Method kMethods[] = {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2};
+
+TEST(Stepper, FreeFallFollowsTheLawOfEachMethod) {
+  const Vec3 g(0.5, 0, -9.81), x0(1, 2, 3), v0(0.3, 0, 1);
+  const double h = 0.02;
+  const Spring nothing(0, {1, 0.003});
+  for (Method method : kMethods) {
+    Stepper stepper(method, kTight);
+    solver::LinearSystem scratch = nothing.make_linear_system();
+    State now{{x0, x0}, {v0, v0}}, next;
+    for (int n = 1; n <= 25; ++n) {
+      ASSERT_EQ(stepper.step(nothing, now, h, g, {}, scratch, next).verdict, Verdict::solved);
+      stepper.accept(now, h);
+      std::swap(now, next);
+      const double t = n * h;
+      // Against ½ g t²: Euler is ahead by ½ g h t; BDF2 by what its first step, an Euler step, leaves behind.
+      Vec3 expected = x0 + t * v0 + 0.5 * t * t * g;
+      if (method == Method::implicit_euler) expected += 0.5 * h * t * g;
+      if (method == Method::bdf2) expected += 0.75 * h * h * (1 - std::pow(3, -n)) * g;
+      for (std::size_t i : {0u, 1u}) {
+        // A few roundings of metres per step.
+        EXPECT_LT((now.x[i] - expected).norm(), 1e-13 * n);
+        EXPECT_LT((now.v[i] - (v0 + t * g)).norm(), 1e-12 * n);
+      }
+    }
+  }
+}
+
+TEST(Stepper, HeldParticleEndsExactlyAtItsTarget) {
+  const Spring spring(50, {1, 2});
+  for (Method method : kMethods) {
+    Stepper stepper(method, kTight);
+    solver::LinearSystem scratch = spring.make_linear_system();
+    const State now{{Vec3(1, 0, 0), Vec3(0, 1, 0)}, {Vec3(0, 3, 0), Vec3(1, 1, 1)}};
+    const HeldParticle held{{1, Mat3::Zero()}, Vec3(0.1, 1.3, -0.7), Vec3(7, 8, 9)};
+    State next, alone;
+    ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {&held, 1}, scratch, next).verdict, Verdict::solved);
+    EXPECT_EQ(next.x[1], held.x_end);
+    EXPECT_EQ(next.v[1], held.v_end);
+    // The other one does not notice.
+    ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {}, scratch, alone).verdict, Verdict::solved);
+    EXPECT_LT((next.x[0] - alone.x[0]).norm(), 1e-14);
+    EXPECT_GT((next.x[1] - alone.x[1]).norm(), 0.1);
+  }
+}
+
+TEST(Stepper, ParticleHeldInAPlaneIsFreeWithinIt) {
+  const Spring spring(50, {1});
+  const Vec3 n = Vec3(1, 2, 2) / 3;
+  const Mat3 free = Mat3::Identity() - n * n.transpose();
+  for (Method method : kMethods) {
+    Stepper stepper(method, kTight);
+    solver::LinearSystem scratch = spring.make_linear_system();
+    const State now{{Vec3(1, 0, 0)}, {Vec3(0, 3, 0)}};
+    const HeldParticle held{{0, free}, Vec3(0.9, 0, 0.1), Vec3(2, 0, 0)};
+    State next, alone;
+    ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {&held, 1}, scratch, next).verdict, Verdict::solved);
+    ASSERT_EQ(stepper.step(spring, now, 0.01, Vec3(0, 0, -9.81), {}, scratch, alone).verdict, Verdict::solved);
+    // Along n as told; across as if it were free, for the spring is the same in all directions.
+    EXPECT_NEAR(n.dot(next.x[0] - held.x_end), 0, 1e-15);
+    EXPECT_NEAR(n.dot(next.v[0] - held.v_end), 0, 1e-14);
+    EXPECT_LT((free * (next.x[0] - alone.x[0])).norm(), 1e-13);
+    EXPECT_LT((free * (next.v[0] - alone.v[0])).norm(), 1e-11);
+  }
+}
+
+TEST(Stepper, StepIsRememberedOnlyWhenAccepted) {
+  const Spring spring(400);
+  for (Method method : kMethods) {
+    Stepper stepper(method, kTight);
+    solver::LinearSystem scratch = spring.make_linear_system();
+    const State before{{Vec3(1, 0, 0)}, {Vec3(0, 1, 0)}}, now{{Vec3(0.9, 0, 0)}, {Vec3(-0.1, 1, 0)}};
+    stepper.accept(before, 0.01);
+    State first, other, again;
+    stepper.step(spring, now, 0.01, Vec3::Zero(), {}, scratch, first);
+    stepper.step(spring, before, 0.03, Vec3(1, 1, 1), {}, scratch, other);
+    stepper.step(spring, now, 0.01, Vec3::Zero(), {}, scratch, again);
+    EXPECT_EQ(first.x, again.x);
+    EXPECT_EQ(first.v, again.v);
+  }
+}
+
+TEST(Stepper, ResidualIsBelowTheToleranceWhenTheStepIsSolved) {
+  // One free particle: the residual of the equation can be worked out from its end alone.
+  const testing::HardeningSpring spring;
+  const double h = 0.5;
+  for (double tolerance : {0.1, 1e-3, 1e-8}) {
+    Stepper stepper(Method::implicit_euler, {tolerance, 40, tolerance, 1000});
+    solver::LinearSystem scratch = spring.make_linear_system();
+    const State now{{Vec3(3, 0, 0)}, {Vec3(0, 2, 0)}};
+    State next;
+    const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, scratch, next);
+    ASSERT_EQ(report.verdict, Verdict::solved);
+    EXPECT_LT(report.last_residual, report.first_residual);
+    const Vec3 inertia = (next.v[0] - now.v[0]) / h;
+    const Vec3 residual = testing::HardeningSpring::force_at(next.x[0]) - inertia;
+    // The norm is weighed by the stiffness, of which the largest and least eigenvalue are up to 3 apart.
+    EXPECT_LT(residual.norm(), 2 * tolerance * std::max(inertia.norm(), 1.0));
+  }
+}
+
+// A force without a value.
+class Broken : public testing::HardeningSpring {
+ protected:
+  Vec3 force_on(const Vec3&) const override { return Vec3::Constant(std::numeric_limits<double>::quiet_NaN()); }
+};
+
+Verdict verdict_of(const System& system, std::size_t particles, const NewtonParameters& parameters) {
+  Stepper stepper(Method::implicit_euler, parameters);
+  solver::LinearSystem scratch;
+  scratch.matrix = solver::BlockMatrix(static_cast<Index>(particles), {});
+  const State now{std::vector<Vec3>(particles, Vec3(3, 0, 0)), std::vector<Vec3>(particles, Vec3(0, 2, 0))};
+  State next;
+  return stepper.step(system, now, 0.5, Vec3::Zero(), {}, scratch, next).verdict;
+}
+
+TEST(Stepper, SaysWhyAStepIsNotSolved) {
+  EXPECT_EQ(verdict_of(testing::HardeningSpring(), 1, kTight), Verdict::solved);
+  EXPECT_EQ(verdict_of(Broken(), 1, kTight), Verdict::not_finite);
+  NewtonParameters one = kTight;
+  one.max_iterations = 1;
+  EXPECT_EQ(verdict_of(testing::HardeningSpring(), 1, one), Verdict::newton_stalled);
+  EXPECT_EQ(verdict_of(Spring(40), 1, one), Verdict::solved);  // linear: one iteration is enough
+}
+
+TEST(Stepper, MatrixThatIsNotDefiniteIsReported) {
+  // The rate is 2 / s, so the diagonal is 4.
+  Stepper stepper(Method::implicit_euler, kTight);
+  for (const auto& [s, verdict] : {std::pair{3.0, Verdict::solved}, std::pair{400.0, Verdict::indefinite}}) {
+    solver::LinearSystem scratch;
+    scratch.matrix = solver::BlockMatrix(2, {{0, 1}});
+    State next;
+    const State now{{Vec3(1, 0, 0), Vec3(-1, 0, 0)}, {Vec3::Zero(), Vec3::Zero()}};
+    EXPECT_EQ(stepper.step(testing::Saddle(s), now, 0.5, Vec3::Zero(), {}, scratch, next).verdict, verdict);
+  }
+}
+
+TEST(Stepper, VerdictsAreDescribedInDifferentWords) {
+  EXPECT_EQ(describe(Verdict::solved), "solved");
+  EXPECT_NE(describe(Verdict::not_finite).find("not finite"), std::string_view::npos);
+  EXPECT_NE(describe(Verdict::newton_stalled).find("tolerance"), std::string_view::npos);
+  EXPECT_NE(describe(Verdict::indefinite).find("not positive definite"), std::string_view::npos);
+}
+
+}  // namespace
+}  // namespace weft::integrator

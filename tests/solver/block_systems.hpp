@@ -1,0 +1,102 @@
+// Random symmetric positive definite block systems, sparse as the solver sees them and dense for comparison.
+#pragma once
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "solver/linear_system.hpp"
+
+namespace weft::solver::testing {
+
+/// Numbers that are the same on every run.
+class Random {
+ public:
+  explicit Random(unsigned seed) : engine_(seed) {}
+  double number(double low = -1, double high = 1) { return std::uniform_real_distribution<double>(low, high)(engine_); }
+  Index below(Index count) { return std::uniform_int_distribution<Index>(0, count - 1)(engine_); }
+  Vec3 vector() { return {number(), number(), number()}; }
+  /// Symmetric, eigenvalues between `low` and about `low` + 3.
+  Mat3 definite(double low) {
+    Mat3 a;
+    a << vector(), vector(), vector();
+    return a * a.transpose() + low * Mat3::Identity();
+  }
+  std::vector<Vec3> vectors(Index count) {
+    std::vector<Vec3> x(static_cast<std::size_t>(count));
+    for (Vec3& entry : x) entry = vector();
+    return x;
+  }
+
+ private:
+  std::mt19937 engine_;
+};
+
+/// Springs between random neighbours on top of a definite diagonal.
+inline BlockMatrix random_matrix(Index rows, Random& random) {
+  std::vector<std::pair<Index, Index>> couplings;
+  for (Index i = 1; i < rows; ++i)
+    for (int k = 0; k < 3; ++k) couplings.emplace_back(i, random.below(i));
+  BlockMatrix matrix(rows, couplings);
+  for (Index i = 0; i < rows; ++i) matrix.add(matrix.diagonal(i), random.definite(0.1));
+  for (const auto& [i, j] : couplings) {
+    const Mat3 spring = 3 * random.definite(0);
+    matrix.add(matrix.diagonal(i), spring);
+    matrix.add(matrix.diagonal(j), spring);
+    matrix.subtract(matrix.slot(i, j), spring);
+    matrix.subtract(matrix.slot(j, i), spring);
+  }
+  return matrix;
+}
+
+/// A system with contacts of two to four particles, and constraints of every kind: a point, a line, a plane.
+inline LinearSystem random_system(Index rows, int terms, Random& random) {
+  LinearSystem system;
+  system.matrix = random_matrix(rows, random);
+  for (int t = 0; t < terms; ++t) {
+    StencilTerm term;
+    const int involved = 2 + t % 3;
+    for (int k = 0; k < involved; ++k) {
+      term.particles[static_cast<std::size_t>(k)] = (random.below(rows / 4) * 4 + k) % rows;  // all different
+      term.weights[static_cast<std::size_t>(k)] = random.number();
+    }
+    const Vec3 n = random.vector().normalized();
+    term.stiffness = 50 * n * n.transpose();
+    system.terms.push_back(term);
+  }
+  for (Index i = 0; i < rows; i += 7) {
+    const Vec3 n = random.vector().normalized();
+    const Mat3 line = n * n.transpose();
+    const Mat3 kinds[] = {Mat3::Zero(), line, Mat3::Identity() - line};
+    system.constraints.push_back({i, kinds[(i / 7) % 3]});
+  }
+  return system;
+}
+
+/// All entries of the matrix, block by block through slot(); `pattern` says which blocks exist.
+inline Eigen::MatrixXd dense(const BlockMatrix& matrix, const std::vector<std::pair<Index, Index>>& pattern) {
+  Eigen::MatrixXd full = Eigen::MatrixXd::Zero(3 * matrix.rows(), 3 * matrix.rows());
+  for (const auto& [i, j] : pattern) full.block<3, 3>(3 * i, 3 * j) = matrix.block(matrix.slot(i, j));
+  return full;
+}
+
+/// All entries of the matrix, column by column through multiply().
+inline Eigen::MatrixXd dense(const BlockMatrix& matrix) {
+  const auto rows = static_cast<std::size_t>(matrix.rows());
+  Eigen::MatrixXd full(3 * matrix.rows(), 3 * matrix.rows());
+  std::vector<Vec3> x(rows, Vec3::Zero()), y(rows);
+  for (std::size_t i = 0; i < rows; ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      x[i][axis] = 1;
+      matrix.multiply(x, y, 0, rows);
+      x[i][axis] = 0;
+      for (std::size_t r = 0; r < rows; ++r)
+        full.block<3, 1>(static_cast<Eigen::Index>(3 * r), static_cast<Eigen::Index>(3 * i) + axis) = y[r];
+    }
+  return full;
+}
+
+inline Eigen::Map<const Eigen::VectorXd> flat(std::span<const Vec3> x) {
+  return {x.data()->data(), static_cast<Eigen::Index>(3 * x.size())};
+}
+
+}  // namespace weft::solver::testing
