@@ -1,0 +1,100 @@
+// Bending of the sheet as a plate.
+#include "forces/bend.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "forces/sheets.hpp"
+
+namespace weft::forces {
+namespace {
+
+using testing::Positions;
+
+constexpr double kRigidity = 3e-4;  // [N·m]
+constexpr double kRadius = 0.2;     // [m]
+
+/// A sheet of 0.2 m by 0.15 m bent on a cylinder whose axis is at `angle` from the warp.
+Positions cylinder(const mesh::Grid& grid, double angle) {
+  return testing::shaped(grid, [=](double u, double v) {
+    const double along = u * std::cos(angle) + v * std::sin(angle);
+    const double across = -u * std::sin(angle) + v * std::cos(angle);
+    return Vec3(kRadius * std::sin(along / kRadius), across, kRadius * (1 - std::cos(along / kRadius)));
+  });
+}
+
+mesh::Grid grid_of(int cells) {
+  return {4 * cells + 1, 3 * cells + 1, 0.05 / cells, 0.05 / cells};
+}
+
+TEST(Bend, PlaneHasNoBendForceHoweverItsParticlesLie) {
+  // A regular plane, stretched and sheared in itself.
+  const mesh::Grid grid = grid_of(2);
+  const Bend bend(grid, 0, {kRigidity, 1e-5});
+  const Positions x = testing::moved_rigidly(
+      testing::shaped(grid, [](double u, double v) { return Vec3(1.3 * u + 0.2 * v, 0.9 * v, 0); }));
+  const Positions v = testing::rigid_velocities(x);
+  // Coordinates of metres are rounded by 4e-16 m; B / l² is 0.5 N/m.
+  EXPECT_LT(testing::largest(testing::force_of(bend, x, v)), 1e-14);
+  EXPECT_LT(bend.energy(x), 1e-28);
+}
+
+TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
+  // The curvature is that of the inner particles: along weft the energy is that of all but half a spacing at either
+  // end.
+  for (double angle : {0.0, std::numbers::pi / 4, std::numbers::pi / 2}) {
+    const auto error_at = [&](int cells) {
+      const mesh::Grid grid = grid_of(cells);
+      const double width = (grid.nu - 1) * grid.lu, height = (grid.nv - 1) * grid.lv;
+      const double c = std::cos(angle), s = std::sin(angle);
+      const double area = c * c * c * c * (width - grid.lu) * height + 2 * c * c * s * s * width * height +
+                          s * s * s * s * width * (height - grid.lv);
+      const double expected = 0.5 * kRigidity * area / (kRadius * kRadius);
+      return std::abs(Bend(grid, 0, {kRigidity, 0}).energy(cylinder(grid, angle)) / expected - 1);
+    };
+    for (int cells : {2, 4}) {
+      // A second difference of a circle is short by l² / 12 R² of itself, the energy by twice that; less where the
+      // differences go across.
+      const double l = grid_of(cells).lu;
+      EXPECT_LT(error_at(cells), 1.01 * l * l / (6 * kRadius * kRadius));
+      EXPECT_NEAR(std::log2(error_at(cells) / error_at(2 * cells)), 2, 0.02) << "angle " << angle;
+    }
+  }
+}
+
+TEST(Bend, CylinderApproachesHalfBAOverRSquaredAsTheGridIsRefined) {
+  const auto error_at = [](int cells) {
+    const mesh::Grid grid = grid_of(cells);
+    const double expected = 0.5 * kRigidity * 0.2 * 0.15 / (kRadius * kRadius);
+    return 1 - Bend(grid, 0, {kRigidity, 0}).energy(cylinder(grid, 0)) / expected;
+  };
+  // First order: half a spacing at either free end carries no curvature, 1/8 and 1/64 of the length.
+  EXPECT_NEAR(error_at(2), 1.0 / 8, 0.005);
+  EXPECT_NEAR(error_at(16), 1.0 / 64, 0.0005);
+}
+
+TEST(Bend, RestoresTowardsThePlane) {
+  const mesh::Grid grid = grid_of(1);
+  const Bend bend(grid, 0, {kRigidity, 0});
+  Positions x = testing::flat(grid);
+  const auto middle = static_cast<std::size_t>(grid.index(2, 1));
+  x[middle].z() += 0.01;
+  const Positions f = testing::force_of(bend, x, testing::zeros(x));
+  EXPECT_LT(f[middle].z(), 0);
+  EXPECT_NEAR(f[middle].x(), 0, 1e-16);
+  // −B Δ² of a spike on an inner particle, 13-point stencil for its centre: −20 / l⁴ times the area l².
+  const mesh::Grid large = grid_of(3);
+  Positions spike = testing::flat(large);
+  const auto centre = static_cast<std::size_t>(large.index(6, 4));
+  spike[centre].z() += 0.001;
+  const Positions g = testing::force_of(Bend(large, 0, {kRigidity, 0}), spike, testing::zeros(spike));
+  const double unit = kRigidity * 0.001 / (large.lu * large.lu);
+  EXPECT_NEAR(g[centre].z(), -20 * unit, 1e-12 * unit);
+  EXPECT_NEAR(g[centre + 1].z(), 8 * unit, 1e-12 * unit);
+  EXPECT_NEAR(g[centre + 2].z(), -unit, 1e-12 * unit);
+}
+
+}  // namespace
+}  // namespace weft::forces

@@ -1,0 +1,156 @@
+// Energy, force and Jacobian of each material force against one another.
+#include <gtest/gtest.h>
+
+#include <memory>
+#include <ostream>
+#include <string>
+
+#include "forces/sheets.hpp"
+
+namespace weft::forces {
+namespace {
+
+using testing::kGrid;
+using testing::Positions;
+
+constexpr double kStiffness = 1000;  // [N/m]
+constexpr double kRate = 150;        // dv/dx of a scheme [1/s]
+
+struct Case {
+  std::string name;
+  std::function<std::unique_ptr<Force>(double elastic, double viscous)> make;
+  friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
+};
+
+const Case kCases[] = {
+    {"stretch",
+     [](double elastic, double viscous) {
+       return std::make_unique<Stretch>(kGrid, 0, StretchParameters{elastic, 0.7 * elastic, viscous});
+     }},
+    {"shear",
+     [](double elastic, double viscous) {
+       return std::make_unique<Shear>(kGrid, 0, ShearParameters{elastic, viscous});
+     }},
+    {"bend",
+     [](double elastic, double viscous) {
+       return std::make_unique<Bend>(kGrid, 0, BendParameters{elastic, viscous});
+     }},
+};
+
+class Derivatives : public ::testing::TestWithParam<Case> {};
+
+// Central differences at ε = 2e-7 m. On edges of 2e-2 m the truncation (ε/l)² = 1e-10 does not count; the direction of
+// a slight curvature of 3 / m is the most curved function of all, (2ε / l² / 3)² = 1e-7 times its small share.
+constexpr double kEpsilon = 2e-7;
+constexpr double kRelative = 5e-8;
+
+TEST_P(Derivatives, ForceIsMinusTheGradientOfTheEnergy) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const auto force = GetParam().make(kStiffness, 0);
+    Positions x = testing::crumpled(kGrid, 0.003, seed);
+    const Positions f = testing::force_of(*force, x, testing::zeros(x));
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (int axis = 0; axis < 3; ++axis) {
+        const double place = x[i][axis];
+        x[i][axis] = place + kEpsilon;
+        const double above = force->energy(x);
+        x[i][axis] = place - kEpsilon;
+        const double below = force->energy(x);
+        x[i][axis] = place;
+        // The last term is the rounding of the energies.
+        EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kEpsilon),
+                    kRelative * testing::largest(f) + 1e-15 * above / kEpsilon);
+      }
+  }
+}
+
+void expect_exact_jacobian(Force& force, const Positions& x, const Positions& v) {
+  const Eigen::MatrixXd jacobian = testing::stiffness_of(force, x, v, kRate, Linearisation::exact);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = [&](double offset) {
+        Positions moved_x = x, moved_v = v;
+        moved_x[i][axis] += offset;
+        moved_v[i][axis] += kRate * offset;
+        return testing::force_of(force, moved_x, moved_v);
+      };
+      const Positions above = at(kEpsilon), below = at(-kEpsilon);
+      const Eigen::VectorXd column = -(testing::dense(above) - testing::dense(below)) / (2 * kEpsilon);
+      const auto c = static_cast<Eigen::Index>(3 * i) + axis;
+      ASSERT_LT((jacobian.col(c) - column).cwiseAbs().maxCoeff(), kRelative * jacobian.cwiseAbs().maxCoeff())
+          << "column " << c;
+    }
+}
+
+TEST_P(Derivatives, ExactJacobianOfElasticityIsThatOfCentralDifferences) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const auto force = GetParam().make(kStiffness, 0);
+    const Positions x = testing::crumpled(kGrid, 0.003, seed);
+    expect_exact_jacobian(*force, x, testing::random_vectors(x.size(), 1, seed + 10));
+  }
+}
+
+TEST_P(Derivatives, ExactJacobianOfViscosityIsThatOfCentralDifferences) {
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const auto force = GetParam().make(0, 5);
+    const Positions x = testing::crumpled(kGrid, 0.003, seed);
+    expect_exact_jacobian(*force, x, testing::random_vectors(x.size(), 1, seed + 10));
+  }
+}
+
+TEST_P(Derivatives, DefiniteJacobianIsSymmetricAndPositiveSemidefinite) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    const auto force = GetParam().make(kStiffness, 5);
+    const Positions x = testing::crumpled(kGrid, 0.006, seed);
+    const Positions v = testing::random_vectors(x.size(), 1, seed + 10);
+    const Eigen::MatrixXd k = testing::stiffness_of(*force, x, v, kRate, Linearisation::definite);
+    const double scale = k.cwiseAbs().maxCoeff();
+    EXPECT_LT((k - k.transpose()).cwiseAbs().maxCoeff(), 1e-14 * scale);
+    // A few dozen roundings in each of 60 rows.
+    EXPECT_GT(k.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * scale);
+  }
+}
+
+TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothingIsSheared) {
+  // A cylinder: weft and warp stay at right angles, and both are longer than at rest.
+  const double radius = 0.05;
+  const Positions x = testing::moved_rigidly(testing::shaped(kGrid, [&](double u, double v) {
+    const double angle = 1.2 * u / radius;
+    return Vec3(radius * std::sin(angle), 1.1 * v, radius * (1 - std::cos(angle)));
+  }));
+  const auto force = GetParam().make(kStiffness, 5);
+  const Eigen::MatrixXd definite = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::definite);
+  const Eigen::MatrixXd exact = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::exact);
+  // The shear is a rounding away from zero.
+  EXPECT_LT((definite - exact).cwiseAbs().maxCoeff(), 1e-13 * exact.cwiseAbs().maxCoeff());
+}
+
+TEST_P(Derivatives, ExactJacobianOfCompressedOrShearedClothIsIndefinite) {
+  // Why there is a definite form at all; bending alone needs none.
+  const auto force = GetParam().make(kStiffness, 0);
+  const Positions x = testing::crumpled(kGrid, 0.006, 3);
+  const Eigen::MatrixXd k = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::exact);
+  const double least = k.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() / k.cwiseAbs().maxCoeff();
+  if (GetParam().name == "bend")
+    EXPECT_GT(least, -1e-13);
+  else
+    EXPECT_LT(least, -1e-3);
+}
+
+TEST_P(Derivatives, ForceWithoutMatrixIsTheForceWithIt) {
+  const auto force = GetParam().make(kStiffness, 5);
+  const Positions x = testing::crumpled(kGrid, 0.006, 1), v = testing::random_vectors(x.size(), 1, 2);
+  std::vector<std::pair<Index, Index>> pairs;
+  force->couple(pairs);
+  solver::BlockMatrix matrix(kGrid.size(), pairs);
+  force->attach(matrix);
+  Positions f = testing::zeros(x);
+  force->add({x, v, f, &matrix, kRate, Linearisation::definite});
+  EXPECT_EQ(f, testing::force_of(*force, x, v));
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Derivatives, ::testing::ValuesIn(kCases),
+                         [](const auto& instance) { return instance.param.name; });
+
+}  // namespace
+}  // namespace weft::forces

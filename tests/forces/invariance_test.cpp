@@ -1,0 +1,124 @@
+// What rigid motions do to the material forces: nothing.
+#include <gtest/gtest.h>
+
+#include <memory>
+
+#include "forces/sheets.hpp"
+
+namespace weft::forces {
+namespace {
+
+using testing::kGrid;
+using testing::Positions;
+
+struct AllForces {
+  Stretch stretch{kGrid, 0, {1000, 700, 5}};
+  Shear shear{kGrid, 0, {100, 5}};
+  Bend bend{kGrid, 0, {1e-3, 1e-4}};
+  std::vector<std::pair<std::string, const Force*>> list{{"stretch", &stretch}, {"shear", &shear}, {"bend", &bend}};
+};
+
+TEST(Invariance, NoForceAtRestAndAfterRigidMotion) {
+  const AllForces all;
+  for (const auto& [name, force] : all.list) {
+    for (const Positions& x : {testing::flat(kGrid), testing::moved_rigidly(testing::flat(kGrid))}) {
+      // Coordinates of metres are rounded by 4e-16 m; times 1000 N/m, and an order of magnitude.
+      EXPECT_LT(testing::largest(testing::force_of(*force, x, testing::zeros(x))), 5e-12) << name;
+      EXPECT_LT(force->energy(x), 1e-24) << name;
+    }
+  }
+}
+
+TEST(Invariance, EnergyIsTheSameAfterARigidMotionAndForcesTurnWithIt) {
+  const AllForces all;
+  const Positions x = testing::crumpled(kGrid, 0.004, 1), moved = testing::moved_rigidly(x);
+  for (const auto& [name, force] : all.list) {
+    EXPECT_NEAR(force->energy(moved), force->energy(x), 1e-12 * force->energy(x)) << name;
+    const Positions f = testing::force_of(*force, x, testing::zeros(x));
+    Positions turned = testing::force_of(*force, moved, testing::zeros(x));
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      const Vec3 expected = Eigen::AngleAxisd(1.1, Vec3(1, 2, -3).normalized()) * f[i];
+      EXPECT_LT((turned[i] - expected).norm(), 1e-11 * testing::largest(f)) << name;
+    }
+  }
+}
+
+TEST(Invariance, RigidVelocitiesMeetNoViscosity) {
+  const AllForces all;
+  const Positions x = testing::crumpled(kGrid, 0.004, 2), v = testing::rigid_velocities(x);
+  for (const auto& [name, force] : all.list) {
+    const Positions still = testing::force_of(*force, x, testing::zeros(x));
+    const Positions turning = testing::force_of(*force, x, v);
+    const Positions bent = testing::force_of(*force, x, testing::random_vectors(x.size(), 2, 3));
+    double difference = 0, other = 0;
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      difference = std::max(difference, (turning[i] - still[i]).norm());
+      other = std::max(other, (bent[i] - still[i]).norm());
+    }
+    // Against what velocities of that size do in general.
+    EXPECT_LT(difference, 1e-13 * other) << name;
+    EXPECT_GT(other, 1e-3) << name;
+  }
+}
+
+TEST(Invariance, ViscosityTakesEnergyAndNeverGivesIt) {
+  const AllForces all;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const Positions x = testing::crumpled(kGrid, 0.006, seed), v = testing::random_vectors(x.size(), 1, seed + 20);
+    for (const auto& [name, force] : all.list) {
+      const Positions viscous = testing::force_of(*force, x, v),
+                      elastic = testing::force_of(*force, x, testing::zeros(x));
+      EXPECT_LT((testing::dense(viscous) - testing::dense(elastic)).dot(testing::dense(v)), -1e-6) << name;
+    }
+  }
+}
+
+TEST(Invariance, ForcesSumToZeroAndTurnNothing) {
+  const AllForces all;
+  for (unsigned seed = 1; seed <= 3; ++seed) {
+    const Positions x = testing::crumpled(kGrid, 0.006, seed), v = testing::random_vectors(x.size(), 1, seed + 10);
+    for (const auto& [name, force] : all.list) {
+      const Positions f = testing::force_of(*force, x, v);
+      Vec3 sum = Vec3::Zero(), torque = Vec3::Zero();
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        sum += f[i];
+        torque += x[i].cross(f[i]);
+      }
+      // Twenty particles within 0.1 m.
+      EXPECT_LT(sum.norm(), 1e-13 * testing::largest(f)) << name;
+      EXPECT_LT(torque.norm(), 1e-14 * testing::largest(f)) << name;
+    }
+  }
+}
+
+TEST(Invariance, ClothThatIsNotTheFirstPushesItsOwnParticlesOnly) {
+  const Stretch stretch(kGrid, 7, {1000, 700, 5});
+  const Shear shear(kGrid, 7, {100, 5});
+  const Bend bend(kGrid, 7, {1e-3, 1e-4});
+  const AllForces own;
+  const Positions x = testing::crumpled(kGrid, 0.004, 1), v = testing::random_vectors(x.size(), 1, 4);
+  Positions all_x = testing::random_vectors(7, 1, 5), all_v = testing::random_vectors(7, 1, 6);
+  all_x.insert(all_x.end(), x.begin(), x.end());
+  all_v.insert(all_v.end(), v.begin(), v.end());
+  const Force* shifted[] = {&stretch, &shear, &bend};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const Positions f = testing::force_of(*shifted[k], all_x, all_v);
+    EXPECT_EQ(Positions(f.begin(), f.begin() + 7), Positions(7, Vec3::Zero()));
+    EXPECT_EQ(Positions(f.begin() + 7, f.end()), testing::force_of(*own.list[k].second, x, v));
+  }
+}
+
+TEST(Invariance, MassesAddUpToTheSheetsAndAreHalvedAlongItsBorder) {
+  const auto masses = lumped_masses(kGrid, 0.2);
+  const double inner = 0.2 * kGrid.lu * kGrid.lv;
+  double sum = 0;
+  for (double m : masses) sum += m;
+  EXPECT_NEAR(sum, 0.2 * (4 * kGrid.lu) * (3 * kGrid.lv), 1e-15);
+  EXPECT_DOUBLE_EQ(masses[static_cast<std::size_t>(kGrid.index(2, 1))], inner);
+  EXPECT_DOUBLE_EQ(masses[static_cast<std::size_t>(kGrid.index(0, 1))], inner / 2);
+  EXPECT_DOUBLE_EQ(masses[static_cast<std::size_t>(kGrid.index(2, 3))], inner / 2);
+  EXPECT_DOUBLE_EQ(masses[static_cast<std::size_t>(kGrid.index(4, 3))], inner / 4);
+}
+
+}  // namespace
+}  // namespace weft::forces

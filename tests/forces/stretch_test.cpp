@@ -1,0 +1,87 @@
+// Tension along weft and warp.
+#include "forces/stretch.hpp"
+
+#include <gtest/gtest.h>
+
+#include "forces/sheets.hpp"
+
+namespace weft::forces {
+namespace {
+
+using testing::kGrid;
+using testing::Positions;
+
+Positions stretched(double along_u, double along_v) {
+  return testing::shaped(kGrid, [=](double u, double v) { return Vec3(along_u * u, along_v * v, 0); });
+}
+
+const double kWidth = (kGrid.nu - 1) * kGrid.lu, kHeight = (kGrid.nv - 1) * kGrid.lv;
+
+TEST(Stretch, UniformStrainHasTheEnergyOfTheContinuum) {
+  const Stretch stretch(kGrid, 0, {1000, 700, 0});
+  for (double strain : {-0.1, 0.02, 0.3}) {
+    const double expected = 0.5 * kWidth * kHeight * (1000 * strain * strain + 700 * 4 * strain * strain);
+    EXPECT_NEAR(stretch.energy(stretched(1 + strain, 1 + 2 * strain)), expected, 1e-12 * expected);
+  }
+}
+
+TEST(Stretch, BorderOfAUniformlyStrainedSheetPullsWithTheStressTimesItsWidth) {
+  const Stretch stretch(kGrid, 0, {1000, 700, 0});
+  const Positions x = stretched(1.03, 0.98);
+  const Positions f = testing::force_of(stretch, x, testing::zeros(x));
+  Vec3 left = Vec3::Zero(), low = Vec3::Zero();
+  for (int j = 0; j < kGrid.nv; ++j) left += f[static_cast<std::size_t>(kGrid.index(0, j))];
+  for (int i = 0; i < kGrid.nu; ++i) low += f[static_cast<std::size_t>(kGrid.index(i, 0))];
+  EXPECT_NEAR(left.x(), 1000 * 0.03 * kHeight, 1e-12);
+  EXPECT_NEAR(low.y(), -700 * 0.02 * kWidth, 1e-12);
+  // Inside, the pull of both sides cancels.
+  EXPECT_LT(f[static_cast<std::size_t>(kGrid.index(2, 1))].norm(), 1e-12);
+}
+
+TEST(Stretch, ViscosityOpposesTheStrainRate) {
+  const double eta = 5, rate = 0.4;  // [N·s/m], [1/s]
+  const Stretch stretch(kGrid, 0, {0, 0, eta});
+  const Positions x = testing::flat(kGrid);
+  const Positions v = testing::shaped(kGrid, [=](double u, double) { return Vec3(rate * u, 0, 0); });
+  const Positions f = testing::force_of(stretch, x, v);
+  Vec3 right = Vec3::Zero();
+  for (int j = 0; j < kGrid.nv; ++j) right += f[static_cast<std::size_t>(kGrid.index(kGrid.nu - 1, j))];
+  EXPECT_NEAR(right.x(), -eta * rate * kHeight, 1e-12);
+  EXPECT_NEAR(right.y(), 0, 1e-14);
+}
+
+TEST(Stretch, CollapsedEdgePullsNowhereAndStaysFinite) {
+  Stretch stretch(kGrid, 0, {1000, 700, 5});
+  Positions x = testing::flat(kGrid);
+  x[1] = x[0];
+  const Positions v = testing::random_vectors(x.size(), 1, 1);
+  EXPECT_TRUE(testing::dense(testing::force_of(stretch, x, v)).allFinite());
+  for (Linearisation linearisation : {Linearisation::exact, Linearisation::definite})
+    EXPECT_TRUE(testing::stiffness_of(stretch, x, v, 100, linearisation).allFinite());
+}
+
+TEST(Stretch, LargestStrainIsFoundInTensionAndInCompression) {
+  const Stretch stretch(kGrid, 0, {1000, 700, 0});
+  EXPECT_NEAR(stretch.max_strain(testing::flat(kGrid)), 0, 1e-14);
+  EXPECT_NEAR(stretch.max_strain(stretched(1.03, 1.01)), 0.03, 1e-13);
+  EXPECT_NEAR(stretch.max_strain(stretched(1.03, 0.9)), 0.1, 1e-13);
+}
+
+TEST(Stretch, StrainOfAParticleIsTheLargestOfItsOwnEdges) {
+  const Stretch stretch(kGrid, 3, {1000, 700, 0});
+  Positions x(3, Vec3::Zero());
+  const Positions sheet = testing::flat(kGrid);
+  x.insert(x.end(), sheet.begin(), sheet.end());
+  // The corner (0, 0) goes out by half an edge along weft.
+  x[3].x() -= 0.5 * kGrid.lu;
+  std::vector<float> heat(sheet.size(), 0);
+  stretch.strain_per_particle(x, heat);
+  const double warp_edge = std::hypot(kGrid.lv, 0.5 * kGrid.lu) / kGrid.lv - 1;
+  EXPECT_NEAR(heat[0], 0.5, 1e-6);
+  EXPECT_NEAR(heat[1], 0.5, 1e-6);
+  EXPECT_NEAR(heat[static_cast<std::size_t>(kGrid.index(0, 1))], warp_edge, 1e-6);
+  EXPECT_NEAR(heat[static_cast<std::size_t>(kGrid.index(1, 1))], 0, 1e-6);
+}
+
+}  // namespace
+}  // namespace weft::forces
