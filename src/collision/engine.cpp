@@ -131,6 +131,13 @@ int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1
   return fresh;
 }
 
+std::optional<TrianglePair> Engine::find_meeting(std::span<const Vec3> x) {
+  collect(x, x);
+  const auto failing = separation_.find_failing(candidates_.apart.view(), x, x);
+  if (failing.empty()) return std::nullopt;
+  return failing.front();
+}
+
 // Whether a vertex leaves the bounds of the candidates: further than their margin from where it was expected.
 bool Engine::strayed(std::span<const Vec3> x_t1) const {
   for (std::size_t i = 0; i < masses_.size(); ++i)

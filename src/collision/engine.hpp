@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <set>
 #include <span>
 #include <vector>
@@ -51,11 +52,15 @@ class Engine {
   /// Corrects the ends x_t1 of movable particles so that no triangles meet during the step.
   SeparationReport finish_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
 
-  /// Pairs of features within the contact range at the start of the last step.
+  /// Pairs of features within the reach, 1.5 contact ranges, at the start of the last step.
   int proximities() const { return static_cast<int>(proximities_.size()); }
   /// Their smallest distance [m]; infinite if there are none.
   double min_distance() const;
 
+  /// A pair of triangles that touches or crosses at x [m], if there is one.
+  std::optional<TrianglePair> find_meeting(std::span<const Vec3> x);
+
+  Index first_triangle(std::size_t body) const { return trees_[body].surface().first_triangle; }
   /// The two bodies of a pair of triangles.
   std::array<std::size_t, 2> bodies_of(const TrianglePair& pair) const;
   const Triangle& triangle(Index number) const { return triangles_[static_cast<std::size_t>(number)]; }

@@ -4,8 +4,14 @@
 
 #include <algorithm>
 
+#include "core/error.hpp"
+
 namespace weft::simulation {
 namespace {
+
+// Largest contact thickness in shares of the particles' spacing. Triangles that nearly neighbour each other are at
+// least 0.7 spacings apart; much more, and a sheared sheet would push against itself in its own plane.
+constexpr double kThicknessOfSpacing = 0.25;
 
 bool obstacles_collide(const scene::Scene& scene) {
   return scene.contact.obstacles && std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
@@ -36,8 +42,12 @@ std::vector<collision::Body> make_bodies(const scene::Scene& scene, const enviro
     bodies.push_back({shifted(mesh, first), first, count, deformable, thickness, friction});
     first += count;
   };
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
-    add(environment.cloths[c].mesh, true, scene.cloths[c].material.thickness, scene.cloths[c].material.friction);
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const mesh::Grid& grid = environment.cloths[c].grid;
+    const scene::Material& material = scene.cloths[c].material;
+    add(environment.cloths[c].mesh, true,
+        std::min(material.thickness, kThicknessOfSpacing * std::min(grid.lu, grid.lv)), material.friction);
+  }
   for (std::size_t r : colliding_rigids(scene, environment))
     add(environment.rigids[r].mesh, false, 0, scene.obstacles[r].friction);
   return bodies;
@@ -70,6 +80,20 @@ CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Env
               all_t0_, {system.masses().begin(), system.masses().end()}) {
   for (const auto& cloth : environment.cloths) names_.push_back(cloth.name);
   for (std::size_t r : rigids_) names_.push_back(environment.rigids[r].name);
+  if (const auto meeting = engine_.find_meeting(all_t0_))
+    throw Error(
+        ExitCode::scene_invalid,
+        "{}: expected surfaces that are apart at the start, got {}; move one of them, or leave it out of contact",
+        scene.file.string(), describe(*meeting));
+}
+
+// Which objects and triangles, and where.
+std::string CollisionStage::describe(const collision::TrianglePair& pair) const {
+  const auto [a, b] = engine_.bodies_of(pair);
+  const Vec3& at = all_t0_[static_cast<std::size_t>(engine_.triangle(pair.a)[0])];
+  return fmt::format("'{}' (triangle {}) and '{}' (triangle {}) touching near ({:.4g}, {:.4g}, {:.4g}) m", names_[a],
+                     pair.a - engine_.first_triangle(a), names_[b], pair.b - engine_.first_triangle(b), at.x(), at.y(),
+                     at.z());
 }
 
 void CollisionStage::begin_step(environment::Environment& environment, const integrator::State& now,
@@ -108,12 +132,7 @@ int CollisionStage::adopt_failing(const integrator::State& next) {
 std::optional<std::string> CollisionStage::finish_step(double h, integrator::State& next) {
   std::copy(next.x.begin(), next.x.end(), all_t1_.begin());
   const collision::SeparationReport report = engine_.finish_step(all_t0_, all_t1_, movable_);
-  if (!report.separated) {
-    const auto [a, b] = engine_.bodies_of(report.stuck);
-    const Vec3& at = all_t0_[static_cast<std::size_t>(engine_.triangle(report.stuck.a)[0])];
-    return fmt::format("'{}' and '{}' cannot be kept apart near ({:.4g}, {:.4g}, {:.4g}) m", names_[a], names_[b],
-                       at.x(), at.y(), at.z());
-  }
+  if (!report.separated) return "cannot keep " + describe(report.stuck) + " apart";
   if (report.corrected_pairs == 0) return std::nullopt;
   for (std::size_t i = 0; i < particles_; ++i) {
     next.v[i] += (all_t1_[i] - next.x[i]) / h;

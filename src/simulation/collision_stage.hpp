@@ -19,6 +19,8 @@ class CollisionStage {
   /// Whether anything in the scene can collide; else no stage is made.
   static bool needed(const scene::Scene& scene);
 
+  /// Throws Error(scene_invalid) where surfaces touch or cross from the start: what begins apart is kept apart, and
+  /// nothing else can be promised.
   CollisionStage(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& system);
 
   /// Before the solve: obstacles go from where they are at t to where they are at t + h; contacts are found for the
@@ -41,9 +43,10 @@ class CollisionStage {
   double min_distance() const { return engine_.min_distance(); }
 
  private:
-  std::vector<std::string> names_;     // per body
-  std::vector<Index> first_triangle_;  // per body
-  std::vector<std::size_t> rigids_;    // of the environment, those that collide
+  std::string describe(const collision::TrianglePair& pair) const;
+
+  std::vector<std::string> names_;   // per body
+  std::vector<std::size_t> rigids_;  // of the environment, those that collide
   std::size_t particles_;
   std::vector<Vec3> all_t0_, all_t1_;  // particles, then vertices of the obstacles
   std::vector<std::uint8_t> movable_;

@@ -59,13 +59,15 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
                                     [](const scene::Obstacle& o) { return o.motion.keys.size() > 1; });
   const bool with_obstacles = scene.contact.obstacles && obstacles > 0 && !scene.cloths.empty();
   const bool self = scene.contact.self && !scene.cloths.empty();
-  items.push_back(when("collision: cloth and obstacles", with_obstacles, fmt::format("{} obstacle{}", obstacles, obstacles == 1 ? "" : "s"),
+  items.push_back(when("collision: cloth and obstacles", with_obstacles,
+                       fmt::format("{} obstacle{}", obstacles, obstacles == 1 ? "" : "s"),
                        obstacles == 0 ? "no obstacle collides" : "contact.obstacles is false"));
   items.push_back(when("collision: cloth and cloth", self, "itself and others", "contact.self is false"));
   items.push_back(of_cloths(
       "collision: friction", scene, [&](const Cloth& c) { return (with_obstacles || self) && c.material.friction > 0; },
       "no collision, or friction is zero"));
-  items.push_back(when("motion: key frames", moving > 0, fmt::format("{} obstacle{}", moving, moving == 1 ? "" : "s"), "no obstacle moves"));
+  items.push_back(when("motion: key frames", moving > 0, fmt::format("{} obstacle{}", moving, moving == 1 ? "" : "s"),
+                       "no obstacle moves"));
 }
 
 }  // namespace

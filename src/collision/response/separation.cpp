@@ -117,7 +117,6 @@ bool Separation::push_apart(const TrianglePair& pair, std::span<const Vec3> x_t0
       if (missing <= 0 || !movable[v]) continue;
       x_t1[v] += sign * missing * n;
       report.largest_push = std::max(report.largest_push, missing);
-      if (changed_in_[v] == 0) moved_.push_back(static_cast<Index>(v));
       changed_in_[v] = round;
     }
   };
@@ -138,7 +137,6 @@ SeparationReport Separation::enforce(std::span<const TrianglePair> pairs, std::s
                                      std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   SeparationReport report;
   changed_in_.assign(x_t0.size(), 0);
-  moved_.clear();
   find_failing(pairs, x_t0, x_t1);
   report.corrected_pairs = static_cast<int>(failing_.size());
 
@@ -160,7 +158,6 @@ SeparationReport Separation::enforce(std::span<const TrianglePair> pairs, std::s
           const Vec3 back = 0.5 * (x_t0[i] - x_t1[i]);
           x_t1[i] += back;
           report.largest_push = std::max(report.largest_push, back.norm());
-          if (changed_in_[i] == 0) moved_.push_back(v);
           changed_in_[i] = round;
         }
       }
@@ -174,7 +171,6 @@ SeparationReport Separation::enforce(std::span<const TrianglePair> pairs, std::s
     for (const TrianglePair& pair : pairs)
       if ((touched(pair.a) || touched(pair.b)) && !certified(pair, x_t0, x_t1)) failing_.push_back(pair);
   }
-  std::sort(moved_.begin(), moved_.end());
   report.separated = true;
   return report;
 }

@@ -34,14 +34,11 @@ class Separation {
   /// `triangles`: of all surfaces, by global number.
   explicit Separation(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {}
 
-  /// Changes x_t1 of vertices with `movable` 1 (free particles). x_t0 must be free of intersections, and no vertex may
-  /// leave the bounds that `pairs` were collected with by more than a caller who collects again for `moved()` can
-  /// accept.
+  /// Changes x_t1 of vertices with `movable` 1 (free particles). x_t0 must be free of intersections. `pairs` must hold
+  /// all that can meet; where a correction carries a vertex out of the bounds they were collected with, collect and
+  /// call again.
   SeparationReport enforce(std::span<const TrianglePair> pairs, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                            std::span<const std::uint8_t> movable);
-
-  /// Vertices that the last enforce() changed, ascending.
-  std::span<const Index> moved() const { return moved_; }
 
   /// Pairs without a certificate for the way to x_t1; changes nothing.
   std::span<const TrianglePair> find_failing(std::span<const TrianglePair> pairs, std::span<const Vec3> x_t0,
@@ -59,7 +56,6 @@ class Separation {
 
   std::vector<Triangle> triangles_;
   std::vector<int> changed_in_;  // per vertex: round in which it was last moved, 0 never
-  std::vector<Index> moved_;
   std::vector<TrianglePair> failing_;
 };
 
