@@ -26,11 +26,11 @@ struct Surface {
   std::string name;
   ObjectKind kind = ObjectKind::cloth;
   bool visible = true;
-  bool infinite_floor = false;                 ///< a ground plane: drawn to the horizon, left out of automatic framing
-  std::vector<std::array<Index, 3>> triangles; ///< drawn and collided with; counter-clockwise seen from the front
-  std::vector<std::array<Index, 4>> quads;     ///< faces as simulated, if the object is made of quads; else empty
-  std::vector<Vec2> uv;                        ///< per vertex: rest coordinates (weft, warp) [m]; empty if it has none
-  double crease_angle = 30;                    ///< degrees; sharper edges are drawn hard (180: all smooth, as for cloth)
+  bool infinite_floor = false;                  ///< a ground plane: drawn to the horizon, left out of automatic framing
+  std::vector<std::array<Index, 3>> triangles;  ///< drawn and collided with; counter-clockwise seen from the front
+  std::vector<std::array<Index, 4>> quads;      ///< faces as simulated, if the object is made of quads; else empty
+  std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; empty if it has none
+  double crease_angle = 30;  ///< degrees; sharper edges are drawn hard (180: all smooth, as for cloth)
   Appearance appearance;
 };
 
@@ -43,9 +43,9 @@ struct SurfaceState {
 /// A camera at one moment.
 struct Camera {
   std::string name;
-  Vec3 position{0, -3, 1.5};     ///< [m]
-  Vec3 target{0, 0, 0.5};        ///< point in the middle of the picture [m]
-  double field_of_view = 35;     ///< vertical, degrees
+  Vec3 position{0, -3, 1.5};  ///< [m]
+  Vec3 target{0, 0, 0.5};     ///< point in the middle of the picture [m]
+  double field_of_view = 35;  ///< vertical, degrees
 };
 
 /// A light at one moment. Sun: parallel light from `direction`. Spot: from `position` toward `target`.
@@ -68,15 +68,15 @@ struct Stage {
   Vec3 up{0, 0, 1};
   Vec3 sky_color{0.95, 0.97, 1.0};      ///< sRGB; light from above and background near the horizon
   Vec3 ground_color{0.78, 0.75, 0.71};  ///< sRGB; light reflected from below
-  double sky_intensity = 0.45;          ///< share of all light that comes from the sky, 0 to 1; the lights give the rest
+  double sky_intensity = 0.45;  ///< share of all light that comes from the sky, 0 to 1; the lights give the rest
   Heat heat = Heat::none;
   double heat_max = 0;  ///< value at the hot end of the scale (strain: 1, speed: m/s); 0 follows the frame's largest
 };
 
 /// One frame, never changed after it is made.
 struct FrameSnapshot {
-  int frame = 0;      ///< k
-  double time = 0;    ///< k / fps [s]
+  int frame = 0;    ///< k
+  double time = 0;  ///< k / fps [s]
   std::shared_ptr<const Stage> stage;
   std::vector<std::shared_ptr<const Surface>> surfaces;
   std::vector<SurfaceState> states;  ///< one per surface

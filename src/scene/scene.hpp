@@ -31,8 +31,8 @@ struct Physics {
 };
 
 struct Solver {
-  double newton_tolerance = 0.3;   ///< residual against the weight and inertia of the cloth, relative
-  int newton_iterations = 60;      ///< per step, before the step is halved
+  double newton_tolerance = 0.3;  ///< residual against the weight and inertia of the cloth, relative
+  int newton_iterations = 60;     ///< per step, before the step is halved
   double linear_tolerance = 0.1;  ///< of the conjugate gradients, relative to the first residual
   int linear_iterations = 1000;
   int halvings = 8;  ///< of a rejected step, before the run gives up
