@@ -1,0 +1,55 @@
+// Small scenes made in the test, without a file.
+#pragma once
+
+#include <vector>
+
+#include "frame/frame_snapshot.hpp"
+#include "scene/scene.hpp"
+#include "simulation/simulation.hpp"
+
+namespace weft::simulation::testing {
+
+inline constexpr scene::Integrator kIntegrators[] = {scene::Integrator::implicit_euler,
+                                                     scene::Integrator::implicit_midpoint, scene::Integrator::bdf2};
+
+/// A square sheet, flat at the given height, with nothing around it: no air, no contact.
+inline scene::Scene sheet_alone(double size, int particles, double height) {
+  scene::Scene scene;
+  scene.name = "test";
+  scene.time = {.duration = 1, .fps = 25, .step = 0.02};
+  scene.physics.air_density = 0;
+  scene.contact.self = scene.contact.obstacles = false;
+  scene::Cloth cloth;
+  cloth.name = "sheet";
+  cloth.size = {size, size};
+  cloth.particles_weft = cloth.particles_warp = particles;
+  cloth.pose.position = {0, 0, height};
+  scene.cloths.push_back(cloth);
+  return scene;
+}
+
+/// Newton and conjugate gradients down to rounding.
+inline void solve_tightly(scene::Scene& scene) {
+  scene.solver = {.newton_tolerance = 1e-9, .newton_iterations = 60, .linear_tolerance = 1e-9, .halvings = 0};
+}
+
+/// Positions of the first cloth.
+inline const std::vector<Vec3>& sheet_of(const frame::SnapshotPtr& snapshot) {
+  return snapshot->states[0].positions;
+}
+
+inline double lowest(const std::vector<Vec3>& x) {
+  double least = x.front().z();
+  for (const Vec3& point : x) least = std::min(least, point.z());
+  return least;
+}
+
+inline scene::Obstacle obstacle(const char* name, scene::Shape shape, const Vec3& position = Vec3::Zero()) {
+  scene::Obstacle made;
+  made.name = name;
+  made.shape = std::move(shape);
+  made.pose.position = position;
+  return made;
+}
+
+}  // namespace weft::simulation::testing

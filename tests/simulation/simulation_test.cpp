@@ -1,0 +1,267 @@
+// The step loop as a whole: pins, contact, failure, the same bits on any number of threads.
+#include "simulation/simulation.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <numbers>
+
+#include "core/parallel.hpp"
+#include "environment/track.hpp"
+#include "simulation/scenes.hpp"
+#include "support/intersections.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::simulation {
+namespace {
+
+using testing::lowest;
+using testing::obstacle;
+using testing::sheet_alone;
+using testing::sheet_of;
+
+// A sheet of 0.6 m that falls on a ball and down its sides.
+scene::Scene sheet_on_ball() {
+  scene::Scene scene = sheet_alone(0.6, 21, 0.26);
+  scene.contact.self = scene.contact.obstacles = true;
+  scene.obstacles.push_back(obstacle("ball", scene::Sphere{0.25}));
+  scene.obstacles.back().segments = 24;
+  return scene;
+}
+
+TEST(Simulation, FrameZeroIsTheSheetAsTheSceneLaysIt) {
+  scene::Scene scene = sheet_alone(0.4, 5, 1.5);
+  const Simulation simulation(scene);
+  EXPECT_EQ(simulation.snapshot()->frame, 0);
+  EXPECT_EQ(simulation.snapshot()->time, 0);
+  ASSERT_EQ(simulation.particles(), 25u);
+  const auto& x = sheet_of(simulation.snapshot());
+  for (int j = 0; j < 5; ++j)
+    for (int i = 0; i < 5; ++i)
+      EXPECT_LT((x[static_cast<std::size_t>(i + 5 * j)] - Vec3(-0.2 + 0.1 * i, -0.2 + 0.1 * j, 1.5)).norm(), 1e-15);
+  EXPECT_NEAR(simulation.initial_report().elastic_energy, 0, 1e-20);
+  EXPECT_EQ(simulation.initial_report().kinetic_energy, 0);
+}
+
+TEST(Simulation, FrameTimesAreThoseOfTheRateAndNoSums) {
+  scene::Scene scene = sheet_alone(0.4, 3, 1);
+  scene.time.fps = 30;
+  scene.time.step = 0.01;  // three and a third to a frame: four equal ones are taken
+  Simulation simulation(scene);
+  for (int k = 1; k <= 20; ++k) {
+    const FrameReport report = simulation.advance();
+    EXPECT_EQ(report.frame, k);
+    EXPECT_EQ(report.time, k / 30.0);
+    EXPECT_EQ(report.steps, 4);
+    EXPECT_EQ(report.rejected_steps, 0);
+    EXPECT_EQ(simulation.snapshot()->frame, k);
+    EXPECT_EQ(simulation.snapshot()->time, k / 30.0);
+  }
+}
+
+TEST(Simulation, FreeFallInVacuumIsTheLawOfTheMethodForEveryParticle) {
+  for (scene::Integrator integrator : testing::kIntegrators) {
+    scene::Scene scene = sheet_alone(0.5, 9, 3);
+    testing::solve_tightly(scene);
+    scene.time.integrator = integrator;
+    scene.cloths[0].velocity = {0.5, 0, 1};
+    Simulation simulation(scene);
+    const auto start = sheet_of(simulation.snapshot());
+    const double h = 0.02;
+    for (int k = 1; k <= 10; ++k) {
+      simulation.advance();
+      const int n = 2 * k;
+      const double t = n * h;
+      Vec3 fall = t * scene.cloths[0].velocity + 0.5 * t * t * scene.physics.gravity;
+      if (integrator == scene::Integrator::implicit_euler) fall += 0.5 * h * t * scene.physics.gravity;
+      if (integrator == scene::Integrator::bdf2) fall += 0.75 * h * h * (1 - std::pow(3, -n)) * scene.physics.gravity;
+      const auto& x = sheet_of(simulation.snapshot());
+      for (std::size_t i = 0; i < x.size(); ++i)
+        // A residual of 1e-9 of the weight each step: 1e-9 · ½ g t² = 3e-9 m at most.
+        ASSERT_LT((x[i] - start[i] - fall).norm(), 4e-9) << "frame " << k << ", particle " << i;
+    }
+  }
+}
+
+TEST(Simulation, PinnedParticlesFollowTheKeysExactly) {
+  scene::Scene scene = sheet_alone(0.4, 7, 1);
+  scene.time.fps = 20;
+  scene::Pin pin;
+  pin.low = {0, 1};
+  pin.motion.interpolation = scene::Interpolation::linear;
+  const Quat quarter(Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitZ()));
+  pin.motion.keys = {{0, {}}, {0.25, {{0.1, 0, 0.2}, Quat::Identity()}}, {0.5, {{0.1, 0.3, 0.2}, quarter}}};
+  scene.cloths[0].pins.push_back(pin);
+  Simulation simulation(scene);
+  const auto start = sheet_of(simulation.snapshot());
+  const Vec3 centre(0, 0.2, 1);  // of the pinned edge
+  for (int k = 1; k <= 12; ++k) {
+    simulation.advance();
+    const auto& x = sheet_of(simulation.snapshot());
+    const double t = k / 20.0;
+    // The keys are at frames 5 and 10; after the last one the edge stays.
+    const double first = std::min(t / 0.25, 1.0), second = std::clamp(t / 0.25 - 1, 0.0, 1.0);
+    const Vec3 way = first * Vec3(0.1, 0, 0.2) + second * Vec3(0, 0.3, 0);
+    const Eigen::AngleAxisd turn(second * std::numbers::pi / 2, Vec3::UnitZ());
+    for (std::size_t i = 42; i < 49; ++i)
+      EXPECT_LT((x[i] - (centre + way + turn * (start[i] - centre))).norm(), 1e-14) << "frame " << k;
+    if (k == 2) {
+      EXPECT_LT(x[0].z(), 1 - 0.01);  // what is free falls, until the edge pulls it along
+    }
+  }
+}
+
+TEST(Simulation, PinLetsGoAtItsReleaseTime) {
+  scene::Scene scene = sheet_alone(0.2, 3, 1);
+  scene::Pin pin;  // the whole sheet
+  pin.release = 0.2;
+  scene.cloths[0].pins.push_back(pin);
+  Simulation simulation(scene);
+  const auto start = sheet_of(simulation.snapshot());
+  for (int k = 1; k <= 5; ++k) {
+    EXPECT_EQ(simulation.advance().constraints, 9);
+    EXPECT_EQ(sheet_of(simulation.snapshot()), start);
+  }
+  EXPECT_EQ(simulation.advance().constraints, 0);
+  // Two Euler steps of free fall, to the default tolerance of 5 % of the weight.
+  const double fall = 9.81 * 0.02 * 0.02 * 3;
+  for (std::size_t i = 0; i < start.size(); ++i)
+    EXPECT_NEAR(start[i].z() - sheet_of(simulation.snapshot())[i].z(), fall, 0.1 * fall);
+}
+
+TEST(Simulation, PinThatFollowsAnObstacleMovesWithIt) {
+  scene::Scene scene = sheet_alone(0.4, 5, 1);
+  scene.obstacles.push_back(obstacle("bar", scene::BoxShape{{0.1, 0.1, 0.1}}, {0, 0.3, 1}));
+  scene.obstacles[0].collide = false;
+  scene.obstacles[0].motion.interpolation = scene::Interpolation::linear;
+  const Quat turned(Eigen::AngleAxisd(0.6, Vec3::UnitX()));
+  scene.obstacles[0].motion.keys = {{0, {{0, 0.3, 1}, Quat::Identity()}}, {0.4, {{0.2, 0.4, 1.1}, turned}}};
+  scene::Pin pin;
+  pin.low = {0, 1};
+  pin.follow = "bar";
+  scene.cloths[0].pins.push_back(pin);
+  Simulation simulation(scene);
+  const auto start = sheet_of(simulation.snapshot());
+  for (int k = 1; k <= 10; ++k) simulation.advance();
+  for (std::size_t i = 20; i < 25; ++i) {
+    const Vec3 expected = Vec3(0.2, 0.4, 1.1) + turned * (start[i] - Vec3(0, 0.3, 1));
+    EXPECT_LT((sheet_of(simulation.snapshot())[i] - expected).norm(), 1e-14);
+  }
+}
+
+TEST(Simulation, SheetOnABallIntersectsNothingInAnyFrame) {
+  Simulation simulation(sheet_on_ball());
+  double lowest_so_far = 1;
+  int proximities = 0;
+  for (int k = 0; k <= 25; ++k) {
+    if (k > 0) proximities += simulation.advance().proximities;
+    const auto snapshot = simulation.snapshot();
+    EXPECT_EQ(support::judge(support::objects_of(*snapshot)).pairs.size(), 0u) << "frame " << k;
+    lowest_so_far = std::min(lowest_so_far, lowest(sheet_of(snapshot)));
+  }
+  // It did fall, and was held up by the ball.
+  EXPECT_LT(lowest_so_far, 0.1);
+  EXPECT_GT(proximities, 1000);
+  EXPECT_GT(sheet_of(simulation.snapshot())[220].z(), 0.2);
+}
+
+TEST(Simulation, SheetOnAFloorComesToRestWithinHalfItsThickness) {
+  scene::Scene scene = sheet_alone(0.3, 9, 0.05);
+  scene.contact.self = scene.contact.obstacles = true;
+  scene.obstacles.push_back(obstacle("floor", scene::Plane{}));
+  Simulation simulation(scene);
+  FrameReport report;
+  for (int k = 1; k <= 25; ++k) report = simulation.advance();
+  const double half_thickness = 0.5 * scene.cloths[0].material.thickness;
+  for (const Vec3& x : sheet_of(simulation.snapshot())) {
+    EXPECT_GT(x.z(), 0);
+    EXPECT_LE(x.z(), half_thickness);
+  }
+  // At rest: its weight falling for one step would have (g h)² / 2 = 0.02 J/kg.
+  const double mass = scene.cloths[0].material.density * 0.3 * 0.3;
+  EXPECT_LT(report.kinetic_energy, 1e-6 * mass);
+  EXPECT_GT(report.min_distance, 0);
+  EXPECT_LE(report.min_distance, half_thickness);
+  EXPECT_GT(report.constraints, 0);
+}
+
+// FNV-1a over all positions of all objects.
+std::uint64_t fingerprint(const frame::FrameSnapshot& snapshot) {
+  std::uint64_t hash = 14695981039346656037u;
+  for (const auto& state : snapshot.states)
+    for (const Vec3& x : state.positions)
+      for (int axis = 0; axis < 3; ++axis) {
+        std::uint64_t bits;
+        std::memcpy(&bits, &x[axis], sizeof bits);
+        for (int byte = 0; byte < 8; ++byte) hash = (hash ^ (bits >> (8 * byte) & 255)) * 1099511628211u;
+      }
+  return hash;
+}
+
+TEST(Simulation, GivesTheSameBitsOnAnyNumberOfThreads) {
+  // More particles than one chunk of the solver has rows, already at the ball.
+  scene::Scene scene = sheet_on_ball();
+  scene.cloths[0].particles_weft = scene.cloths[0].particles_warp = 41;
+  std::vector<std::vector<std::uint64_t>> runs;
+  for (int threads : {1, 2, 3}) {
+    set_thread_count(threads);
+    Simulation simulation(scene);
+    runs.emplace_back();
+    int contacts = 0;
+    for (int k = 1; k <= 10; ++k) {
+      contacts += simulation.advance().constraints;
+      runs.back().push_back(fingerprint(*simulation.snapshot()));
+    }
+    EXPECT_GT(contacts, 0);
+  }
+  set_thread_count(0);
+  EXPECT_NE(runs[0].front(), runs[0].back());
+  EXPECT_EQ(runs[0], runs[1]);
+  EXPECT_EQ(runs[0], runs[2]);
+}
+
+// A sheet of steel whose edge is torn away at its fourth frame.
+scene::Scene torn_sheet() {
+  scene::Scene scene = sheet_alone(0.4, 9, 1);
+  scene.solver.newton_iterations = 1;
+  scene.solver.halvings = 0;
+  scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1e7;
+  scene::Pin pin;
+  pin.low = {0, 1};
+  pin.motion.interpolation = scene::Interpolation::linear;
+  pin.motion.keys = {{0, {}}, {0.12, {}}, {0.16, {{5, 30, 20}, Quat::Identity()}}};
+  scene.cloths[0].pins.push_back(pin);
+  // Falls with the rest while it can.
+  scene.physics.gravity = Vec3::Zero();
+  return scene;
+}
+
+TEST(Simulation, StepThatCannotBeSolvedFailsWithItsFrameAndKeepsTheLastGoodOne) {
+  Simulation simulation(torn_sheet());
+  for (int k = 1; k <= 3; ++k) simulation.advance();
+  const auto good = simulation.snapshot();
+  for (int attempt = 0; attempt < 2; ++attempt) {
+    support::expect_error(ExitCode::simulation_failed, "frame 4: the step at t = 0.12 s was rejected",
+                          [&] { simulation.advance(); });
+    EXPECT_EQ(simulation.snapshot(), good);
+    EXPECT_EQ(simulation.snapshot()->frame, 3);
+  }
+}
+
+TEST(Simulation, RejectedStepIsHalvedUntilItCanBeSolved) {
+  scene::Scene scene = torn_sheet();
+  scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1000;
+  scene.cloths[0].pins[0].motion.keys[2].pose.position = {0, 0.5, 0.5};
+  scene.solver.newton_iterations = 4;
+  scene.solver.halvings = 10;
+  Simulation simulation(scene);
+  for (int k = 1; k <= 3; ++k) simulation.advance();
+  const FrameReport report = simulation.advance();
+  EXPECT_GT(report.rejected_steps, 0);
+  // Every rejection puts two steps in the place of one.
+  EXPECT_EQ(report.steps, 2 + report.rejected_steps);
+  EXPECT_EQ(simulation.snapshot()->frame, 4);
+}
+
+}  // namespace
+}  // namespace weft::simulation
