@@ -19,7 +19,7 @@ void main() {
     vec3 east = abs(up.x) > 0.5 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), north = cross(up, east);
     albedo *= mix(0.94, 1.0, tiles(vec2(dot(surface_world, east), dot(surface_world, north)) / 0.5));
   }
-  Softness soft = look_up_softness(seen.distance_view);
+  Softness soft = look_up_softness(seen);
   vec3 diffuse = ambient_light(n, soft.open);
   int i = 0;
   do {

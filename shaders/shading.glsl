@@ -6,7 +6,7 @@ layout(binding = 5) uniform sampler2D uv_heat_materials;
 layout(binding = 8) uniform sampler2D distances;
 layout(binding = 7) uniform sampler2D materials;  // a row for each: front colour, roughness; back colour, thread spacing;
                                                   // heat scale, checker
-layout(binding = 3) uniform sampler2D soft_light;  // openness, share of light 0, -, distance; see soft_light.frag
+layout(binding = 3) uniform sampler2D soft_light;  // openness, share of light 0, surface, distance; see soft_light.frag
 
 struct Seen {
   vec3 position_world;
@@ -15,6 +15,7 @@ struct Seen {
   vec2 rest_uv;
   float heat;
   bool front;
+  float surface;  // row of its material
   vec4 front_roughness, back_spacing, heat_checker;  // of its material
 };
 
@@ -29,6 +30,7 @@ Seen look_up_seen() {
   seen.normal_world = normalize(texelFetch(normals, pixel, 0).xyz);
   seen.rest_uv = other.xy;
   seen.heat = other.z;
+  seen.surface = float(row);
   seen.front = other.w - float(row) < 0.25;
   seen.front_roughness = texelFetch(materials, ivec2(0, row), 0);
   seen.back_spacing = texelFetch(materials, ivec2(1, row), 0);
@@ -43,14 +45,16 @@ struct Softness {
 };
 
 #ifdef SOFT_LIGHT
-// Sums over texels of the small picture, each weighted by how surely it shows the surface `distance_view` away.
+// Sums over texels of the small picture, each weighted by how surely it shows the surface seen.
 struct SoftSums {
   float weight, open, lit, least, most;
 };
 
-void add_soft_texel(inout SoftSums sums, ivec2 at, float weight, float distance_view) {
+void add_soft_texel(inout SoftSums sums, ivec2 at, float weight, Seen seen) {
   vec4 texel = texelFetch(soft_light, clamp(at, ivec2(0), textureSize(soft_light, 0) - 1), 0);
-  float same = max(1.0 - abs(texel.w - distance_view) / (0.02 * distance_view), 0.0);
+  float same = max(1.0 - abs(texel.w - seen.distance_view) / (0.02 * seen.distance_view), 0.0);
+  // Where cloth lies on a floor both are as far away, but not in the same light.
+  same *= float(texel.z == seen.surface);
   weight *= max(same, 1e-4);
   sums.weight += weight;
   sums.open += weight * texel.x;
@@ -61,7 +65,7 @@ void add_soft_texel(inout SoftSums sums, ivec2 at, float weight, float distance_
 #endif
 
 // What the small picture knows of this pixel, from its neighbours there, as far as they lie on the same surface.
-Softness look_up_softness(float distance_view) {
+Softness look_up_softness(Seen seen) {
 #ifdef SOFT_LIGHT
   vec2 at = gl_FragCoord.xy * frame.viewport.zw * vec2(textureSize(soft_light, 0)) - 0.5;
   ivec2 corner = ivec2(floor(at));
@@ -70,11 +74,11 @@ Softness look_up_softness(float distance_view) {
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
     vec2 side = mix(1.0 - f, f, vec2(step));
-    add_soft_texel(sums, corner + step, side.x * side.y + 0.01, distance_view);
+    add_soft_texel(sums, corner + step, side.x * side.y + 0.01, seen);
   }
   // Where none of the four is of this surface, as beside a nearer thing, the four around them are asked as well.
   int more = sums.weight < 2e-3 ? 4 : 0;
-  for (int i = 0; i < more; ++i) add_soft_texel(sums, corner + ivec2(i & 1, i >> 1) * 3 - 1, 0.1, distance_view);
+  for (int i = 0; i < more; ++i) add_soft_texel(sums, corner + ivec2(i & 1, i >> 1) * 3 - 1, 0.1, seen);
   bool known = sums.most >= sums.least && sums.most - sums.least < 0.4;
   return Softness(sums.open / sums.weight, sums.lit / sums.weight, known);
 #else

@@ -4,9 +4,10 @@
 #include "frame.glsl"
 #include "lights.glsl"
 layout(binding = 4) uniform sampler2D normals;
+layout(binding = 5) uniform sampler2D uv_heat_materials;
 layout(binding = 8) uniform sampler2D distances;
 layout(binding = 6) uniform sampler2DArray sky_maps;  // layer 0 from above, 1 from below
-layout(location = 0) out vec4 soft_light;  // x: openness, y: share of light 0, w: distance along the view axis [m]
+layout(location = 0) out vec4 soft_light;  // x: openness, y: share of light 0, z: surface, w: distance [m]
 
 // Scalable ambient obscurance (McGuire, Mara, Luebke 2012, Eq. 1): the mean of how far neighbours stand out of the
 // tangent plane, so that it hardly depends on the distance at which taps happen to land.
@@ -20,6 +21,8 @@ float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, float turn, bool wanted
     // Evenly spaced along the radius, not over the disc: contacts a few millimetres wide get their share of taps.
     vec2 tap_uv = uv + (float(k) + 0.5) / float(NEARBY_TAPS) * direction * reach_uv;
     direction = next_direction(direction);
+    // At the texel's centre, where its distance was taken: half a pixel off, a floor seen at an angle shades itself.
+    tap_uv = (floor(tap_uv * frame.viewport.xy) + 0.5) * frame.viewport.zw;
     vec3 v = position_view(tap_uv, textureLod(distances, tap_uv, 0.0).r) - p_view;
     float d_sq = dot(v, v), fall = max(1.0 - d_sq / (radius * radius), 0.0);
     sum += fall * max(dot(v, n_view) + 4e-4 * p_view.z, 0.0) * inversesqrt(d_sq + 1e-8);
@@ -45,8 +48,9 @@ float sky_openness(vec3 p_world, vec3 n_world, float turn, bool wanted) {
     vec2 offset = direction * r;
     direction = next_direction(direction);
     float area = 12.5663706 * reach * r * t / float(SKY_TAPS);
-    float height = (above.z - textureLod(sky_maps, vec3(above.xy + above_axes * offset, 0.0), 0.0).r) * depth_metres;
-    float covers = step(2e-3, height);
+    // Depth 1 is no caster: what lies deeper than the map reaches, as a floor under a band that falls, is not covered.
+    float highest = textureLod(sky_maps, vec3(above.xy + above_axes * offset, 0.0), 0.0).r;
+    float height = (above.z - highest) * depth_metres, covers = float(highest < 1.0 && height > 2e-3);
     float lowest = (textureLod(sky_maps, vec3(below.xy + below_axes * offset, 1.0), 0.0).r - below.z) * depth_metres;
     if (lowest > 2e-3) height = lowest;
     vec3 w = across * offset.x + along * offset.y + up * height;
@@ -69,12 +73,15 @@ void main() {
   // Far from all subjects nothing is hidden from anything.
   vec3 away = p_world - frame.center_world.xyz;
   float beyond = frame.eye_world.w + frame.sky_light.w;
-  bool near = surface && dot(away, away) < beyond * beyond;
+  float hidden = 1.0 - smoothstep(0.6, 1.0, dot(away, away) / (beyond * beyond));
+  bool near = surface && hidden > 0.0;
   float open = nearby_openness(uv, p_view, mat3(frame.view_from_world) * n_world, turn, near);
   open *= sky_openness(p_world, n_world, turn, near);
   float cone;
   vec3 l = toward_light(0, p_world, cone);
   bool wanted = surface && light_count.x > 0 && cone > 0.0;
   float lit = visibility(0, p_world, dot(n_world, l) < 0.0 ? -n_world : n_world, wanted);
-  soft_light = vec4(surface ? open : 1.0, lit, 0.0, distance_view);
+  // Fades out, so that no edge shows where the search ends.
+  open = surface ? mix(1.0, open, hidden) : 1.0;
+  soft_light = vec4(open, lit, floor(texelFetch(uv_heat_materials, pixel, 0).w), distance_view);
 }

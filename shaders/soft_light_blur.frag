@@ -10,8 +10,8 @@ void main() {
   for (int i = -RADIUS; i <= RADIUS; ++i) {
     if (i == 0) continue;
     vec4 tap = texelFetch(soft_light_map, clamp(here + i * axis, ivec2(0), last), 0);
-    // A step of 2 percent of the distance is another surface.
-    float same = max(1.0 - abs(tap.w - center.w) / (0.02 * center.w), 0.0);
+    // A step of 2 percent of the distance is another fold.
+    float same = tap.z == center.z ? max(1.0 - abs(tap.w - center.w) / (0.02 * center.w), 0.0) : 0.0;
     sum += vec2(tap.x, 1.0) * same;
   }
   soft_light = vec4(sum.x / sum.y, center.yzw);

@@ -47,7 +47,7 @@ void main() {
 #endif
   }
 
-  Softness soft = look_up_softness(seen.distance_view);
+  Softness soft = look_up_softness(seen);
   vec3 diffuse = ambient_light(n, soft.open);
   vec3 through = vec3(0.0), gloss = vec3(0.0);
   float alpha = max(roughness * roughness, 0.02), f0 = 0.04 * (1.0 - 0.9 * roughness * roughness);

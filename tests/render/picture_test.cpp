@@ -233,6 +233,25 @@ TEST(Picture, SpotShadowGrowsWithDistance) {
   EXPECT_LT(brightness(image, 2.05, 0), 250);
 }
 
+// A strip 2 m tall that ends 2 cm above the floor hides next to nothing of the sky from a floor 0.5 m and more away
+// (form factor of a strip 2 cm wide: under 0.3 percent), however deep below it the floor lies.
+TEST(Picture, ThinStripAboveTheFloorLeavesTheSkyOpenAllRound) {
+  for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
+    frame::FrameSnapshot snapshot = box_over_floor(sun(-Vec3::UnitZ()));
+    auto stage = std::make_shared<frame::Stage>();
+    stage->sky_intensity = 1;
+    stage->sky_color = Vec3(1, 1, 1);
+    snapshot.stage = stage;
+    const double x = 0.01;
+    snapshot.states[1].positions = {Vec3(-x, 0, 0.02), Vec3(x, 0, 0.02), Vec3(x, 0, 2.02), Vec3(-x, 0, 2.02)};
+    snapshot.cameras = {camera_at(Vec3(0, -3, 5), Vec3::Zero(), 40)};
+    const image::Image image = Renderer(settings(quality)).draw(snapshot);
+    for (const int x_pixel : {20, 80, 120, 200, 240, 300}) {
+      EXPECT_NEAR(image.pixel(x_pixel, 100)[1], 255 * snapshot.surfaces[0]->appearance.color[1], 3) << x_pixel;
+    }
+  }
+}
+
 TEST(Picture, ThinSheetDoesNotShadeItself) {
   frame::FrameSnapshot snapshot = facing_square(frame::ObjectKind::cloth, 0.3, Vec3(0.6, 0.6, 0.6));
   snapshot.lights = {sun(Vec3(1, 0.35, -0.4))};  // 17 degrees above the sheet
