@@ -128,6 +128,15 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
   EXPECT_LT((definite - exact).cwiseAbs().maxCoeff(), 1e-13 * exact.cwiseAbs().maxCoeff());
 }
 
+TEST_P(Derivatives, DefiniteJacobianLeavesOutNothingButNegativeParts) {
+  const auto force = GetParam().make(kStiffness, 0);
+  const Positions x = testing::crumpled(kGrid, 0.006, 4), still = testing::zeros(x);
+  const Eigen::MatrixXd added = testing::stiffness_of(*force, x, still, kRate, Linearisation::definite) -
+                                testing::stiffness_of(*force, x, still, kRate, Linearisation::exact);
+  const double scale = testing::stiffness_of(*force, x, still, kRate, Linearisation::exact).cwiseAbs().maxCoeff();
+  EXPECT_GT(added.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * scale);
+}
+
 TEST_P(Derivatives, ExactJacobianOfCompressedOrShearedClothIsIndefinite) {
   // Why there is a definite form at all; bending alone needs none.
   const auto force = GetParam().make(kStiffness, 0);

@@ -231,7 +231,6 @@ scene::Scene torn_sheet() {
   pin.motion.interpolation = scene::Interpolation::linear;
   pin.motion.keys = {{0, {}}, {0.12, {}}, {0.16, {{5, 30, 20}, Quat::Identity()}}};
   scene.cloths[0].pins.push_back(pin);
-  // Falls with the rest while it can.
   scene.physics.gravity = Vec3::Zero();
   return scene;
 }
@@ -246,6 +245,22 @@ TEST(Simulation, StepThatCannotBeSolvedFailsWithItsFrameAndKeepsTheLastGoodOne) 
     EXPECT_EQ(simulation.snapshot(), good);
     EXPECT_EQ(simulation.snapshot()->frame, 3);
   }
+}
+
+TEST(Simulation, FailureInTheMiddleOfAFrameTakesBackItsFirstSteps) {
+  scene::Scene scene = torn_sheet();
+  scene.physics.gravity = {0, 0, -9.81};
+  scene.solver.newton_iterations = 8;
+  scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1000;
+  scene.cloths[0].pins[0].motion.keys[1].time = 0.14;  // after the first of the frame's two steps
+  scene.cloths[0].pins[0].motion.keys[2].pose.position = {500, 3000, 2000};
+  Simulation simulation(scene);
+  for (int k = 1; k <= 3; ++k) simulation.advance();
+  const double kinetic = simulation.initial_report().kinetic_energy;
+  EXPECT_GT(kinetic, 0);
+  support::expect_error(ExitCode::simulation_failed, "frame 4: the step at t = 0.14 s was rejected",
+                        [&] { simulation.advance(); });
+  EXPECT_EQ(simulation.initial_report().kinetic_energy, kinetic);
 }
 
 TEST(Simulation, RejectedStepIsHalvedUntilItCanBeSolved) {

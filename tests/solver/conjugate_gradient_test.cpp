@@ -147,6 +147,29 @@ TEST(ConjugateGradient, ReportsTheResidualThatIsLeft) {
   EXPECT_NEAR(report.last_residual, cg.norm(residual), 1e-10 * report.first_residual);
 }
 
+TEST(ConjugateGradient, NeedsNoMoreIterationsThanThereAreEigenvalues) {
+  // A chain of springs, the same along all axes: 60 eigenvalues, of condition about 1500. Steepest descent would need
+  // thousands of iterations.
+  constexpr Index kRows = 60;
+  LinearSystem system;
+  std::vector<std::pair<Index, Index>> couplings;
+  for (Index i = 0; i + 1 < kRows; ++i) couplings.emplace_back(i, i + 1);
+  system.matrix = BlockMatrix(kRows, couplings);
+  for (Index i = 0; i < kRows; ++i) system.matrix.add_scalar(system.matrix.diagonal(i), 2);
+  for (const auto& [i, j] : couplings) {
+    system.matrix.add_scalar(system.matrix.slot(i, j), -1);
+    system.matrix.add_scalar(system.matrix.slot(j, i), -1);
+  }
+  Random random(9);
+  const auto b = random.vectors(kRows);
+  std::vector<Vec3> x(kRows);
+  ConjugateGradient cg;
+  cg.prepare(system);
+  const LinearReport report = cg.solve(b, 1e-8 * cg.norm(b), 1000, x);
+  EXPECT_TRUE(report.converged);
+  EXPECT_LE(report.iterations, kRows);
+}
+
 TEST(ConjugateGradient, NothingToSolveIsSolvedWithoutAnIteration) {
   Random random(7);
   const LinearSystem system = testing::random_system(8, 0, random);
