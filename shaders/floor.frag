@@ -29,7 +29,8 @@ void main() {
     float lit = share_of_light(i, soft, surface_world, n, n_l > 0.0);
     diffuse += lights[i].color.rgb * (cone * n_l * lit);
   } while (++i < light_count.x);
-  float away = length(surface_world - frame.center_world.xyz) / frame.eye_world.w;
-  float far = smoothstep(2.0, 9.0, away);
+  // A pool of light round the subjects that runs out slowly.
+  float away = max(length(surface_world - frame.center_world.xyz) / frame.eye_world.w - 1.5, 0.0) / 5.0;
+  float far = away * away / (1.0 + away * away);
   color = vec4(display(mix(albedo * diffuse, backdrop_color(normalize(surface_world - frame.eye_world.xyz)), far)), 1.0);
 }

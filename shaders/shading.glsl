@@ -79,7 +79,7 @@ Softness look_up_softness(Seen seen) {
   // Where none of the four is of this surface, as beside a nearer thing, the four around them are asked as well.
   int more = sums.weight < 2e-3 ? 4 : 0;
   for (int i = 0; i < more; ++i) add_soft_texel(sums, corner + ivec2(i & 1, i >> 1) * 3 - 1, 0.1, seen);
-  bool known = sums.most >= sums.least && sums.most - sums.least < 0.4;
+  bool known = sums.most >= sums.least && sums.most - sums.least < 0.2;
   return Softness(sums.open / sums.weight, sums.lit / sums.weight, known);
 #else
   return Softness(1.0, 1.0, false);

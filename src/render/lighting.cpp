@@ -111,7 +111,7 @@ SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach, bool from_abov
   return {orthographic(fitted) * view, fitted.sizes().z()};
 }
 
-LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, double share, int map_size) {
+LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, const Vec3& scale, int map_size) {
   const bool spot = light.kind == frame::Light::Kind::spot;
   const Mat4 shadow_from_world = texture_from_clip() * shadow.clip_from_world;
   LightUniform packed;
@@ -120,7 +120,7 @@ LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, dou
   packed.toward_light << (-travel_direction(light)).cast<float>(), spot ? 1.0f : 0.0f;
   const double outer = std::cos(half_cone(light)), inner = std::cos(0.8 * half_cone(light));
   packed.position << light.position.cast<float>(), static_cast<float>(outer);
-  packed.color << (share * light.intensity * linear_from_srgb(light.color)).cast<float>(),
+  packed.color << (light.intensity * scale.cwiseProduct(linear_from_srgb(light.color))).cast<float>(),
       static_cast<float>(1 / (inner - outer));
   // Half a texel for the slope that the filter cannot see, and 0.2 mm for what rasterising rounds.
   const double bias = (0.25 * shadow.texel_metres + 2e-4) * shadow.depth_per_metre;

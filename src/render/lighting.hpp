@@ -52,7 +52,7 @@ struct LightsUniform {
   Eigen::Vector4i count{0, 0, 0, 0};
 };
 
-/// Packs a light. `share` scales its strength: the part of all light that does not come from the sky.
-LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, double share, int map_size);
+/// Packs a light. `scale` is of its strength, for each channel.
+LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, const Vec3& scale, int map_size);
 
 }  // namespace weft::render

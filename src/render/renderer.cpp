@@ -49,7 +49,7 @@ struct Plan {
   std::optional<Floor> floor;
   View view;
   std::vector<frame::Light> lights;
-  double direct_share;  ///< of all light: what does not come from the sky
+  Exposure exposure;
   std::vector<Vec3> caster_positions;
 };
 
@@ -71,7 +71,8 @@ Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Camera& camera
   plan.floor = find_floor(snapshot, plan.up);
   plan.view = make_view(camera, plan.up, aspect, plan.subjects, plan.floor);
   plan.lights = effective_lights(snapshot, plan.view.axes, plan.up);
-  plan.direct_share = 1 - std::clamp(plan.stage.sky_intensity, 0.0, 1.0);
+  const double direct_share = 1 - std::clamp(plan.stage.sky_intensity, 0.0, 1.0);
+  plan.exposure = expose(plan.stage, plan.floor, plan.lights, direct_share);
   plan.caster_positions = subject_positions(snapshot);
   return plan;
 }
@@ -180,9 +181,8 @@ void Renderer::Impl::update_floor(const Plan& plan) {
 }
 
 void Renderer::Impl::upload_frame(const Plan& plan) {
-  const Vec3 backdrop = backdrop_color(plan.stage, plan.floor, plan.lights, plan.direct_share);
   const FrameUniform block =
-      pack_frame(plan.view, plan.stage, plan.up, plan.subjects, backdrop, settings.width, settings.height);
+      pack_frame(plan.view, plan.stage, plan.up, plan.subjects, plan.exposure, settings.width, settings.height);
   gl.NamedBufferData(passes->frame_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
 }
@@ -208,7 +208,7 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
   };
   const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
 
-  passes->shadows.draw(plan.lights, plan.caster_positions, plan.up, plan.direct_share, passes->depth, casters);
+  passes->shadows.draw(plan.lights, plan.caster_positions, plan.up, plan.exposure.direct, passes->depth, casters);
   passes->geometry.draw(passes->surfaces, floor, plan.view.far);
   if (passes->soft_light) {
     const double reach = sky_reach(plan.subjects);

@@ -62,7 +62,7 @@ void ShadowMaps::reserve(int layers) {
 }
 
 void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3> caster_positions, const Vec3& up,
-                      double share, const DepthProgram& depth, const DrawCasters& casters) {
+                      const Vec3& scale, const DepthProgram& depth, const DrawCasters& casters) {
   // One layer at least, so that the samplers always have something to look at.
   reserve(std::max<int>(1, static_cast<int>(lights.size())));
   const int size = quality_.shadow_size;
@@ -70,7 +70,7 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
   block.count.x() = static_cast<int>(lights.size());
   for (int i = 0; i < block.count.x(); ++i) {
     const ShadowView view = fit_shadow(lights[i], caster_positions, up, size);
-    block.lights[i] = pack_light(lights[i], view, share, size);
+    block.lights[i] = pack_light(lights[i], view, scale, size);
     gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
     gl_->NamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, 0, 0);
     gl_->NamedFramebufferTextureLayer(framebuffer_.name(), GL_DEPTH_ATTACHMENT, depth_.name(), 0, i);

@@ -33,8 +33,8 @@ class ShadowMaps {
   ShadowMaps(const Gl& gl, const QualitySettings& quality);
 
   /// Draws the map of every light and uploads the light block. Leaves the maps bound to units 0 to 2.
-  void draw(std::span<const frame::Light> lights, std::span<const Vec3> caster_positions, const Vec3& up, double share,
-            const DepthProgram& depth, const DrawCasters& casters);
+  void draw(std::span<const frame::Light> lights, std::span<const Vec3> caster_positions, const Vec3& up,
+            const Vec3& scale, const DepthProgram& depth, const DrawCasters& casters);
 
   /// Lines for the shaders that include lights.glsl.
   static std::vector<std::string> defines(const QualitySettings& quality);

@@ -7,6 +7,15 @@
 #include "render/color.hpp"
 
 namespace weft::render {
+namespace {
+
+// Rec. 709.
+const Vec3 kLuminance(0.2126, 0.7152, 0.0722);
+constexpr double kBrightest = 1.8;  // gain of direct light; scenes darker than that are meant to be dark
+constexpr double kBalance = 0.08;   // share of a channel that white balance may take or add
+constexpr double kHorizon = 0.76;   // of the floor's brightness: how far the studio falls off behind the subjects
+
+}  // namespace
 
 std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up) {
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
@@ -73,22 +82,26 @@ double sky_reach(const Box3& subjects) {
   return 0.4 * subjects.diagonal().norm();
 }
 
-Vec3 backdrop_color(const frame::Stage& stage, const std::optional<Floor>& floor, std::span<const frame::Light> lights,
-                    double share) {
-  const Vec3 sky = linear_from_srgb(stage.sky_color);
-  if (!floor) return 0.62 * sky;
-  Vec3 light = (1 - share) * sky;
+Exposure expose(const frame::Stage& stage, const std::optional<Floor>& floor, std::span<const frame::Light> lights,
+                double share) {
+  const Vec3 sky_color = linear_from_srgb(stage.sky_color), sky = (1 - share) * sky_color;
+  if (!floor) return {Vec3::Constant(share), 0.62 * sky_color};
+  Vec3 direct = Vec3::Zero();
   for (const frame::Light& each : lights) {
     // Far away no spot reaches.
     if (each.kind != frame::Light::Kind::sun || each.direction.squaredNorm() == 0) continue;
     const double facing = std::max(0.0, -each.direction.normalized().dot(floor->normal));
-    light += share * each.intensity * facing * linear_from_srgb(each.color);
+    direct += share * each.intensity * facing * linear_from_srgb(each.color);
   }
-  return linear_from_srgb(floor->look.color).cwiseProduct(light);
+  const Vec3 missing = (Vec3::Ones() - sky).cwiseQuotient(direct.cwiseMax(1e-6));
+  const double level = kLuminance.dot(Vec3::Ones() - sky) / std::max(kLuminance.dot(direct), 1e-6);
+  const Vec3 tint = (missing / std::max(level, 1e-6)).cwiseMax(1 - kBalance).cwiseMin(1 + kBalance);
+  const Vec3 gain = std::clamp(level, 1.0, kBrightest) * tint;
+  return {share * gain, kHorizon * linear_from_srgb(floor->look.color).cwiseProduct(sky + gain.cwiseProduct(direct))};
 }
 
 FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,
-                        const Vec3& backdrop, int width, int height) {
+                        const Exposure& exposure, int width, int height) {
   const auto four = [](const Vec3& v, double w) {
     return Eigen::Vector4f(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
                            static_cast<float>(w));
@@ -107,7 +120,7 @@ FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3&
   frame.right_world = four(view.axes.right, 0);
   frame.sky_light = four(share * sky, reach);
   frame.ground_light = four(share * ground, above.depth_metres);
-  frame.backdrop = four(backdrop, 0);
+  frame.backdrop = four(exposure.backdrop, 0);
   frame.viewport = {static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),
                     1.0f / static_cast<float>(height)};
   frame.frustum = {static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height),

@@ -54,13 +54,19 @@ static_assert(offsetof(FrameUniform, eye_world) == 4 * 64 && offsetof(FrameUnifo
 /// How far the sky occlusion looks for things overhead [m].
 double sky_reach(const Box3& subjects);
 
-/// `backdrop`: linear colour of the studio at the horizon.
-FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,
-                        const Vec3& backdrop, int width, int height);
+/// How strong the light is, and what the studio looks like in it.
+struct Exposure {
+  Vec3 direct = Vec3::Ones();    ///< scales every light, for each channel
+  Vec3 backdrop = Vec3::Zero();  ///< linear colour of the studio at the horizon
+};
 
-/// Linear colour at which the floor runs out into the backdrop: its own in open light, or that of the sky where there
-/// is no floor. Lights are those of the picture, `share` their part of all light.
-Vec3 backdrop_color(const frame::Stage& stage, const std::optional<Floor>& floor, std::span<const frame::Light> lights,
-                    double share);
+/// Exposes for the floor, as for a product on white: direct light is turned up, never down, until open floor shows its
+/// own colour, and warmed against a bluish sky. Darkness and hues beyond a slight tint are left to the scene, as is all
+/// without a floor. Lights are those of the picture, `share` their part of all light.
+Exposure expose(const frame::Stage& stage, const std::optional<Floor>& floor, std::span<const frame::Light> lights,
+                double share);
+
+FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,
+                        const Exposure& exposure, int width, int height);
 
 }  // namespace weft::render

@@ -193,7 +193,11 @@ int brightness(const image::Image& image, double across, double along) {
 // test tries which way the picture's right lies: the shadow is on one of four sides and nowhere else.
 TEST(Picture, ShadowLiesWhereTheLightPutsIt) {
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
-    const image::Image image = Renderer(settings(quality)).draw(box_over_floor(sun(Vec3(1, 0, -1))));
+    // 1 cm is 2.7 pixels: the picture of soft light, a quarter of the size in preview, blurs its steps over two of its.
+    Settings large = settings(quality);
+    large.width = 1280;
+    large.height = 800;
+    const image::Image image = Renderer(large).draw(box_over_floor(sun(Vec3(1, 0, -1))));
     int dark_sides = 0;
     for (const auto& [x, y] : {std::pair{1, 0}, {-1, 0}, {0, 1}, {0, -1}}) {
       const int center = brightness(image, 0.5 * x, 0.5 * y);
@@ -250,6 +254,31 @@ TEST(Picture, ThinStripAboveTheFloorLeavesTheSkyOpenAllRound) {
       EXPECT_NEAR(image.pixel(x_pixel, 100)[1], 255 * snapshot.surfaces[0]->appearance.color[1], 3) << x_pixel;
     }
   }
+}
+
+// Sky 0.6 and a light of 0.4 whose cosine is 0.6 leave the floor at 0.84: direct light is turned up until it is its own
+// colour again. Three times that light is too much, and stays so. 4 levels: half a metre from its middle the
+// square hides 5 percent of the sky and the studio falls off by 1, together 3 levels; dither adds one.
+TEST(Picture, FloorIsExposedToItsOwnColorAndNeverDarkened) {
+  auto stage = std::make_shared<frame::Stage>();
+  stage->sky_color = Vec3(1, 1, 1);
+  stage->sky_intensity = 0.6;
+  const auto draw = [&](double intensity) {
+    frame::FrameSnapshot snapshot = box_over_floor(sun(Vec3(0.8, 0, -0.6)));
+    snapshot.stage = stage;
+    auto floor = std::make_shared<frame::Surface>(*snapshot.surfaces[0]);
+    floor->appearance.color = Vec3(0.7, 0.6, 0.5);
+    snapshot.surfaces[0] = floor;
+    snapshot.lights[0].intensity = intensity;
+    const image::Image image = Renderer(settings()).draw(snapshot);
+    const std::uint8_t* pixel = image.pixel(185, 75);
+    return Vec3(pixel[0], pixel[1], pixel[2]);
+  };
+  // 0.4 * 0.6 = 0.24 comes to 0.4 by a gain of 1.67.
+  EXPECT_LE((draw(1) - 255 * Vec3(0.7, 0.6, 0.5)).cwiseAbs().maxCoeff(), 4) << draw(1).transpose();
+  // 0.6 + 3 * 0.24 = 1.32.
+  const Vec3 bright = srgb_from_linear(Vec3(1.32 * linear_from_srgb(Vec3(0.7, 0.6, 0.5))));
+  EXPECT_LE((draw(3) - 255 * bright).cwiseAbs().maxCoeff(), 4) << draw(3).transpose();
 }
 
 TEST(Picture, ThinSheetDoesNotShadeItself) {
