@@ -21,7 +21,7 @@ class Air {
  public:
   Air(const mesh::Grid& grid, Index first, const AirParameters& parameters);
 
-  /// force += the drag at (x, v) [N]. Over a step h drag alone would take a particle of mass m from v to
+  /// force += the drag at (x, v) [N]. Over a step h drag alone would take an inner particle of mass m from v to
   /// v / (1 + h c ‖v‖ / m), the exact solution of m v' = −c ‖v‖ v; the force returned gives just that, so it never
   /// turns a motion round, however long the step and light the cloth.
   void add(std::span<const Vec3> x, std::span<const Vec3> v, std::span<const double> masses, double h,

@@ -94,6 +94,7 @@ struct Simulation::Impl {
   std::vector<Vec3> acceleration;  // mean over the last step [m/s²]
   std::vector<integrator::HeldParticle> held;
   frame::SnapshotPtr current;
+  FrameReport start;  // of frame 0
 };
 
 Simulation::Impl::Impl(const scene::Scene& s)
@@ -117,6 +118,7 @@ Simulation::Impl::Impl(const scene::Scene& s)
     system.use_contacts(&collisions->contacts());
   }
   current = make_snapshot();
+  measure(start);
 }
 
 Simulation::Impl::Rejection Simulation::Impl::solve(double h, FrameReport& report) {
@@ -244,9 +246,7 @@ std::size_t Simulation::particles() const {
 }
 
 FrameReport Simulation::initial_report() const {
-  FrameReport report;
-  impl_->measure(report);
-  return report;
+  return impl_->start;
 }
 
 std::vector<ObjectInfo> Simulation::objects() const {

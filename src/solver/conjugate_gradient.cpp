@@ -1,5 +1,6 @@
 #include "solver/conjugate_gradient.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/parallel.hpp"
@@ -81,9 +82,8 @@ void ConjugateGradient::prepare_patches() {
           patch_matrix_.block<3, 3>(patch(term.particles[a]), patch(term.particles[b])) +=
               filtered(term.particles[a], weight * term.stiffness, term.particles[b]);
       }
-  // A patch that is held altogether stays put.
-  for (Index i = 0; i < size; ++i)
-    if (patch_matrix_(i, i) == 0) patch_matrix_(i, i) = 1;
+  // Where constraints leave a patch no motion, its rows are zero, and so is its residual: any definite value will do.
+  patch_matrix_.diagonal().array() += 1e-9 * patch_matrix_.trace() / size;
   patch_solver_.compute(patch_matrix_);
 }
 

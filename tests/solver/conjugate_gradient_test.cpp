@@ -57,6 +57,66 @@ TEST(ConjugateGradient, AgreesWithTheDirectSolutionUnderContactsAndConstraints) 
   }
 }
 
+// Cuts the particles into patches of consecutive numbers; with one particle a patch, constraints leave some without
+// motion.
+void cut_patches(LinearSystem& system, Index patches) {
+  system.patches = patches;
+  system.patch_of.clear();
+  for (Index i = 0; i < system.matrix.rows(); ++i) system.patch_of.push_back(i * patches / system.matrix.rows());
+}
+
+TEST(ConjugateGradient, WithPatchesAgreesWithTheDirectSolutionUnderContactsAndConstraints) {
+  constexpr Index kRows = 40;
+  for (Index patches : {1, 6, kRows}) {
+    Random random(static_cast<unsigned>(20 + patches));
+    LinearSystem system = testing::random_system(kRows, 30, random);
+    cut_patches(system, patches);
+    const auto b = random.vectors(kRows);
+    std::vector<Vec3> x(kRows);
+    ConjugateGradient cg;
+    cg.prepare(system);
+    EXPECT_TRUE(cg.solve(b, 1e-13 * cg.norm(b), 1000, x).converged);
+    const Eigen::VectorXd expected = direct_solution(system, b);
+    // As above: the residual's 1e-13 times the condition number.
+    EXPECT_LT((testing::flat(x) - expected).norm(), 1e-10 * expected.norm()) << patches << " patches";
+    for (const ParticleConstraint& c : system.constraints) {
+      if (c.free.isZero(0)) {
+        EXPECT_EQ(x[static_cast<std::size_t>(c.particle)], Vec3::Zero());
+      }
+    }
+  }
+}
+
+TEST(ConjugateGradient, PatchesCarryAPushAlongAStiffChainInFewerIterations) {
+  // A free chain of 200 particles, springs a million times stiffer than what holds a particle in its place.
+  constexpr Index kRows = 200;
+  std::vector<std::pair<Index, Index>> links;
+  for (Index i = 1; i < kRows; ++i) links.emplace_back(i - 1, i);
+  LinearSystem system;
+  system.matrix = BlockMatrix(kRows, links);
+  for (Index i = 0; i < kRows; ++i) system.matrix.add(system.matrix.diagonal(i), Mat3::Identity());
+  for (const auto& [i, j] : links) {
+    const Mat3 spring = 1e6 * Mat3::Identity();
+    system.matrix.add(system.matrix.diagonal(i), spring);
+    system.matrix.add(system.matrix.diagonal(j), spring);
+    system.matrix.subtract(system.matrix.slot(i, j), spring);
+    system.matrix.subtract(system.matrix.slot(j, i), spring);
+  }
+  const auto iterations = [&](Index patches) {
+    cut_patches(system, patches);
+    std::vector<Vec3> b(kRows, Vec3::Zero()), x(kRows);
+    b[0] = Vec3(0, 0, 1);
+    ConjugateGradient cg;
+    cg.prepare(system);
+    const LinearReport report = cg.solve(b, 1e-6 * cg.norm(b), 10000, x);
+    EXPECT_TRUE(report.converged);
+    return report.iterations;
+  };
+  // One level: an iteration per particle that the push has to reach. Two: the condition number of a patch of ten.
+  EXPECT_GE(iterations(0), kRows - 1);
+  EXPECT_LE(iterations(20), 60);
+}
+
 TEST(ConjugateGradient, WithoutConstraintsAgreesWithTheDirectSolution) {
   Random random(11);
   LinearSystem system = testing::random_system(30, 0, random);

@@ -41,8 +41,10 @@ class ContactSet {
   /// force += contact forces [N] with the particles at x_end.
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
 
-  /// As add_forces, and adds −∂f/∂x to the system, where x_end changes by `end_rate` per change of the unknown. The
-  /// change of the friction with the load is left out: it is unsymmetric.
+  /// As add_forces, and adds −∂f/∂x to the system, where x_end changes by `end_rate` per change of the unknown; for
+  /// friction force over slip in its place, which is no less stiff and keeps the matrix definite. From here on friction
+  /// knows the loads at this x_end: within one Newton iteration they do not change, so that friction too has a
+  /// potential. Before the first call they are the loads at the start of the step.
   void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force, solver::LinearSystem& system);
 
   /// Number of contacts that push with the particles at x_end.
