@@ -77,8 +77,8 @@ TEST(ConjugateGradient, WithPatchesAgreesWithTheDirectSolutionUnderContactsAndCo
     cg.prepare(system);
     EXPECT_TRUE(cg.solve(b, 1e-13 * cg.norm(b), 1000, x).converged);
     const Eigen::VectorXd expected = direct_solution(system, b);
-    // As above: the residual's 1e-13 times the condition number.
-    EXPECT_LT((testing::flat(x) - expected).norm(), 1e-10 * expected.norm()) << patches << " patches";
+    // As above, and ten times that for the rounding that a held patch's small stand-in value lets through.
+    EXPECT_LT((testing::flat(x) - expected).norm(), 1e-9 * expected.norm()) << patches << " patches";
     for (const ParticleConstraint& c : system.constraints) {
       if (c.free.isZero(0)) {
         EXPECT_EQ(x[static_cast<std::size_t>(c.particle)], Vec3::Zero());
