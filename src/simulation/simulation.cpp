@@ -94,7 +94,7 @@ struct Simulation::Impl {
   std::vector<Vec3> acceleration;  // mean over the last step [m/s²]
   std::vector<integrator::HeldParticle> held;
   frame::SnapshotPtr current;
-  FrameReport start;  // of frame 0
+  FrameReport start_report;  // of frame 0
 };
 
 Simulation::Impl::Impl(const scene::Scene& s)
@@ -118,7 +118,7 @@ Simulation::Impl::Impl(const scene::Scene& s)
     system.use_contacts(&collisions->contacts());
   }
   current = make_snapshot();
-  measure(start);
+  measure(start_report);
 }
 
 Simulation::Impl::Rejection Simulation::Impl::solve(double h, FrameReport& report) {
