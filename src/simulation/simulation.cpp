@@ -246,7 +246,7 @@ std::size_t Simulation::particles() const {
 }
 
 FrameReport Simulation::initial_report() const {
-  return impl_->start;
+  return impl_->start_report;
 }
 
 std::vector<ObjectInfo> Simulation::objects() const {
