@@ -65,8 +65,9 @@ const Table& time_rules() {
           .number("fps", &Time::fps, above(0, 1000), "Hz", "frames a second; frame k is the state at k / fps")
           .number("step", &Time::step, within(1e-7, 1), "s",
                   "largest time step; a frame is cut into equal steps no longer than this")
-          .choice("integrator", &Time::integrator, {"implicit_euler", "implicit_midpoint", "bdf2"},
-                  "method of time integration")
+          .choice(
+              "integrator", &Time::integrator, {"implicit_euler", "implicit_midpoint", "bdf2"},
+              "method of time integration; the midpoint rule damps nothing and is no choice for scenes with contact")
           .build();
   return kTable;
 }

@@ -383,7 +383,8 @@ std::string hash_with_threads(int threads) {
   char path[4096];
   const ssize_t length = readlink("/proc/self/exe", path, sizeof path);
   std::string whole = command;
-  whole.replace(whole.find("/proc/self/exe"), 14, std::string(path, static_cast<std::size_t>(length)));
+  // Quoted: the folder's name may hold a space.
+  whole.replace(whole.find("/proc/self/exe"), 14, "'" + std::string(path, static_cast<std::size_t>(length)) + "'");
   FILE* pipe = popen(whole.c_str(), "r");
   std::string found;
   char line[512];

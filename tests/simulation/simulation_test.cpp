@@ -256,11 +256,19 @@ TEST(Simulation, FailureInTheMiddleOfAFrameTakesBackItsFirstSteps) {
   scene.cloths[0].pins[0].motion.keys[2].pose.position = {500, 3000, 2000};
   Simulation simulation(scene);
   for (int k = 1; k <= 3; ++k) simulation.advance();
-  const double kinetic = simulation.initial_report().kinetic_energy;
-  EXPECT_GT(kinetic, 0);
-  support::expect_error(ExitCode::simulation_failed, "frame 4: the step at t = 0.14 s was rejected",
-                        [&] { simulation.advance(); });
-  EXPECT_EQ(simulation.initial_report().kinetic_energy, kinetic);
+  // The text holds the residuals of the step that failed: with the first step of the frame still in place, a second
+  // attempt would fail with others.
+  const auto failure = [&]() -> std::string {
+    try {
+      simulation.advance();
+    } catch (const Error& error) {
+      return error.what();
+    }
+    return "no failure";
+  };
+  const std::string first = failure();
+  EXPECT_NE(first.find("frame 4: the step at t = 0.14 s was rejected"), std::string::npos) << first;
+  EXPECT_EQ(failure(), first);
 }
 
 TEST(Simulation, RejectedStepIsHalvedUntilItCanBeSolved) {
