@@ -61,6 +61,13 @@ struct alignas(32) KDop {
     return (-static_cast<double>(row[2 * d]) - static_cast<double>(row[2 * d + 1])) / kDirections<K>.length[2 * d];
   }
 
+  /// Distance of the opposite faces that are furthest apart [m].
+  double longest_side() const {
+    double longest = side(0);
+    for (int d = 1; d < K / 2; ++d) longest = std::max(longest, side(d));
+    return longest;
+  }
+
   bool overlaps(const KDop& other) const {
     for (int r = 0; r < K; ++r)
       if (row[r] + other.row[r ^ 1] > 0) return false;

@@ -1,0 +1,71 @@
+// The broad phase of a run: a hierarchy for each surface, and how they are kept and walked, chosen at run time.
+//
+//   BroadPhase broad_phase(surfaces, x, options);      // once; surfaces are then named by their place in the span
+//   broad_phase.refit(s, x_t0, x_t1, margin);          // each step, each surface that moved
+//   broad_phase.self_pairs(s, candidates);             // appends, as often as needed
+//   broad_phase.pairs(a, b, candidates);
+//
+// Whatever the options, every two triangles that come closer than 2 · margin anywhere on the linear way from x_t0 to
+// x_t1 are among the pairs, except those sharing two corners or more, and, with normal_cones, pairs of one surface in
+// which no two features without a common vertex come closer than 2 · margin.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "collision/hierarchy/surface.hpp"
+#include "core/types.hpp"
+
+namespace weft::collision {
+
+struct BroadPhaseOptions {
+  /// Directions of the bounds: 6, 14, 18 or 26. More of them list fewer pairs and cost more (fewest: all pairs that
+  /// 26-DOPs list are also listed by boxes).
+  int directions = 6;
+  /// Children per node: 2, 4 or 8. Changes the order of the pairs only.
+  int children = 8;
+  /// Most triangles per leaf, 1 to 8. Changes the order of the pairs only.
+  int leaf = 8;
+  /// Of two overlapping nodes open the one with the longer k-DOP side, as the seed does, instead of both. Changes the
+  /// order of the pairs only.
+  bool open_longer_side = false;
+  /// Walk on from where the last walk stopped. Lists exactly the same pairs; their order depends on the walks before.
+  bool separation_list = false;
+  /// Bounds of slow vertices get slack and are left as they are while the vertices stay inside. Lists all pairs that
+  /// are listed without, and others that are farther apart.
+  bool velocity_cones = false;
+  /// Leaves out pairs in regions of a surface that are provably flat enough. Lists all other pairs.
+  bool normal_cones = false;
+};
+
+class BroadPhase {
+ public:
+  BroadPhase() = default;
+
+  /// Builds over the surfaces at x (global array, [m]) and fits them there without margin; the triangles must outlive
+  /// the broad phase. Throws Error(internal) for options or indices out of range.
+  BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options = {});
+
+  /// As Tree::refit: bounds for the motion from x_t0 to x_t1, enlarged by margin [m].
+  void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin);
+
+  /// Appends pairs of different triangles of one surface, a < b.
+  void self_pairs(std::size_t surface, CandidatePairs& out);
+
+  /// Appends pairs (a of surface a, b of surface b).
+  void pairs(std::size_t a, std::size_t b, CandidatePairs& out);
+
+  /// One kind of tree; the only place that knows its type.
+  struct Trees {
+    virtual ~Trees() = default;
+    virtual void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) = 0;
+    virtual void self_pairs(std::size_t surface, CandidatePairs& out) = 0;
+    virtual void pairs(std::size_t a, std::size_t b, CandidatePairs& out) = 0;
+  };
+
+ private:
+  std::unique_ptr<Trees> trees_;
+};
+
+}  // namespace weft::collision
