@@ -70,26 +70,36 @@ std::vector<Box> boxes_of(const std::vector<Face>& faces) {
   return boxes;
 }
 
-// Corners (of a, of b) that are the same vertex.
-std::vector<std::pair<std::size_t, std::size_t>> shared_corners(const Face& a, const Face& b) {
-  std::vector<std::pair<std::size_t, std::size_t>> shared;
+// How many vertices two faces share, and the corner (of a, of b) of the last of them.
+struct Shared {
+  int count = 0;
+  std::size_t of_a = 0, of_b = 0;
+};
+
+Shared shared_corners(const Face& a, const Face& b) {
+  Shared shared;
   if (a.id.object != b.id.object) return shared;
   for (std::size_t i = 0; i < 3; ++i) {
     for (std::size_t j = 0; j < 3; ++j) {
-      if (a.vertices[i] == b.vertices[j]) shared.emplace_back(i, j);
+      if (a.vertices[i] == b.vertices[j]) shared = {shared.count + 1, i, j};
     }
   }
   return shared;
 }
 
+// The closed boxes are compared first: most neighbours in a sheet are told apart by them, and comparisons are exact.
+bool reaches(const Segment& edge, const Face& face) {
+  const Triangle triangle = face.triangle();
+  return CGAL::do_overlap(edge.bbox(), triangle.bbox()) && CGAL::do_intersect(edge, triangle);
+}
+
 bool intersect(const Face& a, const Face& b) {
-  const auto shared = shared_corners(a, b);
-  if (shared.empty()) return CGAL::do_intersect(a.triangle(), b.triangle());
-  if (shared.size() > 1) return false;
+  const Shared shared = shared_corners(a, b);
+  if (shared.count == 0) return CGAL::do_intersect(a.triangle(), b.triangle());
+  if (shared.count > 1) return false;
   // Two faces that share one vertex meet elsewhere too exactly if the opposite edge of one reaches the other: their
   // common line leaves the shared vertex and ends on one of these edges.
-  const auto [i, j] = shared.front();
-  return CGAL::do_intersect(a.edge_opposite(i), b.triangle()) || CGAL::do_intersect(b.edge_opposite(j), a.triangle());
+  return reaches(a.edge_opposite(shared.of_a), b) || reaches(b.edge_opposite(shared.of_b), a);
 }
 
 }  // namespace

@@ -1,0 +1,92 @@
+#include "support/scene_runs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "scene/loader.hpp"
+#include "support/intersections.hpp"
+
+namespace weft::support {
+namespace {
+
+scene::Scene checked(scene::LoadResult loaded) {
+  if (!loaded.ok()) throw std::invalid_argument(loaded.describe());
+  return std::move(loaded.scene);
+}
+
+double largest_stretch(const scene::Cloth& cloth, const std::vector<Vec3>& x) {
+  const int nu = cloth.particles_weft, nv = cloth.particles_warp;
+  const double weft = cloth.size.x() / (nu - 1), warp = cloth.size.y() / (nv - 1);
+  const auto at = [&](int i, int j) -> const Vec3& { return x[static_cast<std::size_t>(i + nu * j)]; };
+  double largest = 0;
+  for (int j = 0; j < nv; ++j) {
+    for (int i = 0; i < nu; ++i) {
+      if (i + 1 < nu) largest = std::max(largest, (at(i + 1, j) - at(i, j)).norm() / weft);
+      if (j + 1 < nv) largest = std::max(largest, (at(i, j + 1) - at(i, j)).norm() / warp);
+    }
+  }
+  return largest;
+}
+
+// Snapshots list the cloths first, in the order of the scene.
+std::vector<std::vector<Vec3>> cloths_of(const frame::FrameSnapshot& snapshot, std::size_t count) {
+  std::vector<std::vector<Vec3>> cloths;
+  for (std::size_t c = 0; c < count; ++c) cloths.push_back(snapshot.states[c].positions);
+  return cloths;
+}
+
+void measure_speeds(MeasuredFrame& frame, const std::vector<std::vector<Vec3>>& before, double fps) {
+  double sum_sq = 0;
+  std::size_t count = 0;
+  for (std::size_t c = 0; c < frame.cloths.size(); ++c) {
+    for (std::size_t i = 0; i < frame.cloths[c].size(); ++i, ++count) {
+      const double speed = fps * (frame.cloths[c][i] - before[c][i]).norm();
+      sum_sq += speed * speed;
+      frame.largest_speed = std::max(frame.largest_speed, speed);
+    }
+  }
+  if (count > 0) frame.rms_speed = std::sqrt(sum_sq / static_cast<double>(count));
+}
+
+void judge_frame(MeasuredFrame& frame, const frame::FrameSnapshot& snapshot) {
+  const auto objects = objects_of(snapshot);
+  const Judgement judgement = judge(objects);
+  frame.pairs = judgement.pairs.size();
+  for (const auto& [a, b, count] : count_by_objects(judgement, objects))
+    frame.between += (frame.between.empty() ? "" : ", ") + a + "-" + b + " " + std::to_string(count);
+}
+
+}  // namespace
+
+std::vector<MeasuredFrame> run_scene(const scene::Scene& scene, const RunPlan& plan, const EachFrame& each) {
+  simulation::Simulation simulation(scene);
+  std::vector<MeasuredFrame> frames;
+  const int end = plan.end < 0 ? scene.frame_count() : plan.end;
+  for (int k = 0; k < end; ++k) {
+    MeasuredFrame frame;
+    frame.report = k == 0 ? simulation.initial_report() : simulation.advance();
+    const frame::SnapshotPtr snapshot = simulation.snapshot();
+    frame.cloths = cloths_of(*snapshot, scene.cloths.size());
+    for (std::size_t c = 0; c < frame.cloths.size(); ++c)
+      frame.max_stretch = std::max(frame.max_stretch, largest_stretch(scene.cloths[c], frame.cloths[c]));
+    if (k > 0) {
+      measure_speeds(frame, frames.back().cloths, scene.time.fps);
+      if (!plan.keep_positions) frames.back().cloths.clear();
+    }
+    if (plan.judged && k >= plan.judge_from) judge_frame(frame, *snapshot);
+    if (each) each(frame);
+    frames.push_back(std::move(frame));
+  }
+  return frames;
+}
+
+scene::Scene scene_of(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  return checked(scene::load(file, overrides));
+}
+
+scene::Scene scene_of_text(const std::string& text, const std::vector<std::string>& overrides) {
+  return checked(scene::load_text(text, "test.toml", overrides));
+}
+
+}  // namespace weft::support

@@ -1,0 +1,94 @@
+// weft_measure: simulates a scene without drawing it and prints what each frame costs and shows.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "core/timer.hpp"
+#include "support/scene_runs.hpp"
+
+namespace {
+
+using weft::support::MeasuredFrame;
+
+struct Request {
+  std::string scene;
+  std::vector<std::string> overrides;
+  weft::support::RunPlan plan;
+  int every = 1;    // frames between two lines
+  int threads = 1;  // so that CPU seconds mean the same everywhere
+};
+
+void print(const MeasuredFrame& frame) {
+  const auto& report = frame.report;
+  std::printf("%5d %8.1f %8.1f %3d %2d %4d %5d %7d %6zu %8.4f %9.3g %9.3g %9.3g %9.2e %s\n", report.frame,
+              1e3 * report.simulate_cpu_s, 1e3 * report.collide_cpu_s, report.steps, report.rejected_steps,
+              report.newton_iterations, report.linear_iterations, report.constraints, frame.pairs, frame.max_stretch,
+              frame.rms_speed, frame.largest_speed, report.kinetic_energy, report.min_distance, frame.between.c_str());
+  std::fflush(stdout);
+}
+
+// Sums and worst values; heights of the last frame.
+void print_summary(const std::vector<MeasuredFrame>& frames) {
+  double simulate = 0, collide = 0, stretch = 0;
+  std::size_t pairs = 0, worst = 0;
+  int rejected = 0, with_pairs = 0;
+  for (const MeasuredFrame& frame : frames) {
+    simulate += frame.report.simulate_cpu_s;
+    collide += frame.report.collide_cpu_s;
+    stretch = std::max(stretch, frame.max_stretch);
+    pairs += frame.pairs;
+    with_pairs += frame.pairs > 0;
+    worst = std::max(worst, frame.pairs);
+    rejected += frame.report.rejected_steps;
+  }
+  const double steps = static_cast<double>(frames.size()) - 1;
+  std::printf(
+      "%zu frames: %.1f CPU ms a frame, of it collisions %.1f; %d rejected steps; stretch %.4f; %zu pairs in %d "
+      "frames, at most %zu\n",
+      frames.size(), 1e3 * simulate / steps, 1e3 * collide / steps, rejected, stretch, pairs, with_pairs, worst);
+  for (const auto& x : frames.back().cloths) {
+    double mean = 0, lowest = x.front().z(), highest = lowest;
+    for (const weft::Vec3& p : x) {
+      mean += p.z() / static_cast<double>(x.size());
+      lowest = std::min(lowest, p.z());
+      highest = std::max(highest, p.z());
+    }
+    std::printf("  cloth: z from %.6f to %.6f, mean %.6f m\n", lowest, highest, mean);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Simulates a scene and prints figures of each frame; exit code 1 if surfaces intersect, 2 if it fails.");
+  Request request;
+  bool unjudged = false;
+  app.add_option("SCENE", request.scene)->required()->check(CLI::ExistingFile);
+  app.add_option("--set", request.overrides, "KEY=VALUE; repeatable")->expected(1)->take_all();
+  app.add_option("--end", request.plan.end, "frame after the last one");
+  app.add_option("--judge-from", request.plan.judge_from, "first frame whose intersections are counted");
+  app.add_flag("--unjudged", unjudged, "counts no intersections");
+  app.add_option("--every", request.every, "prints each Nth frame and those with intersections");
+  app.add_option("--threads", request.threads, "0: all cores");
+  CLI11_PARSE(app, argc, argv);
+  request.plan.judged = !unjudged;
+  weft::set_thread_count(request.threads);
+  try {
+    const weft::scene::Scene scene = weft::support::scene_of(request.scene, request.overrides);
+    std::printf(
+        "frame   CPU ms  collide stp rj newt  line active  pairs  stretch   rms m/s   max m/s kinetic J   least m\n");
+    const auto frames = weft::support::run_scene(scene, request.plan, [&](const MeasuredFrame& frame) {
+      if (frame.report.frame % request.every == 0 || frame.pairs > 0) print(frame);
+    });
+    print_summary(frames);
+    return std::any_of(frames.begin(), frames.end(), [](const auto& frame) { return frame.pairs > 0; }) ? 1 : 0;
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "weft_measure: %s\n", error.what());
+    return 2;
+  }
+}
