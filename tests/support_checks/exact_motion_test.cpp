@@ -4,11 +4,10 @@
 #include <CGAL/intersections.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 #include <string>
 
-#include "collision/response/separation.hpp"
+#include "support/exact_motion_queries.hpp"
 
 namespace weft::support {
 namespace {
@@ -197,13 +196,6 @@ bool intersect_at(const MovingSimplex& a, const MovingSimplex& b, double t) {
   if (proper_a && proper_b) return CGAL::do_intersect(face_a, face_b);
   if (proper_b) return segments_intersect(x, a.count, face_b);
   return proper_a && segments_intersect(y, 3, face_a);
-}
-
-double distance_at(const MovingSimplex& a, const MovingSimplex& b, double t) {
-  std::vector<Vec3> x;
-  for (const MovingSimplex* s : {&a, &b})
-    for (int k = 0; k < 3; ++k) x.push_back(at(*s, t)[static_cast<std::size_t>(std::min(k, s->count - 1))]);
-  return std::sqrt(collision::closest_features({0, 1, 2}, {3, 4, 5}, x).points.distance_sq);
 }
 
 TEST(ExactMotion, AgreesWithStandingTrianglesAtSampledTimes) {
