@@ -1,5 +1,7 @@
 #include "support/scene_runs.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -15,18 +17,22 @@ scene::Scene checked(scene::LoadResult loaded) {
   return std::move(loaded.scene);
 }
 
-double largest_stretch(const scene::Cloth& cloth, const std::vector<Vec3>& x) {
+void measure_stretch(MeasuredFrame& frame, const scene::Cloth& cloth, const std::vector<Vec3>& x) {
   const int nu = cloth.particles_weft, nv = cloth.particles_warp;
   const double weft = cloth.size.x() / (nu - 1), warp = cloth.size.y() / (nv - 1);
   const auto at = [&](int i, int j) -> const Vec3& { return x[static_cast<std::size_t>(i + nu * j)]; };
-  double largest = 0;
+  const auto measure = [&](const Vec3& a, const Vec3& b, double rest) {
+    const double stretch = (b - a).norm() / rest;
+    if (stretch <= frame.max_stretch) return;
+    frame.max_stretch = stretch;
+    frame.stretched_at = fmt::format("{} ({:.3f}, {:.3f}, {:.3f})", cloth.name, a.x(), a.y(), a.z());
+  };
   for (int j = 0; j < nv; ++j) {
     for (int i = 0; i < nu; ++i) {
-      if (i + 1 < nu) largest = std::max(largest, (at(i + 1, j) - at(i, j)).norm() / weft);
-      if (j + 1 < nv) largest = std::max(largest, (at(i, j + 1) - at(i, j)).norm() / warp);
+      if (i + 1 < nu) measure(at(i, j), at(i + 1, j), weft);
+      if (j + 1 < nv) measure(at(i, j), at(i, j + 1), warp);
     }
   }
-  return largest;
 }
 
 // Snapshots list the cloths first, in the order of the scene.
@@ -68,8 +74,7 @@ std::vector<MeasuredFrame> run_scene(const scene::Scene& scene, const RunPlan& p
     frame.report = k == 0 ? simulation.initial_report() : simulation.advance();
     const frame::SnapshotPtr snapshot = simulation.snapshot();
     frame.cloths = cloths_of(*snapshot, scene.cloths.size());
-    for (std::size_t c = 0; c < frame.cloths.size(); ++c)
-      frame.max_stretch = std::max(frame.max_stretch, largest_stretch(scene.cloths[c], frame.cloths[c]));
+    for (std::size_t c = 0; c < frame.cloths.size(); ++c) measure_stretch(frame, scene.cloths[c], frame.cloths[c]);
     if (k > 0) {
       measure_speeds(frame, frames.back().cloths, scene.time.fps);
       if (!plan.keep_positions) frames.back().cloths.clear();

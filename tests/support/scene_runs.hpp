@@ -15,11 +15,12 @@ namespace weft::support {
 /// A frame, as seen from outside.
 struct MeasuredFrame {
   simulation::FrameReport report;
-  std::size_t pairs = 0;                  ///< intersecting, see judge(); 0 where the run is not judged
-  std::string between;                    ///< their objects, "ball-sheet 3, sheet-sheet 1"
-  double max_stretch = 1;                 ///< largest length over rest length of a weft or warp edge
-  double rms_speed = 0;                   ///< of all particles, from their way since the frame before [m/s]
-  double largest_speed = 0;               ///< of one particle, likewise [m/s]
+  std::size_t pairs = 0;     ///< intersecting, see judge(); 0 where the run is not judged
+  std::string between;       ///< their objects, "ball-sheet 3, sheet-sheet 1"
+  double max_stretch = 1;    ///< largest length over rest length of a weft or warp edge
+  std::string stretched_at;  ///< whose edge that is and where, "sheet (0.1, 0, 0.3)"; empty where none is longer
+  double rms_speed = 0;      ///< of all particles, from their way since the frame before [m/s]
+  double largest_speed = 0;  ///< of one particle, likewise [m/s]
   std::vector<std::vector<Vec3>> cloths;  ///< positions [m], one list per cloth
 };
 

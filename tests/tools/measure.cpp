@@ -25,10 +25,11 @@ struct Request {
 
 void print(const MeasuredFrame& frame) {
   const auto& report = frame.report;
-  std::printf("%5d %8.1f %8.1f %3d %2d %4d %5d %7d %6zu %8.4f %9.3g %9.3g %9.3g %9.2e %s\n", report.frame,
+  std::printf("%5d %8.1f %8.1f %3d %2d %4d %5d %7d %6zu %8.4f %9.3g %9.3g %9.3g %9.2e %s %s\n", report.frame,
               1e3 * report.simulate_cpu_s, 1e3 * report.collide_cpu_s, report.steps, report.rejected_steps,
               report.newton_iterations, report.linear_iterations, report.constraints, frame.pairs, frame.max_stretch,
-              frame.rms_speed, frame.largest_speed, report.kinetic_energy, report.min_distance, frame.between.c_str());
+              frame.rms_speed, frame.largest_speed, report.kinetic_energy, report.min_distance, frame.between.c_str(),
+              frame.max_stretch > 1.1 ? frame.stretched_at.c_str() : "");
   std::fflush(stdout);
 }
 
