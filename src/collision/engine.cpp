@@ -10,13 +10,35 @@ namespace {
 // Contacts are prepared up to this multiple of the range: those that come into range during the step are then in its
 // solve. Beyond, whatever would meet is found by the failing certificates.
 constexpr double kReachOfRange = 1.5;
+// Bounds of slow steps are enlarged by this much more, in reaches, so that the candidates hold for several steps.
+constexpr double kSkin = 0.5;
 // Stiffness of a contact against m/h² of its particles: a particle that arrives with speed v then comes to rest within
 // v h / 100, so even a heavy cloth stops well inside the range.
 constexpr double kInertialStiffness = 100;
 
-// Edge pairs whose closest direction leaves the wedge of either edge by more than this (sine) are no contacts: a face
-// at the edge is closer and is one. Between two layers that leaves a quarter of the contacts.
+// An edge pair pushes with all its stiffness if its direction lies well inside of the wedges of both edges, by this sum
+// of sines: an edge of a box against smooth cloth, a crease across a crease. It fades out towards the flat, where
+// vertices and faces keep the layers apart, and towards directions outside of a wedge, where a face at the edge is
+// closer: nothing is switched on or off while cloth rests. Between two smooth layers that leaves a fifth of the
+// contacts.
+constexpr double kFlattest = 0.05, kSharp = 0.2;
 constexpr double kOutsideWedge = 0.1;
+// It fades out too where the closest point comes this near to an end of either edge (in shares of it).
+constexpr double kEndOfEdge = 0.1;
+
+double ramp(double from, double to, double value) {
+  return std::clamp((value - from) / (to - from), 0.0, 1.0);
+}
+
+// Share of its stiffness that a proximity pushes with.
+double share(const Proximity& proximity) {
+  if (proximity.kind == ProximityKind::vertex_face) return 1;
+  const auto& outside = proximity.outside_wedge;
+  double least = 1;
+  for (double weight : proximity.weights) least = std::min(least, std::abs(weight));
+  return ramp(kFlattest, kSharp, -outside[0] - outside[1]) *
+         ramp(-kOutsideWedge, 0, -std::max(outside[0], outside[1])) * ramp(0, kEndOfEdge, least);
+}
 
 double contact_range(const Body& a, const Body& b) {
   return 0.5 * (a.thickness + b.thickness);
@@ -34,51 +56,85 @@ Engine::Engine(std::vector<Body> bodies, const EngineParameters& parameters, std
   double range = 0;
   for (const Body& a : bodies_) range = std::max(range, a.thickness);
   reach_ = kReachOfRange * range;
-  margin_ = 0.5 * reach_;
 
   Index first = 0;
   for (const Body& body : bodies_) {
     const auto count = static_cast<Index>(body.triangles.size());
-    const Surface surface{std::span(triangles_).subspan(static_cast<std::size_t>(first), body.triangles.size()), first,
-                          body.first_vertex, body.vertex_count};
-    trees_.emplace_back(surface, x);
-    trees_.back().refit(x, x, margin_);
-    if (body.deformable) deformable_.push_back(surface);
+    surfaces_.push_back({std::span(triangles_).subspan(static_cast<std::size_t>(first), body.triangles.size()), first,
+                         body.first_vertex, body.vertex_count});
+    if (body.deformable) deformable_.push_back(surfaces_.back());
     first += count;
   }
+  broad_phase_ = BroadPhase(surfaces_, x);
   finder_ = ProximityFinder(triangles_, static_cast<Index>(body_of_.size()));
-  separation_ = Separation(triangles_);
+  separation_ =
+      Separation(triangles_, parameters_.self ? std::span<const Surface>(deformable_) : std::span<const Surface>());
 }
 
-std::array<std::size_t, 2> Engine::bodies_of(const TrianglePair& pair) const {
-  return {body_of_[static_cast<std::size_t>(triangle(pair.a)[0])],
-          body_of_[static_cast<std::size_t>(triangle(pair.b)[0])]};
+Index Engine::triangle_of(const Triangle& corners) const {
+  const Surface& surface = surfaces_[body_of(corners[0])];
+  const auto has_all = [&](const Triangle& t) {
+    return std::all_of(corners.begin(), corners.end(), [&](Index v) { return has_vertex(t, v); });
+  };
+  const auto found = std::find_if(surface.triangles.begin(), surface.triangles.end(), has_all);
+  return static_cast<Index>(found - surface.triangles.begin());
 }
 
 // All pairs of triangles that could come within the reach on the way from x_t0 to x_t1.
 void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  double motion = 0;
+  for (std::size_t i = 0; i < x_t0.size(); ++i) motion = std::max(motion, (x_t1[i] - x_t0[i]).cwiseAbs().maxCoeff());
+  const double margin = (0.5 + (motion < kSkin * reach_ ? kSkin : 0.0)) * reach_;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto first = static_cast<std::size_t>(bodies_[b].first_vertex);
     const auto count = static_cast<std::size_t>(bodies_[b].vertex_count);
     const auto start = x_t0.subspan(first, count), end = x_t1.subspan(first, count);
     // A still obstacle keeps the bounds it has.
-    const bool still = !bodies_[b].deformable && std::equal(start.begin(), start.end(), end.begin()) &&
-                       collected_for_.size() == x_t1.size() &&
-                       std::equal(end.begin(), end.end(), collected_for_.begin() + static_cast<std::ptrdiff_t>(first));
-    if (!still) trees_[b].refit(x_t0, x_t1, margin_);
+    const auto same_as = [&](const std::vector<Vec3>& x) {
+      return x.size() == x_t0.size() &&
+             std::equal(start.begin(), start.end(), x.begin() + static_cast<std::ptrdiff_t>(first));
+    };
+    const bool still = !bodies_[b].deformable && margin == margin_ &&
+                       std::equal(start.begin(), start.end(), end.begin()) && same_as(from_) && same_as(to_);
+    if (!still) broad_phase_.refit(b, x_t0, x_t1, margin);
   }
   candidates_.clear();
   for (std::size_t a = 0; a < bodies_.size(); ++a) {
     if (!bodies_[a].deformable) continue;
-    if (parameters_.self) self_pairs(trees_[a], candidates_);
+    if (parameters_.self) broad_phase_.self_pairs(a, candidates_);
     for (std::size_t b = a + 1; b < bodies_.size(); ++b)
-      if (bodies_[b].deformable ? parameters_.self : parameters_.obstacles) pairs(trees_[a], trees_[b], candidates_);
+      if (bodies_[b].deformable ? parameters_.self : parameters_.obstacles) broad_phase_.pairs(a, b, candidates_);
   }
-  collected_for_.assign(x_t1.begin(), x_t1.end());
+  from_.assign(x_t0.begin(), x_t0.end());
+  to_.assign(x_t1.begin(), x_t1.end());
+  margin_ = margin;
+  separation_.watch(candidates_.apart.view(), x_t0);
+  near_.clear();
+  separation_.append_closer(2 * margin, near_.apart);
+  std::swap(near_.one_shared, candidates_.one_shared);
+  finder_.gather(near_, deformable_, x_t0, 2 * margin, kFlattest);
+}
+
+// Whether the gathered features still hold every pair within the reach at x.
+bool Engine::near_start(std::span<const Vec3> x) const {
+  if (from_.size() != x.size()) return false;
+  const double skin = margin_ - 0.5 * reach_;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (!((x[i] - from_[i]).squaredNorm() <= skin * skin)) return false;
+  return true;
+}
+
+// Whether all vertices are in the bounds that the candidates were collected with.
+bool Engine::inside_bounds(std::span<const Vec3> x) const {
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 out = (x[i] - from_[i].cwiseMax(to_[i])).cwiseMax(from_[i].cwiseMin(to_[i]) - x[i]);
+    if (!(out.maxCoeff() <= margin_)) return false;
+  }
+  return true;
 }
 
 void Engine::add_contact(const std::array<Index, 4>& vertices, const std::array<double, 4>& weights, const Vec3& normal,
-                         std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+                         double part, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   Contact contact;
   contact.normal = normal;
   double mass = 0, mass_weight = 0;
@@ -99,65 +155,62 @@ void Engine::add_contact(const std::array<Index, 4>& vertices, const std::array<
   }
   if (mass_weight == 0) return;
   contact.range = contact_range(*sides[0], *sides[1]);
-  contact.stiffness = std::max(parameters_.stiffness, kInertialStiffness * mass / mass_weight / (step_ * step_));
+  contact.stiffness = part * std::max(parameters_.stiffness, kInertialStiffness * mass / mass_weight / (step_ * step_));
   contact.friction = std::sqrt(sides[0]->friction * sides[1]->friction);
   contacts_.add(contact);
 }
 
 void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h) {
   step_ = h;
-  collect(x_t0, x_t1);
-  finder_.find(candidates_, deformable_, x_t0, reach_, proximities_);
+  if (!near_start(x_t0) || !inside_bounds(x_t1)) collect(x_t0, x_t1);
+  finder_.find(x_t0, reach_, proximities_);
   contacts_.clear();
   contacts_.set_step(h);
   adopted_.clear();
   for (const Proximity& proximity : proximities_)
-    if (std::max(proximity.outside_wedge[0], proximity.outside_wedge[1]) < kOutsideWedge)
-      add_contact(proximity.vertices, proximity.weights, proximity.normal, x_t0, x_t1);
-  adopt_failing(x_t0, x_t1);
+    if (const double part = share(proximity); part > 0)
+      add_contact(proximity.vertices, proximity.weights, proximity.normal, part, x_t0, x_t1);
+  if (!apart(x_t0, x_t1)) adopt_failing(x_t0, x_t1);
+}
+
+bool Engine::apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  if (!inside_bounds(x_t1)) collect(x_t0, x_t1);
+  failing_ = separation_.find_failing(x_t0, x_t1);
+  return failing_.empty();
 }
 
 int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  if (strayed(x_t1)) collect(x_t0, x_t1);
   int fresh = 0;
-  for (const TrianglePair& pair : separation_.find_failing(candidates_.apart.view(), x_t0, x_t1)) {
-    const ClosestFeatures features = closest_features(triangle(pair.a), triangle(pair.b), x_t0);
+  for (const CornerPair& pair : failing_) {
+    const ClosestFeatures features = closest_features(pair, x_t0);
     const double distance = std::sqrt(features.points.distance_sq);
     // Within the reach it is among the proximities already.
     if (distance < reach_ || !adopted_.insert(features.vertices).second) continue;
-    add_contact(features.vertices, features.points.weights, features.points.difference / distance, x_t0, x_t1);
+    add_contact(features.vertices, features.points.weights, features.points.difference / distance, 1, x_t0, x_t1);
     ++fresh;
   }
   return fresh;
 }
 
-std::optional<TrianglePair> Engine::find_meeting(std::span<const Vec3> x) {
+std::optional<CornerPair> Engine::find_meeting(std::span<const Vec3> x) {
   collect(x, x);
-  const auto failing = separation_.find_failing(candidates_.apart.view(), x, x);
-  if (failing.empty()) return std::nullopt;
-  return failing.front();
+  if (apart(x, x)) return std::nullopt;
+  return failing_.front();
 }
 
-// Whether a vertex leaves the bounds of the candidates: further than their margin from where it was expected.
-bool Engine::strayed(std::span<const Vec3> x_t1) const {
-  for (std::size_t i = 0; i < masses_.size(); ++i)
-    if (!((x_t1[i] - collected_for_[i]).cwiseAbs().maxCoeff() <= margin_)) return true;
-  return false;
-}
-
-SeparationReport Engine::finish_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                                     std::span<const std::uint8_t> movable) {
+SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
+                                    std::span<const std::uint8_t> movable) {
   // Corrections can carry vertices out of the bounds that the candidates stand for; then these are collected anew.
   constexpr int kCollections = 8;
   SeparationReport report;
   for (int c = 0; c < kCollections; ++c) {
-    if (strayed(x_t1)) collect(x_t0, x_t1);
-    const SeparationReport pass = separation_.enforce(candidates_.apart.view(), x_t0, x_t1, movable);
+    const SeparationReport pass = separation_.enforce(x_t0, x_t1, movable);
     report.corrected_pairs += pass.corrected_pairs;
     report.largest_push = std::max(report.largest_push, pass.largest_push);
     report.separated = pass.separated;
     report.stuck = pass.stuck;
-    if (!pass.separated || !strayed(x_t1)) return report;
+    if (!pass.separated || inside_bounds(x_t1)) return report;
+    collect(x_t0, x_t1);
   }
   report.separated = false;
   return report;

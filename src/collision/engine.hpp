@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "collision/hierarchy/traversal.hpp"
+#include "collision/hierarchy/broad_phase.hpp"
 #include "collision/proximity/proximities.hpp"
 #include "collision/response/contact_set.hpp"
 #include "collision/response/separation.hpp"
@@ -46,11 +46,14 @@ class Engine {
   ContactSet& contacts() { return contacts_; }
   const ContactSet& contacts() const { return contacts_; }
 
-  /// Makes contacts of the pairs that would meet on the way to x_t1; returns how many are new.
+  /// Whether every pair of triangles stays apart on the way to x_t1.
+  bool apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+
+  /// Makes contacts of the pairs for which the last call of apart() said no; returns how many are new.
   int adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
   /// Corrects the ends x_t1 of movable particles so that no triangles meet during the step.
-  SeparationReport finish_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
+  SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
 
   /// Pairs of features within the reach, 1.5 contact ranges, at the start of the last step.
   int proximities() const { return static_cast<int>(proximities_.size()); }
@@ -58,34 +61,38 @@ class Engine {
   double min_distance() const;
 
   /// A pair of triangles that touches or crosses at x [m], if there is one.
-  std::optional<TrianglePair> find_meeting(std::span<const Vec3> x);
+  std::optional<CornerPair> find_meeting(std::span<const Vec3> x);
 
-  Index first_triangle(std::size_t body) const { return trees_[body].surface().first_triangle; }
-  /// The two bodies of a pair of triangles.
-  std::array<std::size_t, 2> bodies_of(const TrianglePair& pair) const;
-  const Triangle& triangle(Index number) const { return triangles_[static_cast<std::size_t>(number)]; }
+  std::size_t body_of(Index vertex) const { return body_of_[static_cast<std::size_t>(vertex)]; }
+  /// Number within its body of a triangle with these corners, an edge's second end being named twice.
+  Index triangle_of(const Triangle& corners) const;
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   void add_contact(const std::array<Index, 4>& vertices, const std::array<double, 4>& weights, const Vec3& normal,
-                   std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
-  bool strayed(std::span<const Vec3> x_t1) const;
+                   double part, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  bool near_start(std::span<const Vec3> x) const;
+  bool inside_bounds(std::span<const Vec3> x) const;
 
   std::vector<Body> bodies_;
   EngineParameters parameters_;
   std::vector<double> masses_;
   std::vector<Triangle> triangles_;   // of all bodies, in their order
   std::vector<std::size_t> body_of_;  // per vertex
-  std::vector<SurfaceTree> trees_;    // per body
+  std::vector<Surface> surfaces_;     // per body
   std::vector<Surface> deformable_;
+  BroadPhase broad_phase_;
   ProximityFinder finder_;
   Separation separation_;
-  double reach_ = 0;   // distance up to which contacts are prepared [m]
-  double margin_ = 0;  // of the bounds [m]
-  double step_ = 0;    // h [s]
+  std::span<const CornerPair> failing_;  // of the last call of apart()
+  double reach_ = 0;                     // distance up to which contacts are prepared [m]
+  double step_ = 0;                      // h [s]
 
   CandidatePairs candidates_;
-  std::vector<Vec3> collected_for_;  // x_t1 of the candidates
+  CandidatePairs near_;  // those that may be within the reach
+  // What the candidates are good for: vertices between these positions, or no further from there than the margin [m].
+  std::vector<Vec3> from_, to_;
+  double margin_ = -1;
   std::vector<Proximity> proximities_;
   std::set<std::array<Index, 4>> adopted_;  // features that are contacts because their triangles would have met
   ContactSet contacts_;

@@ -64,34 +64,52 @@ void Shear::add(const Evaluation& at) const {
 }
 
 void Shear::add_stiffness(std::size_t cell, const Strain& s, const Strain& rate, const Evaluation& at) const {
-  const bool exact = at.linearisation == Linearisation::exact;
+  if (at.linearisation == Linearisation::exact)
+    add_exact_stiffness(cell, s, rate, at);
+  else
+    add_definite_stiffness(cell, s, at);
+}
+
+void Shear::add_exact_stiffness(std::size_t cell, const Strain& s, const Strain& rate, const Evaluation& at) const {
   std::array<Vec3, 4> gradient;       // ∂c/∂x_k
   std::array<Vec3, 4> rate_gradient;  // ∂ċ/∂x_k
   for (int k = 0; k < 4; ++k) {
     gradient[k] = kAlong[k] / (2 * lu_) * s.sv + kAcross[k] / (2 * lv_) * s.su;
     rate_gradient[k] = kAlong[k] / (2 * lu_) * rate.sv + kAcross[k] / (2 * lv_) * rate.su;
   }
-  // Second derivative of c: δ²c = 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²). The definite form keeps the
-  // half whose sign agrees with the stress.
-  const double curvature = elasticity_ * s.c + (exact ? viscosity_ * (rate.su.dot(s.sv) + s.su.dot(rate.sv)) : 0.0);
-  const double sign = curvature < 0 ? -1 : 1;
+  const double stress = elasticity_ * s.c + viscosity_ * (rate.su.dot(s.sv) + s.su.dot(rate.sv));
   const double outer = elasticity_ + at.rate * viscosity_;
   for (int a = 0; a < 4; ++a) {
     for (int b = 0; b < 4; ++b) {
-      Mat3 k = outer * gradient[a] * gradient[b].transpose();
-      double isotropic;
-      if (exact) {
-        isotropic = curvature * (kAlong[a] * kAcross[b] + kAcross[a] * kAlong[b]) / (4 * lu_ * lv_);
-        k += viscosity_ * gradient[a] * rate_gradient[b].transpose();
-      } else {
-        const double pa = kAlong[a] / (2 * lu_) + sign * kAcross[a] / (2 * lv_);
-        const double pb = kAlong[b] / (2 * lu_) + sign * kAcross[b] / (2 * lv_);
-        isotropic = 0.5 * std::abs(curvature) * pa * pb;
-      }
-      k.diagonal().array() += isotropic;
-      at.matrix->add(slots_[cell][4 * a + b], k);
+      // Second derivative of c: δ²c = 2 ⟨δs_u, δs_v⟩.
+      const double second = (kAlong[a] * kAcross[b] + kAcross[a] * kAlong[b]) / (4 * lu_ * lv_);
+      at.matrix->add(slots_[cell][4 * a + b], outer * gradient[a] * gradient[b].transpose() +
+                                                  viscosity_ * gradient[a] * rate_gradient[b].transpose() +
+                                                  stress * second * Mat3::Identity());
     }
   }
+}
+
+// Of the second derivative, ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²), the definite form keeps the half whose sign agrees
+// with the stress. Opposite corners have opposite derivatives, so three blocks, with signs, serve all sixteen pairs:
+// four times as fast as one by one.
+void Shear::add_definite_stiffness(std::size_t cell, const Strain& s, const Evaluation& at) const {
+  const double sign = s.c < 0 ? -1 : 1, curvature = 0.5 * elasticity_ * std::abs(s.c);
+  const double outer = elasticity_ + at.rate * viscosity_;
+  // ∂c/∂x of corners 3 and 1; that of 0 is minus the first, that of 2 minus the second. And so for the half kept.
+  const Vec3 main = s.sv / (2 * lu_) + s.su / (2 * lv_), cross = s.sv / (2 * lu_) - s.su / (2 * lv_);
+  const double main_half = 1 / (2 * lu_) + sign / (2 * lv_), cross_half = 1 / (2 * lu_) - sign / (2 * lv_);
+  const auto block = [&](const Vec3& a, double half_a, const Vec3& b, double half_b) -> Mat3 {
+    return outer * a * b.transpose() + curvature * half_a * half_b * Mat3::Identity();
+  };
+  const Mat3 mm = block(main, main_half, main, main_half), cc = block(cross, cross_half, cross, cross_half);
+  const Mat3 mc = block(main, main_half, cross, cross_half), cm = mc.transpose();
+  const auto add = [&](int a, int b, const Mat3& k) { at.matrix->add(slots_[cell][4 * a + b], k); };
+  const auto subtract = [&](int a, int b, const Mat3& k) { at.matrix->subtract(slots_[cell][4 * a + b], k); };
+  add(0, 0, mm), subtract(0, 1, mc), add(0, 2, mc), subtract(0, 3, mm);
+  subtract(1, 0, cm), add(1, 1, cc), subtract(1, 2, cc), add(1, 3, cm);
+  add(2, 0, cm), subtract(2, 1, cc), add(2, 2, cc), subtract(2, 3, cm);
+  subtract(3, 0, mm), add(3, 1, mc), subtract(3, 2, mc), add(3, 3, mm);
 }
 
 double Shear::energy(std::span<const Vec3> x) const {

@@ -38,6 +38,8 @@ class Shear final : public Force {
   };
   Strain strain(const Cell& cell, std::span<const Vec3> x) const;
   void add_stiffness(std::size_t cell, const Strain& s, const Strain& rate, const Evaluation& at) const;
+  void add_exact_stiffness(std::size_t cell, const Strain& s, const Strain& rate, const Evaluation& at) const;
+  void add_definite_stiffness(std::size_t cell, const Strain& s, const Evaluation& at) const;
 
   double lu_, lv_;     // rest size of a cell [m]
   double elasticity_;  // ½ μ A [N·m]

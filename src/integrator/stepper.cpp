@@ -6,8 +6,12 @@
 namespace weft::integrator {
 namespace {
 
-// Share of Newton's goal to which a linear system is solved at most.
+// Share of Newton's goal to which a linear system is solved at most, and share of its right hand side to which it is
+// solved at least.
 constexpr double kLinearShare = 0.3;
+constexpr double kLeastLinear = 0.3;
+// Share of the weight below which a change of velocity counts as none.
+constexpr double kRest = 0.1;
 // Slope behind the minimum, against that at the start, from which a step counts as overshooting.
 constexpr double kOvershoot = 0.7;
 constexpr int kLineTrials = 6;
@@ -82,7 +86,7 @@ double Stepper::force_scale(std::span<const double> masses, const Vec3& gravity,
   const double least = std::max(gravity.norm(), 1.0);
   for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = Vec3(0, 0, masses[i] * least);
   cg_.filter(scale_);
-  const double weight = cg_.norm(scale_);
+  const double weight = kRest * cg_.norm(scale_);
   for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = masses[i] / stage.beta * (v_[i] - v_hat_[i]);
   cg_.filter(scale_);
   return std::max(weight, cg_.norm(scale_));
@@ -162,7 +166,8 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
     const double before = cg_.norm(residual_);
     if (report.newton_iterations == 0) report.first_residual = before;
     const auto goal = [&] { return parameters_.tolerance * force_scale(masses, gravity, stage); };
-    const double target = std::max(parameters_.linear_tolerance * before, kLinearShare * goal());
+    const double target =
+        std::min(std::max(parameters_.linear_tolerance * before, kLinearShare * goal()), kLeastLinear * before);
     const solver::LinearReport linear = cg_.solve(residual_, target, parameters_.max_linear_iterations, delta_);
     ++report.newton_iterations;
     report.linear_iterations += linear.iterations;

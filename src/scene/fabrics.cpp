@@ -30,6 +30,9 @@ namespace weft::scene {
 
 namespace {
 
+// Bending viscosity over bending stiffness [s]: yarns rubbing on each other damp a fold within about this time.
+constexpr double kBendingTime = 0.1;
+
 struct Figures {
   double density, stretch_weft, stretch_warp, shear, bend, thickness, friction;
 };
@@ -42,6 +45,7 @@ Fabric fabric(const char* name, const Figures& figures, const char* note) {
   material.stretch_warp = figures.stretch_warp;
   material.shear = figures.shear;
   material.bend = figures.bend;
+  material.bend_viscosity = kBendingTime * figures.bend;
   material.thickness = figures.thickness;
   material.friction = figures.friction;
   return {material, note};

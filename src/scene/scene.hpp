@@ -55,7 +55,7 @@ struct Material {
   double bend = 5e-5;             ///< B [N·m]
   double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
   double shear_viscosity = 0;     ///< [N·s/m]
-  double bend_viscosity = 0;      ///< [N·m·s]
+  double bend_viscosity = 5e-6;   ///< [N·m·s]
   double thickness = 0.002;       ///< distance that contact keeps between two layers [m]
   double friction = 0.3;          ///< Coulomb coefficient; of a pair: the geometric mean of both
   double drag = 1.0;              ///< air resistance coefficient of the normal motion; 0 for none

@@ -9,6 +9,8 @@ namespace {
 // Patches of the preconditioner's coarse level, in all. Its dense factorisation costs 9 kPatches³ operations per Newton
 // iteration: at 80 less than one product with the matrix of 4,000 particles costs in each of many CG iterations.
 constexpr int kPatches = 80;
+// Width of the smallest groups, in particles.
+constexpr double kNarrowest = 1.9;
 
 }  // namespace
 
@@ -39,7 +41,7 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   first_.push_back(first);
   std::vector<mesh::Grid> grids;
   for (const auto& cloth : environment.cloths) grids.push_back(cloth.grid);
-  cut_patches(grids);
+  cut_groups(grids);
 
   for (const auto& force : stretch_) forces_.push_back(force.get());
   for (const auto& force : shear_) forces_.push_back(force.get());
@@ -51,16 +53,22 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   for (const auto& force : bend_) force->attach(base_);
 }
 
-// Square patches, of a size that leaves about kPatches of them.
-void ClothSystem::cut_patches(const std::vector<mesh::Grid>& grids) {
-  const double side = std::max(2.0, std::ceil(std::sqrt(static_cast<double>(masses_.size()) / kPatches)));
-  for (const mesh::Grid& grid : grids) {
-    const int across_u = std::max(1, static_cast<int>(std::lround(grid.nu / side)));
-    const int across_v = std::max(1, static_cast<int>(std::lround(grid.nv / side)));
-    for (int j = 0; j < grid.nv; ++j)
-      for (int i = 0; i < grid.nu; ++i)
-        patch_of_.push_back(patches_ + i * across_u / grid.nu + across_u * (j * across_v / grid.nv));
-    patches_ += across_u * across_v;
+// Square groups, twice as wide from level to level, up to a width that leaves about kPatches of them.
+void ClothSystem::cut_groups(const std::vector<mesh::Grid>& grids) {
+  const double widest = std::max(2.0, std::ceil(std::sqrt(static_cast<double>(masses_.size()) / kPatches)));
+  std::vector<double> widths{widest};
+  while (widths.front() >= 2 * kNarrowest) widths.insert(widths.begin(), 0.5 * widths.front());
+  for (double width : widths) {
+    solver::Grouping grouping;
+    for (const mesh::Grid& grid : grids) {
+      const int across_u = std::max(1, static_cast<int>(std::lround(grid.nu / width)));
+      const int across_v = std::max(1, static_cast<int>(std::lround(grid.nv / width)));
+      for (int j = 0; j < grid.nv; ++j)
+        for (int i = 0; i < grid.nu; ++i)
+          grouping.of.push_back(grouping.count + i * across_u / grid.nu + across_u * (j * across_v / grid.nv));
+      grouping.count += across_u * across_v;
+    }
+    groupings_.push_back(std::move(grouping));
   }
 }
 
@@ -94,8 +102,7 @@ void ClothSystem::linearise(const integrator::StagePoint& at, std::span<Vec3> fo
 solver::LinearSystem ClothSystem::make_linear_system() const {
   solver::LinearSystem system;
   system.matrix = base_;
-  system.patch_of = patch_of_;
-  system.patches = patches_;
+  system.groupings = groupings_;
   return system;
 }
 

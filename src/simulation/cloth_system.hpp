@@ -42,7 +42,7 @@ class ClothSystem final : public integrator::System {
 
  private:
   void prepare_base(double rate) const;
-  void cut_patches(const std::vector<mesh::Grid>& grids);
+  void cut_groups(const std::vector<mesh::Grid>& grids);
 
   std::vector<Index> first_;  // per cloth, and the total at the end
   std::vector<double> masses_;
@@ -52,8 +52,7 @@ class ClothSystem final : public integrator::System {
   std::vector<forces::Air> air_;
   std::vector<const forces::Force*> forces_;  // all of the stiff ones
   collision::ContactSet* contacts_ = nullptr;
-  std::vector<Index> patch_of_;  // of the preconditioner, per particle
-  Index patches_ = 0;
+  std::vector<solver::Grouping> groupings_;  // of the preconditioner
 
   // rate² M plus the constant part of the bending, kept as long as the step does not change.
   mutable solver::BlockMatrix base_;

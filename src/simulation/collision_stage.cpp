@@ -88,12 +88,11 @@ CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Env
 }
 
 // Which objects and triangles, and where.
-std::string CollisionStage::describe(const collision::TrianglePair& pair) const {
-  const auto [a, b] = engine_.bodies_of(pair);
-  const Vec3& at = all_t0_[static_cast<std::size_t>(engine_.triangle(pair.a)[0])];
-  return fmt::format("'{}' (triangle {}) and '{}' (triangle {}) touching near ({:.4g}, {:.4g}, {:.4g}) m", names_[a],
-                     pair.a - engine_.first_triangle(a), names_[b], pair.b - engine_.first_triangle(b), at.x(), at.y(),
-                     at.z());
+std::string CollisionStage::describe(const collision::CornerPair& pair) const {
+  const Vec3& at = all_t0_[static_cast<std::size_t>(pair.a[0])];
+  return fmt::format("'{}' (triangle {}) and '{}' (triangle {}) touching near ({:.4g}, {:.4g}, {:.4g}) m",
+                     names_[engine_.body_of(pair.a[0])], engine_.triangle_of(pair.a),
+                     names_[engine_.body_of(pair.b[0])], engine_.triangle_of(pair.b), at.x(), at.y(), at.z());
 }
 
 void CollisionStage::begin_step(environment::Environment& environment, const integrator::State& now,
@@ -124,16 +123,14 @@ void CollisionStage::begin_step(environment::Environment& environment, const int
   engine_.begin_step(all_t0_, all_t1_, h);
 }
 
-int CollisionStage::adopt_failing(const integrator::State& next) {
+bool CollisionStage::apart(const integrator::State& next) {
   std::copy(next.x.begin(), next.x.end(), all_t1_.begin());
-  return engine_.adopt_failing(all_t0_, all_t1_);
+  return engine_.apart(all_t0_, all_t1_);
 }
 
-std::optional<std::string> CollisionStage::finish_step(double h, integrator::State& next) {
-  std::copy(next.x.begin(), next.x.end(), all_t1_.begin());
-  const collision::SeparationReport report = engine_.finish_step(all_t0_, all_t1_, movable_);
+std::optional<std::string> CollisionStage::push_apart(double h, integrator::State& next) {
+  const collision::SeparationReport report = engine_.push_apart(all_t0_, all_t1_, movable_);
   if (!report.separated) return "cannot keep " + describe(report.stuck) + " apart";
-  if (report.corrected_pairs == 0) return std::nullopt;
   for (std::size_t i = 0; i < particles_; ++i) {
     next.v[i] += (all_t1_[i] - next.x[i]) / h;
     next.x[i] = all_t1_[i];

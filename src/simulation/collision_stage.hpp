@@ -31,19 +31,22 @@ class CollisionStage {
   collision::ContactSet& contacts() { return engine_.contacts(); }
   const collision::ContactSet& contacts() const { return engine_.contacts(); }
 
-  /// Looks for pairs that would meet on the way to `next` and makes contacts of them: how many were new. If there are
-  /// some, solving again lets the forces do what finish_step would do by moving particles.
-  int adopt_failing(const integrator::State& next);
+  /// After the solve: whether nothing meets anything on the way to `next`.
+  bool apart(const integrator::State& next);
 
-  /// After the solve: corrects positions and velocities of `next` so that nothing met anything. Empty if that worked,
-  /// else which objects are stuck and where.
-  std::optional<std::string> finish_step(double h, integrator::State& next);
+  /// Where apart() said no: makes contacts of the pairs that would meet, and says how many were new. If there are some,
+  /// solving again lets the forces do what push_apart would do by moving particles.
+  int adopt_failing() { return engine_.adopt_failing(all_t0_, all_t1_); }
+
+  /// Corrects positions and velocities of `next` so that nothing meets anything. Empty if that worked, else which
+  /// objects are stuck and where.
+  std::optional<std::string> push_apart(double h, integrator::State& next);
 
   int proximities() const { return engine_.proximities(); }
   double min_distance() const { return engine_.min_distance(); }
 
  private:
-  std::string describe(const collision::TrianglePair& pair) const;
+  std::string describe(const collision::CornerPair& pair) const;
 
   std::vector<std::string> names_;   // per body
   std::vector<std::size_t> rigids_;  // of the environment, those that collide

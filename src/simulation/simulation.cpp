@@ -141,8 +141,9 @@ Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, FrameR
   for (int round = 1;; ++round) {
     if (Rejection rejection = solve(h, report)) return rejection;
     const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
-    if (round < kContactRounds && collisions->adopt_failing(next) > 0) continue;
-    return collisions->finish_step(h, next);
+    if (collisions->apart(next)) return std::nullopt;
+    if (round < kContactRounds && collisions->adopt_failing() > 0) continue;
+    return collisions->push_apart(h, next);
   }
 }
 

@@ -24,13 +24,19 @@ struct StencilTerm {
   Mat3 stiffness = Mat3::Zero();              ///< symmetric, positive semidefinite [N/m]
 };
 
+/// Groups that the particles are cut into.
+struct Grouping {
+  std::vector<Index> of;  ///< group of each particle, 0 to count − 1
+  Index count = 0;
+};
+
 struct LinearSystem {
   BlockMatrix matrix;  ///< positive definite on the free directions
   std::vector<StencilTerm> terms;
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
-  /// Patch of each particle, 0 to patches − 1: the preconditioner's coarse level moves patches as a whole.
-  std::vector<Index> patch_of;
-  Index patches = 0;  ///< 0: no coarse level
+  /// Coarse levels of the preconditioner, which moves groups as a whole: from small groups to large ones, the last of
+  /// them few enough for a dense factorisation. Empty: no coarse level.
+  std::vector<Grouping> groupings;
 };
 
 }  // namespace weft::solver

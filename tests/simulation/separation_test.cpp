@@ -23,7 +23,11 @@ struct Pairs {
     for (std::size_t i = 0; i < x_t0.size(); ++i) x.push_back((1 - t) * x_t0[i] + t * x_t1[i]);
     return x;
   }
-  Separation separation() const { return Separation(triangles); }
+  Separation separation() const {
+    Separation separation(triangles, {});
+    separation.watch(pairs, x_t0);
+    return separation;
+  }
 };
 
 /// Random triangles of up to 0.1 m, closer than that and apart by 1e-4 m at least, that move by up to `motion` [m].
@@ -42,7 +46,7 @@ Pairs random_pairs(int count, double motion, unsigned seed) {
     const Vec3 apart = vector(0.05);
     for (int k = 0; k < 6; ++k) corners.push_back(vector(0.05) + (k < 3 ? Vec3(Vec3::Zero()) : apart));
     const Triangle a{0, 1, 2}, b{3, 4, 5};
-    if (closest_features(a, b, corners).points.distance_sq < 1e-8) continue;
+    if (closest_features({a, b}, corners).points.distance_sq < 1e-8) continue;
     // An edge can pierce a face with all features apart.
     const std::array<Triangle, 1> face_a{a}, face_b{b};
     const support::JudgedObject objects[] = {{"a", true, corners, face_a}, {"b", true, corners, face_b}};
@@ -78,8 +82,7 @@ std::set<Index> meeting(const Pairs& pairs) {
 std::set<Index> failing(const Pairs& pairs) {
   Separation separation = pairs.separation();
   std::set<Index> found;
-  for (const TrianglePair& pair : separation.find_failing(pairs.pairs, pairs.x_t0, pairs.x_t1))
-    found.insert(pair.a / 2);
+  for (const CornerPair& pair : separation.find_failing(pairs.x_t0, pairs.x_t1)) found.insert(pair.a[0] / 6);
   return found;
 }
 
@@ -108,7 +111,7 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
     ASSERT_FALSE(before.empty());
     const std::vector<Vec3> wanted = pairs.x_t1;
     Separation separation = pairs.separation();
-    const SeparationReport report = separation.enforce(pairs.pairs, pairs.x_t0, pairs.x_t1, pairs.movable);
+    const SeparationReport report = separation.enforce(pairs.x_t0, pairs.x_t1, pairs.movable);
     EXPECT_TRUE(report.separated);
     EXPECT_EQ(report.corrected_pairs, static_cast<int>(before.size()));
     EXPECT_TRUE(failing(pairs).empty());
@@ -132,7 +135,7 @@ TEST(Separation, WhatCannotMoveIsNotMoved) {
   for (std::size_t i = 0; i < pairs.movable.size(); ++i) pairs.movable[i] = i % 6 < 3;
   const std::vector<Vec3> wanted = pairs.x_t1;
   Separation separation = pairs.separation();
-  EXPECT_TRUE(separation.enforce(pairs.pairs, pairs.x_t0, pairs.x_t1, pairs.movable).separated);
+  EXPECT_TRUE(separation.enforce(pairs.x_t0, pairs.x_t1, pairs.movable).separated);
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (!pairs.movable[i]) {
       EXPECT_EQ(pairs.x_t1[i], wanted[i]);
@@ -146,7 +149,7 @@ TEST(Separation, PairsThatKeepTheirDistanceAreLeftAlone) {
   for (Vec3& x : pairs.x_t1) x += Vec3(0.3, 0.1, -0.2);  // all together
   const std::vector<Vec3> wanted = pairs.x_t1;
   Separation separation = pairs.separation();
-  const SeparationReport report = separation.enforce(pairs.pairs, pairs.x_t0, pairs.x_t1, pairs.movable);
+  const SeparationReport report = separation.enforce(pairs.x_t0, pairs.x_t1, pairs.movable);
   EXPECT_TRUE(report.separated);
   EXPECT_EQ(report.corrected_pairs, 0);
   EXPECT_EQ(report.largest_push, 0);
@@ -167,14 +170,17 @@ TEST(Separation, SaysWhichPairIsStuckWhereThereIsNoRoom) {
   const std::vector<Vec3> x_t0 = three(0, 0.1, 0.2), wanted = three(0.15, 0.1, 0.05);
   const std::vector<std::uint8_t> movable{0, 0, 0, 1, 1, 1, 0, 0, 0};
   std::vector<Vec3> x_t1 = wanted;
-  const SeparationReport report = Separation(triangles).enforce(pairs, x_t0, x_t1, movable);
+  Separation separation(triangles, {});
+  separation.watch(pairs, x_t0);
+  const SeparationReport report = separation.enforce(x_t0, x_t1, movable);
   EXPECT_FALSE(report.separated);
-  EXPECT_TRUE(report.stuck == pairs[0] || report.stuck == pairs[1]);
+  EXPECT_TRUE(report.stuck == (CornerPair{triangles[0], triangles[1]}) ||
+              report.stuck == (CornerPair{triangles[1], triangles[2]}));
   for (std::size_t i : {0u, 1u, 2u, 6u, 7u, 8u}) EXPECT_EQ(x_t1[i], wanted[i]);
 
   // With a little room left it goes there.
   x_t1 = three(0.15, 0.1, 0.16);
-  EXPECT_TRUE(Separation(triangles).enforce(pairs, x_t0, x_t1, movable).separated);
+  EXPECT_TRUE(separation.enforce(x_t0, x_t1, movable).separated);
   for (std::size_t i : {3u, 4u, 5u}) {
     EXPECT_GT(x_t1[i].z(), 0.15);
     EXPECT_LT(x_t1[i].z(), 0.16);
@@ -186,7 +192,7 @@ TEST(ClosestFeatures, AreThoseOfADenseSearch) {
   for (const TrianglePair& pair : pairs.pairs) {
     const Triangle &a = pairs.triangles[static_cast<std::size_t>(pair.a)],
                    &b = pairs.triangles[static_cast<std::size_t>(pair.b)];
-    const ClosestFeatures found = closest_features(a, b, pairs.x_t0);
+    const ClosestFeatures found = closest_features({a, b}, pairs.x_t0);
     const double distance = std::sqrt(found.points.distance_sq);
     Vec3 difference = Vec3::Zero();
     for (std::size_t k = 0; k < 4; ++k)

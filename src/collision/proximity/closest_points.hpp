@@ -51,6 +51,16 @@ inline bool surely_farther(const Vec3& p, const Vec3& t0, const Vec3& t1, const 
   return beyond(b1, e2.squaredNorm()) || beyond(b2, e1.squaredNorm()) || beyond(b0, (e2 - e1).squaredNorm());
 }
 
+/// As surely_farther, for two edges: the distance of the lines they lie on is a lower bound.
+inline bool surely_farther_edges(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double reach_sq) {
+  constexpr double kSafety = 1 + 1e-6;
+  const Vec3 d = p1 - p0, e = q1 - q0;
+  const Vec3 n = d.cross(e);
+  const double n_sq = n.squaredNorm(), height = (q0 - p0).dot(n);
+  return n_sq > kNearlyParallelSq * kSafety * d.squaredNorm() * e.squaredNorm() &&
+         height * height > kSafety * reach_sq * n_sq;
+}
+
 /// A quick look before closest_edge_edge: true only if its closest points are not inside both edges, or farther apart
 /// than √reach_sq.
 inline bool surely_not_inside(const Vec3& p0, const Vec3& p1, const Vec3& q0, const Vec3& q1, double reach_sq) {

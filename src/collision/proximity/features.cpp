@@ -51,6 +51,7 @@ void Features::own_edges() {
 
   // The first of a run of equal edges owns it; any two of the run are a hinge.
   edge_.resize(triangles_.size());
+  across_.assign(triangles_.size(), {-1, -1, -1});
   apexes_begin_ = {0};
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     while (end < sides.size() && sides[end].same_edge(sides[begin])) ++end;
@@ -58,6 +59,9 @@ void Features::own_edges() {
     owned_[static_cast<std::size_t>(owner.triangle)] |= static_cast<std::uint8_t>(8U << owner.corner);
     edge_[static_cast<std::size_t>(owner.triangle)][static_cast<std::size_t>(owner.corner)] =
         static_cast<Index>(apexes_begin_.size() - 1);
+    if (end - begin == 2)
+      across_[static_cast<std::size_t>(owner.triangle)][static_cast<std::size_t>(owner.corner)] =
+          sides[begin + 1].triangle;
     for (std::size_t i = begin; i < end; ++i)
       apexes_.push_back(
           triangles_[static_cast<std::size_t>(sides[i].triangle)][static_cast<std::size_t>(sides[i].corner + 2) % 3]);

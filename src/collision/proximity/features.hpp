@@ -33,6 +33,9 @@ class Features {
     return std::span(apexes_).subspan(apexes_begin_[edge], apexes_begin_[edge + 1] - apexes_begin_[edge]);
   }
 
+  /// The other triangle at the edge that triangle t owns from corner c to corner c + 1; −1 unless there are two in all.
+  Index across(Index t, std::size_t c) const { return across_[static_cast<std::size_t>(t)][c]; }
+
   /// Triangles at a vertex, lowest number first.
   std::span<const Index> triangles_at(Index vertex) const {
     const auto v = static_cast<std::size_t>(vertex);
@@ -49,7 +52,8 @@ class Features {
   std::vector<Triangle> triangles_;
   std::vector<std::uint8_t> owned_;
   std::vector<std::array<Index, 3>> edge_;  // number of the edge, where owned
-  std::vector<std::size_t> apexes_begin_;   // by edge
+  std::vector<std::array<Index, 3>> across_;
+  std::vector<std::size_t> apexes_begin_;  // by edge
   std::vector<Index> apexes_;
   std::vector<std::size_t> around_begin_;
   std::vector<Index> around_;

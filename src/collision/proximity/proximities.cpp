@@ -32,17 +32,17 @@ void for_each_bit(std::uint32_t mask, const Visit& visit) {
 
 }  // namespace
 
-/// One search: the positions and where the results go.
-class ProximityFinder::Search {
+/// From pairs of triangles to pairs of features within a radius.
+class ProximityFinder::Gathering {
  public:
-  Search(const Features& features, std::span<const Vec3> x, const std::vector<Rounded>& rounded, double reach,
-         float reach_rounded, std::vector<Proximity>& out)
-      : features_(features),
+  Gathering(ProximityFinder& finder, std::span<const Vec3> x, double radius, float radius_rounded, double flattest)
+      : finder_(finder),
+        features_(finder.features_),
+        rounded_(finder.rounded_),
         x_(x),
-        rounded_(rounded),
-        reach_sq_(reach * reach),
-        reach_rounded_(reach_rounded),
-        out_(out) {}
+        radius_sq_(radius * radius),
+        radius_rounded_(radius_rounded),
+        flattest_(static_cast<float>(flattest)) {}
 
   /// All features that the two triangles of each pair own, against each other. First the boxes of vertices, edges and
   /// faces, for eight pairs at once and without branches: which feature is near is as good as random, and a wrong
@@ -103,7 +103,7 @@ class ProximityFinder::Search {
       raise_to(gap, a_low.axis[axis] - b.high.axis[axis]);
       raise_to(gap, b.low.axis[axis] - a_high.axis[axis]);
     }
-    return sign_mask(gap - reach_rounded_);
+    return sign_mask(gap - radius_rounded_);
   }
 
   void look_at_eight(std::span<const TrianglePair, 8> pairs, std::size_t count) {
@@ -119,23 +119,51 @@ class ProximityFinder::Search {
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t a_in_b = same[c][0] | same[c][1] | same[c][2], b_in_a = same[0][c] | same[1][c] | same[2][c];
       for_each_bit(near(a.at[c], a.at[c], b.face) & a.owned[c] & together & ~a_in_b,
-                   [&](std::size_t l) { vertex_face(a.corner[c][l], number_b[l]); });
+                   [&](std::size_t l) { keep_vertex_face(a.corner[c][l], number_b[l]); });
       for_each_bit(near(b.at[c], b.at[c], a.face) & b.owned[c] & together & ~b_in_a,
-                   [&](std::size_t l) { vertex_face(b.corner[c][l], number_a[l]); });
+                   [&](std::size_t l) { keep_vertex_face(b.corner[c][l], number_a[l]); });
     }
     for (std::size_t i = 0, i1 = 1; i < 3; ++i, i1 = (i + 1) % 3) {
       for (std::size_t j = 0, j1 = 1; j < 3; ++j, j1 = (j + 1) % 3) {
         const std::uint32_t common = same[i][j] | same[i][j1] | same[i1][j] | same[i1][j1];
         const std::uint32_t near_pairs = near(a.edge[i].low, a.edge[i].high, b.edge[j]) & together & ~common;
         for_each_bit(near_pairs & a.owned[3 + i] & b.owned[3 + j], [&](std::size_t l) {
-          edges({a.corner[i][l], a.corner[i1][l], b.corner[j][l], b.corner[j1][l]}, features_.apexes(number_a[l], i),
-                features_.apexes(number_b[l], j));
+          keep_edges({number_a[l], number_b[l], static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)},
+                     {a.corner[i][l], a.corner[i1][l], b.corner[j][l], b.corner[j1][l]});
         });
       }
     }
   }
 
   const Vec3& at(Index vertex) const { return x_[static_cast<std::size_t>(vertex)]; }
+
+  void keep_vertex_face(Index vertex, Index face) {
+    const Triangle& corners = features_.triangle(face);
+    if (!surely_farther(at(vertex), at(corners[0]), at(corners[1]), at(corners[2]), radius_sq_))
+      finder_.vertex_faces_.push_back({vertex, face});
+  }
+
+  void keep_edges(const EdgeEdge& edges, const std::array<Index, 4>& v) {
+    if (flattest_ > 0 && fold(edges.face_a, edges.edge_a) + fold(edges.face_b, edges.edge_b) < flattest_) return;
+    if (!surely_farther_edges(at(v[0]), at(v[1]), at(v[2]), at(v[3]), radius_sq_)) finder_.edge_edges_.push_back(edges);
+  }
+
+  float fold(Index face, std::size_t edge) const { return finder_.folds_[static_cast<std::size_t>(face)][edge]; }
+
+  ProximityFinder& finder_;
+  const Features& features_;
+  const std::vector<Rounded>& rounded_;
+  std::span<const Vec3> x_;
+  const double radius_sq_;
+  const float radius_rounded_;
+  const float flattest_;
+};
+
+/// From pairs of features to proximities.
+class ProximityFinder::Search {
+ public:
+  Search(const Features& features, std::span<const Vec3> x, double reach, std::vector<Proximity>& out)
+      : features_(features), x_(x), reach_sq_(reach * reach), out_(out) {}
 
   void vertex_face(Index vertex, Index face) {
     const Triangle& corners = features_.triangle(face);
@@ -173,8 +201,9 @@ class ProximityFinder::Search {
     return false;
   }
 
-  /// v are the ends of the one edge, then those of the other; the apexes are the third corners of their faces.
-  void edges(const std::array<Index, 4>& v, std::span<const Index> apexes_a, std::span<const Index> apexes_b) {
+  void edges(const EdgeEdge& pair) {
+    const Triangle &a = features_.triangle(pair.face_a), &b = features_.triangle(pair.face_b);
+    const std::array<Index, 4> v{a[pair.edge_a], a[(pair.edge_a + 1) % 3], b[pair.edge_b], b[(pair.edge_b + 1) % 3]};
     if (surely_not_inside(at(v[0]), at(v[1]), at(v[2]), at(v[3]), reach_sq_)) return;
     const ClosestPoints points = closest_edge_edge(at(v[0]), at(v[1]), at(v[2]), at(v[3]));
     // With an end as closest point the vertex and the faces at the other edge represent the pair.
@@ -182,8 +211,12 @@ class ProximityFinder::Search {
     const Vec3 across = (at(v[1]) - at(v[0])).cross(at(v[3]) - at(v[2]));
     const Vec3 normal = direction(points.difference, across);
     add(ProximityKind::edge_edge, v, points, across,
-        {outside_wedge(v[0], v[1], apexes_a, -normal), outside_wedge(v[2], v[3], apexes_b, normal)});
+        {outside_wedge(v[0], v[1], features_.apexes(pair.face_a, pair.edge_a), -normal),
+         outside_wedge(v[2], v[3], features_.apexes(pair.face_b, pair.edge_b), normal)});
   }
+
+ private:
+  const Vec3& at(Index vertex) const { return x_[static_cast<std::size_t>(vertex)]; }
 
   /// Largest sine of the angle by which the unit direction `outward`, which is perpendicular to the edge, points to the
   /// inside of one of its faces: |e| (arm · outward) / |e × arm|.
@@ -207,15 +240,33 @@ class ProximityFinder::Search {
 
   const Features& features_;
   std::span<const Vec3> x_;
-  const std::vector<Rounded>& rounded_;
   const double reach_sq_;
-  const float reach_rounded_;
   std::vector<Proximity>& out_;
 };
 
-void ProximityFinder::find(const CandidatePairs& candidates, std::span<const Surface> deformable,
-                           std::span<const Vec3> x, double reach, std::vector<Proximity>& out) {
-  out.clear();
+void ProximityFinder::measure_folds(std::span<const Vec3> x) {
+  const auto triangles = features_.triangles();
+  const auto at = [&](Index vertex) -> const Vec3& { return x[static_cast<std::size_t>(vertex)]; };
+  face_normals_.resize(triangles.size());
+  folds_.resize(triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    face_normals_[t] =
+        (at(triangles[t][1]) - at(triangles[t][0])).cross(at(triangles[t][2]) - at(triangles[t][0])).normalized();
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const Index other = features_.across(static_cast<Index>(t), c);
+      // 1 − cos θ = 2 sin² (θ / 2)
+      folds_[t][c] = other < 0
+                         ? 1.0F
+                         : static_cast<float>(std::sqrt(std::max(
+                               0.0, 0.5 - 0.5 * face_normals_[t].dot(face_normals_[static_cast<std::size_t>(other)]))));
+    }
+  }
+}
+
+void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const Surface> deformable,
+                             std::span<const Vec3> x, double radius, double flattest) {
+  if (flattest > 0) measure_folds(x);
   // First look in float. Rounding moves a coordinate by 2^-24 of itself, so a gap of two by four times that at most.
   double largest = 0;
   rounded_.resize(x.size());
@@ -224,13 +275,22 @@ void ProximityFinder::find(const CandidatePairs& candidates, std::span<const Sur
     rounded_[v].xyz =
         Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
   }
-  const auto reach_rounded = static_cast<float>(reach * (1 + 1e-6) + largest * 0x1p-21 + 1e-37);
+  const auto radius_rounded = static_cast<float>(radius * (1 + 1e-6) + largest * 0x1p-21 + 1e-37);
 
-  Search search(features_, x, rounded_, reach, reach_rounded, out);
-  search.look_at(candidates.apart.view());
-  search.look_at(candidates.one_shared.view());
+  vertex_faces_.clear();
+  edge_edges_.clear();
+  Gathering gathering(*this, x, radius, radius_rounded, flattest);
+  gathering.look_at(candidates.apart.view());
+  gathering.look_at(candidates.one_shared.view());
   for (const Surface& surface : deformable)
-    search.look_at(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())));
+    gathering.look_at(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())));
+}
+
+void ProximityFinder::find(std::span<const Vec3> x, double reach, std::vector<Proximity>& out) const {
+  out.clear();
+  Search search(features_, x, reach, out);
+  for (const VertexFace& pair : vertex_faces_) search.vertex_face(pair.vertex, pair.face);
+  for (const EdgeEdge& pair : edge_edges_) search.edges(pair);
 }
 
 }  // namespace weft::collision

@@ -48,21 +48,48 @@ class ProximityFinder {
 
   const Features& features() const { return features_; }
 
-  /// Replaces `out` by the proximities at positions x [m] below `reach` [m], in the order of the candidates. These must
-  /// hold every pair of triangles closer than the reach (up to those with a common edge, which are looked up for each
-  /// surface of `deformable`).
+  /// Keeps the pairs of features that are closer than `radius` [m] at x [m]. The candidates must hold every pair of
+  /// triangles closer than that (up to those with a common edge, which are looked up for each surface of `deformable`).
+  /// Edge pairs are left out where the sines of half the angles by which the surface is folded along either edge add up
+  /// to less than `flattest`: between two smooth layers vertices and faces tell all, and four of five pairs are edges.
+  void gather(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
+              double radius, double flattest = 0);
+
+  /// Replaces `out` by the proximities below `reach` [m] among the pairs gathered, in their order. Complete as long as
+  /// no vertex is farther than (radius − reach) / 2 from where it was gathered.
+  void find(std::span<const Vec3> x, double reach, std::vector<Proximity>& out) const;
+
+  /// Both at once.
   void find(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
-            double reach, std::vector<Proximity>& out);
+            double reach, std::vector<Proximity>& out) {
+    gather(candidates, deformable, x, reach);
+    find(x, reach, out);
+  }
 
  private:
+  class Gathering;
   class Search;
 
   struct Rounded {
     Lanes4 xyz;
   };
+  struct VertexFace {
+    Index vertex, face;
+  };
+  /// Edge i of a triangle goes from its corner i to corner i + 1.
+  struct EdgeEdge {
+    Index face_a, face_b;
+    std::uint8_t edge_a, edge_b;
+  };
+
+  void measure_folds(std::span<const Vec3> x);
 
   Features features_;
+  std::vector<std::array<float, 3>> folds_;  ///< per triangle and edge it owns: sine of half the fold; 1 at borders
+  std::vector<Vec3> face_normals_;
   std::vector<Rounded> rounded_;  ///< positions in float, for the first look
+  std::vector<VertexFace> vertex_faces_;
+  std::vector<EdgeEdge> edge_edges_;
 };
 
 }  // namespace weft::collision

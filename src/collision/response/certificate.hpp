@@ -1,0 +1,46 @@
+// Moving dividing planes: when two sets of vertices are apart for a whole step.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include "collision/hierarchy/surface.hpp"
+#include "collision/proximity/closest_points.hpp"
+#include "core/types.hpp"
+
+namespace weft::collision {
+
+/// Two triangles, or an edge and a triangle, without a common vertex, by their vertices. An edge names its second end
+/// twice.
+struct CornerPair {
+  Triangle a, b;
+  friend auto operator<=>(const CornerPair&, const CornerPair&) = default;
+};
+
+/// Gap that a certificate must show at the end of a step [m]: a hundred times where double precision begins to fail for
+/// coordinates of a few metres.
+inline constexpr double kFloor = 1e-6;
+
+/// min_a n·x − max_b n·x: along the unit direction n, side a lies above side b by this [m].
+double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x);
+
+/// Whether n is a certificate for the linear motion from x_t0 to x_t1: the gap along it is positive at the start and at
+/// least kFloor at the end. Every n·x is linear in time, so the gap is a minimum of linear functions, concave, and
+/// positive all the way between: a plane normal to n that moves along divides the pair for the whole step. No root is
+/// sought and no tolerance enters but the rounding of a dot product, 1e-15 of the coordinates.
+bool divides(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+
+/// Looks for a certificate, from cheap to dear: the face normals divide layers, the direction between the centres
+/// divides neighbours in the plane, and the closest direction at the start divides whatever hardly moves. The direction
+/// found is rounded to single precision, so that it can be kept in half the space.
+std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+
+/// The closest pair of features of two sides.
+struct ClosestFeatures {
+  std::array<Index, 4> vertices{};  ///< global numbers
+  ClosestPoints points{};           ///< weights of the vertices; difference from b to a
+};
+ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x);
+
+}  // namespace weft::collision

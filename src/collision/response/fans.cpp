@@ -1,0 +1,150 @@
+#include "collision/response/fans.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace weft::collision {
+namespace {
+
+const Vec3& at(std::span<const Vec3> x, Index vertex) {
+  return x[static_cast<std::size_t>(vertex)];
+}
+
+/// The triangle with its corners turned so that `first` comes first.
+Triangle turned(const Triangle& t, Index first) {
+  return t[0] == first ? t : t[1] == first ? Triangle{t[1], t[2], t[0]} : Triangle{t[2], t[0], t[1]};
+}
+
+/// The largest distance d that all three corners of a triangle at a vertex may move so that its oriented area, `area`
+/// now, stays positive, also in the products of one edge at one time and the other at another: each edge changes by 2 d
+/// at most, the product by 2 d (|e| + |f|) + 4 d².
+double room(double area, double lengths) {
+  return area > 0 ? 0.25 * (std::sqrt(lengths * lengths + 4 * area) - lengths) : -1;
+}
+
+}  // namespace
+
+Fans::Fans(std::span<const Surface> surfaces) {
+  std::vector<CornerPair> open;
+  for (const Surface& surface : surfaces) {
+    std::vector<std::vector<Triangle>> around(static_cast<std::size_t>(surface.vertex_count));
+    for (const Triangle& t : surface.triangles)
+      for (Index v : t) around[static_cast<std::size_t>(v - surface.first_vertex)].push_back(turned(t, v));
+    for (Index v = 0; v < surface.vertex_count; ++v)
+      add_fan(surface.first_vertex + v, around[static_cast<std::size_t>(v)]);
+  }
+  slack_.assign(middle_.size(), -1.0F);
+}
+
+void Fans::add_fan(Index vertex, std::span<const Triangle> triangles) {
+  // Pairs of an edge opposite to the vertex and another triangle of the fan.
+  const auto touch = [](const Triangle& s, const Triangle& t) {
+    return s[1] == t[1] || s[1] == t[2] || s[2] == t[1] || s[2] == t[2];
+  };
+  for (const Triangle& s : triangles)
+    for (const Triangle& t : triangles)
+      if (!touch(s, t)) pairs_.push_back({{s[1], s[2], s[2]}, t});
+
+  // From triangle to triangle over the edges they share: a closed fan comes back after all of them. Any other set of
+  // triangles is kept as a fan without a ring, which is always taken pair by pair.
+  std::vector<Index> ring{triangles.empty() ? vertex : triangles.front()[1]};
+  while (ring.size() <= triangles.size() && !triangles.empty()) {
+    const auto next =
+        std::find_if(triangles.begin(), triangles.end(), [&](const Triangle& t) { return t[1] == ring.back(); });
+    if (next == triangles.end()) break;
+    ring.push_back((*next)[2]);
+    if (ring.back() == ring.front()) break;
+  }
+  const bool closed = ring.size() == triangles.size() + 1 && ring.size() > 3 && ring.back() == ring.front();
+  if (!closed && pairs_.size() == pairs_begin_.back()) return;
+  middle_.push_back(vertex);
+  if (closed) ring_.insert(ring_.end(), ring.begin(), ring.end());
+  ring_begin_.push_back(ring_.size());
+  pairs_begin_.push_back(pairs_.size());
+}
+
+// Whether the fan, all of whose triangles are positively oriented along the axis, goes around once: of the directions
+// to its ring, measured from the first, the cross product turns from negative to positive once for each turn.
+bool Fans::turns_once(std::size_t fan, const Vec3& axis, std::span<const Vec3> x) const {
+  const auto vertices = ring(fan);
+  const Vec3& middle = at(x, middle_[fan]);
+  const Vec3 across = axis.cross(at(x, vertices.front()) - middle);
+  int turns = 0;
+  double before = 0;
+  for (std::size_t k = 1; k + 1 < vertices.size(); ++k) {
+    const double side = across.dot(at(x, vertices[k]) - middle);
+    turns += before < 0 && side >= 0 ? 1 : 0;
+    before = side;
+  }
+  return turns + (before < 0 ? 1 : 0) == 1;
+}
+
+void Fans::set_reference(std::span<const Vec3> x) {
+  for (std::size_t fan = 0; fan < middle_.size(); ++fan) {
+    slack_[fan] = -1;
+    const auto vertices = ring(fan);
+    if (vertices.empty()) continue;
+    const Vec3& middle = at(x, middle_[fan]);
+    Vec3 axis = Vec3::Zero(), e = at(x, vertices.front()) - middle;
+    for (std::size_t k = 1; k < vertices.size(); ++k) {
+      const Vec3 f = at(x, vertices[k]) - middle;
+      axis += e.cross(f);
+      e = f;
+    }
+    axis.normalize();
+    double slack = std::numeric_limits<double>::infinity(), e_length = e.norm();
+    for (std::size_t k = 1; k < vertices.size(); ++k) {
+      const Vec3 f = at(x, vertices[k]) - middle;
+      const double f_length = f.norm();
+      slack = std::min(slack, room(axis.dot(e.cross(f)), e_length + f_length));
+      e = f;
+      e_length = f_length;
+    }
+    // A thousandth less than it is covers all rounding.
+    if (slack > 0 && turns_once(fan, axis, x)) slack_[fan] = static_cast<float>(0.999 * slack);
+  }
+}
+
+bool Fans::keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const {
+  const auto vertices = ring(fan);
+  if (vertices.empty()) return false;
+  const auto arm = [&](std::size_t k, std::span<const Vec3> x) -> Vec3 {
+    return at(x, vertices[k]) - at(x, middle_[fan]);
+  };
+  Vec3 axis = Vec3::Zero(), e_t0 = arm(0, x_t0), e_t1 = arm(0, x_t1);
+  for (std::size_t k = 1; k < vertices.size(); ++k) {
+    const Vec3 f_t0 = arm(k, x_t0), f_t1 = arm(k, x_t1);
+    axis += e_t0.cross(f_t0) + e_t1.cross(f_t1);
+    e_t0 = f_t0;
+    e_t1 = f_t1;
+  }
+  for (std::size_t k = 1; k < vertices.size(); ++k) {
+    const Vec3 f_t0 = arm(k, x_t0), f_t1 = arm(k, x_t1);
+    // Far above the rounding of these products, far below any angle that matters.
+    const double least = 1e-9 * axis.norm() * (e_t0.norm() + e_t1.norm()) * (f_t0.norm() + f_t1.norm());
+    if (axis.dot(e_t0.cross(f_t0)) <= least || axis.dot(e_t1.cross(f_t1)) <= least ||
+        axis.dot(e_t0.cross(f_t1) + e_t1.cross(f_t0)) <= least)
+      return false;
+    e_t0 = f_t0;
+    e_t1 = f_t1;
+  }
+  return turns_once(fan, axis, x_t0);
+}
+
+void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
+                        std::vector<CornerPair>& failing) {
+  const auto stays = [&](std::size_t fan) {
+    if (!(slack_[fan] > 0)) return false;
+    float most = moved[static_cast<std::size_t>(middle_[fan])];
+    for (Index v : ring(fan)) most = std::max(most, moved[static_cast<std::size_t>(v)]);
+    return most < slack_[fan];
+  };
+  for (std::size_t fan = 0; fan < middle_.size(); ++fan) {
+    if (stays(fan) || keeps_orientation(fan, x_t0, x_t1)) continue;
+    for (std::size_t p = pairs_begin_[fan]; p < pairs_begin_[fan + 1]; ++p)
+      if (!find_certificate(pairs_[p], x_t0, x_t1)) failing.push_back(pairs_[p]);
+  }
+}
+
+}  // namespace weft::collision

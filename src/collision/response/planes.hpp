@@ -1,0 +1,49 @@
+// Dividing planes of triangle pairs, remembered from step to step.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "collision/hierarchy/lanes.hpp"
+#include "collision/hierarchy/surface.hpp"
+#include "collision/response/certificate.hpp"
+#include "core/types.hpp"
+
+namespace weft::collision {
+
+/// For each watched pair a direction and the gap along it at the reference positions. A gap shrinks by no more than the
+/// two triangles move, so a pair whose triangles have moved less than that since has its certificate without being
+/// looked at: cloth that lies on cloth costs one comparison a pair and step.
+class Planes {
+ public:
+  Planes() = default;
+  explicit Planes(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {}
+
+  /// Takes over the pairs, with directions found at x [m].
+  void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
+
+  /// Appends the watched pairs that may be closer than `radius` [m] at the reference: the gap along any direction is no
+  /// more than the distance.
+  void append_closer(double radius, PairList& out) const;
+
+  /// Appends the pairs without certificate for the way from x_t0 to x_t1. `moved`: per vertex, a bound of its distance
+  /// at either time from where it was when the pairs were taken over [m]; `reference`: those positions.
+  void find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                    std::span<const float> moved, std::vector<CornerPair>& failing);
+
+ private:
+  struct Plane {
+    std::array<float, 3> n;
+    float gap;  // at the reference, above kFloor and rounding [m]; not positive: none known
+  };
+  void look_at_eight(std::size_t first, std::size_t count, float rounding);
+
+  std::vector<Triangle> triangles_;
+  std::vector<TrianglePair> pairs_;
+  std::vector<Plane> planes_;
+  std::vector<Lanes4> rounded_;  // positions in float, for the first look
+  std::vector<float> moved_;     // per triangle
+};
+
+}  // namespace weft::collision
