@@ -322,34 +322,26 @@ Roots::Polynomial_1 in_z(const Polynomial<Integer>& p) {
   return {p.c.begin(), p.c.begin() + static_cast<std::ptrdiff_t>(p.degree) + 1};
 }
 
-// A moment at which all is fulfilled. Where `zero` vanishes identically, times of contact end at t = 0, t = 1 or a root
-// of one of `not_negative`; or where `positive` does, in a contact of simpler features, which is sought as well.
+// A moment at which all is fulfilled. Where `zero` vanishes identically, contact is there at t = 0 or begins where one
+// of the others reaches zero: in a contact of simpler features, which is sought as well.
 std::optional<double> decide(const Conditions<Integer>& k) {
   if (k.impossible) return {};
   if (fulfilled(k, [](const auto& p) { return sure_sign(p.at_start()); })) return 0.0;
   if (fulfilled(k, [](const auto& p) { return sure_sign(p.at_end()); })) return 1.0;
-
-  std::vector<Polynomial<Integer>> sources;
   const auto equation = std::find_if_not(k.zero.begin(), k.zero.end(), vanishes);
-  if (equation != k.zero.end()) {
-    sources = {*equation};
-  } else {
-    sources = k.not_negative;
-  }
+  if (equation == k.zero.end()) return {};
+
   const Roots roots;
-  for (const Polynomial<Integer>& source : sources) {
-    if (vanishes(source)) continue;
-    std::vector<Roots::Algebraic_real_1> z_list;
-    roots.solve_1_object()(in_z(source), false, std::back_inserter(z_list));
-    for (const Roots::Algebraic_real_1& z : z_list) {
-      if (CGAL::sign(z) <= 0) continue;
-      const auto sign = [&](const Polynomial<Integer>& p) -> int {
-        return vanishes(p) ? 0 : static_cast<int>(roots.sign_at_1_object()(in_z(p), z));
-      };
-      if (!fulfilled(k, sign)) continue;
-      const double approximate = CGAL::to_double(roots.approximate_absolute_1_object()(z, 60).first);
-      return approximate / (1 + approximate);
-    }
+  std::vector<Roots::Algebraic_real_1> z_list;
+  roots.solve_1_object()(in_z(*equation), false, std::back_inserter(z_list));
+  for (const Roots::Algebraic_real_1& z : z_list) {
+    if (CGAL::sign(z) <= 0) continue;
+    const auto sign = [&](const Polynomial<Integer>& p) -> int {
+      return vanishes(p) ? 0 : static_cast<int>(roots.sign_at_1_object()(in_z(p), z));
+    };
+    if (!fulfilled(k, sign)) continue;
+    const double approximate = CGAL::to_double(roots.approximate_absolute_1_object()(z, 60).first);
+    return approximate / (1 + approximate);
   }
   return {};
 }

@@ -89,6 +89,8 @@ TEST(ExactMotion, FindsContactInOnePlaneAndInOneLine) {
   EXPECT_FALSE(meet(still(needle_a), moved(needle_b, {-0.5, -0.5, -0.5})));
   const Corners point{Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)};
   expect_first_contact(kFloor, point, {0, 0, -1}, 1);
+  const Corners bar{Vec3(0, 1, 0), Vec3(2, 1, 0), Vec3(1, 1, 0)};  // a point lands on it between its corners
+  expect_first_contact(bar, {Vec3(1.5, 1, 1), Vec3(1.5, 1, 1), Vec3(1.5, 1, 1)}, {0, 0, -1}, 1);
   EXPECT_TRUE(meet(moved(point, {2, 0, 0}), moved({Vec3(3, 1, 1), Vec3(3, 1, 1), Vec3(3, 1, 1)}, {-2, 0, 0})));
   EXPECT_FALSE(meet(moved(point, {2, 0, 0}), moved({Vec3(3, 1, 2), Vec3(3, 1, 2), Vec3(3, 1, 2)}, {-2, 0, 0})));
 }
