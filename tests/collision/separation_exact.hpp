@@ -1,0 +1,159 @@
+// Certificates of separation held against exact decisions, family by family.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <vector>
+
+#include "collision/response/separation.hpp"
+#include "support/exact_motion_queries.hpp"
+
+namespace weft::collision {
+
+/// What happened to the queries of one family.
+struct SeparationTally {
+  int queries = 0, meeting = 0, certified = 0, in_integers = 0;
+  int missed = 0;    ///< certified, and yet they meet
+  int touching = 0;  ///< certified, and yet they touch within rounding at the start, which had to be without contact
+  int benign_alarms = 0;  ///< refused although 1e-5 m apart and moving by less than 0.8 of the distance
+  int benign = 0;
+  // Of the pairs that stay apart, by distance at the start [m]: below 1e-8, 1e-7, …, 1e-2, above.
+  std::array<int, 8> apart{}, refused{};
+};
+
+/// When the certificates of a step are looked for.
+enum class Watched {
+  at_start,    ///< from the start of this step
+  on_the_way,  ///< from the middle of it, and once already for its first quarter, so that directions are known
+  elsewhere    ///< since the positions were others, as in a step before
+};
+
+/// Some pairs at once, each with six vertices of its own: pair p has triangles 2p and 2p + 1.
+struct SeparationBatch {
+  std::vector<Triangle> triangles;
+  std::vector<TrianglePair> pairs;
+  std::vector<Vec3> x_t0, x_t1;
+
+  void add(const support::MotionQuery& query) {
+    const auto p = static_cast<Index>(pairs.size());
+    pairs.push_back({2 * p, 2 * p + 1});
+    for (const support::MovingSimplex* s : {&query.a, &query.b}) {
+      const auto first = static_cast<Index>(x_t0.size());
+      triangles.push_back({first, first + 1, first + 2});
+      x_t0.insert(x_t0.end(), s->t0.begin(), s->t0.end());
+      x_t1.insert(x_t1.end(), s->t1.begin(), s->t1.end());
+    }
+  }
+  /// 1 for pairs without a certificate.
+  std::vector<char> refused(Watched watched) const {
+    const auto mixed = [&](double t) {
+      std::vector<Vec3> x;
+      for (std::size_t v = 0; v < x_t0.size(); ++v) x.push_back((1 - t) * x_t0[v] + t * x_t1[v]);
+      return x;
+    };
+    Separation separation(triangles, {});
+    separation.watch(pairs, watched == Watched::at_start ? x_t0 : mixed(watched == Watched::elsewhere ? -0.1 : 0.5));
+    if (watched == Watched::on_the_way) separation.find_failing(x_t0, mixed(0.25));
+    std::vector<char> flags(pairs.size(), 0);
+    for (const CornerPair& pair : separation.find_failing(x_t0, x_t1))
+      flags[static_cast<std::size_t>(pair.a[0] / 6)] = 1;
+    return flags;
+  }
+};
+
+/// The most by which a corner of one side moves against one of the other.
+inline double relative_motion(const support::MotionQuery& q) {
+  double most = 0;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j) most = std::max(most, ((q.a.t1[i] - q.a.t0[i]) - (q.b.t1[j] - q.b.t0[j])).norm());
+  return most;
+}
+
+inline void judge(const support::MotionQuery& query, bool refused, SeparationTally& tally) {
+  const support::Contact contact = support::find_contact(query.a, query.b);
+  ++tally.queries;
+  tally.certified += !refused;
+  tally.in_integers += contact.integers_used;
+  if (contact.found) {
+    ++tally.meeting;
+    if (refused) return;
+    // Rounding of a dot product: a few times 1e-16 of the coordinates.
+    const double largest = std::max(query.a.t0[0].norm(), relative_motion(query));
+    if (contact.time < 1e-9 && support::distance_at(query.a, query.b, 0) <= 1e-15 * largest) {
+      ++tally.touching;
+      return;
+    }
+    if (++tally.missed > 3) return;
+    ADD_FAILURE() << "certified, but they meet at t = " << contact.time << "; distance at the start "
+                  << support::distance_at(query.a, query.b, 0) << " m, first corner at " << query.a.t0[0].transpose();
+    return;
+  }
+  const double distance = support::distance_at(query.a, query.b, 0);
+  const int bin = std::clamp(static_cast<int>(std::floor(std::log10(distance))) + 9, 0, 7);
+  ++tally.apart[static_cast<std::size_t>(bin)];
+  tally.refused[static_cast<std::size_t>(bin)] += refused;
+  if (distance >= 1e-5 && relative_motion(query) <= 0.8 * distance) {
+    ++tally.benign;
+    tally.benign_alarms += refused;
+  }
+}
+
+/// Judges `count` queries of a family, the same ones for the same seed.
+inline SeparationTally judge_family(support::QueryFamily family, int count, unsigned seed) {
+  std::mt19937 engine(seed);
+  SeparationTally tally;
+  int batches = 0;
+  while (tally.queries < count) {
+    // Some alone and some together, since the coarse first look at eight is as good as the largest coordinate allows.
+    const int size = std::array{1, 8, 3, 12}[static_cast<std::size_t>(batches / 3 % 4)];
+    const auto watched = static_cast<Watched>(batches++ % 3);
+    std::vector<support::MotionQuery> queries;
+    SeparationBatch batch;
+    for (int k = std::min(size, count - tally.queries); k > 0; --k) {
+      queries.push_back(support::make_query(family, engine));
+      batch.add(queries.back());
+    }
+    const std::vector<char> refused = batch.refused(watched);
+    for (std::size_t k = 0; k < queries.size(); ++k) judge(queries[k], refused[k], tally);
+  }
+  return tally;
+}
+
+/// Judges every family, prints a table and states what must hold.
+inline void expect_nothing_missed(int count_per_family, unsigned seed) {
+  std::printf("%-18s %8s %8s %9s %8s %6s %6s | refused of those that stay apart, by distance at the start [m]\n",
+              "family", "queries", "meeting", "certified", "integers", "missed", "at t0");
+  std::printf("%69s | %15s %15s %15s %15s %15s %15s %15s %15s\n", "", "< 1e-8", "< 1e-7", "< 1e-6", "< 1e-5", "< 1e-4",
+              "< 1e-3", "< 1e-2", "above");
+  int queries = 0, benign = 0;
+  for (support::QueryFamily family : support::kQueryFamilies) {
+    SCOPED_TRACE(support::name(family));
+    const std::clock_t begin = std::clock();
+    const SeparationTally tally = judge_family(family, count_per_family, seed + static_cast<unsigned>(family));
+    std::printf("%-18s %8d %8d %9d %8d %6d %6d |", support::name(family), tally.queries, tally.meeting, tally.certified,
+                tally.in_integers, tally.missed, tally.touching);
+    for (std::size_t k = 0; k < tally.apart.size(); ++k) std::printf(" %7d/%7d", tally.refused[k], tally.apart[k]);
+    std::printf("  %.1f s\n", static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC);
+
+    EXPECT_EQ(tally.missed, 0);
+    EXPECT_LE(tally.touching, tally.queries / 1000);
+    EXPECT_EQ(tally.benign_alarms, 0) << "of " << tally.benign;
+    EXPECT_GT(tally.meeting, count_per_family / 100);
+    if (family == support::QueryFamily::touching) {
+      EXPECT_EQ(tally.meeting, tally.queries);
+    } else if (family != support::QueryFamily::nearly_touching) {
+      EXPECT_GT(tally.certified, count_per_family / 100);
+    }
+    queries += tally.queries;
+    benign += tally.benign;
+  }
+  std::printf("%d queries, %d of them benign\n", queries, benign);
+  EXPECT_GT(benign, queries / 1000);
+}
+
+}  // namespace weft::collision
