@@ -30,12 +30,13 @@ int shared_count(const Triangle& a, const Triangle& b) {
 
 /// Every pair of triangles, of one surface or of two, whose k-DOPs overlap, without any hierarchy.
 template <int K>
-BothLists brute_force(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+BothLists brute_force(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                      double margin = kMargin) {
   std::vector<KDop<K>> bounds;
   for (const Triangle& t : scene.triangles) {
     const auto at = [&](std::size_t c) {
       const auto v = static_cast<std::size_t>(t[c]);
-      return swept_point<K>(x_t0[v], x_t1[v], kMargin);
+      return swept_point<K>(x_t0[v], x_t1[v], margin);
     };
     bounds.push_back(at(0));
     bounds.back().join(at(1));
@@ -109,6 +110,38 @@ TYPED_TEST(BroadPhasePairs, OfMovingSurfacesEqualBruteForceAtEveryStepForAllTree
   }
   // The scene comes and goes.
   EXPECT_GT(most, 2 * least);
+}
+
+/// Pairs that are surely within reach whatever the rounding: bounds with a margin smaller by far more than float keeps.
+constexpr double kSurely = kMargin - 2e-6;
+
+TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
+  const FoldingSlidingFlying motion(9);
+  const std::vector<Surface> surfaces = motion.scene().surfaces();
+  for (const bool list : {false, true}) {
+    BroadPhaseOptions options;
+    options.directions = TypeParam::value;
+    options.children = list ? 8 : 4;
+    options.velocity_cones = true;
+    options.separation_list = list;
+    BroadPhase broad_phase(surfaces, motion.at(0), options);
+    std::size_t kept = 0;
+    for (int step = 0; step < kSteps; ++step) {
+      // Rests in every second stretch.
+      const auto at = [&](int s) { return motion.at(s % 8 < 4 ? s : s - s % 4); };
+      const std::vector<Vec3> x_t0 = at(step), x_t1 = at(step + 1);
+      for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, x_t0, x_t1, kMargin);
+      const BothLists least = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1, kSurely);
+      const BothLists most = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1, kMargin * 1.13);
+      const BothLists found = all_pairs(broad_phase, surfaces.size());
+      for (const std::size_t l : {0U, 1U}) {
+        EXPECT_TRUE(std::ranges::includes(found[l], least[l])) << step;
+        EXPECT_TRUE(std::ranges::includes(most[l], found[l])) << step;
+        kept += found[l].size() - least[l].size();
+      }
+    }
+    EXPECT_GT(kept, 0U) << "no bound was ever left as it was";
+  }
 }
 
 TEST(BroadPhase, WithASeparationListListsTheSamePairsAgainWhenAskedTwice) {

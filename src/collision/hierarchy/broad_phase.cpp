@@ -4,6 +4,7 @@
 #include <utility>
 #include <vector>
 
+#include "collision/hierarchy/normal_cones.hpp"
 #include "collision/hierarchy/traversal.hpp"
 #include "core/error.hpp"
 
@@ -17,11 +18,18 @@ class TreesOf final : public BroadPhase::Trees {
   TreesOf(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options)
       : options_(options) {
     trees_.reserve(surfaces.size());
-    for (const Surface& surface : surfaces) trees_.emplace_back(surface, x, options.leaf);
+    for (const Surface& surface : surfaces) {
+      trees_.emplace_back(surface, x, options.leaf);
+      if (options.normal_cones) cones_.emplace_back(trees_.back());
+    }
   }
 
   void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) override {
-    trees_[surface].refit(x_t0, x_t1, margin);
+    if (options_.velocity_cones)
+      trees_[surface].refit_lazily(x_t0, x_t1, margin);
+    else
+      trees_[surface].refit(x_t0, x_t1, margin);
+    if (options_.normal_cones) cones_[surface].update(trees_[surface], x_t0, x_t1, 2 * margin);
   }
 
   void self_pairs(std::size_t surface, CandidatePairs& out) override {
@@ -34,11 +42,13 @@ class TreesOf final : public BroadPhase::Trees {
 
  private:
   Traversal traversal(std::size_t a, std::size_t b) {
-    return {options_.open_longer_side, options_.separation_list ? &lists_[{a, b}] : nullptr, nullptr};
+    return {options_.open_longer_side, options_.separation_list ? &lists_[{a, b}] : nullptr,
+            options_.normal_cones && a == b ? &cones_[a].regions() : nullptr};
   }
 
   BroadPhaseOptions options_;
   std::vector<Tree<K, Arity>> trees_;
+  std::vector<NormalCones<K, Arity>> cones_;                             // by surface, where wanted
   std::map<std::pair<std::size_t, std::size_t>, SeparationList> lists_;  // by surfaces
 };
 

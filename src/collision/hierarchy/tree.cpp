@@ -28,6 +28,13 @@ void check(const Surface& surface, std::size_t positions, int leaf_capacity) {
         throw Error(ExitCode::internal, "hierarchy: expected corners in [{}, {}), got {}", first, last, corner);
 }
 
+// Lazy refits. The bound of a vertex gets slack for so many steps at its present speed, and at least so much of the
+// margin against jitter, if that is not more than kSlackPart of the margin: farther apart pairs that a wider bound
+// lists cost more in the search for proximities than the refit saves.
+constexpr double kSteps = 8;
+constexpr double kLeastSlackPart = 1.0 / 64;
+constexpr double kSlackPart = 1.0 / 8;
+
 /// Writes one bound into lane l.
 template <int K, int N>
 void set_lane(LaneBounds<K, N>& bounds, int l, const KDop<K>& bound) {
@@ -125,34 +132,91 @@ void Tree<K, Arity>::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t
   const auto first = static_cast<std::size_t>(surface_.first_vertex);
   for (std::size_t v = 0; v < vertex_bounds_.size(); ++v)
     vertex_bounds_[v] = swept_point<K>(x_t0[first + v], x_t1[first + v], margin);
+  for (std::size_t n = 0; n < leaves_.size(); ++n) fit(n);
+  // Children have larger numbers than their parent.
+  for (std::size_t n = nodes_.size(); n-- > 0;) fit_node(n);
+  resting_margin_ = -1;
+}
 
-  // Leaves from their triangles' corners.
-  for (std::size_t n = 0; n < leaves_.size(); ++n) {
-    Leaf& leaf = leaves_[n];
-    for (int l = 0; l < leaf.count; ++l) {
-      const auto corner = [&](int c) -> const Bound& {
-        return vertex_bounds_[static_cast<std::size_t>(leaf.corners.corner[c][l] - surface_.first_vertex)];
-      };
-      Bound bound = corner(0);
-      bound.join(corner(1));
-      bound.join(corner(2));
-      set_lane(leaf.bounds, l, bound);
-      if (l == 0)
-        leaf_bounds_[n] = bound;
-      else
-        leaf_bounds_[n].join(bound);
-    }
+/// A leaf from its triangles' corners.
+template <int K, int Arity>
+void Tree<K, Arity>::fit(std::size_t n) {
+  Leaf& leaf = leaves_[n];
+  for (int l = 0; l < leaf.count; ++l) {
+    const auto corner = [&](int c) -> const Bound& {
+      return vertex_bounds_[static_cast<std::size_t>(leaf.corners.corner[c][l] - surface_.first_vertex)];
+    };
+    Bound bound = corner(0);
+    bound.join(corner(1));
+    bound.join(corner(2));
+    set_lane(leaf.bounds, l, bound);
+    if (l == 0)
+      leaf_bounds_[n] = bound;
+    else
+      leaf_bounds_[n].join(bound);
   }
+}
 
-  // Nodes from their children, Eq. (3); children have larger numbers than their parent.
+/// A node from its children, Eq. (3).
+template <int K, int Arity>
+void Tree<K, Arity>::fit_node(std::size_t n) {
+  Node& node = nodes_[n];
+  node_bounds_[n] = bound(node.child[0]);
+  for (int i = 0; i < node.count; ++i) {
+    const Bound& child = bound(node.child[i]);
+    set_lane(node.bounds, i, child);
+    node_bounds_[n].join(child);
+  }
+}
+
+/// Whether the vertex v gets another bound for its way from p to q.
+template <int K, int Arity>
+bool Tree<K, Arity>::stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, double margin) {
+  Resting& resting = resting_[v];
+  const double slack_sq = resting.slack * resting.slack;
+  if (resting.slack >= 0 && (p - resting.place).squaredNorm() <= slack_sq &&
+      (q - resting.place).squaredNorm() <= slack_sq)
+    return false;
+  // The ball must hold both ends now; where that is more slack than is given, the bound is as tight as refit makes it.
+  const double slack = kSteps * (q - p).norm() + kLeastSlackPart * margin;
+  if (slack <= kSlackPart * margin) {
+    resting = {q, slack};
+    vertex_bounds_[v] = swept_point<K>(q, q, margin + slack * (1 + 1e-12));
+  } else {
+    resting.slack = -1;
+    vertex_bounds_[v] = swept_point<K>(p, q, margin);
+  }
+  return true;
+}
+
+template <int K, int Arity>
+void Tree<K, Arity>::refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+  const auto first = static_cast<std::size_t>(surface_.first_vertex);
+  if (resting_margin_ != margin) resting_.assign(vertex_bounds_.size(), {});
+  resting_margin_ = margin;
+  moved_.resize(vertex_bounds_.size());
+  changed_.resize(nodes_.size());
+  leaf_changed_.resize(leaves_.size());
+  for (std::size_t v = 0; v < vertex_bounds_.size(); ++v)
+    moved_[v] = static_cast<std::uint8_t>(stay_or_move(v, x_t0[first + v], x_t1[first + v], margin));
+
+  for (std::size_t n = 0; n < leaves_.size(); ++n) {
+    const Leaf& leaf = leaves_[n];
+    std::uint8_t any = 0;
+    for (int l = 0; l < leaf.count; ++l)
+      for (const auto& row : leaf.corners.corner)
+        any |= moved_[static_cast<std::size_t>(row[l] - surface_.first_vertex)];
+    leaf_changed_[n] = any;
+    if (any != 0) fit(n);
+  }
   for (std::size_t n = nodes_.size(); n-- > 0;) {
-    Node& node = nodes_[n];
-    node_bounds_[n] = bound(node.child[0]);
-    for (int i = 0; i < node.count; ++i) {
-      const Bound& child = bound(node.child[i]);
-      set_lane(node.bounds, i, child);
-      node_bounds_[n].join(child);
-    }
+    const Node& node = nodes_[n];
+    std::uint8_t any = 0;
+    for (int i = 0; i < node.count; ++i)
+      any |= node.child[i] >= 0 ? changed_[static_cast<std::size_t>(node.child[i])]
+                                : leaf_changed_[static_cast<std::size_t>(~node.child[i])];
+    changed_[n] = any;
+    if (any != 0) fit_node(n);
   }
 }
 

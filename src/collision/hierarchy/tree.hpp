@@ -52,6 +52,11 @@ class Tree {
   /// any time of the motion have overlapping bounds (seed, "Bounding Volume Hierarchy").
   void refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin);
 
+  /// As refit, but only where something left the bounds it has: vertices that move little get bounds that hold for a
+  /// few steps ahead (see kSlackPart in tree.cpp), and nodes below which every vertex is still inside its own are left
+  /// as they are. Bounds are never smaller than after refit.
+  void refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin);
+
   bool empty() const { return leaves_.empty(); }
   const Surface& surface() const { return surface_; }
   Ref root() const { return root_; }
@@ -66,12 +71,28 @@ class Tree {
  private:
   struct Builder;
 
+  /// Where a vertex may be without leaving its bound: within `slack` [m] of `place`; nowhere where slack < 0.
+  struct Resting {
+    Vec3 place = Vec3::Zero();
+    double slack = -1;
+  };
+
+  bool stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, double margin);
+  void fit(std::size_t leaf);
+  void fit_node(std::size_t node);
+
   Surface surface_;
   Ref root_ = 0;
   std::vector<Node> nodes_;
   std::vector<Leaf> leaves_;
   std::vector<Bound> node_bounds_, leaf_bounds_;
-  std::vector<Bound> vertex_bounds_;  ///< path of each vertex of the surface; scratch of refit
+  std::vector<Bound> vertex_bounds_;  ///< path of each vertex of the surface; kept between lazy refits only
+
+  // Of lazy refits only.
+  std::vector<Resting> resting_;                      // by vertex
+  std::vector<std::uint8_t> moved_;                   // by vertex: has another bound than before
+  std::vector<std::uint8_t> changed_, leaf_changed_;  // by node, by leaf
+  double resting_margin_ = -1;                        // margin that the resting bounds have [m]
 };
 
 /// The tree of the simulation. Measured with tests/bench/collision.cpp, refit + self pairs in CPU ms on one core,
