@@ -107,9 +107,9 @@ TestMesh spiral_stair(int n, double turns, double pitch) {
   return mesh;
 }
 
-/// A flat sheet of n × n vertices over the unit square with a slit along x = ½ up to y = ½, whose sides are `gap`
-/// apart.
-TestMesh slit_sheet(int n, double gap) {
+/// A flat sheet of n × n vertices over the unit square with a slit along x = ½ through the first `rows` rows of quads,
+/// whose sides are `gap` apart.
+TestMesh slit_sheet(int n, int rows, double gap) {
   TestMesh mesh = folded_sheet(n, 1, 0);
   for (Vec3& p : mesh.x) p[2] = 0;
   const Index middle = n / 2;
