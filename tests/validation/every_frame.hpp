@@ -1,0 +1,57 @@
+// The guarantee held against whole scenes: no frame has an intersection, at the scene's own step and at longer ones.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdio>
+#include <ostream>
+#include <string>
+
+#include "support/scene_runs.hpp"
+
+namespace weft::simulation::testing {
+
+/// A scene, the factor on its step, and how many of its frames are run: negative for all of them.
+struct SceneRun {
+  const char* scene;
+  int factor;
+  int frames;
+};
+
+inline std::ostream& operator<<(std::ostream& out, const SceneRun& run) {
+  return out << run.scene << ".toml with " << run.factor << " times its step";
+}
+
+inline std::string name_of(const ::testing::TestParamInfo<SceneRun>& run) {
+  return run.param.scene + ("_x" + std::to_string(run.param.factor));
+}
+
+inline scene::Scene scene_of(const SceneRun& run) {
+  scene::Scene scene = support::scene_of(std::string(WEFT_SOURCE_DIR "/scenes/") + run.scene + ".toml");
+  scene.time.step *= run.factor;
+  return scene;
+}
+
+/// Judges each frame by exact predicates and prints the count.
+inline void expect_no_intersections(const SceneRun& run) {
+#ifndef NDEBUG
+  GTEST_SKIP() << "takes hours with sanitizers";
+#endif
+  const scene::Scene scene = scene_of(run);
+  const int frames = run.frames < 0 ? scene.frame_count() : run.frames;
+  std::size_t pairs = 0;
+  int steps = 0, rejected = 0;
+  double stretch = 1;
+  support::run_scene(scene, {.end = frames}, [&](const support::MeasuredFrame& frame) {
+    EXPECT_EQ(frame.pairs, 0u) << "frame " << frame.report.frame << ": " << frame.between;
+    pairs += frame.pairs;
+    steps += frame.report.steps;
+    rejected += frame.report.rejected_steps;
+    stretch = std::max(stretch, frame.max_stretch);
+  });
+  std::printf("%s, step %g s: %d of %d frames, %d steps, %d rejected, stretch up to %.3f: %zu intersecting pairs\n",
+              run.scene, scene.time.step, frames, scene.frame_count(), steps, rejected, stretch, pairs);
+}
+
+}  // namespace weft::simulation::testing

@@ -1,0 +1,26 @@
+// The frames of each scene in which most happens; every_frame_slow.cpp has all of them.
+#include "validation/every_frame.hpp"
+
+namespace weft::simulation {
+namespace {
+
+using testing::SceneRun;
+
+class FirstFrames : public ::testing::TestWithParam<SceneRun> {};
+
+TEST_P(FirstFrames, HaveNoIntersection) {
+  testing::expect_no_intersections(GetParam());
+}
+
+// Until the band has folded, the ball is through, the sheet lies, five of the eight sheets have landed.
+INSTANTIATE_TEST_SUITE_P(Of, FirstFrames,
+                         ::testing::Values(SceneRun{"falling_band", 1, 36}, SceneRun{"falling_band", 2, 36},
+                                           SceneRun{"falling_band", 4, 36}, SceneRun{"ball_through_cloth", 1, 36},
+                                           SceneRun{"ball_through_cloth", 2, 36}, SceneRun{"ball_through_cloth", 4, 36},
+                                           SceneRun{"sphere_drape", 1, 20}, SceneRun{"sphere_drape", 2, 20},
+                                           SceneRun{"sphere_drape", 4, 20}, SceneRun{"multi_sheet", 1, 64},
+                                           SceneRun{"multi_sheet", 2, 64}, SceneRun{"multi_sheet", 4, 64}),
+                         testing::name_of);
+
+}  // namespace
+}  // namespace weft::simulation
