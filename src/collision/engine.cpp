@@ -30,6 +30,11 @@ double ramp(double from, double to, double value) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
 }
 
+std::array<Index, 4> sorted(std::array<Index, 4> vertices) {
+  std::sort(vertices.begin(), vertices.end());
+  return vertices;
+}
+
 // Share of its stiffness that a proximity pushes with.
 double share(const Proximity& proximity) {
   if (proximity.kind == ProximityKind::vertex_face) return 1;
@@ -39,6 +44,8 @@ double share(const Proximity& proximity) {
   return ramp(kFlattest, kSharp, -outside[0] - outside[1]) *
          ramp(-kOutsideWedge, 0, -std::max(outside[0], outside[1])) * ramp(0, kEndOfEdge, least);
 }
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 double contact_range(const Body& a, const Body& b) {
   return 0.5 * (a.thickness + b.thickness);
@@ -133,29 +140,30 @@ bool Engine::inside_bounds(std::span<const Vec3> x) const {
   return true;
 }
 
-void Engine::add_contact(const std::array<Index, 4>& vertices, const std::array<double, 4>& weights, const Vec3& normal,
-                         double part, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+void Engine::add_contact(const Touch& touch, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   Contact contact;
-  contact.normal = normal;
+  contact.normal = touch.normal;
   double mass = 0, mass_weight = 0;
   std::array<const Body*, 2> sides{};
   for (int k = 0; k < 4; ++k) {
-    const auto v = static_cast<std::size_t>(vertices[k]);
-    if (weights[k] == 0) continue;
-    sides[weights[k] > 0 ? 0 : 1] = &bodies_[body_of_[v]];
-    contact.relative_start += weights[k] * x_t0[v];
+    const auto v = static_cast<std::size_t>(touch.vertices[k]);
+    const double weight = touch.weights[k];
+    if (weight == 0) continue;
+    sides[weight > 0 ? 0 : 1] = &bodies_[body_of_[v]];
+    contact.relative_start += weight * x_t0[v];
     if (v < masses_.size()) {
-      contact.particles[k] = vertices[k];
-      contact.weights[k] = weights[k];
-      mass += std::abs(weights[k]) * masses_[v];
-      mass_weight += std::abs(weights[k]);
+      contact.particles[k] = touch.vertices[k];
+      contact.weights[k] = weight;
+      mass += std::abs(weight) * masses_[v];
+      mass_weight += std::abs(weight);
     } else {
-      contact.obstacle_end += weights[k] * x_t1[v];
+      contact.obstacle_end += weight * x_t1[v];
     }
   }
   if (mass_weight == 0) return;
-  contact.range = contact_range(*sides[0], *sides[1]);
-  contact.stiffness = part * std::max(parameters_.stiffness, kInertialStiffness * mass / mass_weight / (step_ * step_));
+  contact.range = std::min(touch.range_limit, contact_range(*sides[0], *sides[1]));
+  contact.stiffness =
+      touch.share * std::max(parameters_.stiffness, kInertialStiffness * mass / mass_weight / (step_ * step_));
   contact.friction = std::sqrt(sides[0]->friction * sides[1]->friction);
   contacts_.add(contact);
 }
@@ -166,10 +174,12 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   finder_.find(x_t0, reach_, proximities_);
   contacts_.clear();
   contacts_.set_step(h);
-  adopted_.clear();
+  in_contact_.clear();
   for (const Proximity& proximity : proximities_)
-    if (const double part = share(proximity); part > 0)
-      add_contact(proximity.vertices, proximity.weights, proximity.normal, part, x_t0, x_t1);
+    if (const double part = share(proximity); part > 0) {
+      add_contact({proximity.vertices, proximity.weights, proximity.normal, part, kNoLimit}, x_t0, x_t1);
+      if (part == 1) in_contact_.insert(sorted(proximity.vertices));
+    }
   if (!apart(x_t0, x_t1)) adopt_failing(x_t0, x_t1);
 }
 
@@ -184,9 +194,10 @@ int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1
   for (const CornerPair& pair : failing_) {
     const ClosestFeatures features = closest_features(pair, x_t0);
     const double distance = std::sqrt(features.points.distance_sq);
-    // Within the reach it is among the proximities already.
-    if (distance < reach_ || !adopted_.insert(features.vertices).second) continue;
-    add_contact(features.vertices, features.points.weights, features.points.difference / distance, 1, x_t0, x_t1);
+    if (!in_contact_.insert(sorted(features.vertices)).second) continue;
+    // What is closer than the range already, without being pushed, is only kept from coming closer.
+    add_contact({features.vertices, features.points.weights, features.points.difference / distance, 1, distance}, x_t0,
+                x_t1);
     ++fresh;
   }
   return fresh;

@@ -69,8 +69,15 @@ class Engine {
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
-  void add_contact(const std::array<Index, 4>& vertices, const std::array<double, 4>& weights, const Vec3& normal,
-                   double part, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  /// Two features that are to push each other.
+  struct Touch {
+    std::array<Index, 4> vertices;
+    std::array<double, 4> weights;
+    Vec3 normal;
+    double share;        // of the stiffness
+    double range_limit;  // of the range [m]
+  };
+  void add_contact(const Touch& touch, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   bool near_start(std::span<const Vec3> x) const;
   bool inside_bounds(std::span<const Vec3> x) const;
 
@@ -94,7 +101,7 @@ class Engine {
   std::vector<Vec3> from_, to_;
   double margin_ = -1;
   std::vector<Proximity> proximities_;
-  std::set<std::array<Index, 4>> adopted_;  // features that are contacts because their triangles would have met
+  std::set<std::array<Index, 4>> in_contact_;  // sorted vertices of the features that push with all their stiffness
   ContactSet contacts_;
 };
 

@@ -120,20 +120,19 @@ double Stepper::search_along_delta(const System& system, const State& now, const
 
 // First guess: unchanged velocity. It is also where the non-stiff forces are taken, with the velocity extrapolated from
 // the last step, so that they keep the method's order.
-void Stepper::prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity,
-                            State& guess) {
+void Stepper::prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity) {
   const std::size_t n = now.x.size();
   const auto masses = system.masses();
-  guess.x.resize(n);
-  guess.v.resize(n);
+  guess_.x.resize(n);
+  guess_.v.resize(n);
   const double trend = previous_h_ > 0 && method_ != Method::implicit_euler ? stage.extrapolation * h / previous_h_ : 0;
   for (std::size_t i = 0; i < n; ++i) {
     x_[i] = now.x[i] + stage.extrapolation * h * now.v[i];
-    guess.x[i] = x_[i];
-    guess.v[i] = trend > 0 ? Vec3(now.v[i] + trend * (now.v[i] - previous_.v[i])) : now.v[i];
+    guess_.x[i] = x_[i];
+    guess_.v[i] = trend > 0 ? Vec3(now.v[i] + trend * (now.v[i] - previous_.v[i])) : now.v[i];
     constant_force_[i] = masses[i] * gravity;
   }
-  system.explicit_forces(guess, h, constant_force_);
+  system.explicit_forces(guess_, h, constant_force_);
 }
 
 // Held directions start at their target and stay there.
@@ -149,11 +148,15 @@ void Stepper::hold(const State& now, const Stage& stage, std::span<const HeldPar
 }
 
 StepReport Stepper::step(const System& system, const State& now, double h, const Vec3& gravity,
-                         std::span<const HeldParticle> held, solver::LinearSystem& scratch, State& next) {
+                         std::span<const HeldParticle> held, solver::LinearSystem& scratch, State& next, Start start) {
   const std::size_t n = now.x.size();
   const auto masses = system.masses();
   const Stage stage = begin(now, h);
-  prepare_guess(system, now, stage, h, gravity, next);
+  prepare_guess(system, now, stage, h, gravity);
+  if (start == Start::next)
+    for (std::size_t i = 0; i < n; ++i) x_[i] = now.x[i] + (next.x[i] - now.x[i]) / stage.end_rate;
+  next.x.resize(n);
+  next.v.resize(n);
   hold(now, stage, held, scratch);
 
   StepReport report;

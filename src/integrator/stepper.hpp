@@ -45,10 +45,15 @@ class Stepper {
  public:
   Stepper(Method method, const NewtonParameters& parameters) : method_(method), parameters_(parameters) {}
 
+  /// Where the search for the end of a step starts: at unchanged velocity, or at what `next` holds, for a step that is
+  /// solved once more with other contacts.
+  enum class Start { unchanged_velocity, next };
+
   /// Computes `next` from `now` over h [s]. Nothing is remembered: see accept().
   /// `gravity` [m/s²] acts on all particles and is also what residuals are measured against.
   StepReport step(const System& system, const State& now, double h, const Vec3& gravity,
-                  std::span<const HeldParticle> held, solver::LinearSystem& scratch, State& next);
+                  std::span<const HeldParticle> held, solver::LinearSystem& scratch, State& next,
+                  Start start = Start::unchanged_velocity);
 
   /// Makes `before`, the state at the start of the step over h just accepted, the history of the next step.
   void accept(const State& before, double h);
@@ -62,8 +67,7 @@ class Stepper {
     double extrapolation;  // of the explicit forces: fraction of h at which the stage lies
   };
   Stage begin(const State& now, double h);
-  void prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity,
-                     State& guess);
+  void prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity);
   void hold(const State& now, const Stage& stage, std::span<const HeldParticle> held, solver::LinearSystem& scratch);
   double force_scale(std::span<const double> masses, const Vec3& gravity, const Stage& stage);
   double search_along_delta(const System& system, const State& now, const Stage& stage);
@@ -78,6 +82,7 @@ class Stepper {
 
   // Scratch of one step.
   solver::ConjugateGradient cg_;
+  State guess_;
   std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, scale_;
 };
 

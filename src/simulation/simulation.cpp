@@ -77,7 +77,7 @@ struct Simulation::Impl {
 
   void advance_over(double t, double h, int halvings, FrameReport& report);
   Rejection attempt(double t, double h, FrameReport& report);
-  Rejection solve(double h, FrameReport& report);
+  Rejection solve(double h, integrator::Stepper::Start start, FrameReport& report);
   void write_back();
 
   scene::Scene scene;
@@ -121,8 +121,9 @@ Simulation::Impl::Impl(const scene::Scene& s)
   measure(start_report);
 }
 
-Simulation::Impl::Rejection Simulation::Impl::solve(double h, FrameReport& report) {
-  const integrator::StepReport step = stepper.step(system, now, h, scene.physics.gravity, held, linear_system, next);
+Simulation::Impl::Rejection Simulation::Impl::solve(double h, integrator::Stepper::Start start, FrameReport& report) {
+  const integrator::StepReport step =
+      stepper.step(system, now, h, scene.physics.gravity, held, linear_system, next, start);
   report.newton_iterations += step.newton_iterations;
   report.linear_iterations += step.linear_iterations;
   if (step.verdict == integrator::Verdict::solved) return std::nullopt;
@@ -133,13 +134,15 @@ Simulation::Impl::Rejection Simulation::Impl::solve(double h, FrameReport& repor
 // One step from `now` at time t [s] over h [s] into `next`.
 Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, FrameReport& report) {
   pins.held_at(t + h, environment, held);
-  if (!collisions) return solve(h, report);
+  using Start = integrator::Stepper::Start;
+  if (!collisions) return solve(h, Start::unchanged_velocity, report);
   {
     const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
     collisions->begin_step(environment, now, held, t, h);
   }
   for (int round = 1;; ++round) {
-    if (Rejection rejection = solve(h, report)) return rejection;
+    const Start start = round == 1 ? Start::unchanged_velocity : Start::next;
+    if (Rejection rejection = solve(h, start, report)) return rejection;
     const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
     if (collisions->apart(next)) return std::nullopt;
     if (round < kContactRounds && collisions->adopt_failing() > 0) continue;

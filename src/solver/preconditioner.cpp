@@ -60,10 +60,11 @@ void Preconditioner::prepare(const LinearSystem& system) {
   for (Level& level : levels_) {
     double trace = 0;
     for (const Mat3& block : level.inverse) trace += block.trace();
-    const double stand_in = kStandIn * trace / (3 * static_cast<double>(level.inverse.size()));
+    const double stand_in = trace > 0 ? kStandIn * trace / (3 * static_cast<double>(level.inverse.size())) : 1;
     for (Mat3& block : level.inverse) block = (block + stand_in * Mat3::Identity()).inverse().eval();
   }
-  patch_matrix_.diagonal().array() += kStandIn * patch_matrix_.trace() / size;
+  const double trace = patch_matrix_.trace();
+  patch_matrix_.diagonal().array() += trace > 0 ? kStandIn * trace / size : 1;
   patch_solver_.compute(patch_matrix_);
 }
 

@@ -27,7 +27,7 @@ double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x)
 }
 
 bool divides(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  return gap_along(n, pair, x_t1) >= kFloor && gap_along(n, pair, x_t0) > 0;
+  return gap_along(n, pair, x_t1) >= kFloor && gap_along(n, pair, x_t0) >= kStartFloor;
 }
 
 std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {

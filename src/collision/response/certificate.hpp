@@ -21,14 +21,17 @@ struct CornerPair {
 /// Gap that a certificate must show at the end of a step [m]: a hundred times where double precision begins to fail for
 /// coordinates of a few metres.
 inline constexpr double kFloor = 1e-6;
+/// Gap that it must show at the start of a step [m], where the step before left kFloor: far above the rounding of a dot
+/// product, 1e-15 of the coordinates, so that what touches is never taken for apart.
+inline constexpr double kStartFloor = 1e-9;
 
 /// min_a n·x − max_b n·x: along the unit direction n, side a lies above side b by this [m].
 double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x);
 
-/// Whether n is a certificate for the linear motion from x_t0 to x_t1: the gap along it is positive at the start and at
-/// least kFloor at the end. Every n·x is linear in time, so the gap is a minimum of linear functions, concave, and
+/// Whether n is a certificate for the linear motion from x_t0 to x_t1: the gap along it is at least kStartFloor at the
+/// start and kFloor at the end. Every n·x is linear in time, so the gap is a minimum of linear functions, concave, and
 /// positive all the way between: a plane normal to n that moves along divides the pair for the whole step. No root is
-/// sought and no tolerance enters but the rounding of a dot product, 1e-15 of the coordinates.
+/// sought.
 bool divides(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
 /// Looks for a certificate, from cheap to dear: the face normals divide layers, the direction between the centres

@@ -117,7 +117,7 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
 
     const CornerPair pair{triangles_[a], triangles_[b]};
     const Vec3 n(plane.n[0], plane.n[1], plane.n[2]);
-    if (plane.gap > 0 && divides(n, pair, x_t0, x_t1)) continue;
+    if (plane.is_known() && divides(n, pair, x_t0, x_t1)) continue;
     const std::optional<Vec3> found = find_certificate(pair, x_t0, x_t1);
     if (!found) {
       failing.push_back(pair);
@@ -125,8 +125,7 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
     }
     const double gap = gap_along(*found, pair, reference) - 1.5 * kFloor;
     plane = {{static_cast<float>(found->x()), static_cast<float>(found->y()), static_cast<float>(found->z())},
-             static_cast<float>((1 - 1e-6) * gap)};
-    if (plane.gap <= 0) plane.gap = 1e-30F;  // still a direction worth trying first
+             static_cast<float>(gap > 0 ? (1 - 1e-6) * gap : gap)};
   }
 }
 

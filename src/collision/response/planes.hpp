@@ -35,7 +35,8 @@ class Planes {
  private:
   struct Plane {
     std::array<float, 3> n;
-    float gap;  // at the reference, above kFloor and rounding [m]; not positive: none known
+    float gap;  // at the reference, above kFloor and rounding [m]; negative: see is_known
+    bool is_known() const { return n[0] != 0 || n[1] != 0 || n[2] != 0; }
   };
   void look_at_eight(std::size_t first, std::size_t count, float rounding);
 
