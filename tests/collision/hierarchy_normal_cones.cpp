@@ -4,37 +4,20 @@
 #include <set>
 
 #include "collision/hierarchy/normal_cones.hpp"
+#include "collision/hierarchy_feature_distance.hpp"
 #include "collision/hierarchy_motions.hpp"
-#include "collision/proximity/closest_points.hpp"
-#include "collision/proximity/features.hpp"
 
 namespace weft::collision {
 namespace {
 
+using testing::feature_distance;
 using testing::folded_sheet;
 using testing::FoldingSlidingFlying;
 using testing::random_vec;
 using testing::TestMesh;
 using Pairs = std::set<TrianglePair>;
 
-/// Least distance of two features of the triangles that have no common vertex; infinite where there are none.
-double feature_distance(const Triangle& a, const Triangle& b, std::span<const Vec3> x) {
-  const auto at = [&](Index v) -> const Vec3& { return x[static_cast<std::size_t>(v)]; };
-  double least_sq = 1e300;
-  for (const auto& [own, other] : {std::pair(a, b), std::pair(b, a)})
-    for (const Index v : own)
-      if (!has_vertex(other, v))
-        least_sq = std::min(least_sq, closest_vertex_face(at(v), at(other[0]), at(other[1]), at(other[2])).distance_sq);
-  for (std::size_t i = 0; i < 3; ++i)
-    for (std::size_t j = 0; j < 3; ++j) {
-      const std::array<Index, 4> v{a[i], a[(i + 1) % 3], b[j], b[(j + 1) % 3]};
-      if (v[0] == v[2] || v[0] == v[3] || v[1] == v[2] || v[1] == v[3]) continue;
-      least_sq = std::min(least_sq, closest_edge_edge(at(v[0]), at(v[1]), at(v[2]), at(v[3])).distance_sq);
-    }
-  return std::sqrt(least_sq);
-}
-
-/// As above, the least over the linear motion, at nine times.
+/// Feature distance, the least over the linear motion, at nine times.
 double least_distance(const Triangle& a, const Triangle& b, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   std::vector<Vec3> x(x_t0.size(), Vec3::Zero());
   double least = 1e300;

@@ -1,0 +1,259 @@
+// Each heuristic on recorded meshes of a scene.
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "bench/measure.hpp"
+#include "collision/hierarchy/broad_phase.hpp"
+#include "collision/hierarchy/normal_cones.hpp"
+#include "collision/hierarchy_feature_distance.hpp"
+#include "collision/hierarchy_motions.hpp"
+#include "collision/proximity/coherence.hpp"
+#include "mesh/ply.hpp"
+
+namespace weft::bench {
+
+namespace {
+
+using namespace weft::collision;
+
+/// A scene has four steps to a frame; between frames positions are interpolated.
+constexpr int kSteps = 4;
+
+struct Recording {
+  collision::testing::MovingScene scene;
+  std::vector<std::vector<Vec3>> frames;  ///< positions of all objects
+  std::vector<bool> deformable;           ///< by object
+
+  std::vector<Vec3> at(int step) const {
+    const auto frame = static_cast<std::size_t>(step / kSteps);
+    std::vector<Vec3> x = frames[frame];
+    if (const double part = step % kSteps / static_cast<double>(kSteps); part > 0)
+      for (std::size_t v = 0; v < x.size(); ++v) x[v] += part * (frames[frame + 1][v] - x[v]);
+    return x;
+  }
+  int steps() const { return static_cast<int>(frames.size() - 1) * kSteps; }
+};
+
+/// Whether the shape changes, so that it is cloth.
+bool deforms(const mesh::PlyMesh& first, const mesh::PlyMesh& last) {
+  for (const auto& t : first.triangles) {
+    const auto length = [&](const mesh::PlyMesh& m) {
+      return (m.positions[static_cast<std::size_t>(t[0])] - m.positions[static_cast<std::size_t>(t[1])]).norm();
+    };
+    if (std::abs(length(first) - length(last)) > 1e-9 * length(first)) return true;
+  }
+  return false;
+}
+
+/// Objects come in the order of their names, cloth first.
+Recording read(const std::filesystem::path& folder, int first, int count) {
+  std::set<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator(folder))
+    if (const std::string name = entry.path().stem().string(); name.size() > 6)
+      names.insert(name.substr(0, name.size() - 6));
+  const auto load = [&](const std::string& name, int frame) {
+    return mesh::read_ply(folder / fmt::format("{}_{:05}.ply", name, frame));
+  };
+  Recording recording;
+  std::vector<std::string> order;
+  for (const bool cloth : {true, false})
+    for (const std::string& name : names) {
+      const mesh::PlyMesh mesh = load(name, first);
+      if (deforms(mesh, load(name, first + count - 1)) != cloth) continue;
+      order.push_back(name);
+      recording.deformable.push_back(cloth);
+      recording.scene.add({mesh.positions, mesh.triangles});
+    }
+  for (int frame = first; frame < first + count; ++frame) {
+    auto& x = recording.frames.emplace_back();
+    for (const std::string& name : order) {
+      const mesh::PlyMesh mesh = load(name, frame);
+      x.insert(x.end(), mesh.positions.begin(), mesh.positions.end());
+    }
+  }
+  return recording;
+}
+
+struct Costs {
+  double refit = 0, pairs = 0, proximities = 0;  // [ms], of all steps
+  std::size_t candidates = 0, found = 0;
+  double total() const { return refit + pairs + proximities; }
+};
+
+Costs run(const Recording& recording, const BroadPhaseOptions& options, double reach) {
+  const std::vector<Surface> surfaces = recording.scene.surfaces();
+  std::vector<Vec3> x_t0, x_t1 = recording.at(0);
+  BroadPhase broad_phase(surfaces, x_t1, options);
+  ProximityFinder finder(recording.scene.triangles, static_cast<Index>(x_t1.size()));
+  CandidatePairs candidates;
+  std::vector<Proximity> proximities;
+  std::vector<Surface> cloth;
+  for (std::size_t s = 0; s < surfaces.size(); ++s)
+    if (recording.deformable[s]) cloth.push_back(surfaces[s]);
+  Costs costs;
+  for (int step = 0; step < recording.steps(); ++step) {
+    x_t0 = x_t1;
+    x_t1 = recording.at(step + 1);
+    add_ms(costs.refit, [&] {
+      for (std::size_t s = 0; s < surfaces.size(); ++s)
+        if (recording.deformable[s] || step == 0) broad_phase.refit(s, x_t0, x_t1, reach / 2);
+    });
+    candidates.clear();
+    add_ms(costs.pairs, [&] {
+      for (std::size_t a = 0; a < cloth.size(); ++a) {
+        broad_phase.self_pairs(a, candidates);
+        for (std::size_t b = a + 1; b < surfaces.size(); ++b) broad_phase.pairs(a, b, candidates);
+      }
+    });
+    add_ms(costs.proximities, [&] { finder.find(candidates, cloth, x_t0, reach, proximities); });
+    costs.candidates += candidates.apart.size() + candidates.one_shared.size();
+    costs.found += proximities.size();
+  }
+  return costs;
+}
+
+/// With results kept between steps; the default tree.
+Costs run_coherent(const Recording& recording, double reach, double budget, int& reused, int& asked) {
+  const std::vector<Surface> surfaces = recording.scene.surfaces();
+  std::vector<Vec3> x_t0, x_t1 = recording.at(0);
+  BroadPhase broad_phase(surfaces, x_t1);
+  ProximityFinder finder(recording.scene.triangles, static_cast<Index>(x_t1.size()));
+  CoherentDetection kept(surfaces, x_t1, reach, budget);
+  CandidatePairs candidates;
+  std::vector<Proximity> proximities, found;
+  Costs costs;
+  for (int step = 0; step < recording.steps(); ++step) {
+    x_t0 = x_t1;
+    x_t1 = recording.at(step + 1);
+    found.clear();
+    add_ms(costs.refit, [&] { kept.advance(x_t0, x_t1); });
+    std::vector<bool> fitted(surfaces.size());
+    for (std::size_t a = 0; a < surfaces.size(); ++a)
+      for (std::size_t b = a; recording.deformable[a] && b < surfaces.size(); ++b) {
+        bool holds = false;
+        add_ms(costs.refit, [&] { holds = kept.holds(a, b); });
+        ++asked;
+        reused += static_cast<int>(holds);
+        if (!holds) {
+          add_ms(costs.refit, [&] {
+            for (const std::size_t s : {a, b})
+              if (!fitted[s]) broad_phase.refit(s, x_t0, x_t1, 0.5 * (reach + budget));
+            fitted[a] = fitted[b] = true;
+          });
+          candidates.clear();
+          add_ms(costs.pairs,
+                 [&] { a == b ? broad_phase.self_pairs(a, candidates) : broad_phase.pairs(a, b, candidates); });
+          add_ms(costs.proximities, [&] {
+            // What is of no pair of surfaces is not looked at; a search costs the size of the scene once.
+            if (a == b || candidates.apart.size() + candidates.one_shared.size() > 0)
+              finder.find(candidates, std::span(surfaces).subspan(a, a == b ? 1 : 0), x_t0, reach + budget,
+                          proximities);
+            else
+              proximities.clear();
+            kept.keep(a, b, candidates, proximities);
+          });
+        }
+        add_ms(costs.proximities, [&] { kept.proximities(a, b, x_t0, found); });
+        costs.candidates += kept.candidates(a, b).apart.size() + kept.candidates(a, b).one_shared.size();
+      }
+    costs.found += found.size();
+  }
+  return costs;
+}
+
+void print_row(const std::string& name, const std::vector<Costs>& runs, int steps) {
+  const auto each = [&](auto part) {
+    std::vector<double> values;
+    for (const Costs& costs : runs) values.push_back(part(costs) / steps);
+    return median(values);
+  };
+  fmt::print("| {} | {:.3f} | {:.3f} | {:.3f} | {:.3f} | {} | {} |\n", name, each([](auto& c) { return c.refit; }),
+             each([](auto& c) { return c.pairs; }), each([](auto& c) { return c.proximities; }),
+             each([](auto& c) { return c.total(); }), runs[0].candidates / static_cast<std::size_t>(steps),
+             runs[0].found / static_cast<std::size_t>(steps));
+}
+
+/// Pairs of a frame that a rule of normal cones leaves out, and how many of these are within reach.
+void count_left_out(const Recording& recording, double reach) {
+  fmt::print("\n| normal cones | pairs left out | of these within reach |\n|---|---|---|\n");
+  const std::vector<Surface> surfaces = recording.scene.surfaces();
+  for (const auto rule : {NormalConeRule::proved, NormalConeRule::provot}) {
+    std::size_t left_out = 0, missed = 0;
+    for (std::size_t f = 0; f < recording.frames.size(); f += 2)
+      for (std::size_t s = 0; s < surfaces.size(); ++s) {
+        if (!recording.deformable[s]) continue;
+        const std::vector<Vec3>& x = recording.frames[f];
+        Tree<6, 8> tree(surfaces[s], x);
+        tree.refit(x, x, reach / 2);
+        NormalCones<6, 8> cones(tree, rule);
+        cones.update(tree, x, x, reach);
+        CandidatePairs all, with_cones;
+        collision::self_pairs(tree, all);
+        Traversal how;
+        how.regions = &cones.regions();
+        collision::self_pairs(tree, with_cones, how);
+        const std::set<TrianglePair> found(with_cones.apart.begin(), with_cones.apart.end());
+        for (const TrianglePair& pair : all.apart) {
+          if (found.contains(pair)) continue;
+          ++left_out;
+          const auto triangle = [&](Index t) { return recording.scene.triangles[static_cast<std::size_t>(t)]; };
+          missed += static_cast<std::size_t>(
+              collision::testing::feature_distance(triangle(pair.a), triangle(pair.b), x) < reach);
+        }
+      }
+    fmt::print("| {} | {} | {} |\n", rule == NormalConeRule::proved ? "proved" : "Provot's", left_out, missed);
+  }
+}
+
+/// The default, and from it one thing at a time.
+std::vector<std::pair<std::string, BroadPhaseOptions>> settings() {
+  std::vector<std::pair<std::string, BroadPhaseOptions>> all{{"default: k 6, 8 children, leaf 8", {}}};
+  const auto add = [&](const std::string& name, auto change) {
+    change(all.emplace_back(name, BroadPhaseOptions{}).second);
+  };
+  for (const int k : {14, 18, 26}) add(fmt::format("k {}", k), [&](auto& o) { o.directions = k; });
+  for (const int c : {2, 4}) add(fmt::format("{} children", c), [&](auto& o) { o.children = c; });
+  add("2 children, leaf 1 (as in the paper)", [](auto& o) { o.children = 2, o.leaf = 1; });
+  add("4 children, leaf 1", [](auto& o) { o.children = 4, o.leaf = 1; });
+  for (const int l : {1, 2, 4}) add(fmt::format("leaf {}", l), [&](auto& o) { o.leaf = l; });
+  add("open longer side", [](auto& o) { o.open_longer_side = true; });
+  add("separation list", [](auto& o) { o.separation_list = true; });
+  add("2 children, leaf 1, separation list", [](auto& o) { o.children = 2, o.leaf = 1, o.separation_list = true; });
+  add("velocity cones, lazy refit", [](auto& o) { o.velocity_cones = true; });
+  add("k 26, velocity cones, lazy refit", [](auto& o) { o.directions = 26, o.velocity_cones = true; });
+  add("normal cones", [](auto& o) { o.normal_cones = true; });
+  return all;
+}
+
+}  // namespace
+
+void replay(const std::filesystem::path& meshes, int first_frame, int frames, double reach) {
+  const Recording recording = read(meshes, first_frame, frames);
+  fmt::print("{}: {} triangles, {} steps, reach {} m; CPU ms a step\n\n", meshes.filename().string(),
+             recording.scene.triangles.size(), recording.steps(), reach);
+  fmt::print(
+      "| setting | refit | pairs | proximities | all | candidates | proximities found "
+      "|\n|---|---|---|---|---|---|---|\n");
+  constexpr int kRuns = 3;
+  const auto all = settings();
+  // Runs take turns, so that a busy machine slows all of them.
+  std::vector<std::vector<Costs>> costs(all.size());
+  for (int r = 0; r < kRuns; ++r)
+    for (std::size_t i = 0; i < all.size(); ++i) costs[i].push_back(run(recording, all[i].second, reach));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    print_row(all[i].first, costs[i], recording.steps());
+    if (costs[i][0].found != costs[0][0].found) fmt::print("FOUND SOMETHING ELSE\n");
+  }
+  for (const double part : {0.125, 0.5}) {
+    std::vector<Costs> coherent;
+    int reused = 0, asked = 0;
+    for (int r = 0; r < kRuns; ++r) coherent.push_back(run_coherent(recording, reach, part * reach, reused, asked));
+    print_row(fmt::format("velocity cones, results kept, budget {} of reach ({} % kept)", part, 100 * reused / asked),
+              coherent, recording.steps());
+  }
+  count_left_out(recording, reach);
+}
+
+}  // namespace weft::bench
