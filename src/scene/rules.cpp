@@ -103,6 +103,9 @@ const Table& contact_rules() {
                                   .plain(Type::boolean, "self", &Contact::self, "cloth against itself and other cloths")
                                   .plain(Type::boolean, "obstacles", &Contact::obstacles, "cloth against obstacles")
                                   .number("stiffness", &Contact::stiffness, above(0, 1e9), "N/m", "of one contact")
+                                  .choice("response", &Contact::response, {"springs", "velocity_constraints"},
+                                          "what keeps a particle off an obstacle: a spring, or its velocity prescribed "
+                                          "in the solver; the rest is springs")
                                   .build();
   return kTable;
 }
@@ -131,6 +134,9 @@ const Table& material_rules() {
           .number("shear_viscosity", &Material::shear_viscosity, within(0, 1e9), "N·s/m", "stress per rate of shear")
           .by_default(of_fabric)
           .number("bend_viscosity", &Material::bend_viscosity, within(0, 1e6), "N·m·s", "moment per rate of curvature")
+          .by_default(of_fabric)
+          .number("bend_friction", &Material::bend_friction, within(0, 1e6), "N",
+                  "moment per width that a change of curvature must overcome (half of KES' 2HB)")
           .by_default(of_fabric)
           .number("thickness", &Material::thickness, above(0, 1), "m", "distance that contact keeps between two layers")
           .by_default(of_fabric)

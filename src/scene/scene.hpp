@@ -16,6 +16,7 @@ enum class UpAxis { y, z };
 enum class Integrator { implicit_euler, implicit_midpoint, bdf2 };
 enum class Interpolation { linear, cubic };
 enum class HeatQuantity { none, strain, speed };
+enum class Response { springs, velocity_constraints };
 
 struct Time {
   double duration = 5;  ///< [s]; the scene has round(duration * fps) + 1 frames
@@ -43,6 +44,7 @@ struct Contact {
   bool self = true;        ///< cloth against itself and other cloths
   bool obstacles = true;   ///< cloth against obstacles
   double stiffness = 100;  ///< of one contact [N/m]
+  Response response = Response::springs;
 };
 
 /// A fabric in continuum units (seed, "Elastic Model").
@@ -56,6 +58,7 @@ struct Material {
   double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
   double shear_viscosity = 0;     ///< [N·s/m]
   double bend_viscosity = 5e-6;   ///< [N·m·s]
+  double bend_friction = 2e-4;    ///< moment per width that a change of curvature must overcome [N]
   double thickness = 0.002;       ///< distance that contact keeps between two layers [m]
   double friction = 0.3;          ///< Coulomb coefficient; of a pair: the geometric mean of both
   double drag = 1.0;              ///< air resistance coefficient of the normal motion; 0 for none

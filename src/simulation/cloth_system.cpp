@@ -30,9 +30,9 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     if (material.shear > 0 || material.shear_viscosity > 0)
       shear_.push_back(std::make_unique<forces::Shear>(
           grid, first, forces::ShearParameters{material.shear, material.shear_viscosity}));
-    if (material.bend > 0 || material.bend_viscosity > 0)
-      bend_.push_back(
-          std::make_unique<forces::Bend>(grid, first, forces::BendParameters{material.bend, material.bend_viscosity}));
+    if (material.bend > 0 || material.bend_viscosity > 0 || material.bend_friction > 0)
+      bend_.push_back(std::make_unique<forces::Bend>(
+          grid, first, forces::BendParameters{material.bend, material.bend_viscosity, material.bend_friction}));
     if (scene.physics.air_density > 0 && material.drag > 0)
       air_.emplace_back(grid, first,
                         forces::AirParameters{scene.physics.air_density, scene.physics.wind, material.drag});
@@ -74,6 +74,7 @@ void ClothSystem::cut_groups(const std::vector<mesh::Grid>& grids) {
 
 void ClothSystem::explicit_forces(const integrator::State& at, double h, std::span<Vec3> force) const {
   for (const forces::Air& air : air_) air.add(at.x, at.v, masses_, h, force);
+  if (constraints_ != nullptr) constraints_->add_friction(force);
 }
 
 void ClothSystem::forces(const integrator::StagePoint& at, std::span<Vec3> force) const {

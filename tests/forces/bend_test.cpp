@@ -96,5 +96,37 @@ TEST(Bend, RestoresTowardsThePlane) {
   EXPECT_NEAR(g[centre + 2].z(), -unit, 1e-12 * unit);
 }
 
+TEST(Bend, FrictionIsAMomentOfConstantSizeAgainstTheChangeOfCurvature) {
+  // A cylinder that closes at a rate far above and far below the one at which friction has its size.
+  constexpr double kFriction = 3e-3;
+  const Bend bend(testing::kGrid, 0, BendParameters{0, 0, kFriction});
+  const double curvature = 2;
+  const auto cylinder = [&](double c) {
+    return testing::shaped(testing::kGrid,
+                           [&](double u, double v) { return Vec3(std::sin(c * u) / c, v, (1 - std::cos(c * u)) / c); });
+  };
+  const testing::Positions x = cylinder(curvature);
+  const auto power = [&](double rate) {
+    constexpr double kTime = 1e-6;
+    const testing::Positions before = cylinder(curvature - 0.5 * kTime * rate),
+                             after = cylinder(curvature + 0.5 * kTime * rate);
+    testing::Positions v = x;
+    for (std::size_t i = 0; i < v.size(); ++i) v[i] = (after[i] - before[i]) / kTime;
+    const testing::Positions f = testing::force_of(bend, x, v);
+    double sum = 0;
+    for (std::size_t i = 0; i < v.size(); ++i) sum += f[i].dot(v[i]);
+    return sum;
+  };
+  // Second differences are taken where there is a neighbour on either side: one cell less than the sheet along weft.
+  const mesh::Grid& grid = testing::kGrid;
+  const double area = grid.lu * (grid.nu - 2) * grid.lv * (grid.nv - 1);
+  for (double rate : {50.0, -50.0}) {
+    // Smooth size at 50 1/(m·s): 1 − (0.5 / 50)² / 2; flat curvature 0.1 against 2: 1 − (0.1 / 2)² / 2.
+    EXPECT_NEAR(power(rate), -kFriction * area * std::abs(rate), 2e-3 * kFriction * area * std::abs(rate)) << rate;
+  }
+  // Far below, a hundredth of the rate takes a ten-thousandth of the power.
+  EXPECT_NEAR(power(0.005) / power(0.0005), 100, 0.1);
+}
+
 }  // namespace
 }  // namespace weft::forces

@@ -57,7 +57,7 @@ const std::vector<Malformed> kMalformed = {
     {"MisspeltKey", kFloor + "[time]\nduraton = 3\n",
      "s.toml:3:1: time.duraton: unknown key; did you mean duration?\n"},
     {"KeyOfNoKind", kFloor + "[contact]\nzzzzzzzz = 3\n",
-     "s.toml:3:1: contact.zzzzzzzz: unknown key; known here: self, obstacles, stiffness\n"},
+     "s.toml:3:1: contact.zzzzzzzz: unknown key; known here: self, obstacles, stiffness, response\n"},
     {"KeyOfAnInnerTable", "[[cloth]]\nname = 'band'\nthickness = 0.002\n",
      "s.toml:3:1: cloth.band.thickness: unknown key; did you mean material.thickness?\n"},
     {"KeyOfAnotherShape", "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\nradius = 1\nheight = 2\n",

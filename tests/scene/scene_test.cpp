@@ -55,6 +55,7 @@ TEST_F(EveryKey, OfTimePhysicsSolverAndContactFillsItsMember) {
   EXPECT_FALSE(scene_.contact.self);
   EXPECT_FALSE(scene_.contact.obstacles);
   EXPECT_EQ(scene_.contact.stiffness, 250);
+  EXPECT_EQ(scene_.contact.response, Response::velocity_constraints);
 }
 
 TEST_F(EveryKey, OfRenderFillsItsMember) {
@@ -86,6 +87,7 @@ TEST_F(EveryKey, OfAClothFillsItsMember) {
   EXPECT_EQ(m.stretch_viscosity, 0.15);
   EXPECT_EQ(m.shear_viscosity, 0.16);
   EXPECT_EQ(m.bend_viscosity, 1.7e-6);
+  EXPECT_EQ(m.bend_friction, 3.7e-5);
   EXPECT_EQ(m.thickness, 0.0018);
   EXPECT_EQ(m.friction, 0.19);
   EXPECT_EQ(m.drag, 1.21);
@@ -151,7 +153,7 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
   EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
   EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
-  EXPECT_EQ(scene_.obstacles[7].line, 140) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].line, 142) << "where the scene names its file";
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 

@@ -49,6 +49,7 @@ scene::Scene pressed_strip(double depth, double friction) {
   strip.material.stretch_weft = strip.material.stretch_warp = 5000;
   strip.material.bend = 1e-3;
   strip.material.bend_viscosity = 2e-4;
+  strip.material.bend_friction = 0;
   strip.material.thickness = 2e-4;
   strip.material.friction = friction;
   strip.material.drag = 0;
