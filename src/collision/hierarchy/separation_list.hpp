@@ -13,7 +13,7 @@ namespace weft::collision {
 /// walk until the list is rebuilt, which is due
 ///   - after kWalks walks, or
 ///   - once it has grown by half.
-/// Measured on falling_band and on sliding layers, both limits may be halved or doubled without a visible change.
+/// Both limits are chosen, not tuned: they bound the useless tests to about half of the useful ones.
 class SeparationList {
  public:
   using Ref = std::int32_t;  ///< node (≥ 0) or leaf ~ref (< 0), as in Tree
