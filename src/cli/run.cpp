@@ -33,6 +33,7 @@ class SimulationSource : public FrameSource {
   SimulatedFrame next() override {
     const simulation::FrameReport report = first_ ? simulation_.initial_report() : simulation_.advance();
     first_ = false;
+    for (const std::string& pinch : report.pinches) log::warn(pinch);
     return {simulation_.snapshot(), report};
   }
 

@@ -83,7 +83,8 @@ Json frame_json(const FrameRecord& record) {
           {"min_distance_m", finite(report.min_distance)},
           {"max_strain", finite(report.max_strain)},
           {"kinetic_energy_j", finite(report.kinetic_energy)},
-          {"elastic_energy_j", finite(report.elastic_energy)}};
+          {"elastic_energy_j", finite(report.elastic_energy)},
+          {"pinched_pairs", report.pinched_pairs}};
 }
 
 Json stats_json(const RunReport& report) {

@@ -122,6 +122,12 @@ std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
     warnings.push_back(
         fmt::format("{} of {} steps were rejected: a smaller time.step would be faster", rejected, steps + rejected));
   }
+  if (const auto pinched = std::count_if(frames.begin(), frames.end(),
+                                         [](const FrameRecord& record) { return record.report.pinched_pairs > 0; });
+      pinched > 0) {
+    warnings.push_back(fmt::format("cloth had no room between obstacles, and is in one of them, in {} of {} frames",
+                                   pinched, frames.size()));
+  }
   if (distance <= 0) warnings.push_back("surfaces touched or passed through each other");
   return warnings;
 }

@@ -26,6 +26,13 @@ constexpr double kOutsideWedge = 0.1;
 // It fades out too where the closest point comes this near to an end of either edge (in shares of it).
 constexpr double kEndOfEdge = 0.1;
 
+// Speed at which cloth is pushed out of an obstacle that it was pinched into [m/s]: out of 5 mm within a frame, and not
+// enough to hop over 2 mm.
+constexpr double kHealingSpeed = 0.2;
+// Share of the stiffness of a contact that does so: it has nothing to stop, and full stiffness between two obstacles
+// clamps the cloth and costs twice the Newton iterations.
+constexpr double kHealingShare = 0.05;
+
 double ramp(double from, double to, double value) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
 }
@@ -74,6 +81,7 @@ Engine::Engine(std::vector<Body> bodies, const EngineParameters& parameters, std
   }
   broad_phase_ = BroadPhase(surfaces_, x);
   finder_ = ProximityFinder(triangles_, static_cast<Index>(body_of_.size()));
+  pinched_ = PinchedPairs(static_cast<Index>(masses_.size()), body_of_);
   separation_ =
       Separation(triangles_, parameters_.self ? std::span<const Surface>(deformable_) : std::span<const Surface>());
 }
@@ -175,17 +183,35 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   contacts_.clear();
   contacts_.set_step(h);
   in_contact_.clear();
+  if (!pinched_.empty()) add_pinch_contacts(x_t0, x_t1);
   for (const Proximity& proximity : proximities_)
-    if (const double part = share(proximity); part > 0) {
+    if (const double part = share(proximity); part > 0 && !is_pinched(proximity.vertices)) {
       add_contact({proximity.vertices, proximity.weights, proximity.normal, part, kNoLimit}, x_t0, x_t1);
       if (part == 1) in_contact_.insert(sorted(proximity.vertices));
     }
   if (!apart(x_t0, x_t1)) adopt_failing(x_t0, x_t1);
 }
 
+// Pinched cloth is pushed back to its side, at no more than kHealingSpeed towards the obstacle's surface.
+void Engine::add_pinch_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  pinched_.release(surfaces_, x_t0);
+  for (const PinchTouch& touch : pinched_.find_touches(surfaces_, x_t0, reach_))
+    add_contact({touch.vertices, touch.weights, touch.normal, kHealingShare, touch.height + kHealingSpeed * step_},
+                x_t0, x_t1);
+}
+
+// Whether a pair of features is of pinched cloth and its obstacle: their direction does not tell the side.
+bool Engine::is_pinched(const std::array<Index, 4>& vertices) const {
+  if (pinched_.empty()) return false;
+  for (Index particle : vertices)
+    for (Index other : vertices)
+      if (pinched_.touches(particle, body_of(other))) return true;
+  return false;
+}
+
 bool Engine::apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   if (!inside_bounds(x_t1)) collect(x_t0, x_t1);
-  failing_ = separation_.find_failing(x_t0, x_t1);
+  failing_ = separation_.find_failing(x_t0, x_t1, &pinched_);
   return failing_.empty();
 }
 
@@ -210,21 +236,63 @@ std::optional<CornerPair> Engine::find_meeting(std::span<const Vec3> x) {
 }
 
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                                    std::span<const std::uint8_t> movable) {
+                                    std::span<const std::uint8_t> movable, bool may_pinch) {
   // Corrections can carry vertices out of the bounds that the candidates stand for; then these are collected anew.
   constexpr int kCollections = 8;
   SeparationReport report;
+  PinchedPairs pinched = pinched_;
   for (int c = 0; c < kCollections; ++c) {
-    const SeparationReport pass = separation_.enforce(x_t0, x_t1, movable);
+    const SeparationReport pass = separation_.enforce(x_t0, x_t1, movable, &pinched);
     report.corrected_pairs += pass.corrected_pairs;
     report.largest_push = std::max(report.largest_push, pass.largest_push);
     report.separated = pass.separated;
     report.stuck = pass.stuck;
-    if (!pass.separated || inside_bounds(x_t1)) return report;
-    collect(x_t0, x_t1);
+    if (!pass.separated) return report;
+    if (!inside_bounds(x_t1)) {
+      collect(x_t0, x_t1);
+      continue;
+    }
+    if (const auto fresh = first_fresh(pinched); fresh && !may_pinch) {
+      report.separated = false;
+      report.stuck = *fresh;
+      return report;
+    }
+    pinched.note_origins(surfaces_, x_t0);
+    pinched_ = std::move(pinched);
+    return report;
   }
   report.separated = false;
   return report;
+}
+
+// A pair of `pinched` whose obstacle does not pinch that cloth so far.
+std::optional<CornerPair> Engine::first_fresh(const PinchedPairs& pinched) const {
+  for (const auto& [key, origin] : pinched.origins()) {
+    const std::size_t cloth = body_of(key.cloth[0]), obstacle = key.body;
+    const auto same = [&](const auto& other) {
+      return body_of(other.first.cloth[0]) == cloth && other.first.body == obstacle;
+    };
+    if (std::none_of(pinched_.origins().begin(), pinched_.origins().end(), same))
+      return CornerPair{key.cloth, surfaces_[obstacle].triangles.front()};
+  }
+  return std::nullopt;
+}
+
+std::vector<Pinch> Engine::pinches(std::span<const Vec3> x) const {
+  std::vector<Pinch> found;
+  for (const auto& [key, origin] : pinched_.origins()) {
+    const Pinch pinch{body_of(key.cloth[0]), key.body, std::nullopt, x[static_cast<std::size_t>(key.cloth[0])]};
+    const auto same = [&](const Pinch& p) { return p.cloth == pinch.cloth && p.obstacle == pinch.obstacle; };
+    if (std::any_of(found.begin(), found.end(), same)) continue;
+    found.push_back(pinch);
+    double nearest = std::numeric_limits<double>::infinity();
+    for (std::size_t b = 0; b < bodies_.size(); ++b) {
+      if (bodies_[b].deformable || b == pinch.obstacle) continue;
+      const double distance = std::abs(nearest_point(pinch.place, surfaces_[b].triangles, x).height);
+      if (distance < nearest) nearest = distance, found.back().other = b;
+    }
+  }
+  return found;
 }
 
 double Engine::min_distance() const {

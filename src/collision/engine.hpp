@@ -11,6 +11,7 @@
 #include "collision/hierarchy/broad_phase.hpp"
 #include "collision/proximity/proximities.hpp"
 #include "collision/response/contact_set.hpp"
+#include "collision/response/pinch.hpp"
 #include "collision/response/separation.hpp"
 #include "core/types.hpp"
 
@@ -24,6 +25,13 @@ struct Body {
   bool deformable = false;
   double thickness = 0;  ///< of cloth [m]; 0 for obstacles
   double friction = 0;   ///< Coulomb coefficient; of a pair: the geometric mean
+};
+
+/// Cloth that is in an obstacle because it has no room.
+struct Pinch {
+  std::size_t cloth = 0, obstacle = 0;
+  std::optional<std::size_t> other;  ///< the other obstacle nearest to it, if there is one
+  Vec3 place;                        ///< of a particle [m]
 };
 
 struct EngineParameters {
@@ -52,8 +60,16 @@ class Engine {
   /// Makes contacts of the pairs for which the last call of apart() said no; returns how many are new.
   int adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Corrects the ends x_t1 of movable particles so that no triangles meet during the step.
-  SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
+  /// Corrects the ends x_t1 of movable particles so that no triangles meet during the step. Where obstacles leave no
+  /// room, cloth is given up to them: `may_pinch` allows that; without it only to obstacles that pinch this cloth
+  /// already.
+  SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
+                              bool may_pinch = false);
+
+  /// Triangles of cloth that are given up to an obstacle, counted per obstacle.
+  int pinched_pairs() const { return static_cast<int>(pinched_.size()); }
+  /// Which cloths and obstacles that are, with places at x [m].
+  std::vector<Pinch> pinches(std::span<const Vec3> x) const;
 
   /// Pairs of features within the reach, 1.5 contact ranges, at the start of the last step.
   int proximities() const { return static_cast<int>(proximities_.size()); }
@@ -78,6 +94,9 @@ class Engine {
     double range_limit;  // of the range [m]
   };
   void add_contact(const Touch& touch, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  void add_pinch_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  bool is_pinched(const std::array<Index, 4>& vertices) const;
+  std::optional<CornerPair> first_fresh(const PinchedPairs& pinched) const;
   bool near_start(std::span<const Vec3> x) const;
   bool inside_bounds(std::span<const Vec3> x) const;
 
@@ -92,8 +111,9 @@ class Engine {
   ProximityFinder finder_;
   Separation separation_;
   std::span<const CornerPair> failing_;  // of the last call of apart()
-  double reach_ = 0;                     // distance up to which contacts are prepared [m]
-  double step_ = 0;                      // h [s]
+  PinchedPairs pinched_;
+  double reach_ = 0;  // distance up to which contacts are prepared [m]
+  double step_ = 0;   // h [s]
 
   CandidatePairs candidates_;
   CandidatePairs near_;  // those that may be within the reach

@@ -128,14 +128,40 @@ bool CollisionStage::apart(const integrator::State& next) {
   return engine_.apart(all_t0_, all_t1_);
 }
 
-std::optional<std::string> CollisionStage::push_apart(double h, integrator::State& next) {
-  const collision::SeparationReport report = engine_.push_apart(all_t0_, all_t1_, movable_);
+std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, integrator::State& next) {
+  const collision::SeparationReport report = engine_.push_apart(all_t0_, all_t1_, movable_, may_pinch);
   if (!report.separated) return "cannot keep " + describe(report.stuck) + " apart";
   for (std::size_t i = 0; i < particles_; ++i) {
     next.v[i] += (all_t1_[i] - next.x[i]) / h;
     next.x[i] = all_t1_[i];
   }
+  note_pinches();
   return std::nullopt;
+}
+
+std::string CollisionStage::describe(const collision::Pinch& pinch) const {
+  const std::string between = pinch.other
+                                  ? fmt::format("between '{}' and '{}'", names_[pinch.obstacle], names_[*pinch.other])
+                                  : fmt::format("before '{}'", names_[pinch.obstacle]);
+  return fmt::format("'{}' has no room {} near ({:.4g}, {:.4g}, {:.4g}) m", names_[pinch.cloth], between,
+                     pinch.place.x(), pinch.place.y(), pinch.place.z());
+}
+
+void CollisionStage::note_pinches() {
+  if (engine_.pinched_pairs() == 0) return;
+  pinches_.pairs = std::max(pinches_.pairs, engine_.pinched_pairs());
+  for (const collision::Pinch& pinch : engine_.pinches(all_t0_)) {
+    const PinchingObjects objects{pinch.cloth, pinch.obstacle};
+    if (pinching_.insert(objects).second && !pinching_before_.contains(objects))
+      pinches_.begun.push_back(describe(pinch));
+  }
+}
+
+CollisionStage::Pinches CollisionStage::take_pinches() {
+  note_pinches();
+  pinching_before_ = std::move(pinching_);
+  pinching_.clear();
+  return std::exchange(pinches_, {});
 }
 
 }  // namespace weft::simulation

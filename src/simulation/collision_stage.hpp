@@ -3,7 +3,9 @@
 
 #include <cstdint>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "collision/engine.hpp"
@@ -38,15 +40,25 @@ class CollisionStage {
   /// solving again lets the forces do what push_apart would do by moving particles.
   int adopt_failing() { return engine_.adopt_failing(all_t0_, all_t1_); }
 
-  /// Corrects positions and velocities of `next` so that nothing meets anything. Empty if that worked, else which
-  /// objects are stuck and where.
-  std::optional<std::string> push_apart(double h, integrator::State& next);
+  /// Corrects positions and velocities of `next` so that nothing meets anything, except cloth and the obstacles that
+  /// leave it no room; these are then pinched. Without `may_pinch` no cloth becomes pinched by an obstacle that did not
+  /// pinch it before. Empty if that worked, else which objects are stuck and where.
+  std::optional<std::string> push_apart(double h, bool may_pinch, integrator::State& next);
+
+  /// What a frame has pinched, from its steps so far; the next call tells of the next frame.
+  struct Pinches {
+    int pairs = 0;                   ///< most triangles at once that are given up to obstacles
+    std::vector<std::string> begun;  ///< those not in the frame before, by object: "'a' has no room between ..."
+  };
+  Pinches take_pinches();
 
   int proximities() const { return engine_.proximities(); }
   double min_distance() const { return engine_.min_distance(); }
 
  private:
   std::string describe(const collision::CornerPair& pair) const;
+  std::string describe(const collision::Pinch& pinch) const;
+  void note_pinches();
 
   std::vector<std::string> names_;   // per body
   std::vector<std::size_t> rigids_;  // of the environment, those that collide
@@ -54,6 +66,10 @@ class CollisionStage {
   std::vector<Vec3> all_t0_, all_t1_;  // particles, then vertices of the obstacles
   std::vector<std::uint8_t> movable_;
   collision::Engine engine_;
+
+  using PinchingObjects = std::pair<std::size_t, std::size_t>;  // cloth and obstacle
+  std::set<PinchingObjects> pinching_, pinching_before_;        // in this frame and in the one before
+  Pinches pinches_;
 };
 
 }  // namespace weft::simulation

@@ -21,6 +21,9 @@ namespace {
 // Solves of one step with contacts added in between, before the rest is left to moving particles. A second one replaces
 // nearly all corrections where something fast arrives; a third found nothing more to do.
 constexpr int kContactRounds = 2;
+// Halvings of a step before cloth that cannot be kept out of an obstacle is taken for pinched: where there is room a
+// shorter step finds it, where there is none it only costs.
+constexpr int kHalvingsBeforePinch = 3;
 
 integrator::Method method_of(scene::Integrator integrator) {
   switch (integrator) {
@@ -70,13 +73,14 @@ struct Simulation::Impl {
 
   FrameReport advance();
   void measure(FrameReport& report) const;
+  void report_pinches(FrameReport& report);
   frame::SnapshotPtr make_snapshot() const;
 
   // Why a step was rejected; empty where it was not.
   using Rejection = std::optional<std::string>;
 
   void advance_over(double t, double h, int halvings, FrameReport& report);
-  Rejection attempt(double t, double h, FrameReport& report);
+  Rejection attempt(double t, double h, bool may_pinch, FrameReport& report);
   Rejection solve(double h, integrator::Stepper::Start start, FrameReport& report);
   void write_back();
 
@@ -132,7 +136,7 @@ Simulation::Impl::Rejection Simulation::Impl::solve(double h, integrator::Steppe
 }
 
 // One step from `now` at time t [s] over h [s] into `next`.
-Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, FrameReport& report) {
+Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, bool may_pinch, FrameReport& report) {
   pins.held_at(t + h, environment, held);
   using Start = integrator::Stepper::Start;
   if (!collisions) return solve(h, Start::unchanged_velocity, report);
@@ -146,13 +150,14 @@ Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, FrameR
     const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
     if (collisions->apart(next)) return std::nullopt;
     if (round < kContactRounds && collisions->adopt_failing() > 0) continue;
-    return collisions->push_apart(h, next);
+    return collisions->push_apart(h, may_pinch, next);
   }
 }
 
 // Goes from t to t + h, in two halves where one step is rejected.
 void Simulation::Impl::advance_over(double t, double h, int halvings, FrameReport& report) {
-  if (const Rejection rejection = attempt(t, h, report)) {
+  const bool may_pinch = halvings == 0 || scene.solver.halvings - halvings >= kHalvingsBeforePinch;
+  if (const Rejection rejection = attempt(t, h, may_pinch, report)) {
     ++report.rejected_steps;
     if (halvings == 0)
       throw Error(
@@ -194,6 +199,7 @@ FrameReport Simulation::Impl::advance() {
   report.frame = frame;
   report.time = frame / scene.time.fps;
   measure(report);
+  report_pinches(report);
   current = make_snapshot();
   return report;
 }
@@ -221,6 +227,13 @@ void Simulation::Impl::measure(FrameReport& report) const {
   report.proximities = collisions->proximities();
   report.constraints += collisions->contacts().active(now.x);
   report.min_distance = collisions->min_distance();
+}
+
+void Simulation::Impl::report_pinches(FrameReport& report) {
+  if (!collisions) return;
+  CollisionStage::Pinches pinches = collisions->take_pinches();
+  report.pinched_pairs = pinches.pairs;
+  for (const std::string& text : pinches.begun) report.pinches.push_back(fmt::format("frame {}: {}", frame, text));
 }
 
 frame::SnapshotPtr Simulation::Impl::make_snapshot() const {

@@ -26,6 +26,9 @@ struct FrameReport {
   double max_strain = 0;      ///< largest |length / rest length - 1| of a weft or warp edge
   double kinetic_energy = 0;  ///< [J]
   double elastic_energy = 0;  ///< stretch, shear and bending [J]
+  int pinched_pairs = 0;      ///< most triangles of cloth at once that have no room and are in an obstacle
+  std::vector<std::string>
+      pinches;  ///< those that begin: "frame 37: 'sheet' has no room between ..., near (x, y, z) m"
 };
 
 struct ObjectInfo {

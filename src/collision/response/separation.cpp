@@ -10,8 +10,9 @@ namespace {
 // Gap that a push restores [m], or half of the gap at the start where that is less: a tenth of a fabric's thickness, so
 // that the contact springs of the next step have something to act on.
 constexpr double kKeep = 2e-4;
-// Rounds of pushing before particles are drawn back, and before the step is given up.
+// Rounds of pushing before particles are drawn back by halves, before they are drawn back entirely, and before all are.
 constexpr int kPushRounds = 24;
+constexpr int kHalfRounds = 36;
 constexpr int kRounds = 60;
 
 std::size_t index(Index vertex) {
@@ -29,7 +30,8 @@ void Separation::watch(std::span<const TrianglePair> pairs, std::span<const Vec3
   fans_.set_reference(x);
 }
 
-std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                                                     const PinchedPairs* pinched) {
   failing_.clear();
   moved_.resize(x_t0.size());
   for (std::size_t v = 0; v < x_t0.size(); ++v) {
@@ -38,6 +40,8 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
   }
   planes_.find_failing(reference_, x_t0, x_t1, moved_, failing_);
   fans_.find_failing(x_t0, x_t1, moved_, failing_);
+  if (pinched != nullptr && !pinched->empty())
+    std::erase_if(failing_, [&](const CornerPair& pair) { return pinched->holds(pair); });
   return failing_;
 }
 
@@ -78,40 +82,72 @@ bool Separation::push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, 
   return true;
 }
 
-// Halfway back to where there was no intersection.
-void Separation::draw_back(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
+// Back by a share of the way to where there was no intersection, once a round; false if nothing was moved.
+bool Separation::draw_back(const CornerPair& pair, double share, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                            std::span<const std::uint8_t> movable, SeparationReport& report) {
+  bool moved = false;
   for (const Triangle& corners : {pair.a, pair.b}) {
     for (Index corner : corners) {
       const std::size_t v = index(corner);
-      if (!movable[v] || drawn_back_in_[v] == round_) continue;
-      const Vec3 back = 0.5 * (x_t0[v] - x_t1[v]);
-      x_t1[v] += back;
-      report.largest_push = std::max(report.largest_push, back.norm());
+      if (!movable[v] || x_t1[v] == x_t0[v]) continue;
+      moved = true;
+      if (drawn_back_in_[v] == round_) continue;
+      report.largest_push = std::max(report.largest_push, share * (x_t0[v] - x_t1[v]).norm());
+      x_t1[v] = share == 1 ? x_t0[v] : Vec3(x_t1[v] + share * (x_t0[v] - x_t1[v]));
       drawn_back_in_[v] = round_;
     }
   }
+  return moved;
+}
+
+bool Separation::draw_all_back(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
+                               std::span<const std::uint8_t> movable) {
+  bool moved = false;
+  for (std::size_t v = 0; v < x_t0.size(); ++v) {
+    if (!movable[v] || x_t1[v] == x_t0[v]) continue;
+    x_t1[v] = x_t0[v];
+    moved = true;
+  }
+  return moved;
+}
+
+// As find_failing, without pairs that stay where they are: these do not meet at the end because they do not at the
+// start, however close they are.
+void Separation::look_again(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, const PinchedPairs* pinched) {
+  find_failing(x_t0, x_t1, pinched);
+  const auto stays = [&](Index v) { return x_t1[index(v)] == x_t0[index(v)]; };
+  std::erase_if(failing_, [&](const CornerPair& pair) {
+    return std::all_of(pair.a.begin(), pair.a.end(), stays) && std::all_of(pair.b.begin(), pair.b.end(), stays);
+  });
 }
 
 SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                                     std::span<const std::uint8_t> movable) {
+                                     std::span<const std::uint8_t> movable, PinchedPairs* pinched) {
   SeparationReport report;
   drawn_back_in_.assign(x_t0.size(), 0);
-  find_failing(x_t0, x_t1);
+  look_again(x_t0, x_t1, pinched);
   report.corrected_pairs = static_cast<int>(failing_.size());
   for (round_ = 1; !failing_.empty(); ++round_) {
-    if (round_ > kRounds) {
-      report.stuck = failing_.front();
-      return report;
-    }
+    bool changed = round_ >= kRounds && draw_all_back(x_t0, x_t1, movable);
     for (const CornerPair& pair : failing_) {
       if (round_ <= kPushRounds) {
         if (find_certificate(pair, x_t0, x_t1)) continue;  // an earlier push of this round was enough
-        if (push_apart(pair, x_t0, x_t1, movable, report)) continue;
+        if (push_apart(pair, x_t0, x_t1, movable, report) && (changed = true)) continue;
       }
-      draw_back(pair, x_t0, x_t1, movable, report);
+      const bool last = round_ > kHalfRounds;
+      if (last && pinched != nullptr && pinched->may_hold(pair)) {
+        pinched->add(pair);
+        changed = true;
+      } else if (draw_back(pair, last ? 1 : 0.5, x_t0, x_t1, movable, report)) {
+        changed = true;
+      }
     }
-    find_failing(x_t0, x_t1);
+    // What cannot be moved any more is driven into each other.
+    if (!changed && round_ > kHalfRounds) {
+      report.stuck = failing_.front();
+      return report;
+    }
+    look_again(x_t0, x_t1, pinched);
   }
   report.separated = true;
   return report;

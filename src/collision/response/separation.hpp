@@ -8,6 +8,7 @@
 #include "collision/hierarchy/surface.hpp"
 #include "collision/response/certificate.hpp"
 #include "collision/response/fans.hpp"
+#include "collision/response/pinch.hpp"
 #include "collision/response/planes.hpp"
 #include "core/types.hpp"
 
@@ -27,7 +28,9 @@ struct SeparationReport {
 ///
 /// A pair without certificate has its end positions pushed apart along n, the closest direction at the start, until a
 /// gap remains: by half each, obstacles and held particles not at all. What was moved is checked again, until nothing
-/// fails. Particles that keep failing are drawn back to where they started.
+/// fails. Particles that keep failing are drawn back towards where they started, and at last all the way. There nothing
+/// met, so what stays is as far apart as it was, and a growing cluster of free particles that stay ends the rounds;
+/// what an obstacle or a held particle is driven into is left over. Of that, cloth can be given up to obstacles.
 class Separation {
  public:
   Separation() = default;
@@ -42,17 +45,23 @@ class Separation {
   /// Appends the watched pairs that may have been closer than `radius` [m] then.
   void append_closer(double radius, PairList& out) const { planes_.append_closer(radius, out); }
 
-  /// Pairs without a certificate for the way from x_t0 to x_t1; changes nothing. x_t0 must be free of intersections.
-  std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  /// Pairs without a certificate for the way from x_t0 to x_t1; changes nothing. x_t0 must be free of intersections but
+  /// those of `pinched`, which are not looked at.
+  std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                                           const PinchedPairs* pinched = nullptr);
 
-  /// Changes x_t1 of vertices with `movable` 1 (free particles), until every pair has a certificate.
-  SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
+  /// Changes x_t1 of vertices with `movable` 1 (free particles), until every pair has a certificate. Where that fails,
+  /// pairs of cloth and obstacle are added to `pinched`, if given.
+  SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
+                           PinchedPairs* pinched = nullptr);
 
  private:
   bool push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                   std::span<const std::uint8_t> movable, SeparationReport& report);
-  void draw_back(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
+  bool draw_back(const CornerPair& pair, double share, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                  std::span<const std::uint8_t> movable, SeparationReport& report);
+  bool draw_all_back(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
+  void look_again(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, const PinchedPairs* pinched);
 
   std::vector<Triangle> triangles_;
   std::vector<Vec3> reference_;

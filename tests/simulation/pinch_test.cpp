@@ -1,0 +1,242 @@
+// Cloth between two bodies that leave it no room: the run goes on, cloth stays apart from cloth, the pinch is reported,
+// and once the bodies have parted nothing intersects.
+#include "collision/response/pinch.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "mesh/shapes.hpp"
+#include "support/intersections.hpp"
+#include "support/scene_runs.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Two jaws close on a hanging sheet until they overlap by 10 mm, stay, and part.
+constexpr const char* kJaws = R"(
+[time]
+duration = 1.6
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [21, 21]
+position = [0, 0, 0.6]
+rotation = [90, 0, 0]
+pin = [{ low = [0, 1], high = [1, 1] }]
+[[obstacle]]
+name = "left"
+shape = "box"
+size = [0.2, 0.2, 0.2]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [0.02, -0.25, 0.55] },
+  { time = 0.4, position = [0.02, -0.095, 0.55] },
+  { time = 0.8, position = [0.02, -0.095, 0.55] },
+  { time = 1.2, position = [0.02, -0.25, 0.55] },
+]
+[[obstacle]]
+name = "right"
+shape = "box"
+size = [0.2, 0.2, 0.2]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [-0.02, 0.25, 0.53] },
+  { time = 0.4, position = [-0.02, 0.095, 0.53] },
+  { time = 0.8, position = [-0.02, 0.095, 0.53] },
+  { time = 1.2, position = [-0.02, 0.25, 0.53] },
+]
+)";
+
+// A stamp presses two sheets, one on the other, 5 mm into the floor, and rises.
+constexpr const char* kStamp = R"(
+[time]
+duration = 1.6
+[[cloth]]
+name = "lower"
+size = [0.4, 0.4]
+particles = [17, 17]
+position = [0, 0, 0.002]
+[[cloth]]
+name = "upper"
+size = [0.36, 0.36]
+particles = [17, 17]
+position = [0.013, 0.007, 0.006]
+rotation = [0, 0, 17]
+[[obstacle]]
+name = "floor"
+shape = "plane"
+[[obstacle]]
+name = "stamp"
+shape = "box"
+size = [0.15, 0.15, 0.1]
+interpolation = "linear"
+keys = [
+  { time = 0.2, position = [0.01, 0.02, 0.16] },
+  { time = 0.5, position = [0.01, 0.02, 0.045] },
+  { time = 0.8, position = [0.01, 0.02, 0.045] },
+  { time = 1.2, position = [0.01, 0.02, 0.16] },
+]
+)";
+
+// A narrow jaw that turns while it closes: the sheet is rolled and pinched between its edge and a wall.
+constexpr const char* kTurningJaw = R"(
+[time]
+duration = 1.6
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [21, 21]
+position = [0, 0, 0.6]
+rotation = [90, 0, 0]
+pin = [{ low = [0, 1], high = [1, 1] }]
+[[obstacle]]
+name = "wall"
+shape = "box"
+size = [0.6, 0.1, 0.6]
+position = [0, -0.06, 0.5]
+[[obstacle]]
+name = "jaw"
+shape = "box"
+size = [0.15, 0.2, 0.15]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [0, 0.25, 0.55] },
+  { time = 0.4, position = [0, 0.085, 0.55], rotation = [40, 0, 15] },
+  { time = 0.8, position = [0, 0.085, 0.50], rotation = [60, 0, 15] },
+  { time = 1.2, position = [0, 0.25, 0.5], rotation = [0, 0, 0] },
+]
+)";
+
+// Two plates 5 mm apart with three layers of cloth between them, then overlapping by 10 mm after a fiftieth of a second
+// at 0.75 m/s, or at 4 m/s and by 30 mm; for a second, while the upper one slides to the side.
+constexpr const char* kPress = R"(
+[time]
+duration = 2.6
+[[cloth]]
+name = "lower"
+size = [0.3, 0.3]
+particles = [16, 16]
+position = [0, 0, 0.0012]
+[[cloth]]
+name = "middle"
+size = [0.28, 0.28]
+particles = [15, 15]
+position = [0.013, 0.007, 0.0024]
+rotation = [0, 0, 17]
+[[cloth]]
+name = "upper"
+size = [0.26, 0.26]
+particles = [14, 14]
+position = [-0.01, 0.003, 0.0036]
+rotation = [0, 0, 50]
+[[obstacle]]
+name = "table"
+shape = "box"
+size = [0.5, 0.5, 0.1]
+position = [0, 0, -0.05]
+[[obstacle]]
+name = "press"
+shape = "box"
+size = [0.2, 0.2, 0.1]
+interpolation = "linear"
+)";
+constexpr const char* kSlidingKeys = R"(
+keys = [
+  { time = 0.2, position = [0, 0, 0.055] },
+  { time = 0.22, position = [0, 0, 0.04] },
+  { time = 0.6, position = [0, 0, 0.04] },
+  { time = 1.0, position = [0.05, 0, 0.04] },
+  { time = 1.2, position = [0.05, 0, 0.04] },
+  { time = 1.4, position = [0.05, 0, 0.155] },
+]
+)";
+constexpr const char* kFastKeys = R"(
+keys = [
+  { time = 0.2, position = [0, 0, 0.055] },
+  { time = 0.20875, position = [0, 0, 0.02] },
+  { time = 1.2, position = [0, 0, 0.02] },
+  { time = 1.4, position = [0, 0, 0.155] },
+]
+)";
+
+struct Pinch {
+  const char* name;
+  std::string scene;
+  double step;  // [s]
+};
+
+std::ostream& operator<<(std::ostream& out, const Pinch& pinch) {
+  return out << pinch.name << " at steps of " << pinch.step << " s";
+}
+
+class PinchedCloth : public ::testing::TestWithParam<Pinch> {};
+
+std::size_t pairs_of_cloths(const support::Judgement& judgement, const std::vector<support::JudgedObject>& objects) {
+  return static_cast<std::size_t>(
+      std::count_if(judgement.pairs.begin(), judgement.pairs.end(), [&](const support::IntersectingPair& pair) {
+        return objects[pair.a.object].is_cloth && objects[pair.b.object].is_cloth;
+      }));
+}
+
+TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
+  scene::Scene scene = support::scene_of_text(GetParam().scene);
+  scene.time.step = GetParam().step;
+  Simulation simulation(scene);
+  int pinched = 0;
+  std::vector<std::string> pinches;
+  for (int k = 1; k < scene.frame_count(); ++k) {
+    const FrameReport report = simulation.advance();  // throws where it gives up
+    const auto snapshot = simulation.snapshot();
+    const auto objects = support::objects_of(*snapshot);
+    const support::Judgement judgement = support::judge(objects);
+    EXPECT_EQ(pairs_of_cloths(judgement, objects), 0u) << "frame " << k;
+    const bool is_end = k + 1 == scene.frame_count();
+    if (report.pinched_pairs == 0 || is_end) EXPECT_EQ(judgement.pairs.size(), 0u) << "frame " << k;
+    pinched += report.pinched_pairs > 0 ? 1 : 0;
+    pinches.insert(pinches.end(), report.pinches.begin(), report.pinches.end());
+  }
+  EXPECT_GT(pinched, 0);
+  ASSERT_FALSE(pinches.empty());
+  for (const std::string& text : pinches) {
+    EXPECT_EQ(text.rfind("frame ", 0), 0u) << text;
+    EXPECT_NE(text.find("has no room between '"), std::string::npos) << text;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    By, PinchedCloth,
+    ::testing::Values(Pinch{"jaws", kJaws, 0.01}, Pinch{"jaws", kJaws, 0.04}, Pinch{"stamp", kStamp, 0.01},
+                      Pinch{"stamp", kStamp, 0.04}, Pinch{"turning_jaw", kTurningJaw, 0.01},
+                      Pinch{"turning_jaw", kTurningJaw, 0.04}, Pinch{"slide", std::string(kPress) + kSlidingKeys, 0.01},
+                      Pinch{"slide", std::string(kPress) + kSlidingKeys, 0.04},
+                      Pinch{"fast", std::string(kPress) + kFastKeys, 0.01},
+                      Pinch{"fast", std::string(kPress) + kFastKeys, 0.04}),
+    [](const auto& pinch) { return std::string(pinch.param.name) + (pinch.param.step > 0.02 ? "_x4" : "_x1"); });
+
+// Of a box the signed distance is known: outside that to the nearest point of the box, inside minus the least depth.
+TEST(NearestPoint, TellsTheSignedDistanceToABox) {
+  const Vec3 half(0.1, 0.2, 0.05);
+  const mesh::Mesh box = mesh::make_box(2 * half, 0, 1);
+  for (int i = 0; i < 9 * 9 * 9; ++i) {
+    const Vec3 p = Vec3(i % 9 - 4, i / 9 % 9 - 4, i / 81 - 4).cwiseProduct(Vec3(0.041, 0.073, 0.027));
+    const Vec3 beyond = p.cwiseAbs() - half;
+    const double expected = beyond.maxCoeff() < 0 ? beyond.maxCoeff() : beyond.cwiseMax(0.0).norm();
+    const auto found = collision::nearest_point(p, box.topology.triangles, box.positions);
+    EXPECT_NEAR(found.height, expected, 1e-15) << p.transpose();  // a few roundings of 0.3
+  }
+}
+
+// Deep inside and near a side, the way back is still through the bottom where cloth came in.
+TEST(NearestPoint, LooksAtFacesOfOneDirectionAlone) {
+  const mesh::Mesh box = mesh::make_box(Vec3(0.2, 0.2, 0.1), 0, 1);
+  const auto found = collision::nearest_point({0.09, 0, -0.02}, box.topology.triangles, box.positions, -Vec3::UnitZ());
+  EXPECT_NEAR(found.height, -0.03, 1e-15);
+  EXPECT_LT((found.normal + Vec3::UnitZ()).norm(), 1e-14);
+}
+
+}  // namespace
+}  // namespace weft::simulation
