@@ -51,6 +51,40 @@ keys = [
 ]
 )";
 
+// One of them stays: the cloth in it has to be pushed out.
+constexpr const char* kOneJawStays = R"(
+[time]
+duration = 1.6
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [21, 21]
+position = [0, 0, 0.6]
+rotation = [90, 0, 0]
+pin = [{ low = [0, 1], high = [1, 1] }]
+[[obstacle]]
+name = "left"
+shape = "box"
+size = [0.2, 0.2, 0.2]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [0.02, -0.25, 0.55] },
+  { time = 0.4, position = [0.02, -0.095, 0.55] },
+  { time = 0.8, position = [0.02, -0.095, 0.55] },
+]
+[[obstacle]]
+name = "right"
+shape = "box"
+size = [0.2, 0.2, 0.2]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [-0.02, 0.25, 0.53] },
+  { time = 0.4, position = [-0.02, 0.095, 0.53] },
+  { time = 0.8, position = [-0.02, 0.095, 0.53] },
+  { time = 1.2, position = [-0.02, 0.25, 0.53] },
+]
+)";
+
 // A stamp presses two sheets, one on the other, 5 mm into the floor, and rises.
 constexpr const char* kStamp = R"(
 [time]
@@ -207,15 +241,19 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(
-    By, PinchedCloth,
-    ::testing::Values(Pinch{"jaws", kJaws, 0.01}, Pinch{"jaws", kJaws, 0.04}, Pinch{"stamp", kStamp, 0.01},
-                      Pinch{"stamp", kStamp, 0.04}, Pinch{"turning_jaw", kTurningJaw, 0.01},
-                      Pinch{"turning_jaw", kTurningJaw, 0.04}, Pinch{"slide", std::string(kPress) + kSlidingKeys, 0.01},
-                      Pinch{"slide", std::string(kPress) + kSlidingKeys, 0.04},
-                      Pinch{"fast", std::string(kPress) + kFastKeys, 0.01},
-                      Pinch{"fast", std::string(kPress) + kFastKeys, 0.04}),
-    [](const auto& pinch) { return std::string(pinch.param.name) + (pinch.param.step > 0.02 ? "_x4" : "_x1"); });
+INSTANTIATE_TEST_SUITE_P(By, PinchedCloth,
+                         ::testing::Values(Pinch{"jaws", kJaws, 0.01}, Pinch{"jaws", kJaws, 0.04},
+                                           Pinch{"one_jaw_stays", kOneJawStays, 0.01},
+                                           Pinch{"one_jaw_stays", kOneJawStays, 0.04}, Pinch{"stamp", kStamp, 0.01},
+                                           Pinch{"stamp", kStamp, 0.04}, Pinch{"turning_jaw", kTurningJaw, 0.01},
+                                           Pinch{"turning_jaw", kTurningJaw, 0.04},
+                                           Pinch{"slide", std::string(kPress) + kSlidingKeys, 0.01},
+                                           Pinch{"slide", std::string(kPress) + kSlidingKeys, 0.04},
+                                           Pinch{"fast", std::string(kPress) + kFastKeys, 0.01},
+                                           Pinch{"fast", std::string(kPress) + kFastKeys, 0.04}),
+                         [](const auto& pinch) {
+                           return std::string(pinch.param.name) + (pinch.param.step > 0.02 ? "_x4" : "_x1");
+                         });
 
 // Of a box the signed distance is known: outside that to the nearest point of the box, inside minus the least depth.
 TEST(NearestPoint, TellsTheSignedDistanceToABox) {
