@@ -79,11 +79,25 @@ Engine::Engine(std::vector<Body> bodies, const EngineParameters& parameters, std
     if (body.deformable) deformable_.push_back(surfaces_.back());
     first += count;
   }
-  broad_phase_ = BroadPhase(surfaces_, x);
+  prepare_friction();
+  broad_phase_ = BroadPhase(surfaces_, x, parameters_.search);
   finder_ = ProximityFinder(triangles_, static_cast<Index>(body_of_.size()));
   pinched_ = PinchedPairs(static_cast<Index>(masses_.size()), body_of_);
+  if (parameters_.velocity_constraints) constraints_ = VelocityConstraints(masses_);
   separation_ =
       Separation(triangles_, parameters_.self ? std::span<const Surface>(deformable_) : std::span<const Surface>());
+}
+
+// The geometric mean of both coefficients, or what the pair has of its own.
+void Engine::prepare_friction() {
+  for (const Body& a : bodies_) {
+    for (const Body& b : bodies_) {
+      const double mean = std::sqrt(a.friction * b.friction);
+      friction_.push_back({mean, mean});
+    }
+  }
+  for (const PairFriction& pair : parameters_.friction)
+    friction_[pair.a * bodies_.size() + pair.b] = friction_[pair.b * bodies_.size() + pair.a] = pair.friction;
 }
 
 Index Engine::triangle_of(const Triangle& corners) const {
@@ -99,7 +113,7 @@ Index Engine::triangle_of(const Triangle& corners) const {
 void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   double motion = 0;
   for (std::size_t i = 0; i < x_t0.size(); ++i) motion = std::max(motion, (x_t1[i] - x_t0[i]).cwiseAbs().maxCoeff());
-  const double margin = (0.5 + (motion < kSkin * reach_ ? kSkin : 0.0)) * reach_;
+  const double margin = (0.5 + (parameters_.reuse && motion < kSkin * reach_ ? kSkin : 0.0)) * reach_;
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     const auto first = static_cast<std::size_t>(bodies_[b].first_vertex);
     const auto count = static_cast<std::size_t>(bodies_[b].vertex_count);
@@ -148,7 +162,61 @@ bool Engine::inside_bounds(std::span<const Vec3> x) const {
   return true;
 }
 
+// A contact of one particle with an obstacle constrains its velocity; false for all others.
+bool Engine::constrain(const Touch& touch, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  Index particle = -1;
+  Vec3 point_t0 = Vec3::Zero(), point_t1 = Vec3::Zero();  // of the obstacle
+  double side = 0;
+  const Body *cloth = nullptr, *obstacle = nullptr;
+  for (int k = 0; k < 4; ++k) {
+    const auto v = static_cast<std::size_t>(touch.vertices[k]);
+    const double weight = touch.weights[k];
+    if (weight == 0) continue;
+    if (v >= masses_.size()) {
+      obstacle = &bodies_[body_of_[v]];
+      point_t0 += std::abs(weight) * x_t0[v];
+      point_t1 += std::abs(weight) * x_t1[v];
+    } else if (std::abs(weight) >= 1 - 1e-9) {
+      particle = touch.vertices[k];
+      cloth = &bodies_[body_of_[v]];
+      side = weight > 0 ? 1 : -1;
+    }
+  }
+  if (particle < 0 || obstacle == nullptr) return false;
+  const Vec3 normal = side * touch.normal;
+  const double distance = normal.dot(x_t0[static_cast<std::size_t>(particle)] - point_t0);
+  if (distance <= 0) return false;  // pinched
+  constraints_.add(
+      particle, normal, distance, std::min(touch.range_limit, contact_range(*cloth, *obstacle)), point_t1 - point_t0,
+      friction_of(static_cast<std::size_t>(cloth - bodies_.data()), static_cast<std::size_t>(obstacle - bodies_.data()))
+          .sliding);
+  return true;
+}
+
+// All corners of a triangle of cloth that would meet an obstacle are kept beyond the plane through the obstacle's
+// closest point; false for other pairs.
+bool Engine::constrain_corners(const CornerPair& pair, const Touch& touch, std::span<const Vec3> x_t0,
+                               std::span<const Vec3> x_t1) {
+  const auto is_cloth = [&](const Triangle& t) { return static_cast<std::size_t>(t[0]) < masses_.size(); };
+  if (is_cloth(pair.a) == is_cloth(pair.b)) return false;
+  const double side = is_cloth(pair.a) ? 1 : -1;
+  for (Index corner : side > 0 ? pair.a : pair.b) {
+    Touch of_corner = touch;
+    for (int k = 0; k < 4; ++k)
+      if (static_cast<std::size_t>(touch.vertices[k]) < masses_.size()) of_corner.weights[k] = 0;
+    for (int k = 0; k < 4; ++k)
+      if (static_cast<std::size_t>(touch.vertices[k]) < masses_.size()) {
+        of_corner.vertices[k] = corner;
+        of_corner.weights[k] = side;
+        break;
+      }
+    constrain(of_corner, x_t0, x_t1);
+  }
+  return true;
+}
+
 void Engine::add_contact(const Touch& touch, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  if (parameters_.velocity_constraints && constrain(touch, x_t0, x_t1)) return;
   Contact contact;
   contact.normal = touch.normal;
   double mass = 0, mass_weight = 0;
@@ -169,10 +237,14 @@ void Engine::add_contact(const Touch& touch, std::span<const Vec3> x_t0, std::sp
     }
   }
   if (mass_weight == 0) return;
-  contact.range = std::min(touch.range_limit, contact_range(*sides[0], *sides[1]));
+  contact.full_range = contact_range(*sides[0], *sides[1]);
+  contact.range = std::min(touch.range_limit, contact.full_range);
   contact.stiffness =
       touch.share * std::max(parameters_.stiffness, kInertialStiffness * mass / mass_weight / (step_ * step_));
-  contact.friction = std::sqrt(sides[0]->friction * sides[1]->friction);
+  const Friction& friction = friction_of(static_cast<std::size_t>(sides[0] - bodies_.data()),
+                                         static_cast<std::size_t>(sides[1] - bodies_.data()));
+  contact.friction = friction.sliding;
+  contact.static_friction = friction.at_rest;
   contacts_.add(contact);
 }
 
@@ -182,6 +254,7 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   finder_.find(x_t0, reach_, proximities_);
   contacts_.clear();
   contacts_.set_step(h);
+  if (parameters_.velocity_constraints) constraints_.begin_step(h);
   in_contact_.clear();
   if (!pinched_.empty()) add_pinch_contacts(x_t0, x_t1);
   for (const Proximity& proximity : proximities_)
@@ -190,6 +263,7 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
       if (part == 1) in_contact_.insert(sorted(proximity.vertices));
     }
   if (!apart(x_t0, x_t1)) adopt_failing(x_t0, x_t1);
+  if (parameters_.velocity_constraints) constraints_.prepare(x_t0, x_t1);
 }
 
 // Pinched cloth is pushed back to its side, at no more than kHealingSpeed towards the obstacle's surface.
@@ -222,8 +296,9 @@ int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1
     const double distance = std::sqrt(features.points.distance_sq);
     if (!in_contact_.insert(sorted(features.vertices)).second) continue;
     // What is closer than the range already, without being pushed, is only kept from coming closer.
-    add_contact({features.vertices, features.points.weights, features.points.difference / distance, 1, distance}, x_t0,
-                x_t1);
+    const Touch touch{features.vertices, features.points.weights, features.points.difference / distance, 1, distance};
+    if (!parameters_.velocity_constraints || !constrain_corners(pair, touch, x_t0, x_t1))
+      add_contact(touch, x_t0, x_t1);
     ++fresh;
   }
   return fresh;

@@ -13,6 +13,7 @@
 #include "collision/response/contact_set.hpp"
 #include "collision/response/pinch.hpp"
 #include "collision/response/separation.hpp"
+#include "collision/response/velocity_constraints.hpp"
 #include "core/types.hpp"
 
 namespace weft::collision {
@@ -27,6 +28,15 @@ struct Body {
   double friction = 0;   ///< Coulomb coefficient; of a pair: the geometric mean
 };
 
+/// Coulomb coefficients of two bodies while they slide and before.
+struct Friction {
+  double sliding = 0, at_rest = 0;
+};
+struct PairFriction {
+  std::size_t a = 0, b = 0;  ///< bodies, in any order
+  Friction friction;
+};
+
 /// Cloth that is in an obstacle because it has no room.
 struct Pinch {
   std::size_t cloth = 0, obstacle = 0;
@@ -35,9 +45,13 @@ struct Pinch {
 };
 
 struct EngineParameters {
-  bool self = true;        ///< cloth against itself and other cloth
-  bool obstacles = true;   ///< cloth against obstacles
-  double stiffness = 100;  ///< least stiffness of a contact [N/m]
+  bool self = true;                    ///< cloth against itself and other cloth
+  bool obstacles = true;               ///< cloth against obstacles
+  double stiffness = 100;              ///< least stiffness of a contact [N/m]
+  std::vector<PairFriction> friction;  ///< of pairs with coefficients of their own
+  BroadPhaseOptions search;
+  bool reuse = true;                  ///< of candidates and close features while nothing has moved far
+  bool velocity_constraints = false;  ///< of single particles against obstacles, in place of contacts
 };
 
 class Engine {
@@ -53,6 +67,10 @@ class Engine {
   /// The contacts found, to act inside the solve.
   ContactSet& contacts() { return contacts_; }
   const ContactSet& contacts() const { return contacts_; }
+
+  /// Those of single particles with obstacles, where the parameters ask for it.
+  VelocityConstraints& constraints() { return constraints_; }
+  const VelocityConstraints& constraints() const { return constraints_; }
 
   /// Whether every pair of triangles stays apart on the way to x_t1.
   bool apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
@@ -84,6 +102,8 @@ class Engine {
   Index triangle_of(const Triangle& corners) const;
 
  private:
+  void prepare_friction();
+  const Friction& friction_of(std::size_t a, std::size_t b) const { return friction_[a * bodies_.size() + b]; }
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   /// Two features that are to push each other.
   struct Touch {
@@ -97,12 +117,16 @@ class Engine {
   void add_pinch_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   bool is_pinched(const std::array<Index, 4>& vertices) const;
   std::optional<CornerPair> first_fresh(const PinchedPairs& pinched) const;
+  bool constrain(const Touch& touch, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  bool constrain_corners(const CornerPair& pair, const Touch& touch, std::span<const Vec3> x_t0,
+                         std::span<const Vec3> x_t1);
   bool near_start(std::span<const Vec3> x) const;
   bool inside_bounds(std::span<const Vec3> x) const;
 
   std::vector<Body> bodies_;
   EngineParameters parameters_;
   std::vector<double> masses_;
+  std::vector<Friction> friction_;    // of each pair of bodies
   std::vector<Triangle> triangles_;   // of all bodies, in their order
   std::vector<std::size_t> body_of_;  // per vertex
   std::vector<Surface> surfaces_;     // per body
@@ -123,6 +147,7 @@ class Engine {
   std::vector<Proximity> proximities_;
   std::set<std::array<Index, 4>> in_contact_;  // sorted vertices of the features that push with all their stiffness
   ContactSet contacts_;
+  VelocityConstraints constraints_;
 };
 
 }  // namespace weft::collision

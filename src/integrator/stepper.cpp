@@ -16,6 +16,12 @@ constexpr double kRest = 0.1;
 constexpr double kOvershoot = 0.7;
 constexpr int kLineTrials = 6;
 
+double dot(std::span<const double> a, std::span<const double> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i] * b[i];
+  return sum;
+}
+
 double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   double sum = 0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
@@ -86,6 +92,10 @@ double Stepper::force_scale(std::span<const double> masses, const Vec3& gravity,
   const double least = std::max(gravity.norm(), 1.0);
   for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = Vec3(0, 0, masses[i] * least);
   cg_.filter(scale_);
+  // Where all particles lie on a floor that holds them up, their weight is measured along it.
+  if (!(dot(scale_, scale_) > 1e-12 * least * least * dot(masses, masses)))
+    for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = Vec3::Constant(masses[i] * least);
+  cg_.filter(scale_);
   const double weight = kRest * cg_.norm(scale_);
   for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = masses[i] / stage.beta * (v_[i] - v_hat_[i]);
   cg_.filter(scale_);
@@ -152,6 +162,7 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
   const std::size_t n = now.x.size();
   const auto masses = system.masses();
   const Stage stage = begin(now, h);
+  beta_ = stage.beta;
   prepare_guess(system, now, stage, h, gravity);
   if (start == Start::next)
     for (std::size_t i = 0; i < n; ++i) x_[i] = now.x[i] + (next.x[i] - now.x[i]) / stage.end_rate;
@@ -198,6 +209,11 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
     next.v[i] = particle.v_end + free * (next.v[i] - particle.v_end);
   }
   return report;
+}
+
+Vec3 Stepper::constraint_force(Index particle, double mass) const {
+  const auto i = static_cast<std::size_t>(particle);
+  return mass / beta_ * (v_[i] - v_hat_[i]) - force_[i] - constant_force_[i];
 }
 
 void Stepper::accept(const State& before, double h) {

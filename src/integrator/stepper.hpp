@@ -55,6 +55,9 @@ class Stepper {
                   std::span<const HeldParticle> held, solver::LinearSystem& scratch, State& next,
                   Start start = Start::unchanged_velocity);
 
+  /// Force [N] with which its constraint acted on a particle of this mass [kg] at the end of the last step computed.
+  Vec3 constraint_force(Index particle, double mass) const;
+
   /// Makes `before`, the state at the start of the step over h just accepted, the history of the next step.
   void accept(const State& before, double h);
 
@@ -79,6 +82,7 @@ class Stepper {
   NewtonParameters parameters_;
   State previous_;
   double previous_h_ = 0;  // 0: no history
+  double beta_ = 0;        // of the last stage [s]
 
   // Scratch of one step.
   solver::ConjugateGradient cg_;

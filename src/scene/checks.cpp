@@ -65,6 +65,20 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
   }
 }
 
+void check_friction_pairs(const Scene& scene, Findings& findings) {
+  std::vector<std::string> names = names_of(scene.cloths);
+  for (const std::string& name : names_of(scene.obstacles)) names.push_back(name);
+  for (std::size_t i = 0; i < scene.contact.pairs.size(); ++i) {
+    const FrictionPair& pair = scene.contact.pairs[i];
+    const std::string path = fmt::format("contact.pair.{}", i);
+    check_reference(pair.first, names, "a cloth or obstacle", path + ".first", findings);
+    check_reference(pair.second, names, "a cloth or obstacle", path + ".second", findings);
+    if (pair.static_friction && *pair.static_friction < pair.friction)
+      findings.report(path + ".static_friction",
+                      fmt::format("expected >= {}, that of sliding, got {}", pair.friction, *pair.static_friction));
+  }
+}
+
 void check_cloths(const Scene& scene, Findings& findings) {
   long particles = 0;
   for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
@@ -135,6 +149,7 @@ void check(const Scene& scene, Findings& findings) {
                     fmt::format("expected at most {} frames (duration * fps), got {:.0f}", kMaxFrames, frames));
   }
   check_cloths(scene, findings);
+  check_friction_pairs(scene, findings);
   check_obstacles(scene, findings);
   check_cameras(scene, findings);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {

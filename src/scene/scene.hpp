@@ -39,11 +39,35 @@ struct Solver {
   int halvings = 8;  ///< of a rejected step, before the run gives up
 };
 
+enum class Bounds { box, dop14, dop18, dop26 };
+enum class TreeKind { binary, quad, oct };
+
+/// How near surfaces are found (seed, "Collision Detection"). Nothing here changes what is found, only how fast.
+struct Search {
+  Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 14, 18, 26
+  TreeKind tree = TreeKind::oct;  ///< two, four or eight children to a node
+  int leaf = 8;                   ///< most triangles of a leaf
+  bool open_longer_side = false;  ///< of two nodes open the longer one, instead of both
+  bool separation_lists = false;  ///< walk on from where the last walk stopped
+  bool velocity_cones = false;    ///< leave the bounds of slow nodes as they are
+  bool normal_cones = false;      ///< skip regions that are provably flat enough
+  bool reuse = true;              ///< keep candidates and close features while nothing has moved far
+};
+
+/// Coulomb friction between two objects, instead of what their own coefficients give.
+struct FrictionPair {
+  std::string first, second;              ///< names of cloths or obstacles; the same twice: a cloth with itself
+  double friction = 0.3;                  ///< while sliding
+  std::optional<double> static_friction;  ///< until sliding begins, at least that of sliding; the same where absent
+};
+
 /// Contact of all surfaces.
 struct Contact {
   bool self = true;        ///< cloth against itself and other cloths
   bool obstacles = true;   ///< cloth against obstacles
   double stiffness = 100;  ///< of one contact [N/m]
+  std::vector<FrictionPair> pairs;
+  Search search;
   Response response = Response::springs;
 };
 

@@ -6,11 +6,13 @@
 namespace weft::simulation {
 namespace {
 
-// Patches of the preconditioner's coarse level, in all. Its dense factorisation costs 9 kPatches³ operations per Newton
-// iteration: at 80 less than one product with the matrix of 4,000 particles costs in each of many CG iterations.
-constexpr int kPatches = 80;
-// Width of the smallest groups, in particles.
-constexpr double kNarrowest = 1.9;
+// Groups on the preconditioner's coarsest level at most. Its dense factorisation costs 9 kPatches³ operations: as much
+// as a few products with the matrix of 4,000 particles.
+constexpr Index kPatches = 70;
+
+// Motion of a particle since the last linearisation, in spacings, up to which the matrix is good enough to find the way
+// with; residuals are exact always.
+constexpr double kStaleMotion = 0.005;
 
 }  // namespace
 
@@ -39,6 +41,7 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     first += grid.size();
   }
   first_.push_back(first);
+  for (const auto& cloth : environment.cloths) spacing_ = std::min({spacing_, cloth.grid.lu, cloth.grid.lv});
   std::vector<mesh::Grid> grids;
   for (const auto& cloth : environment.cloths) grids.push_back(cloth.grid);
   cut_groups(grids);
@@ -53,33 +56,34 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   for (const auto& force : bend_) force->attach(base_);
 }
 
-// Square groups, twice as wide from level to level, up to a width that leaves about kPatches of them.
+// Two by two, again and again, until kPatches or fewer are left in all, or one of each cloth.
 void ClothSystem::cut_groups(const std::vector<mesh::Grid>& grids) {
-  const double widest = std::max(2.0, std::ceil(std::sqrt(static_cast<double>(masses_.size()) / kPatches)));
-  std::vector<double> widths{widest};
-  while (widths.front() >= 2 * kNarrowest) widths.insert(widths.begin(), 0.5 * widths.front());
-  for (double width : widths) {
+  struct Size {
+    int u, v;
+  };
+  std::vector<Size> sizes;
+  for (const mesh::Grid& grid : grids) sizes.push_back({grid.nu, grid.nv});
+  const auto halved = [](int n) { return (n + 1) / 2; };
+  do {
     solver::Grouping grouping;
-    for (const mesh::Grid& grid : grids) {
-      const int across_u = std::max(1, static_cast<int>(std::lround(grid.nu / width)));
-      const int across_v = std::max(1, static_cast<int>(std::lround(grid.nv / width)));
-      for (int j = 0; j < grid.nv; ++j)
-        for (int i = 0; i < grid.nu; ++i)
-          grouping.of.push_back(grouping.count + i * across_u / grid.nu + across_u * (j * across_v / grid.nv));
-      grouping.count += across_u * across_v;
+    for (Size& size : sizes) {
+      for (int j = 0; j < size.v; ++j)
+        for (int i = 0; i < size.u; ++i) grouping.of.push_back(grouping.count + i / 2 + halved(size.u) * (j / 2));
+      size = {halved(size.u), halved(size.v)};
+      grouping.count += size.u * size.v;
     }
     groupings_.push_back(std::move(grouping));
-  }
+  } while (groupings_.back().count > std::max(kPatches, static_cast<Index>(grids.size())));
 }
 
 void ClothSystem::explicit_forces(const integrator::State& at, double h, std::span<Vec3> force) const {
   for (const forces::Air& air : air_) air.add(at.x, at.v, masses_, h, force);
-  if (constraints_ != nullptr) constraints_->add_friction(force);
 }
 
 void ClothSystem::forces(const integrator::StagePoint& at, std::span<Vec3> force) const {
   for (const forces::Force* f : forces_) f->add({at.x, at.v, force});
   if (contacts_ != nullptr) contacts_->add_forces(at.x_end, force);
+  if (constraints_ != nullptr) constraints_->add_forces(at.x_end, force);
 }
 
 void ClothSystem::prepare_base(double rate) const {
@@ -93,11 +97,30 @@ void ClothSystem::prepare_base(double rate) const {
 
 void ClothSystem::linearise(const integrator::StagePoint& at, std::span<Vec3> force,
                             solver::LinearSystem& system) const {
-  prepare_base(at.rate);
-  system.matrix.copy_values(base_);
-  for (const forces::Force* f : forces_) f->add({at.x, at.v, force, &system.matrix, at.rate});
+  if (&system != linearised_into_ || is_stale(at)) {
+    linearised_into_ = &system;
+    prepare_base(at.rate);
+    system.matrix.copy_values(base_);
+    ++system.matrix_version;
+    for (const forces::Force* f : forces_) f->add({at.x, at.v, force, &system.matrix, at.rate});
+    linearised_at_.assign(at.x.begin(), at.x.end());
+    linearised_rate_ = at.rate;
+  } else {
+    for (const forces::Force* f : forces_) f->add({at.x, at.v, force});
+  }
   system.terms.clear();
+  system.diagonal_terms.clear();
   if (contacts_ != nullptr) contacts_->linearise(at.x_end, at.end_rate, force, system);
+  if (constraints_ != nullptr) constraints_->linearise(at.x_end, at.end_rate, force, system);
+}
+
+// Whether the matrix of the last linearisation is of another step size, or of positions too far away.
+bool ClothSystem::is_stale(const integrator::StagePoint& at) const {
+  if (at.rate != linearised_rate_ || linearised_at_.empty()) return true;
+  const double most = kStaleMotion * spacing_;
+  for (std::size_t i = 0; i < at.x.size(); ++i)
+    if (!((at.x[i] - linearised_at_[i]).squaredNorm() <= most * most)) return true;
+  return false;
 }
 
 solver::LinearSystem ClothSystem::make_linear_system() const {

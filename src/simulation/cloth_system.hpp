@@ -1,11 +1,13 @@
 // The particles of all cloths as one system M x'' = f: forces put together from what the materials name.
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <span>
 #include <vector>
 
 #include "collision/response/contact_set.hpp"
+#include "collision/response/velocity_constraints.hpp"
 #include "environment/environment.hpp"
 #include "forces/air.hpp"
 #include "forces/bend.hpp"
@@ -29,6 +31,12 @@ class ClothSystem final : public integrator::System {
 
   /// Contacts of the current step, or nullptr where the scene can have none. Must outlive the steps.
   void use_contacts(collision::ContactSet* contacts) { contacts_ = contacts; }
+  /// Constraints whose sliding friction acts; likewise.
+  void use_constraints(const collision::VelocityConstraints* constraints) { constraints_ = constraints; }
+
+  /// Makes the next linearisation put the matrix together anew: what is computed from here on depends on positions and
+  /// velocities alone.
+  void forget() { linearised_at_.clear(); }
 
   /// An empty system with the pattern of this one.
   solver::LinearSystem make_linear_system() const;
@@ -42,6 +50,7 @@ class ClothSystem final : public integrator::System {
 
  private:
   void prepare_base(double rate) const;
+  bool is_stale(const integrator::StagePoint& at) const;
   void cut_groups(const std::vector<mesh::Grid>& grids);
 
   std::vector<Index> first_;  // per cloth, and the total at the end
@@ -52,11 +61,17 @@ class ClothSystem final : public integrator::System {
   std::vector<forces::Air> air_;
   std::vector<const forces::Force*> forces_;  // all of the stiff ones
   collision::ContactSet* contacts_ = nullptr;
+  const collision::VelocityConstraints* constraints_ = nullptr;
   std::vector<solver::Grouping> groupings_;  // of the preconditioner
 
   // rate² M plus the constant part of the bending, kept as long as the step does not change.
   mutable solver::BlockMatrix base_;
   mutable double base_rate_ = 0;
+  // Where the matrix was last put together: cloth at rest does with the one it has.
+  double spacing_ = std::numeric_limits<double>::infinity();  // least, of all cloths [m]
+  mutable std::vector<Vec3> linearised_at_;
+  mutable double linearised_rate_ = 0;
+  mutable const solver::LinearSystem* linearised_into_ = nullptr;
 };
 
 }  // namespace weft::simulation

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "core/error.hpp"
 
@@ -32,6 +33,49 @@ std::vector<collision::Triangle> shifted(const mesh::Mesh& mesh, Index first) {
   for (collision::Triangle& t : triangles)
     for (Index& v : t) v += first;
   return triangles;
+}
+
+// Bodies are the cloths of the scene and then the obstacles that collide.
+std::vector<collision::PairFriction> friction_pairs(const scene::Scene& scene,
+                                                    const environment::Environment& environment) {
+  std::vector<std::string> names;
+  for (const scene::Cloth& cloth : scene.cloths) names.push_back(cloth.name);
+  for (std::size_t r : colliding_rigids(scene, environment)) names.push_back(scene.obstacles[r].name);
+  std::vector<collision::PairFriction> pairs;
+  for (const scene::FrictionPair& pair : scene.contact.pairs) {
+    const auto a = std::find(names.begin(), names.end(), pair.first),
+               b = std::find(names.begin(), names.end(), pair.second);
+    if (a == names.end() || b == names.end()) continue;  // an obstacle that does not collide
+    pairs.push_back({static_cast<std::size_t>(a - names.begin()),
+                     static_cast<std::size_t>(b - names.begin()),
+                     {pair.friction, pair.static_friction.value_or(pair.friction)}});
+  }
+  return pairs;
+}
+
+collision::BroadPhaseOptions search_options(const scene::Search& search) {
+  constexpr std::array<int, 4> kDirections{6, 14, 18, 26};
+  constexpr std::array<int, 3> kChildren{2, 4, 8};
+  collision::BroadPhaseOptions options;
+  options.directions = kDirections[static_cast<std::size_t>(search.bounds)];
+  options.children = kChildren[static_cast<std::size_t>(search.tree)];
+  options.leaf = search.leaf;
+  options.open_longer_side = search.open_longer_side;
+  options.separation_list = search.separation_lists;
+  options.velocity_cones = search.velocity_cones;
+  options.normal_cones = search.normal_cones;
+  return options;
+}
+
+collision::EngineParameters engine_parameters(const scene::Scene& scene, const environment::Environment& environment) {
+  const scene::Contact& contact = scene.contact;
+  return {.self = contact.self,
+          .obstacles = contact.obstacles,
+          .stiffness = contact.stiffness,
+          .friction = friction_pairs(scene, environment),
+          .search = search_options(contact.search),
+          .reuse = contact.search.reuse,
+          .velocity_constraints = contact.response == scene::Response::velocity_constraints};
 }
 
 std::vector<collision::Body> make_bodies(const scene::Scene& scene, const environment::Environment& environment) {
@@ -76,8 +120,8 @@ CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Env
       particles_(system.masses().size()),
       all_t0_(start_positions(scene, environment)),
       all_t1_(all_t0_),
-      engine_(make_bodies(scene, environment), {scene.contact.self, scene.contact.obstacles, scene.contact.stiffness},
-              all_t0_, {system.masses().begin(), system.masses().end()}) {
+      engine_(make_bodies(scene, environment), engine_parameters(scene, environment), all_t0_,
+              {system.masses().begin(), system.masses().end()}) {
   for (const auto& cloth : environment.cloths) names_.push_back(cloth.name);
   for (std::size_t r : rigids_) names_.push_back(environment.rigids[r].name);
   if (const auto meeting = engine_.find_meeting(all_t0_))
@@ -121,6 +165,12 @@ void CollisionStage::begin_step(environment::Environment& environment, const int
     movable_[i] = 0;
   }
   engine_.begin_step(all_t0_, all_t1_, h);
+}
+
+void CollisionStage::append_constraints(std::vector<integrator::HeldParticle>& held) const {
+  for (const collision::PrescribedParticle& particle : engine_.constraints().prescribed())
+    if (movable_[static_cast<std::size_t>(particle.constraint.particle)])
+      held.push_back({particle.constraint, particle.x_end, particle.v_end});
 }
 
 bool CollisionStage::apart(const integrator::State& next) {

@@ -32,6 +32,16 @@ class CollisionStage {
 
   collision::ContactSet& contacts() { return engine_.contacts(); }
   const collision::ContactSet& contacts() const { return engine_.contacts(); }
+  const collision::VelocityConstraints& constraints() const { return engine_.constraints(); }
+
+  /// Appends what the velocity constraints hold of the particles that no pin holds.
+  void append_constraints(std::vector<integrator::HeldParticle>& held) const;
+  /// After a solve that led to `next`: sets and releases velocity constraints; returns how many have changed.
+  int revise_constraints(const integrator::State& next, const collision::VelocityConstraints::ForceOn& force_on) {
+    return engine_.constraints().revise(all_t0_, next.x, force_on);
+  }
+  /// The step is done: its constraints are where the next one starts.
+  void accept_constraints() { engine_.constraints().accept(); }
 
   /// After the solve: whether nothing meets anything on the way to `next`.
   bool apart(const integrator::State& next);

@@ -21,6 +21,8 @@ namespace {
 // Solves of one step with contacts added in between, before the rest is left to moving particles. A second one replaces
 // nearly all corrections where something fast arrives; a third found nothing more to do.
 constexpr int kContactRounds = 2;
+// Likewise where velocity constraints are set and released in between.
+constexpr int kConstraintRounds = 6;
 // Halvings of a step before cloth that cannot be kept out of an obstacle is taken for pinched: where there is room a
 // shorter step finds it, where there is none it only costs.
 constexpr int kHalvingsBeforePinch = 3;
@@ -83,6 +85,7 @@ struct Simulation::Impl {
   Rejection attempt(double t, double h, bool may_pinch, FrameReport& report);
   Rejection solve(double h, integrator::Stepper::Start start, FrameReport& report);
   void write_back();
+  bool constrained() const { return scene.contact.response == scene::Response::velocity_constraints; }
 
   scene::Scene scene;
   environment::Environment environment;
@@ -120,6 +123,7 @@ Simulation::Impl::Impl(const scene::Scene& s)
   if (CollisionStage::needed(scene)) {
     collisions.emplace(scene, environment, system);
     system.use_contacts(&collisions->contacts());
+    if (constrained()) system.use_constraints(&collisions->constraints());
   }
   current = make_snapshot();
   measure(start_report);
@@ -144,12 +148,30 @@ Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, bool m
     const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
     collisions->begin_step(environment, now, held, t, h);
   }
+  const std::size_t pinned = held.size();
+  const int rounds = constrained() ? kConstraintRounds : kContactRounds;
+  const auto revise = [&] {
+    return constrained()
+               ? collisions->revise_constraints(next,
+                                                [&](Index particle) {
+                                                  return stepper.constraint_force(
+                                                      particle, system.masses()[static_cast<std::size_t>(particle)]);
+                                                })
+               : 0;
+  };
   for (int round = 1;; ++round) {
+    held.resize(pinned);
+    if (constrained()) collisions->append_constraints(held);
     const Start start = round == 1 ? Start::unchanged_velocity : Start::next;
     if (Rejection rejection = solve(h, start, report)) return rejection;
     const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
+    if (revise() > 0 && round < rounds) continue;
+    if (constrained()) collisions->accept_constraints();
     if (collisions->apart(next)) return std::nullopt;
-    if (round < kContactRounds && collisions->adopt_failing() > 0) continue;
+    if (round < rounds && collisions->adopt_failing() > 0) {
+      revise();
+      continue;
+    }
     return collisions->push_apart(h, may_pinch, next);
   }
 }
@@ -183,6 +205,7 @@ FrameReport Simulation::Impl::advance() {
     const double t_t0 = frame / scene.time.fps, t_t1 = (frame + 1) / scene.time.fps;
     const int steps = std::max(1, static_cast<int>(std::ceil((t_t1 - t_t0) / scene.time.step - 1e-9)));
     const double h = (t_t1 - t_t0) / steps;
+    system.forget();
     const integrator::State start = now;
     const integrator::Stepper stepper_start = stepper;
     try {

@@ -29,6 +29,8 @@ double ConjugateGradient::norm(std::span<const Vec3> b) {
 double ConjugateGradient::multiply(std::span<const Vec3> p, std::span<Vec3> q) const {
   parallel_for(p.size(), kChunk,
                [&](std::size_t begin, std::size_t end) { system_->matrix.multiply(p, q, begin, end); });
+  for (const DiagonalTerm& term : system_->diagonal_terms)
+    q[static_cast<std::size_t>(term.particle)] += term.stiffness * p[static_cast<std::size_t>(term.particle)];
   for (const StencilTerm& term : system_->terms) {
     const auto& [a, b, c, d] = term.particles;
     const auto& w = term.weights;

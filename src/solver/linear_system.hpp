@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <vector>
 
 #include "core/types.hpp"
@@ -24,18 +25,26 @@ struct StencilTerm {
   Mat3 stiffness = Mat3::Zero();              ///< symmetric, positive semidefinite [N/m]
 };
 
-/// Groups that the particles are cut into.
+/// As StencilTerm for a single particle.
+struct DiagonalTerm {
+  Index particle = 0;
+  Mat3 stiffness = Mat3::Zero();  ///< symmetric, positive semidefinite [N/m]
+};
+
+/// Groups that the particles are cut into, or smaller groups.
 struct Grouping {
-  std::vector<Index> of;  ///< group of each particle, 0 to count − 1
+  std::vector<Index> of;  ///< group of each member, 0 to count − 1
   Index count = 0;
 };
 
 struct LinearSystem {
-  BlockMatrix matrix;  ///< positive definite on the free directions
+  BlockMatrix matrix;                ///< positive definite on the free directions
+  std::uint64_t matrix_version = 1;  ///< another number whenever the values of the matrix change
   std::vector<StencilTerm> terms;
+  std::vector<DiagonalTerm> diagonal_terms;
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
-  /// Coarse levels of the preconditioner, which moves groups as a whole: from small groups to large ones, the last of
-  /// them few enough for a dense factorisation. Empty: no coarse level.
+  /// Coarse levels of the preconditioner, which moves groups as a whole: of particles, of those groups, and so on, the
+  /// last of them few enough for a dense factorisation. Empty: no coarse level.
   std::vector<Grouping> groupings;
 };
 

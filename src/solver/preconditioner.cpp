@@ -40,32 +40,38 @@ Mat3 Preconditioner::filtered(Index i, const Mat3& block, Index j) const {
 }
 
 void Preconditioner::prepare(const LinearSystem& system) {
+  const bool same_constraints =
+      std::equal(constraints_.begin(), constraints_.end(), system.constraints.begin(), system.constraints.end(),
+                 [](const auto& a, const auto& b) { return a.particle == b.particle && a.free == b.free; });
+  const bool same = system_ == &system && matrix_version_ == system.matrix_version && same_constraints;
   system_ = &system;
-  constraint_of_.assign(index(system.matrix.rows()), -1);
-  for (std::size_t c = 0; c < system.constraints.size(); ++c)
-    constraint_of_[index(system.constraints[c].particle)] = static_cast<Index>(c);
+  if (!same) {
+    matrix_version_ = system.matrix_version;
+    constraints_ = system.constraints;
+    constraint_of_.assign(index(system.matrix.rows()), -1);
+    for (std::size_t c = 0; c < constraints_.size(); ++c)
+      constraint_of_[index(constraints_[c].particle)] = static_cast<Index>(c);
+    prepare_levels();
+    if (!levels_.empty()) sum_blocks();
+  }
   prepare_particles();
-  if (system.groupings.empty()) return;
+  if (!levels_.empty()) add_terms();
+}
 
-  levels_.resize(system.groupings.size() - 1);
+// Who is in which group, and room for it all.
+void Preconditioner::prepare_levels() {
+  levels_.resize(system_->groupings.size());
   for (std::size_t l = 0; l < levels_.size(); ++l) {
-    levels_[l].inverse.assign(index(system.groupings[l].count), Mat3::Zero());
-    levels_[l].correction.resize(index(system.groupings[l].count));
+    const Grouping& grouping = system_->groupings[l];
+    Level& level = levels_[l];
+    level.group_of = grouping.of;
+    if (l > 0) {
+      level.group_of = levels_[l - 1].group_of;
+      for (Index& group : level.group_of) group = grouping.of[index(group)];
+    }
+    for (auto* blocks : {&level.of_matrix, &level.inverse}) blocks->assign(index(grouping.count), Mat3::Zero());
+    for (auto* vectors : {&level.residual, &level.correction}) vectors->resize(index(grouping.count));
   }
-  const Index size = 3 * system.groupings.back().count;
-  patch_matrix_.setZero(size, size);
-  sum_blocks();
-  sum_terms();
-
-  for (Level& level : levels_) {
-    double trace = 0;
-    for (const Mat3& block : level.inverse) trace += block.trace();
-    const double stand_in = trace > 0 ? kStandIn * trace / (3 * static_cast<double>(level.inverse.size())) : 1;
-    for (Mat3& block : level.inverse) block = (block + stand_in * Mat3::Identity()).inverse().eval();
-  }
-  const double trace = patch_matrix_.trace();
-  patch_matrix_.diagonal().array() += trace > 0 ? kStandIn * trace / size : 1;
-  patch_solver_.compute(patch_matrix_);
 }
 
 void Preconditioner::prepare_particles() {
@@ -73,17 +79,18 @@ void Preconditioner::prepare_particles() {
   inverse_diagonal_.resize(rows);
   for (std::size_t i = 0; i < rows; ++i)
     inverse_diagonal_[i] = system_->matrix.block(system_->matrix.diagonal(static_cast<Index>(i)));
+  for (const DiagonalTerm& term : system_->diagonal_terms) inverse_diagonal_[index(term.particle)] += term.stiffness;
   for (const StencilTerm& term : system_->terms)
     for (int a = 0; a < 4; ++a)
       inverse_diagonal_[index(term.particles[a])] += term.weights[a] * term.weights[a] * term.stiffness;
-  for (const ParticleConstraint& c : system_->constraints) {
+  for (const ParticleConstraint& c : constraints_) {
     Mat3& block = inverse_diagonal_[index(c.particle)];
     block = c.free * block * c.free + (Mat3::Identity() - c.free);
   }
   parallel_for(rows, kChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) inverse_diagonal_[i] = inverse_diagonal_[i].inverse().eval();
   });
-  for (const ParticleConstraint& c : system_->constraints) {
+  for (const ParticleConstraint& c : constraints_) {
     Mat3& inverse = inverse_diagonal_[index(c.particle)];
     inverse = c.free * inverse * c.free;
   }
@@ -92,22 +99,25 @@ void Preconditioner::prepare_particles() {
 // The blocks of the matrix, level by level. Most neighbours of a particle are in its own groups: their blocks are added
 // up before they go into the level.
 void Preconditioner::sum_blocks() {
-  const std::size_t depth = levels_.size() + 1;
+  const std::size_t depth = levels_.size();
+  const Index size = 3 * system_->groupings.back().count;
+  patches_of_matrix_.setZero(size, size);
   std::array<const Index*, kMaxLevels> group_of{};
-  for (std::size_t l = 0; l < depth; ++l) group_of[l] = system_->groupings[l].of.data();
+  for (std::size_t l = 0; l < depth; ++l) group_of[l] = levels_[l].group_of.data();
   std::array<Mat3, kMaxLevels> own;
   Index row = -1;
   const auto finish_row = [&] {
-    for (std::size_t l = 0; l + 1 < depth; ++l) levels_[l].inverse[index(group_of[l][row])] += own[l];
+    for (std::size_t l = 0; l < depth; ++l) levels_[l].of_matrix[index(group_of[l][row])] += own[l];
     const Index patch = 3 * group_of[depth - 1][row];
-    patch_matrix_.block<3, 3>(patch, patch) += own[depth - 1];
+    patches_of_matrix_.block<3, 3>(patch, patch) += own[depth - 1];
   };
   const auto add = [&](Index i, Index j, const auto& block) {
-    for (std::size_t l = 0; l < depth; ++l)
-      if (group_of[l][i] == group_of[l][j]) own[l] += block;
+    // Groups are nested: whoever is in one with i on some level is so on all that follow.
+    std::size_t l = depth;
+    while (l > 0 && group_of[l - 1][i] == group_of[l - 1][j]) own[--l] += block;
     // The factorisation reads the lower triangle only.
     const Index patch_i = group_of[depth - 1][i], patch_j = group_of[depth - 1][j];
-    if (patch_i > patch_j) patch_matrix_.block<3, 3>(3 * patch_i, 3 * patch_j) += block;
+    if (patch_i > patch_j) patches_of_matrix_.block<3, 3>(3 * patch_i, 3 * patch_j) += block;
   };
   system_->matrix.for_each_block([&](Index i, Index j, const auto& block) {
     if (i != row) {
@@ -123,55 +133,76 @@ void Preconditioner::sum_blocks() {
   if (row >= 0) finish_row();
 }
 
-void Preconditioner::sum_terms() {
-  const std::vector<Index>& patch_of = system_->groupings.back().of;
-  for (const StencilTerm& term : system_->terms) {
-    for (int a = 0; a < 4; ++a) {
-      for (int b = 0; b < 4; ++b) {
-        const double weight = term.weights[a] * term.weights[b];
-        if (weight == 0) continue;
-        const Index i = term.particles[a], j = term.particles[b];
-        const Mat3 block = filtered(i, weight * term.stiffness, j);
-        for (std::size_t l = 0; l < levels_.size(); ++l) {
-          const std::vector<Index>& group_of = system_->groupings[l].of;
-          if (group_of[index(i)] == group_of[index(j)]) levels_[l].inverse[index(group_of[index(i)])] += block;
-        }
-        patch_matrix_.block<3, 3>(3 * patch_of[index(i)], 3 * patch_of[index(j)]) += block;
-      }
+void Preconditioner::add_terms() {
+  for (Level& level : levels_) level.inverse = level.of_matrix;
+  patch_matrix_ = patches_of_matrix_;
+  const auto add = [&](Index i, const Mat3& unfiltered, Index j) {
+    const Mat3 block = filtered(i, unfiltered, j);
+    for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
+      const Index group = levels_[l].group_of[index(i)];
+      if (group == levels_[l].group_of[index(j)]) levels_[l].inverse[index(group)] += block;
     }
+    const std::vector<Index>& patch_of = levels_.back().group_of;
+    patch_matrix_.block<3, 3>(3 * patch_of[index(i)], 3 * patch_of[index(j)]) += block;
+  };
+  for (const DiagonalTerm& term : system_->diagonal_terms) add(term.particle, term.stiffness, term.particle);
+  for (const StencilTerm& term : system_->terms)
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < 4; ++b)
+        if (const double weight = term.weights[a] * term.weights[b]; weight != 0)
+          add(term.particles[a], weight * term.stiffness, term.particles[b]);
+
+  for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
+    std::vector<Mat3>& blocks = levels_[l].inverse;
+    double trace = 0;
+    for (const Mat3& block : blocks) trace += block.trace();
+    const double stand_in = trace > 0 ? kStandIn * trace / (3 * static_cast<double>(blocks.size())) : 1;
+    for (Mat3& block : blocks) block = (block + stand_in * Mat3::Identity()).inverse().eval();
+  }
+  const double trace = patch_matrix_.trace();
+  patch_matrix_.diagonal().array() += trace > 0 ? kStandIn * trace / static_cast<double>(patch_matrix_.rows()) : 1;
+  patch_solver_.compute(patch_matrix_);
+}
+
+// From particles to groups to larger groups.
+void Preconditioner::restrict_residual(std::span<const Vec3> r) {
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    std::vector<Vec3>& sums = levels_[l].residual;
+    std::fill(sums.begin(), sums.end(), Vec3::Zero());
+    const std::span<const Vec3> members = l == 0 ? r : std::span<const Vec3>(levels_[l - 1].residual);
+    const std::vector<Index>& of = system_->groupings[l].of;
+    for (std::size_t m = 0; m < members.size(); ++m) sums[index(of[m])] += members[m];
   }
 }
 
 double Preconditioner::apply(std::span<const Vec3> r, std::span<Vec3> z) {
-  const bool coarse = !system_->groupings.empty();
-  if (coarse) {
-    for (std::size_t l = 0; l < levels_.size(); ++l) {
+  if (!levels_.empty()) {
+    restrict_residual(r);
+    // From the largest groups down: each adds the correction of the group that it is in.
+    Level& patches = levels_.back();
+    patch_vector_.resize(patch_matrix_.rows());
+    for (std::size_t g = 0; g < patches.residual.size(); ++g)
+      patch_vector_.segment<3>(3 * static_cast<Eigen::Index>(g)) = patches.residual[g];
+    patch_solver_.solveInPlace(patch_vector_);
+    for (std::size_t g = 0; g < patches.residual.size(); ++g)
+      patches.correction[g] = patch_vector_.segment<3>(3 * static_cast<Eigen::Index>(g));
+    for (std::size_t l = levels_.size() - 1; l-- > 0;) {
       Level& level = levels_[l];
-      const Index* group_of = system_->groupings[l].of.data();
-      std::fill(level.correction.begin(), level.correction.end(), Vec3::Zero());
-      for (std::size_t i = 0; i < r.size(); ++i) level.correction[index(group_of[i])] += r[i];
-      for (std::size_t g = 0; g < level.inverse.size(); ++g)
-        level.correction[g] = (level.inverse[g] * level.correction[g]).eval();
+      const std::vector<Index>& parent_of = system_->groupings[l + 1].of;
+      for (std::size_t g = 0; g < level.residual.size(); ++g)
+        level.correction[g] = level.inverse[g] * level.residual[g] + levels_[l + 1].correction[index(parent_of[g])];
     }
-    const Index* patch_of = system_->groupings.back().of.data();
-    patch_residual_.setZero(patch_matrix_.rows());
-    for (std::size_t i = 0; i < r.size(); ++i) patch_residual_.segment<3>(3 * patch_of[i]) += r[i];
-    patch_correction_ = patch_solver_.solve(patch_residual_);
   }
   const double sum = parallel_sum(r.size(), kChunk, [&](std::size_t begin, std::size_t end) {
     double part = 0;
     for (std::size_t i = begin; i < end; ++i) {
       z[i] = inverse_diagonal_[i] * r[i];
-      if (coarse) {
-        for (std::size_t l = 0; l < levels_.size(); ++l)
-          z[i] += levels_[l].correction[index(system_->groupings[l].of[i])];
-        z[i] += patch_correction_.segment<3>(3 * system_->groupings.back().of[i]);
-      }
+      if (!levels_.empty()) z[i] += levels_.front().correction[index(system_->groupings.front().of[i])];
       part += r[i].dot(z[i]);
     }
     return part;
   });
-  if (coarse) filter(z);
+  if (!levels_.empty()) filter(z);
   return sum;
 }
 

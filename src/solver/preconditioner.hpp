@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Cholesky>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -17,7 +18,8 @@ namespace weft::solver {
 /// 2015).
 class Preconditioner {
  public:
-  /// Reads the system, which must outlive the calls that follow.
+  /// Reads the system, which must outlive the calls that follow. What depends on the matrix and the constraints alone
+  /// is kept while they stay the same.
   void prepare(const LinearSystem& system);
 
   /// z = P⁻¹ r; returns r·z. r obeys the constraints, and so does z.
@@ -29,21 +31,27 @@ class Preconditioner {
  private:
   /// Groups between single particles and patches.
   struct Level {
-    std::vector<Mat3> inverse;  // per group
-    std::vector<Vec3> correction;
+    std::vector<Index> group_of;  // per particle
+    std::vector<Mat3> of_matrix;  // per group, without terms
+    std::vector<Mat3> inverse;    // with them
+    std::vector<Vec3> residual, correction;
   };
+  void prepare_levels();
   void prepare_particles();
   void sum_blocks();
-  void sum_terms();
+  void add_terms();
+  void restrict_residual(std::span<const Vec3> r);
   Mat3 filtered(Index i, const Mat3& block, Index j) const;
 
   const LinearSystem* system_ = nullptr;
-  std::vector<Index> constraint_of_;    // per particle, −1 for none
-  std::vector<Mat3> inverse_diagonal_;  // already filtered: S P⁻¹ S
-  std::vector<Level> levels_;
-  Eigen::MatrixXd patch_matrix_;
+  std::uint64_t matrix_version_ = 0;
+  std::vector<ParticleConstraint> constraints_;  // that the sums were made with
+  std::vector<Index> constraint_of_;             // per particle, −1 for none
+  std::vector<Mat3> inverse_diagonal_;           // already filtered: S P⁻¹ S
+  std::vector<Level> levels_;                    // the last one is that of the patches
+  Eigen::MatrixXd patches_of_matrix_, patch_matrix_;
   Eigen::LLT<Eigen::MatrixXd> patch_solver_;
-  Eigen::VectorXd patch_residual_, patch_correction_;
+  Eigen::VectorXd patch_vector_;
 };
 
 }  // namespace weft::solver

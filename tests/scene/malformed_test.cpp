@@ -57,7 +57,12 @@ const std::vector<Malformed> kMalformed = {
     {"MisspeltKey", kFloor + "[time]\nduraton = 3\n",
      "s.toml:3:1: time.duraton: unknown key; did you mean duration?\n"},
     {"KeyOfNoKind", kFloor + "[contact]\nzzzzzzzz = 3\n",
-     "s.toml:3:1: contact.zzzzzzzz: unknown key; known here: self, obstacles, stiffness, response\n"},
+     "s.toml:3:1: contact.zzzzzzzz: unknown key; known here: self, obstacles, stiffness, search, pair, response\n"},
+    {"StaticFrictionBelowThatOfSliding",
+     kFloor + "[[cloth]]\nname = 'band'\n[[contact.pair]]\nfirst = 'band'\nsecond = 'flor'\nfriction = 0.5\n"
+              "static_friction = 0.4\n",
+     "s.toml:6:10: contact.pair.0.second: expected the name of a cloth or obstacle, got \"flor\"; did you mean floor?\n"
+     "s.toml:8:19: contact.pair.0.static_friction: expected >= 0.5, that of sliding, got 0.4\n"},
     {"KeyOfAnInnerTable", "[[cloth]]\nname = 'band'\nthickness = 0.002\n",
      "s.toml:3:1: cloth.band.thickness: unknown key; did you mean material.thickness?\n"},
     {"KeyOfAnotherShape", "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\nradius = 1\nheight = 2\n",

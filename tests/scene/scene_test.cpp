@@ -56,6 +56,20 @@ TEST_F(EveryKey, OfTimePhysicsSolverAndContactFillsItsMember) {
   EXPECT_FALSE(scene_.contact.obstacles);
   EXPECT_EQ(scene_.contact.stiffness, 250);
   EXPECT_EQ(scene_.contact.response, Response::velocity_constraints);
+  ASSERT_EQ(scene_.contact.pairs.size(), 1u);
+  EXPECT_EQ(scene_.contact.pairs[0].first, "sheet");
+  EXPECT_EQ(scene_.contact.pairs[0].second, "ball");
+  EXPECT_EQ(scene_.contact.pairs[0].friction, 0.21);
+  EXPECT_EQ(scene_.contact.pairs[0].static_friction, 0.34);
+  const Search& search = scene_.contact.search;
+  EXPECT_EQ(search.bounds, Bounds::dop18);
+  EXPECT_EQ(search.tree, TreeKind::quad);
+  EXPECT_EQ(search.leaf, 5);
+  EXPECT_TRUE(search.open_longer_side);
+  EXPECT_TRUE(search.separation_lists);
+  EXPECT_TRUE(search.velocity_cones);
+  EXPECT_TRUE(search.normal_cones);
+  EXPECT_FALSE(search.reuse);
 }
 
 TEST_F(EveryKey, OfRenderFillsItsMember) {
@@ -153,7 +167,7 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
   EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
   EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
-  EXPECT_EQ(scene_.obstacles[7].line, 142) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].line, 144) << "where the scene names its file";
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <random>
 
 namespace weft::collision {
@@ -50,8 +51,14 @@ struct VertexOnFace {
   double gap(const std::vector<Vec3>& at) const { return contact.normal.dot(relative(at)); }
   Vec3 relative(const std::vector<Vec3>& at) const { return at[0] - 0.2 * at[1] - 0.5 * at[2] - 0.3 * at[3]; }
   double energy(const std::vector<Vec3>& at) const {
-    const double short_of = std::max(0.0, kRange - gap(at));
-    return 0.5 * contact.stiffness * short_of * short_of;
+    return contact.stiffness * kRange * kRange * energy_at((kRange - gap(at)) / kRange);
+  }
+  /// ∫ d (1 + c d⁴) for a depth d in ranges; from one range on the force goes on along its tangent.
+  static double energy_at(double depth) {
+    constexpr double c = ContactSet::kStiffening;
+    if (depth <= 0) return 0;
+    const double inner = std::min(depth, 1.0), beyond = depth - inner;
+    return 0.5 * inner * inner + c / 6 * std::pow(inner, 6) + (1 + c) * beyond + 0.5 * (1 + 5 * c) * beyond * beyond;
   }
   std::vector<Vec3> jittered(double size) const {
     std::vector<Vec3> at = x;
@@ -83,7 +90,7 @@ TEST(ContactSet, ForceWithoutFrictionIsMinusTheGradientOfTheEnergy) {
         x[i][axis] = place - kEpsilon;
         const double below = pair.energy(x);
         x[i][axis] = place;
-        // The energy is quadratic: differences are exact but for rounding, 1e-19 J over 1e-7 m.
+        // Rounding is 1e-19 J over 1e-7 m; the third derivative of the energy, 20 · 10 k / r, times ε² / 6 is 1e-6 k ε.
         EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kEpsilon), 1e-8);
       }
   }
@@ -119,7 +126,8 @@ TEST(ContactSet, FrictionOpposesTheSlipAndIsBoundedByTheLoad) {
   const VertexOnFace pair(mu), smooth(0);
   const ContactSet contacts = pair.set(), frictionless = smooth.set();
   const Vec3 n = pair.contact.normal;
-  const double load = 500 * 0.6 * kRange;  // at the start, which friction goes by before the first solve
+  // At the start, which friction goes by before the first solve.
+  const double load = 500 * 0.6 * kRange * (1 + ContactSet::kStiffening * std::pow(0.6, 4));
   const double stick = ContactSet::kStickSpeed * kStep;
   const Vec3 direction = n.unitOrthogonal();
   double last = 0;
@@ -134,6 +142,23 @@ TEST(ContactSet, FrictionOpposesTheSlipAndIsBoundedByTheLoad) {
     const double expected = share < 1 ? mu * load * share * (2 - share) : mu * load;
     EXPECT_NEAR(friction.norm(), expected, 1e-9 * mu * load);
   }
+}
+
+TEST(ContactSet, StaticFrictionHoldsMoreThanThatOfSliding) {
+  VertexOnFace pair(0.4), smooth(0);
+  pair.contact.static_friction = 0.7;
+  const ContactSet contacts = pair.set(), frictionless = smooth.set();
+  const double load = 500 * 0.6 * kRange * (1 + ContactSet::kStiffening * std::pow(0.6, 4));
+  const double stick = ContactSet::kStickSpeed * kStep;
+  const auto coefficient = [&](double slip) {
+    std::vector<Vec3> x = pair.x;
+    x[0] += slip * stick * pair.contact.normal.unitOrthogonal();
+    return (forces_of(contacts, x)[0] - forces_of(frictionless, x)[0]).norm() / load;
+  };
+  EXPECT_NEAR(coefficient(1), 0.7, 1e-9);
+  EXPECT_NEAR(coefficient(0.5 * (1 + ContactSet::kSlideSpeed)), 0.55, 1e-9);
+  EXPECT_NEAR(coefficient(ContactSet::kSlideSpeed), 0.4, 1e-9);
+  EXPECT_NEAR(coefficient(1000), 0.4, 1e-9);
 }
 
 TEST(ContactSet, MotionAlongTheNormalIsNoSlip) {

@@ -229,7 +229,9 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
     const support::Judgement judgement = support::judge(objects);
     EXPECT_EQ(pairs_of_cloths(judgement, objects), 0u) << "frame " << k;
     const bool is_end = k + 1 == scene.frame_count();
-    if (report.pinched_pairs == 0 || is_end) EXPECT_EQ(judgement.pairs.size(), 0u) << "frame " << k;
+    if (report.pinched_pairs == 0 || is_end) {
+      EXPECT_EQ(judgement.pairs.size(), 0u) << "frame " << k;
+    }
     pinched += report.pinched_pairs > 0 ? 1 : 0;
     pinches.insert(pinches.end(), report.pinches.begin(), report.pinches.end());
   }

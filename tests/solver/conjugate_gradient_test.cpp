@@ -57,14 +57,16 @@ TEST(ConjugateGradient, AgreesWithTheDirectSolutionUnderContactsAndConstraints) 
   }
 }
 
-// Cuts the particles into groups of consecutive numbers, a level for each count; with one particle a group, constraints
-// leave some without motion.
+// Cuts the particles into groups of consecutive numbers, and these again, a level for each count; with one particle a
+// group, constraints leave some without motion.
 void cut_groups(LinearSystem& system, const std::vector<Index>& counts) {
   system.groupings.clear();
+  Index members = system.matrix.rows();
   for (Index count : counts) {
     Grouping grouping{{}, count};
-    for (Index i = 0; i < system.matrix.rows(); ++i) grouping.of.push_back(i * count / system.matrix.rows());
+    for (Index i = 0; i < members; ++i) grouping.of.push_back(i * count / members);
     system.groupings.push_back(std::move(grouping));
+    members = count;
   }
 }
 

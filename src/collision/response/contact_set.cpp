@@ -12,6 +12,27 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   return sum;
 }
 
+struct Load {
+  double force, slope;  // [N], [N/m]
+};
+
+// At a gap below the range.
+Load load_at(const Contact& contact, double gap) {
+  const double depth = contact.range - gap, full = std::max(contact.full_range, contact.range);
+  const double inner = std::min(depth, full), ratio_sq = (inner / full) * (inner / full);
+  const double stiffening = ContactSet::kStiffening * ratio_sq * ratio_sq;
+  const double slope = contact.stiffness * (1 + 5 * stiffening);
+  return {contact.stiffness * inner * (1 + stiffening) + slope * (depth - inner), slope};
+}
+
+// Coefficient of friction over slip, for a slip in stick slips: 2 − s while sticking, 1/s while sliding, continuous
+// with its first derivative where both coefficients are the same.
+double friction_over_slip(const Contact& contact, double slip) {
+  if (slip < 1) return contact.static_friction * (2 - slip);
+  const double sliding = std::min(1.0, (slip - 1) / (ContactSet::kSlideSpeed - 1));
+  return (contact.static_friction + sliding * (contact.friction - contact.static_friction)) / slip;
+}
+
 }  // namespace
 
 void ContactSet::set_step(double h) {
@@ -21,8 +42,9 @@ void ContactSet::set_step(double h) {
 
 void ContactSet::add(const Contact& contact) {
   contacts_.push_back(contact);
-  contacts_.back().load =
-      std::max(0.0, contact.stiffness * (contact.range - contact.normal.dot(contact.relative_start)));
+  contacts_.back().static_friction = std::max(contact.friction, contact.static_friction);
+  const double gap = contact.normal.dot(contact.relative_start);
+  contacts_.back().load = gap < contact.range ? load_at(contact, gap).force : 0;
 }
 
 ContactSet::Response ContactSet::respond(const Contact& contact, std::span<const Vec3> x_end) const {
@@ -32,15 +54,15 @@ ContactSet::Response ContactSet::respond(const Contact& contact, std::span<const
   if (gap >= contact.range) return response;
 
   response.active = true;
-  response.load = contact.stiffness * (contact.range - gap);
+  const Load load = load_at(contact, gap);
+  response.load = load.force;
+  response.slope = load.slope;
   response.force = response.load * contact.normal;
-  if (contact.friction > 0 && contact.load > 0) {
+  if (contact.static_friction > 0 && contact.load > 0) {
     Vec3 slip = relative - contact.relative_start;
     slip -= contact.normal.dot(slip) * contact.normal;
     const double size = slip.norm();
-    // Force over slip: 2/ε − s/ε² while sticking, 1/s while sliding; continuous with its first derivative.
-    const double over_slip = size < stick_slip_ ? (2 - size / stick_slip_) / stick_slip_ : 1 / size;
-    response.sliding = contact.friction * contact.load * over_slip;
+    response.sliding = contact.load * friction_over_slip(contact, size / stick_slip_) / stick_slip_;
     response.force -= response.sliding * slip;
   }
   return response;
@@ -67,12 +89,11 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, std::sp
       if (contact.weights[k] != 0) ++involved, last = k;
     }
     const Mat3 along = contact.normal * contact.normal.transpose();
-    const Mat3 stiffness = end_rate * (contact.stiffness * along + response.sliding * (Mat3::Identity() - along));
+    const Mat3 stiffness = end_rate * (response.slope * along + response.sliding * (Mat3::Identity() - along));
     if (involved == 1) {
-      // A single particle on an obstacle couples with nothing: its block goes into the diagonal, at no cost per
-      // iteration.
+      // A single particle on an obstacle couples with nothing.
       const double w = contact.weights[last];
-      system.matrix.add(system.matrix.diagonal(contact.particles[last]), w * w * stiffness);
+      system.diagonal_terms.push_back({contact.particles[last], w * w * stiffness});
     } else {
       system.terms.push_back({contact.particles, contact.weights, stiffness});
     }

@@ -18,19 +18,27 @@ struct Contact {
   Vec3 relative_start = Vec3::Zero();         ///< point a minus point b at the start of the step [m]
   Vec3 normal = Vec3::UnitZ();                ///< unit, from b to a at the start of the step
   double range = 0;                           ///< r: the spring acts below this distance [m]
+  double full_range = 0;                      ///< of the two surfaces [m]; as `range` but for pairs that were closer
   double stiffness = 0;                       ///< k [N/m]
-  double friction = 0;                        ///< Coulomb coefficient of the pair
+  double friction = 0;                        ///< Coulomb coefficient of the pair while it slides
+  double static_friction = 0;                 ///< until it slides; no less
   double load = 0;                            ///< that friction goes by [N]; kept by ContactSet
 };
 
-/// Energy of a contact: ½ k (r − g)² for a gap g = n·(a − b) < r, with n kept from the start of the step: convex, with
-/// a Jacobian of rank one. Friction opposes the slip u of the step in the tangent plane with μ k (r − g), reached
-/// smoothly from zero within a slip of `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
+/// Force of a contact: k d (1 + kStiffening (d / r)⁴) for a depth d = r − g of the gap g = n·(a − b) < r, from d = r on
+/// with the slope that it has there; n is kept from the start of the step: convex, with a Jacobian of rank one. A
+/// linear spring of cotton gives 0.1 N before the gap is closed, and a sheet that lies on the tip of a cone weighs 1 N.
+/// Friction opposes the slip u of the step in the tangent plane with μ k (r − g), reached smoothly from zero within a
+/// slip of `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
 class ContactSet {
  public:
   /// Slip speed below which friction is viscous and a contact counts as sticking [m/s]. Smaller creeps less and makes
   /// the system stiffer: 2 μ λ / (h · stick_speed) per contact of load λ.
   static constexpr double kStickSpeed = 2e-4;
+
+  static constexpr double kStiffening = 10;
+  /// Slip speed, in stick speeds, from which friction is that of sliding; between, it falls from the static one.
+  static constexpr double kSlideSpeed = 5;
 
   void clear() { contacts_.clear(); }
   void add(const Contact& contact);
@@ -55,6 +63,7 @@ class ContactSet {
     bool active = false;
     Vec3 force;          // on point a
     double load = 0;     // now [N]
+    double slope = 0;    // of the load [N/m]
     double sliding = 0;  // friction force per slip [N/m]
   };
   Response respond(const Contact& contact, std::span<const Vec3> x_end) const;

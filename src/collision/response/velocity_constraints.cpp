@@ -1,0 +1,336 @@
+#include "collision/response/velocity_constraints.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::collision {
+namespace {
+
+// Share of a missing distance that one step makes good. All of it at once throws the particle: what is closer than
+// d_min got there by a correction or by an obstacle's motion, and is in no hurry.
+constexpr double kCorrection = 0.2;
+// Walls that a particle passes by more than this [m] are worth another solve: a hundredth of a fabric's thickness. Less
+// is left to the next step.
+constexpr double kPassed = 2e-5;
+// Walls are met up to this [m], far above rounding.
+constexpr double kSlack = 1e-9;
+// How far a force points beyond a wall, to tell whether the wall holds [m]: about the distances at hand.
+constexpr double kNudge = 1e-4;
+// Sine of the angle between normals from which two walls hold two directions; below, they hold one.
+constexpr double kSameDirection = 0.05;
+// Cosine from which two walls of a particle are taken for one.
+constexpr double kSameWall = 1 - 1e-6;
+// Changes between away, sticking and sliding of a particle within one step; what has not settled then is left to the
+// next step.
+constexpr int kFlips = 3;
+// Acceleration by a change of friction or by a released pull, from which a step is solved again [m/s²]: a twentieth of
+// the weight. Of friction, a fifth of what it was besides.
+constexpr double kLittle = 0.5;
+constexpr double kLoadChange = 0.2;
+// Walls that are looked at for one particle, the most violated ones.
+constexpr std::size_t kMostWalls = 8;
+
+struct HalfSpace {
+  Vec3 normal;
+  double bound;  // of n·u
+  int wall;
+};
+
+bool feasible(std::span<const HalfSpace> all, const Vec3& u, double slack) {
+  return std::all_of(all.begin(), all.end(), [&](const HalfSpace& h) { return h.normal.dot(u) >= h.bound - slack; });
+}
+
+std::size_t index(Index particle) {
+  return static_cast<std::size_t>(particle);
+}
+
+}  // namespace
+
+VelocityConstraints::VelocityConstraints(std::vector<double> masses)
+    : masses_(std::move(masses)), touched_of_(masses_.size(), -1), memory_(masses_.size()) {}
+
+void VelocityConstraints::begin_step(double h) {
+  step_ = h;
+  for (const Touched& particle : touched_) touched_of_[index(particle.particle)] = -1;
+  touched_.clear();
+  walls_.clear();
+  prescribed_.clear();
+}
+
+void VelocityConstraints::add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion,
+                              double friction) {
+  int& place = touched_of_[index(particle)];
+  if (place < 0) {
+    place = static_cast<int>(touched_.size());
+    touched_.push_back({particle, -1, {}, {}});
+  }
+  Touched& touched = touched_[static_cast<std::size_t>(place)];
+  const double gamma_d_min = distance >= d_min ? d_min : distance + kCorrection * (d_min - distance);
+  const double bound = gamma_d_min - distance + normal.dot(motion);
+  for (int w = touched.first_wall; w >= 0; w = walls_[static_cast<std::size_t>(w)].next) {
+    Wall& wall = walls_[static_cast<std::size_t>(w)];
+    if (wall.normal.dot(normal) < kSameWall) continue;
+    wall.bound = std::max(wall.bound, bound);
+    return;
+  }
+  walls_.push_back({normal, bound, motion, friction, touched.first_wall});
+  touched.first_wall = static_cast<int>(walls_.size()) - 1;
+}
+
+// Closest point to u that passes no wall of the particle, and the walls that this takes with their multipliers: the
+// conditions of Karush, Kuhn and Tucker, tried for every set of up to three walls. `of_force`: for the walls that hold
+// now, all through the origin; -u is a force then, and the multipliers are its normal parts.
+Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool of_force, Held& held) const {
+  held = {};
+  std::vector<HalfSpace> all;
+  for (int w = particle.first_wall; w >= 0; w = walls_[static_cast<std::size_t>(w)].next) {
+    const Wall& wall = walls_[static_cast<std::size_t>(w)];
+    const auto& holding = particle.held.walls;
+    if (of_force && std::find(holding.begin(), holding.end(), w) == holding.end()) continue;
+    all.push_back({wall.normal, of_force ? 0 : wall.bound, w});
+  }
+  if (feasible(all, u, kSlack)) return u;
+  const auto missing = [&](const HalfSpace& h) { return h.bound - h.normal.dot(u); };
+  if (all.size() > kMostWalls) {
+    std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) { return missing(a) > missing(b); });
+    all.resize(kMostWalls);
+  }
+
+  const std::size_t n = all.size();
+  for (std::size_t i = 0; i < n; ++i) {
+    const double load = missing(all[i]);
+    const Vec3 moved = u + load * all[i].normal;
+    if (load <= 0 || !feasible(all, moved, kSlack)) continue;
+    held = {{all[i].wall, -1, -1}, {load, 0, 0}, 1};
+    return moved;
+  }
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j) {
+      const double c = all[i].normal.dot(all[j].normal), determinant = 1 - c * c;
+      if (determinant < 1e-12) continue;
+      const double a = missing(all[i]), b = missing(all[j]);
+      const double load_i = (a - c * b) / determinant, load_j = (b - c * a) / determinant;
+      const Vec3 moved = u + load_i * all[i].normal + load_j * all[j].normal;
+      if (load_i < 0 || load_j < 0 || !feasible(all, moved, kSlack)) continue;
+      held = {{all[i].wall, all[j].wall, -1}, {load_i, load_j, 0}, 2};
+      return moved;
+    }
+  for (std::size_t i = 0; i < n; ++i)
+    for (std::size_t j = i + 1; j < n; ++j)
+      for (std::size_t k = j + 1; k < n; ++k) {
+        Mat3 normals;
+        normals << all[i].normal, all[j].normal, all[k].normal;
+        if (std::abs(normals.determinant()) < 1e-6) continue;
+        const Mat3 gram = normals.transpose() * normals;
+        const Vec3 loads = gram.inverse() * Vec3(missing(all[i]), missing(all[j]), missing(all[k]));
+        const Vec3 moved = u + normals * loads;
+        if (loads.minCoeff() < 0 || !feasible(all, moved, kSlack)) continue;
+        held = {{all[i].wall, all[j].wall, all[k].wall}, {loads[0], loads[1], loads[2]}, 3};
+        return moved;
+      }
+  // Walls without room between them: the most violated one goes first, and the certificates see to the rest.
+  const auto worst =
+      std::max_element(all.begin(), all.end(), [&](const auto& a, const auto& b) { return missing(a) < missing(b); });
+  held = {{worst->wall, -1, -1}, {missing(*worst), 0, 0}, 1};
+  return u + missing(*worst) * worst->normal;
+}
+
+int VelocityConstraints::main_wall(const Touched& particle) const {
+  const auto& loads = particle.held.loads;
+  return particle.held.walls[static_cast<std::size_t>(std::max_element(loads.begin(), loads.end()) - loads.begin())];
+}
+
+// Holds the particle by these walls, found on the way to u, the closest point that passes none. What sticks goes along
+// with the main wall, at its distance.
+void VelocityConstraints::hold(Touched& particle, const Vec3& u, Held held) {
+  particle.held = held;
+  particle.u_held = u;
+  const Wall& wall = walls_[static_cast<std::size_t>(main_wall(particle))];
+  if (particle.memory.state == State::sticking && wall.friction > 0) {
+    const Vec3 along = wall.motion + (wall.bound - wall.normal.dot(wall.motion)) * wall.normal;
+    Held more;
+    particle.u_held = project(particle, along, false, more);
+  } else {
+    particle.memory.state = State::sliding;
+  }
+}
+
+void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  for (Touched& particle : touched_) {
+    const std::size_t i = index(particle.particle);
+    particle.x_t0 = x_t0[i];
+    particle.memory = memory_[i];
+    const double push = particle.memory.push.norm();
+    const Vec3 guess = x_t1[i] - x_t0[i];
+    Held held;
+    const Vec3 u =
+        project(particle, push > 0 ? Vec3(guess - kNudge / push * particle.memory.push) : guess, false, held);
+    if (held.count == 0) {
+      particle.memory = {};
+      continue;
+    }
+    hold(particle, u, held);
+    particle.friction_load = particle.memory.load;
+  }
+  prescribe();
+}
+
+int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const ForceOn& force_on) {
+  int changed = 0;
+  for (Touched& particle : touched_) {
+    const std::size_t i = index(particle.particle);
+    particle.x_t0 = x_t0[i];
+    Vec3 force = Vec3::Zero();
+    if (particle.memory.state != State::away) {
+      // What brings the velocity from that of the step's motion to v_end, where something arrives, loads the wall too.
+      const PrescribedParticle prescribed = prescription(particle);
+      const Vec3 arrested = prescribed.v_end - (x_end[i] - x_t0[i]) / step_;
+      force = force_on(particle.particle) + masses_[i] / step_ * (arrested - prescribed.constraint.free * arrested);
+    }
+    changed += revise(particle, x_end[i], force) ? 1 : 0;
+  }
+  if (changed > 0) prescribe();
+  return changed;
+}
+
+// Decides anew what holds the particle; `force` is that of its walls in the last solve. Whether the solve should be
+// repeated with that: what makes little difference takes effect in the next step.
+bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec3& force) {
+  Memory& memory = particle.memory;
+  const Vec3 u = x_end - particle.x_t0;
+  const double little = kLittle * masses_[index(particle.particle)];
+  Held next;
+  if (memory.state == State::away) {
+    const Vec3 held_at = project(particle, u, false, next);
+    if (next.load() < kPassed) return false;
+    hold(particle, held_at, next);
+    return particle.flips++ < kFlips;
+  }
+
+  // The force's normal part, by walls, and what is left: tangential, or pulling.
+  Held pushing;
+  const double size = force.norm();
+  const Vec3 left = size > 0 ? Vec3(-size * project(particle, -force / size, true, pushing)) : Vec3::Zero();
+  memory.push = force - left;
+  memory.load = size * pushing.load();
+  const double push = memory.push.norm();
+  const Vec3 held_at = project(particle, push > 0 ? Vec3(u - kNudge / push * memory.push) : u, false, next);
+  if (next.count == 0) {
+    if (left.norm() > little && particle.flips++ >= kFlips) return false;
+    memory = {};
+    particle.held = {};
+    particle.friction_load = 0;
+    return left.norm() > little;
+  }
+
+  Held passed;
+  project(particle, u, false, passed);
+  const double limit = walls_[static_cast<std::size_t>(main_wall(particle))].friction * memory.load;
+  if (memory.state == State::sticking) {
+    const bool slips = left.norm() > limit, passes = passed.load() >= kPassed;
+    if (!(slips || passes) || particle.flips++ >= kFlips) return false;
+    if (slips) {
+      memory.state = State::sliding;
+      particle.friction_load = memory.load;
+    }
+    hold(particle, held_at, next);
+    return passes;  // a step of too much friction does no harm
+  }
+
+  const bool other_walls = !next.same_walls(particle.held);
+  const double change =
+      walls_[static_cast<std::size_t>(main_wall(particle))].friction * std::abs(memory.load - particle.friction_load);
+  const bool other_load = change > little && change > kLoadChange * limit;
+  particle.stops =
+      limit > 0 && !other_load && !other_walls && slip(particle, x_end).norm() < ContactSet::kStickSpeed * step_;
+  hold(particle, held_at, next);
+  particle.friction_load = memory.load;
+  const bool matters = other_load || (other_walls && (passed.load() >= kPassed || left.norm() > little));
+  return matters && particle.flips++ < kFlips;
+}
+
+void VelocityConstraints::accept() {
+  for (Index particle : remembered_) memory_[index(particle)] = {};
+  remembered_.clear();
+  for (const Touched& particle : touched_) {
+    if (particle.memory.state == State::away) continue;
+    memory_[index(particle.particle)] = particle.memory;
+    if (particle.stops && particle.memory.state == State::sliding)
+      memory_[index(particle.particle)].state = State::sticking;
+    remembered_.push_back(particle.particle);
+  }
+}
+
+// I − Σ q qᵀ over an orthonormal basis q of the normals that hold.
+Mat3 VelocityConstraints::free_directions(const Touched& particle) const {
+  Mat3 free = Mat3::Identity();
+  for (int k = 0; k < particle.held.count; ++k) {
+    const Vec3 q = free * walls_[static_cast<std::size_t>(particle.held.walls[static_cast<std::size_t>(k)])].normal;
+    const double size = q.norm();
+    if (size < kSameDirection) continue;
+    free -= q * q.transpose() / (size * size);
+  }
+  return free;
+}
+
+PrescribedParticle VelocityConstraints::prescription(const Touched& particle) const {
+  PrescribedParticle result{{particle.particle, Mat3::Zero()}, particle.x_t0 + particle.u_held, Vec3::Zero()};
+  if (particle.memory.state == State::sticking) {
+    result.v_end = walls_[static_cast<std::size_t>(main_wall(particle))].motion / step_;
+    return result;
+  }
+  // v_r along each normal, once those before it are met.
+  Mat3 free = Mat3::Identity();
+  for (int k = 0; k < particle.held.count; ++k) {
+    const Wall& wall = walls_[static_cast<std::size_t>(particle.held.walls[static_cast<std::size_t>(k)])];
+    const Vec3 q = free * wall.normal;
+    const double size_sq = q.squaredNorm();
+    if (size_sq < kSameDirection * kSameDirection) continue;
+    result.v_end += (wall.normal.dot(wall.motion) / step_ - wall.normal.dot(result.v_end)) / size_sq * q;
+    free -= q * q.transpose() / size_sq;
+  }
+  result.constraint.free = free;
+  return result;
+}
+
+void VelocityConstraints::prescribe() {
+  prescribed_.clear();
+  for (const Touched& particle : touched_)
+    if (particle.memory.state != State::away) prescribed_.push_back(prescription(particle));
+}
+
+// Motion along the walls, against that of the obstacle [m].
+Vec3 VelocityConstraints::slip(const Touched& particle, const Vec3& x_end) const {
+  const Wall& wall = walls_[static_cast<std::size_t>(main_wall(particle))];
+  return free_directions(particle) * (x_end - particle.x_t0 - wall.motion);
+}
+
+VelocityConstraints::Friction VelocityConstraints::friction(const Touched& particle, const Vec3& x_end) const {
+  const Vec3 s = slip(particle, x_end);
+  const double size = s.norm(), stick_slip = ContactSet::kStickSpeed * step_;
+  const double over_slip = size < stick_slip ? (2 - size / stick_slip) / stick_slip : 1 / size;
+  const double sliding =
+      walls_[static_cast<std::size_t>(main_wall(particle))].friction * particle.friction_load * over_slip;
+  return {-sliding * s, sliding * free_directions(particle)};
+}
+
+void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const {
+  for (const Touched& particle : touched_) {
+    const std::size_t i = index(particle.particle);
+    if (particle.memory.state == State::sliding && particle.friction_load > 0)
+      force[i] += friction(particle, x_end[i]).force;
+  }
+}
+
+void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
+                                    solver::LinearSystem& system) const {
+  for (const Touched& particle : touched_) {
+    const std::size_t i = index(particle.particle);
+    if (particle.memory.state != State::sliding || particle.friction_load == 0) continue;
+    const Friction sliding = friction(particle, x_end[i]);
+    force[i] += sliding.force;
+    system.terms.push_back({{particle.particle, 0, 0, 0}, {1, 0, 0, 0}, end_rate * sliding.stiffness});
+  }
+}
+
+}  // namespace weft::collision
