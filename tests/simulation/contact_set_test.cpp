@@ -22,6 +22,14 @@ Vec3 random_vector(double size) {
   return {x, y, z};
 }
 
+/// Force of a contact of 500 N/m [N] and its slope [N/m], for a depth in ranges up to 1.
+double load_at(double depth) {
+  return 500 * kRange * depth * (1 + ContactSet::kStiffening * std::pow(depth, 4));
+}
+double slope_at(double depth) {
+  return 500 * (1 + 5 * ContactSet::kStiffening * std::pow(depth, 4));
+}
+
 /// A vertex 0.4 of the range above the middle of a triangle, both of cloth, in a slanted frame.
 struct VertexOnFace {
   std::vector<Vec3> x;
@@ -90,8 +98,8 @@ TEST(ContactSet, ForceWithoutFrictionIsMinusTheGradientOfTheEnergy) {
         x[i][axis] = place - kEpsilon;
         const double below = pair.energy(x);
         x[i][axis] = place;
-        // Rounding is 1e-19 J over 1e-7 m; the third derivative of the energy, 20 · 10 k / r, times ε² / 6 is 1e-6 k ε.
-        EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kEpsilon), 1e-8);
+        // The third derivative of the energy, 20 c k d³ / r⁴ with c = 10 and d ≤ r, times ε² / 6 is 8e-8 N.
+        EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kEpsilon), 1e-7);
       }
   }
   // Some pushed and some were out of range.
@@ -127,7 +135,7 @@ TEST(ContactSet, FrictionOpposesTheSlipAndIsBoundedByTheLoad) {
   const ContactSet contacts = pair.set(), frictionless = smooth.set();
   const Vec3 n = pair.contact.normal;
   // At the start, which friction goes by before the first solve.
-  const double load = 500 * 0.6 * kRange * (1 + ContactSet::kStiffening * std::pow(0.6, 4));
+  const double load = load_at(0.6);
   const double stick = ContactSet::kStickSpeed * kStep;
   const Vec3 direction = n.unitOrthogonal();
   double last = 0;
@@ -148,7 +156,7 @@ TEST(ContactSet, StaticFrictionHoldsMoreThanThatOfSliding) {
   VertexOnFace pair(0.4), smooth(0);
   pair.contact.static_friction = 0.7;
   const ContactSet contacts = pair.set(), frictionless = smooth.set();
-  const double load = 500 * 0.6 * kRange * (1 + ContactSet::kStiffening * std::pow(0.6, 4));
+  const double load = load_at(0.6);
   const double stick = ContactSet::kStickSpeed * kStep;
   const auto coefficient = [&](double slip) {
     std::vector<Vec3> x = pair.x;
@@ -183,9 +191,9 @@ TEST(ContactSet, FrictionGoesByTheLoadOfTheLastSolveAfterTheFirst) {
   };
   std::vector<Vec3> f(4, Vec3::Zero());
   contacts.linearise(x, 1, f, system);
-  EXPECT_NEAR(tangential(), mu * 500 * 0.6 * kRange, 1e-12);
+  EXPECT_NEAR(tangential(), mu * load_at(0.6), 1e-12);
   contacts.linearise(x, 1, f, system);
-  EXPECT_NEAR(tangential(), mu * 500 * 0.2 * kRange, 1e-12);
+  EXPECT_NEAR(tangential(), mu * load_at(0.2), 1e-12);
 }
 
 // −∂f/∂x of one contact, as linearise leaves it in the system.
@@ -193,6 +201,8 @@ Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
   const Index rows = system.matrix.rows();
   Eigen::MatrixXd k = Eigen::MatrixXd::Zero(3 * rows, 3 * rows);
   for (Index i = 0; i < rows; ++i) k.block<3, 3>(3 * i, 3 * i) = system.matrix.block(system.matrix.diagonal(i));
+  for (const solver::DiagonalTerm& term : system.diagonal_terms)
+    k.block<3, 3>(3 * term.particle, 3 * term.particle) += term.stiffness;
   for (const solver::StencilTerm& term : system.terms)
     for (std::size_t a = 0; a < 4; ++a)
       for (std::size_t b = 0; b < 4; ++b)
@@ -282,9 +292,9 @@ TEST(ContactSet, ParticleOnAnObstacleGoesIntoTheDiagonal) {
   const solver::LinearSystem system = linearised(contacts, x, 1);
   EXPECT_TRUE(system.terms.empty());
   const Eigen::MatrixXd k = assembled(system);
-  EXPECT_NEAR(k(8, 8), 500, 1e-12);
+  EXPECT_NEAR(k(8, 8), slope_at(0.0015 / kRange), 1e-9);
   EXPECT_EQ(k.topLeftCorner(6, 6).norm(), 0);
-  EXPECT_NEAR(forces_of(contacts, x)[2].z(), 500 * 0.0015, 1e-12);
+  EXPECT_NEAR(forces_of(contacts, x)[2].z(), load_at(0.0015 / kRange), 1e-9);
 }
 
 }  // namespace
