@@ -50,8 +50,8 @@ class VelocityConstraints {
   /// Before the walls of a step over h [s] are added.
   void begin_step(double h);
 
-  /// Particle `particle` at `gap` [m] (relative to the obstacle's point, along any direction) of a contact with this
-  /// normal, range (d_min) and friction; the obstacle's point moves by `motion` [m] during the step.
+  /// A particle at `distance` [m] from an obstacle's point along `normal`, which points to the particle; that point
+  /// moves by `motion` [m] during the step.
   void add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion, double friction);
 
   /// Which walls hold in the first solve: those that held at the end of the last step, and those that the particle
