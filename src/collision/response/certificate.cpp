@@ -1,7 +1,10 @@
 #include "collision/response/certificate.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
+
+#include "collision/proximity/gjk.hpp"
 
 namespace weft::collision {
 namespace {
@@ -45,7 +48,8 @@ std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec
       try_direction(centres) || try_direction(facing(normal(pair.a, x_t1))) ||
       try_direction(facing(normal(pair.b, x_t1))))
     return found;
-  try_direction(closest_features(pair, x_t0).points.difference);
+  const auto corners = [&](const Triangle& t) { return std::array{at(x_t0, t[0]), at(x_t0, t[1]), at(x_t0, t[2])}; };
+  try_direction(closest_convex(corners(pair.a), corners(pair.b)).difference);
   return found;
 }
 
