@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 
 #include "simulation/simulation.hpp"
 
@@ -58,6 +59,23 @@ void plan_constraints(const Scene& scene, std::vector<PlanItem>& items) {
   items.push_back(when("constraint: pins", pins > 0, fmt::format("{} group{}", pins, pins == 1 ? "" : "s"), "no pin"));
 }
 
+// The parts of the search for near surfaces, each of which can be switched.
+void plan_search(const scene::Search& search, bool any, std::vector<PlanItem>& items) {
+  constexpr std::array kBounds{"boxes", "14-DOPs", "18-DOPs", "26-DOPs"};
+  constexpr std::array kTrees{"binary trees", "quadtrees", "octrees"};
+  const auto part = [&](std::string name, bool on, std::string what) {
+    items.push_back(when("search: " + std::move(name), any && on, std::move(what),
+                         any ? "off in contact.search" : "nothing collides"));
+  };
+  part("bounding volume hierarchy", true,
+       fmt::format("{} of {}, {} triangle{} to a leaf", kTrees[static_cast<std::size_t>(search.tree)],
+                   kBounds[static_cast<std::size_t>(search.bounds)], search.leaf, search.leaf == 1 ? "" : "s"));
+  part("reuse of candidates and features", search.reuse, "while nothing has moved far");
+  part("separation lists", search.separation_lists, "walks go on where the last one stopped");
+  part("velocity cones", search.velocity_cones, "slow bounds are left as they are");
+  part("normal cones", search.normal_cones, "flat regions are skipped");
+}
+
 void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
   const auto obstacles =
       std::count_if(scene.obstacles.begin(), scene.obstacles.end(), [](const scene::Obstacle& o) { return o.collide; });
@@ -72,6 +90,11 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
   items.push_back(of_cloths(
       "collision: friction", scene, [&](const Cloth& c) { return (with_obstacles || self) && c.material.friction > 0; },
       "no collision, or friction is zero"));
+  items.push_back(when("collision: velocity constraints",
+                       with_obstacles && scene.contact.response == scene::Response::velocity_constraints,
+                       "particles against obstacles",
+                       with_obstacles ? "contact.response is springs" : "no obstacle collides"));
+  plan_search(scene.contact.search, with_obstacles || self, items);
   items.push_back(when("motion: key frames", moving > 0, fmt::format("{} obstacle{}", moving, moving == 1 ? "" : "s"),
                        "no obstacle moves"));
 }
