@@ -186,10 +186,10 @@ bool Engine::constrain(const Touch& touch, std::span<const Vec3> x_t0, std::span
   const Vec3 normal = side * touch.normal;
   const double distance = normal.dot(x_t0[static_cast<std::size_t>(particle)] - point_t0);
   if (distance <= 0) return false;  // pinched
-  constraints_.add(
-      particle, normal, distance, std::min(touch.range_limit, contact_range(*cloth, *obstacle)), point_t1 - point_t0,
-      friction_of(static_cast<std::size_t>(cloth - bodies_.data()), static_cast<std::size_t>(obstacle - bodies_.data()))
-          .sliding);
+  const Friction& friction = friction_of(static_cast<std::size_t>(cloth - bodies_.data()),
+                                         static_cast<std::size_t>(obstacle - bodies_.data()));
+  constraints_.add(particle, normal, distance, std::min(touch.range_limit, contact_range(*cloth, *obstacle)),
+                   point_t1 - point_t0, friction.sliding, friction.at_rest);
   return true;
 }
 

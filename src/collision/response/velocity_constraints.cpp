@@ -58,7 +58,7 @@ void VelocityConstraints::begin_step(double h) {
 }
 
 void VelocityConstraints::add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion,
-                              double friction) {
+                              double friction, double static_friction) {
   int& place = touched_of_[index(particle)];
   if (place < 0) {
     place = static_cast<int>(touched_.size());
@@ -73,7 +73,7 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
     wall.bound = std::max(wall.bound, bound);
     return;
   }
-  walls_.push_back({normal, bound, motion, friction, touched.first_wall});
+  walls_.push_back({normal, bound, motion, friction, std::max(friction, static_friction), touched.first_wall});
   touched.first_wall = static_cast<int>(walls_.size()) - 1;
 }
 
@@ -146,7 +146,7 @@ void VelocityConstraints::hold(Touched& particle, const Vec3& u, Held held) {
   particle.held = held;
   particle.u_held = u;
   const Wall& wall = walls_[static_cast<std::size_t>(main_wall(particle))];
-  if (particle.memory.state == State::sticking && wall.friction > 0) {
+  if (particle.memory.state == State::sticking && wall.static_friction > 0) {
     const Vec3 along = wall.motion + (wall.bound - wall.normal.dot(wall.motion)) * wall.normal;
     Held more;
     particle.u_held = project(particle, along, false, more);
@@ -225,7 +225,8 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
 
   Held passed;
   project(particle, u, false, passed);
-  const double limit = walls_[static_cast<std::size_t>(main_wall(particle))].friction * memory.load;
+  const Wall& wall = walls_[static_cast<std::size_t>(main_wall(particle))];
+  const double limit = (memory.state == State::sticking ? wall.static_friction : wall.friction) * memory.load;
   if (memory.state == State::sticking) {
     const bool slips = left.norm() > limit, passes = passed.load() >= kPassed;
     if (!(slips || passes) || particle.flips++ >= kFlips) return false;
@@ -238,8 +239,7 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   }
 
   const bool other_walls = !next.same_walls(particle.held);
-  const double change =
-      walls_[static_cast<std::size_t>(main_wall(particle))].friction * std::abs(memory.load - particle.friction_load);
+  const double change = wall.friction * std::abs(memory.load - particle.friction_load);
   const bool other_load = change > little && change > kLoadChange * limit;
   particle.stops =
       limit > 0 && !other_load && !other_walls && slip(particle, x_end).norm() < ContactSet::kStickSpeed * step_;
@@ -329,7 +329,7 @@ void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate
     if (particle.memory.state != State::sliding || particle.friction_load == 0) continue;
     const Friction sliding = friction(particle, x_end[i]);
     force[i] += sliding.force;
-    system.terms.push_back({{particle.particle, 0, 0, 0}, {1, 0, 0, 0}, end_rate * sliding.stiffness});
+    system.diagonal_terms.push_back({particle.particle, end_rate * sliding.stiffness});
   }
 }
 

@@ -51,8 +51,9 @@ class VelocityConstraints {
   void begin_step(double h);
 
   /// A particle at `distance` [m] from an obstacle's point along `normal`, which points to the particle; that point
-  /// moves by `motion` [m] during the step.
-  void add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion, double friction);
+  /// moves by `motion` [m] during the step. `static_friction`: of what sticks, no less than that of sliding.
+  void add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion, double friction,
+           double static_friction = 0);
 
   /// Which walls hold in the first solve: those that held at the end of the last step, and those that the particle
   /// would pass if it moved from x_t0 to x_t1.
@@ -81,8 +82,9 @@ class VelocityConstraints {
     Vec3 normal;
     double bound;     // least n·u [m]
     Vec3 motion;      // of the obstacle [m]
-    double friction;  // μ
-    int next;         // of the same particle, or −1
+    double friction;  // μ while sliding
+    double static_friction;
+    int next;  // of the same particle, or −1
   };
   /// Walls that hold a particle, by number, in rising order.
   struct Held {
