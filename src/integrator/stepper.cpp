@@ -11,7 +11,7 @@ namespace {
 constexpr double kLinearShare = 0.3;
 constexpr double kLeastLinear = 0.3;
 // Share of the weight below which a change of velocity counts as none.
-constexpr double kRest = 0.1;
+constexpr double kRest = 0.3;
 // Slope behind the minimum, against that at the start, from which a step counts as overshooting.
 constexpr double kOvershoot = 0.7;
 constexpr int kLineTrials = 6;
