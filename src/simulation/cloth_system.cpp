@@ -19,6 +19,7 @@ constexpr double kStaleMotion = 0.005;
 ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<std::pair<Index, Index>> couplings;
   Index first = 0;
+  forces_.resize(scene.cloths.size());
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const scene::Material& material = scene.cloths[c].material;
     const mesh::Grid& grid = environment.cloths[c].grid;
@@ -29,12 +30,17 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     stretch_.push_back(std::make_unique<forces::Stretch>(
         grid, first,
         forces::StretchParameters{material.stretch_weft, material.stretch_warp, material.stretch_viscosity}));
-    if (material.shear > 0 || material.shear_viscosity > 0)
+    forces_[c].push_back(stretch_.back().get());
+    if (material.shear > 0 || material.shear_viscosity > 0) {
       shear_.push_back(std::make_unique<forces::Shear>(
           grid, first, forces::ShearParameters{material.shear, material.shear_viscosity}));
-    if (material.bend > 0 || material.bend_viscosity > 0 || material.bend_friction > 0)
+      forces_[c].push_back(shear_.back().get());
+    }
+    if (material.bend > 0 || material.bend_viscosity > 0 || material.bend_friction > 0) {
       bend_.push_back(std::make_unique<forces::Bend>(
           grid, first, forces::BendParameters{material.bend, material.bend_viscosity, material.bend_friction}));
+      forces_[c].push_back(bend_.back().get());
+    }
     if (scene.physics.air_density > 0 && material.drag > 0)
       air_.emplace_back(grid, first,
                         forces::AirParameters{scene.physics.air_density, scene.physics.wind, material.drag});
@@ -46,10 +52,8 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   for (const auto& cloth : environment.cloths) grids.push_back(cloth.grid);
   cut_groups(grids);
 
-  for (const auto& force : stretch_) forces_.push_back(force.get());
-  for (const auto& force : shear_) forces_.push_back(force.get());
-  for (const auto& force : bend_) forces_.push_back(force.get());
-  for (const forces::Force* force : forces_) force->couple(couplings);
+  for (const auto& of_cloth : forces_)
+    for (const forces::Force* force : of_cloth) force->couple(couplings);
   base_ = solver::BlockMatrix(first, std::move(couplings));
   for (const auto& force : stretch_) force->attach(base_);
   for (const auto& force : shear_) force->attach(base_);
@@ -81,7 +85,8 @@ void ClothSystem::explicit_forces(const integrator::State& at, double h, std::sp
 }
 
 void ClothSystem::forces(const integrator::StagePoint& at, std::span<Vec3> force) const {
-  for (const forces::Force* f : forces_) f->add({at.x, at.v, force});
+  for (const auto& of_cloth : forces_)
+    for (const forces::Force* f : of_cloth) f->add({at.x, at.v, force});
   if (contacts_ != nullptr) contacts_->add_forces(at.x_end, force);
   if (constraints_ != nullptr) constraints_->add_forces(at.x_end, force);
 }
@@ -97,16 +102,24 @@ void ClothSystem::prepare_base(double rate) const {
 
 void ClothSystem::linearise(const integrator::StagePoint& at, std::span<Vec3> force,
                             solver::LinearSystem& system) const {
-  if (&system != linearised_into_ || is_stale(at)) {
+  if (&system != linearised_into_ || at.rate != linearised_rate_) {
+    linearised_at_.clear();
     linearised_into_ = &system;
-    prepare_base(at.rate);
-    system.matrix.copy_values(base_);
-    ++system.matrix_version;
-    for (const forces::Force* f : forces_) f->add({at.x, at.v, force, &system.matrix, at.rate});
-    linearised_at_.assign(at.x.begin(), at.x.end());
     linearised_rate_ = at.rate;
-  } else {
-    for (const forces::Force* f : forces_) f->add({at.x, at.v, force});
+  }
+  const bool all = linearised_at_.empty();
+  if (all) linearised_at_.assign(at.x.begin(), at.x.end());
+  prepare_base(at.rate);
+  for (std::size_t c = 0; c + 1 < first_.size(); ++c) {
+    if (!all && !is_stale(c, at.x)) {
+      for (const forces::Force* f : forces_[c]) f->add({at.x, at.v, force});
+      continue;
+    }
+    const auto first = static_cast<std::size_t>(first_[c]), count = static_cast<std::size_t>(first_[c + 1]) - first;
+    std::copy_n(at.x.begin() + first_[c], count, linearised_at_.begin() + first_[c]);
+    system.matrix.copy_rows(base_, first_[c], first_[c + 1]);
+    ++system.matrix_version;
+    for (const forces::Force* f : forces_[c]) f->add({at.x, at.v, force, &system.matrix, at.rate});
   }
   system.terms.clear();
   system.diagonal_terms.clear();
@@ -114,12 +127,11 @@ void ClothSystem::linearise(const integrator::StagePoint& at, std::span<Vec3> fo
   if (constraints_ != nullptr) constraints_->linearise(at.x_end, at.end_rate, force, system);
 }
 
-// Whether the matrix of the last linearisation is of another step size, or of positions too far away.
-bool ClothSystem::is_stale(const integrator::StagePoint& at) const {
-  if (at.rate != linearised_rate_ || linearised_at_.empty()) return true;
+// Whether a cloth has moved too far from where its rows of the matrix were put together.
+bool ClothSystem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
   const double most = kStaleMotion * spacing_;
-  for (std::size_t i = 0; i < at.x.size(); ++i)
-    if (!((at.x[i] - linearised_at_[i]).squaredNorm() <= most * most)) return true;
+  for (auto i = static_cast<std::size_t>(first_[cloth]); i < static_cast<std::size_t>(first_[cloth + 1]); ++i)
+    if (!((x[i] - linearised_at_[i]).squaredNorm() <= most * most)) return true;
   return false;
 }
 
@@ -132,7 +144,8 @@ solver::LinearSystem ClothSystem::make_linear_system() const {
 
 double ClothSystem::elastic_energy(std::span<const Vec3> x) const {
   double sum = 0;
-  for (const forces::Force* f : forces_) sum += f->energy(x);
+  for (const auto& of_cloth : forces_)
+    for (const forces::Force* f : of_cloth) sum += f->energy(x);
   return sum;
 }
 

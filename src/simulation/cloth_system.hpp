@@ -50,7 +50,7 @@ class ClothSystem final : public integrator::System {
 
  private:
   void prepare_base(double rate) const;
-  bool is_stale(const integrator::StagePoint& at) const;
+  bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
   void cut_groups(const std::vector<mesh::Grid>& grids);
 
   std::vector<Index> first_;  // per cloth, and the total at the end
@@ -59,7 +59,7 @@ class ClothSystem final : public integrator::System {
   std::vector<std::unique_ptr<forces::Bend>> bend_;        // of the cloths that have it
   std::vector<std::unique_ptr<forces::Shear>> shear_;
   std::vector<forces::Air> air_;
-  std::vector<const forces::Force*> forces_;  // all of the stiff ones
+  std::vector<std::vector<const forces::Force*>> forces_;  // per cloth, all of the stiff ones
   collision::ContactSet* contacts_ = nullptr;
   const collision::VelocityConstraints* constraints_ = nullptr;
   std::vector<solver::Grouping> groupings_;  // of the preconditioner
@@ -67,7 +67,7 @@ class ClothSystem final : public integrator::System {
   // rate² M plus the constant part of the bending, kept as long as the step does not change.
   mutable solver::BlockMatrix base_;
   mutable double base_rate_ = 0;
-  // Where the matrix was last put together: cloth at rest does with the one it has.
+  // Where each cloth's rows of the matrix were last put together: cloth at rest does with those it has.
   double spacing_ = std::numeric_limits<double>::infinity();  // least, of all cloths [m]
   mutable std::vector<Vec3> linearised_at_;
   mutable double linearised_rate_ = 0;

@@ -50,6 +50,12 @@ void BlockMatrix::set_zero() {
   std::fill(values_.begin(), values_.end(), 0.0);
 }
 
+void BlockMatrix::copy_rows(const BlockMatrix& other, Index begin, Index end) {
+  assert(values_.size() == other.values_.size());
+  const auto at = [&](Index row) { return 9 * static_cast<std::ptrdiff_t>(row_start_[static_cast<std::size_t>(row)]); };
+  std::copy(other.values_.begin() + at(begin), other.values_.begin() + at(end), values_.begin() + at(begin));
+}
+
 void BlockMatrix::add_scalar(Slot slot, double value) {
   double* block = values_.data() + 9 * static_cast<std::size_t>(slot);
   block[0] += value;

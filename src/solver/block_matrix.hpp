@@ -30,8 +30,8 @@ class BlockMatrix {
   Slot diagonal(Index row) const { return diagonal_[static_cast<std::size_t>(row)]; }
 
   void set_zero();
-  /// Takes over the values of a matrix of the same pattern.
-  void copy_values(const BlockMatrix& other) { values_ = other.values_; }
+  /// Takes over the rows [begin, end) of a matrix of the same pattern.
+  void copy_rows(const BlockMatrix& other, Index begin, Index end);
 
   void add(Slot slot, const Mat3& block) { map(slot) += block; }
   void subtract(Slot slot, const Mat3& block) { map(slot) -= block; }

@@ -67,8 +67,12 @@ TEST(BlockMatrix, AddsSubtractsScalesAndClears) {
   EXPECT_EQ(matrix.block(matrix.slot(1, 0)), Mat3(-block));
   EXPECT_EQ(matrix.block(matrix.diagonal(0)), Mat3(Mat3::Zero()));
 
-  other.copy_values(matrix);
+  other.copy_rows(matrix, 1, 2);
+  EXPECT_EQ(other.block(other.slot(0, 1)), Mat3(Mat3::Zero()));
+  EXPECT_EQ(other.block(other.slot(1, 0)), Mat3(-block));
+  other.copy_rows(matrix, 0, 2);
   matrix.set_zero();
+  EXPECT_EQ(other.block(other.slot(0, 1)), Mat3(block + 0.5 * Mat3::Identity()));
   EXPECT_EQ(other.block(other.slot(1, 0)), Mat3(-block));
   EXPECT_EQ(matrix.block(matrix.slot(1, 0)), Mat3(Mat3::Zero()));
 }
