@@ -1,5 +1,6 @@
 #include "forces/bend.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace weft::forces {
@@ -23,6 +24,7 @@ Vec3 weighted_sum(const std::array<Index, 4>& particles, const std::array<double
 
 Bend::Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters)
     : rigidity_(parameters.rigidity), viscosity_(parameters.viscosity), friction_(parameters.friction) {
+  kept_curvature_ = std::max(kFlatCurvature, rigidity_ > 0 ? friction_ / rigidity_ : 0.0);
   const auto at = [&](int i, int j) { return first + grid.index(i, j); };
   const double uu = 1 / (grid.lu * grid.lu), vv = 1 / (grid.lv * grid.lv), uv = 1 / (grid.lu * grid.lv);
   for (int j = 0; j < grid.nv; ++j) {
@@ -68,28 +70,37 @@ void Bend::add(const Evaluation& at) const {
     for (std::size_t d = 0; d < differences_.size(); ++d) add_damping(d, at);
 }
 
+// Damping per area acts along the curvature, with a direction that fades where the sheet is flat: for viscosity below
+// kFlatCurvature, for friction below the curvature that it can keep, where a moment of full size about an axis that
+// turns with every ripple would be stiffer than the bending itself.
 void Bend::add_damping(std::size_t index, const Evaluation& at) const {
   const Difference& d = differences_[index];
   const Vec3 curvature = weighted_sum(d.particles, d.weights, at.x);
   const Vec3 velocity = weighted_sum(d.particles, d.weights, at.v);
-  const double magnitude = std::sqrt(curvature.squaredNorm() + kFlatCurvature * kFlatCurvature);
-  const Vec3 n = curvature / magnitude;
-  const double rate = n.dot(velocity);
-  const double smooth_rate = std::sqrt(rate * rate + kRestRate * kRestRate);
-  const double secant = d.area * (viscosity_ + friction_ / smooth_rate);  // moment per rate
-  for (int k = 0; k < d.count; ++k)
-    at.force[static_cast<std::size_t>(d.particles[k])] -= d.weights[k] * secant * rate * n;
+  const auto direction = [&](double flat) {
+    return Vec3(curvature / std::sqrt(curvature.squaredNorm() + flat * flat));
+  };
+  const Vec3 viscous = direction(kFlatCurvature), dry = direction(kept_curvature_);
+  const double viscous_rate = viscous.dot(velocity), dry_rate = dry.dot(velocity);
+  const double smooth_rate = std::sqrt(dry_rate * dry_rate + kRestRate * kRestRate);
+  const double viscosity = d.area * viscosity_, friction = d.area * friction_ / smooth_rate;  // moment per rate
+  const Vec3 moment = viscosity * viscous_rate * viscous + friction * dry_rate * dry;
+  for (int k = 0; k < d.count; ++k) at.force[static_cast<std::size_t>(d.particles[k])] -= d.weights[k] * moment;
   if (at.matrix == nullptr) return;
 
-  // The definite form takes the secant of friction, which is no less stiff than the tangent.
-  Mat3 block = at.rate * secant * n * n.transpose();
+  // The definite form takes the secant of friction: its tangent is definite too, but with it Newton's method jumps to
+  // and fro over the kink at rest and takes half as many iterations more.
+  Mat3 block = at.rate * (viscosity * viscous * viscous.transpose() + friction * dry * dry.transpose());
   if (at.linearisation == Linearisation::exact) {
-    const double slowing = friction_ * rate * rate / (smooth_rate * smooth_rate * smooth_rate);
-    // The direction turns with the curvature; left out of the definite form as in Stretch.
-    const Mat3 across = (Mat3::Identity() - n * n.transpose()) / magnitude;
-    const double tangent = secant - d.area * slowing;
-    block =
-        at.rate * tangent * n * n.transpose() + tangent * n * (across * velocity).transpose() + secant * rate * across;
+    // Directions turn with the curvature; left out of the definite form as in Stretch.
+    const auto turning = [&](double flat, const Vec3& n) {
+      return Mat3((Mat3::Identity() - n * n.transpose()) / std::sqrt(curvature.squaredNorm() + flat * flat));
+    };
+    const Mat3 viscous_turning = turning(kFlatCurvature, viscous), dry_turning = turning(kept_curvature_, dry);
+    const double tangent = friction * kRestRate * kRestRate / (smooth_rate * smooth_rate);
+    block += (tangent - friction) * at.rate * dry * dry.transpose();
+    block += viscosity * (viscous * (viscous_turning * velocity).transpose() + viscous_rate * viscous_turning);
+    block += tangent * dry * (dry_turning * velocity).transpose() + friction * dry_rate * dry_turning;
   }
   for (int a = 0; a < d.count; ++a)
     for (int b = 0; b < d.count; ++b) at.matrix->add(slots_[index][4 * a + b], d.weights[a] * d.weights[b] * block);

@@ -50,6 +50,7 @@ class Bend final : public Force {
   void add_damping(std::size_t d, const Evaluation& at) const;
 
   double rigidity_, viscosity_, friction_;
+  double kept_curvature_;  // below which friction fades [1/m]
   std::vector<Difference> differences_;
   std::vector<std::array<solver::Slot, 16>> slots_;  // row-major over pairs of particles
 };
