@@ -15,6 +15,8 @@ constexpr double kRest = 0.3;
 // Slope behind the minimum, against that at the start, from which a step counts as overshooting.
 constexpr double kOvershoot = 0.7;
 constexpr int kLineTrials = 6;
+// A part of the system (a cloth) is left alone while its residual is below this share of its share of the goal.
+constexpr double kSolvedShare = 0.5;
 
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
@@ -86,9 +88,8 @@ double Stepper::residual(const System& system, const State& now, const Stage& st
   return cg_.norm(residual_);
 }
 
-// Norm of what the residual is measured against: the weight of the particles, or the force that their change of
-// velocity takes, whichever is more.
-double Stepper::force_scale(std::span<const double> masses, const Vec3& gravity, const Stage& stage) {
+// Norm of the weight of the particles, as far as residuals are measured against it.
+double Stepper::weight(std::span<const double> masses, const Vec3& gravity) {
   const double least = std::max(gravity.norm(), 1.0);
   for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = Vec3(0, 0, masses[i] * least);
   cg_.filter(scale_);
@@ -96,10 +97,25 @@ double Stepper::force_scale(std::span<const double> masses, const Vec3& gravity,
   if (!(dot(scale_, scale_) > 1e-12 * least * least * dot(masses, masses)))
     for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = Vec3::Constant(masses[i] * least);
   cg_.filter(scale_);
-  const double weight = kRest * cg_.norm(scale_);
+  return kRest * cg_.norm(scale_);
+}
+
+// Norm of what the residual is measured against: the weight, or the force that the change of velocity takes, whichever
+// is more.
+double Stepper::force_scale(std::span<const double> masses, double weight, const Stage& stage) {
   for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = masses[i] / stage.beta * (v_[i] - v_hat_[i]);
   cg_.filter(scale_);
   return std::max(weight, cg_.norm(scale_));
+}
+
+// Parts of the system whose residual is more than their share of the goal.
+std::span<const std::size_t> Stepper::unsolved_parts(double goal) {
+  const std::span<const double> norms_sq = cg_.part_norms_sq(residual_);
+  const double share_sq = kSolvedShare * kSolvedShare * goal * goal / static_cast<double>(norms_sq.size());
+  unsolved_.clear();
+  for (std::size_t p = 0; p < norms_sq.size(); ++p)
+    if (norms_sq[p] > share_sq) unsolved_.push_back(p);
+  return unsolved_;
 }
 
 // Moves x along delta_: the whole way, or less where the whole way overshoots. Returns the norm of the residual there.
@@ -177,12 +193,16 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
     system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, force_, scratch);
     cg_.prepare(scratch);
     gather_residual(masses, stage);
-    const double before = cg_.norm(residual_);
+    const double before = cg_.norm(residual_), at_rest = weight(masses, gravity);
+    const auto goal = [&] { return parameters_.tolerance * force_scale(masses, at_rest, stage); };
     if (report.newton_iterations == 0) report.first_residual = before;
-    const auto goal = [&] { return parameters_.tolerance * force_scale(masses, gravity, stage); };
     const double target =
         std::min(std::max(parameters_.linear_tolerance * before, kLinearShare * goal()), kLeastLinear * before);
-    const solver::LinearReport linear = cg_.solve(residual_, target, parameters_.max_linear_iterations, delta_);
+    // The first iteration is for all: cloth that creeps within the tolerance would never stop.
+    const bool all = report.newton_iterations == 0 || unsolved_parts(goal()).empty();
+    const solver::LinearReport linear =
+        all ? cg_.solve(residual_, target, parameters_.max_linear_iterations, delta_)
+            : cg_.solve(residual_, target, parameters_.max_linear_iterations, delta_, unsolved_);
     ++report.newton_iterations;
     report.linear_iterations += linear.iterations;
 

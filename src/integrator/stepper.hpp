@@ -72,7 +72,9 @@ class Stepper {
   Stage begin(const State& now, double h);
   void prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity);
   void hold(const State& now, const Stage& stage, std::span<const HeldParticle> held, solver::LinearSystem& scratch);
-  double force_scale(std::span<const double> masses, const Vec3& gravity, const Stage& stage);
+  double weight(std::span<const double> masses, const Vec3& gravity);
+  double force_scale(std::span<const double> masses, double weight, const Stage& stage);
+  std::span<const std::size_t> unsolved_parts(double goal);
   double search_along_delta(const System& system, const State& now, const Stage& stage);
   double residual(const System& system, const State& now, const Stage& stage);
   void evaluate(const State& now, const Stage& stage);
@@ -87,6 +89,7 @@ class Stepper {
   // Scratch of one step.
   solver::ConjugateGradient cg_;
   State guess_;
+  std::vector<std::size_t> unsolved_;
   std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, scale_;
 };
 

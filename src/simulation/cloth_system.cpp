@@ -85,10 +85,30 @@ void ClothSystem::explicit_forces(const integrator::State& at, double h, std::sp
 }
 
 void ClothSystem::forces(const integrator::StagePoint& at, std::span<Vec3> force) const {
-  for (const auto& of_cloth : forces_)
-    for (const forces::Force* f : of_cloth) f->add({at.x, at.v, force});
+  for (std::size_t c = 0; c < forces_.size(); ++c) add_cloth_forces(c, at, force, nullptr);
   if (contacts_ != nullptr) contacts_->add_forces(at.x_end, force);
   if (constraints_ != nullptr) constraints_->add_forces(at.x_end, force);
+}
+
+// force += the forces within a cloth; their Jacobian goes into the matrix, if there is one.
+void ClothSystem::add_cloth_forces(std::size_t cloth, const integrator::StagePoint& at, std::span<Vec3> force,
+                                   solver::BlockMatrix* matrix) const {
+  latest_.resize(forces_.size());
+  Evaluated& latest = latest_[cloth];
+  const auto first = static_cast<std::size_t>(first_[cloth]);
+  const auto count = static_cast<std::size_t>(first_[cloth + 1]) - first;
+  const std::span<const Vec3> x = at.x.subspan(first, count), v = at.v.subspan(first, count);
+  const bool same = std::ranges::equal(x, latest.x) && std::ranges::equal(v, latest.v);
+  if (!same || matrix != nullptr) {
+    // The forces number particles through all cloths.
+    evaluated_.resize(at.x.size());
+    std::fill_n(evaluated_.begin() + first_[cloth], count, Vec3::Zero());
+    for (const forces::Force* f : forces_[cloth]) f->add({at.x, at.v, evaluated_, matrix, at.rate});
+    latest.x.assign(x.begin(), x.end());
+    latest.v.assign(v.begin(), v.end());
+    latest.force.assign(evaluated_.begin() + first_[cloth], evaluated_.begin() + first_[cloth + 1]);
+  }
+  for (std::size_t i = 0; i < count; ++i) force[first + i] += latest.force[i];
 }
 
 void ClothSystem::prepare_base(double rate) const {
@@ -112,14 +132,14 @@ void ClothSystem::linearise(const integrator::StagePoint& at, std::span<Vec3> fo
   prepare_base(at.rate);
   for (std::size_t c = 0; c + 1 < first_.size(); ++c) {
     if (!all && !is_stale(c, at.x)) {
-      for (const forces::Force* f : forces_[c]) f->add({at.x, at.v, force});
+      add_cloth_forces(c, at, force, nullptr);
       continue;
     }
     const auto first = static_cast<std::size_t>(first_[c]), count = static_cast<std::size_t>(first_[c + 1]) - first;
     std::copy_n(at.x.begin() + first_[c], count, linearised_at_.begin() + first_[c]);
     system.matrix.copy_rows(base_, first_[c], first_[c + 1]);
-    ++system.matrix_version;
-    for (const forces::Force* f : forces_[c]) f->add({at.x, at.v, force, &system.matrix, at.rate});
+    ++system.parts[c].version;
+    add_cloth_forces(c, at, force, &system.matrix);
   }
   system.terms.clear();
   system.diagonal_terms.clear();
@@ -139,6 +159,7 @@ solver::LinearSystem ClothSystem::make_linear_system() const {
   solver::LinearSystem system;
   system.matrix = base_;
   system.groupings = groupings_;
+  for (std::size_t c = 0; c + 1 < first_.size(); ++c) system.parts.push_back({first_[c], first_[c + 1]});
   return system;
 }
 

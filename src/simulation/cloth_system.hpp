@@ -36,7 +36,10 @@ class ClothSystem final : public integrator::System {
 
   /// Makes the next linearisation put the matrix together anew: what is computed from here on depends on positions and
   /// velocities alone.
-  void forget() { linearised_at_.clear(); }
+  void forget() {
+    linearised_at_.clear();
+    latest_.clear();
+  }
 
   /// An empty system with the pattern of this one.
   solver::LinearSystem make_linear_system() const;
@@ -51,6 +54,8 @@ class ClothSystem final : public integrator::System {
  private:
   void prepare_base(double rate) const;
   bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
+  void add_cloth_forces(std::size_t cloth, const integrator::StagePoint& at, std::span<Vec3> force,
+                        solver::BlockMatrix* matrix) const;
   void cut_groups(const std::vector<mesh::Grid>& grids);
 
   std::vector<Index> first_;  // per cloth, and the total at the end
@@ -67,6 +72,13 @@ class ClothSystem final : public integrator::System {
   // rate² M plus the constant part of the bending, kept as long as the step does not change.
   mutable solver::BlockMatrix base_;
   mutable double base_rate_ = 0;
+  // The forces within each cloth where they were last evaluated: most cloths of a scene are solved, and do not move,
+  // while one goes on.
+  struct Evaluated {
+    std::vector<Vec3> x, v, force;
+  };
+  mutable std::vector<Evaluated> latest_;
+  mutable std::vector<Vec3> evaluated_;  // scratch
   // Where each cloth's rows of the matrix were last put together: cloth at rest does with those it has.
   double spacing_ = std::numeric_limits<double>::infinity();  // least, of all cloths [m]
   mutable std::vector<Vec3> linearised_at_;

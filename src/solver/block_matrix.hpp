@@ -39,10 +39,10 @@ class BlockMatrix {
   void add_scalar(Slot slot, double value);
   Mat3 block(Slot slot) const { return Eigen::Map<const Mat3>(values_.data() + 9 * static_cast<std::size_t>(slot)); }
 
-  /// Calls body(row, column, block) for every block, row by row.
+  /// Calls body(row, column, block) for every block of the rows [begin, end), row by row.
   template <class Body>
-  void for_each_block(const Body& body) const {
-    for (Index row = 0; row < rows(); ++row)
+  void for_each_block(Index begin, Index end, const Body& body) const {
+    for (Index row = begin; row < end; ++row)
       for (Slot s = row_start_[static_cast<std::size_t>(row)]; s < row_start_[static_cast<std::size_t>(row) + 1]; ++s)
         body(row, columns_[static_cast<std::size_t>(s)],
              Eigen::Map<const Mat3>(values_.data() + 9 * static_cast<std::size_t>(s)));

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "core/parallel.hpp"
 
@@ -12,66 +13,119 @@ namespace {
 // of 3,000 particles.
 constexpr std::size_t kChunk = 4096;
 
+// Calls body(begin, end) for chunks of the rows of a part.
+template <class Body>
+void for_rows(const Part& part, const Body& body) {
+  const auto first = static_cast<std::size_t>(part.begin), count = static_cast<std::size_t>(part.end) - first;
+  parallel_for(count, kChunk, [&](std::size_t begin, std::size_t end) { body(first + begin, first + end); });
+}
+
+double dot(const Part& part, std::span<const Vec3> a, std::span<const Vec3> b) {
+  const auto first = static_cast<std::size_t>(part.begin), count = static_cast<std::size_t>(part.end) - first;
+  return parallel_sum(count, kChunk, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = first + begin; i < first + end; ++i) sum += a[i].dot(b[i]);
+    return sum;
+  });
+}
+
 }  // namespace
 
 void ConjugateGradient::prepare(const LinearSystem& system) {
   system_ = &system;
   const auto rows = static_cast<std::size_t>(system.matrix.rows());
-  for (auto* vector : {&r_, &z_, &p_, &q_}) vector->resize(rows);
+  for (auto* vector : {&r_, &z_, &p_, &q_})
+    if (vector->size() != rows) vector->assign(rows, Vec3::Zero());
+  parts_ = parts_of(system);
+  all_parts_.resize(parts_.size());
+  std::iota(all_parts_.begin(), all_parts_.end(), std::size_t{0});
   preconditioner_.prepare(system);
 }
 
 double ConjugateGradient::norm(std::span<const Vec3> b) {
-  return std::sqrt(preconditioner_.apply(b, z_));
+  return std::sqrt(preconditioner_.apply(b, z_, all_parts_));
 }
 
-// q = S A p; returns p·q. p obeys the constraints, so p·q = pᵀ A p.
-double ConjugateGradient::multiply(std::span<const Vec3> p, std::span<Vec3> q) const {
-  parallel_for(p.size(), kChunk,
-               [&](std::size_t begin, std::size_t end) { system_->matrix.multiply(p, q, begin, end); });
+std::span<const double> ConjugateGradient::part_norms_sq(std::span<const Vec3> b) {
+  preconditioner_.apply(b, z_, all_parts_);
+  part_norms_sq_.clear();
+  for (const Part& part : parts_) part_norms_sq_.push_back(dot(part, b, z_));
+  return part_norms_sq_;
+}
+
+void ConjugateGradient::select_terms(std::span<const std::size_t> parts) {
+  terms_.clear();
+  const auto inside = [&](Index particle) {
+    return std::any_of(parts.begin(), parts.end(),
+                       [&](std::size_t p) { return particle >= parts_[p].begin && particle < parts_[p].end; });
+  };
+  for (const StencilTerm& term : system_->terms) {
+    bool acts = parts.size() == parts_.size();
+    for (int k = 0; k < 4 && !acts; ++k) acts = term.weights[k] != 0 && inside(term.particles[k]);
+    if (acts) terms_.push_back(&term);
+  }
+}
+
+// q = S A p on the rows of these parts, p being zero on the others; returns p·q. p obeys the constraints, so
+// p·q = pᵀ A p.
+double ConjugateGradient::multiply(std::span<const Vec3> p, std::span<Vec3> q,
+                                   std::span<const std::size_t> parts) const {
+  for (std::size_t part : parts)
+    for_rows(parts_[part], [&](std::size_t begin, std::size_t end) { system_->matrix.multiply(p, q, begin, end); });
   for (const DiagonalTerm& term : system_->diagonal_terms)
     q[static_cast<std::size_t>(term.particle)] += term.stiffness * p[static_cast<std::size_t>(term.particle)];
-  for (const StencilTerm& term : system_->terms) {
-    const auto& [a, b, c, d] = term.particles;
-    const auto& w = term.weights;
-    const Vec3 force = term.stiffness * (w[0] * p[static_cast<std::size_t>(a)] + w[1] * p[static_cast<std::size_t>(b)] +
-                                         w[2] * p[static_cast<std::size_t>(c)] + w[3] * p[static_cast<std::size_t>(d)]);
-    for (int k = 0; k < 4; ++k) q[static_cast<std::size_t>(term.particles[k])] += w[k] * force;
+  for (const StencilTerm* term : terms_) {
+    const auto& [a, b, c, d] = term->particles;
+    const auto& w = term->weights;
+    const Vec3 force =
+        term->stiffness * (w[0] * p[static_cast<std::size_t>(a)] + w[1] * p[static_cast<std::size_t>(b)] +
+                           w[2] * p[static_cast<std::size_t>(c)] + w[3] * p[static_cast<std::size_t>(d)]);
+    for (int k = 0; k < 4; ++k) q[static_cast<std::size_t>(term->particles[k])] += w[k] * force;
   }
   filter(q);
-  return parallel_sum(p.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-    double sum = 0;
-    for (std::size_t i = begin; i < end; ++i) sum += p[i].dot(q[i]);
-    return sum;
-  });
+  double sum = 0;
+  for (std::size_t part : parts) sum += dot(parts_[part], p, q);
+  return sum;
 }
 
 LinearReport ConjugateGradient::solve(std::span<const Vec3> b, double target, int max_iterations, std::span<Vec3> x) {
+  return solve(b, target, max_iterations, x, all_parts_);
+}
+
+LinearReport ConjugateGradient::solve(std::span<const Vec3> b, double target, int max_iterations, std::span<Vec3> x,
+                                      std::span<const std::size_t> parts) {
   LinearReport report;
   std::fill(x.begin(), x.end(), Vec3::Zero());
+  std::fill(p_.begin(), p_.end(), Vec3::Zero());
+  std::fill(q_.begin(), q_.end(), Vec3::Zero());
   std::copy(b.begin(), b.end(), r_.begin());
   filter(r_);
-  double rz = preconditioner_.apply(r_, p_);
+  select_terms(parts);
+  double rz = preconditioner_.apply(r_, p_, parts);
   report.first_residual = report.last_residual = std::sqrt(rz);
 
   while (!(report.last_residual <= target) && report.iterations < max_iterations) {
-    const double curvature = multiply(p_, q_);
+    const double curvature = multiply(p_, q_, parts);
     if (!(curvature > 0)) {
       report.definite = false;
       return report;
     }
     const double alpha = rz / curvature;
-    parallel_for(r_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        x[i] += alpha * p_[i];
-        r_[i] -= alpha * q_[i];
-      }
-    });
-    const double rz_next = preconditioner_.apply(r_, z_);
+    for (std::size_t part : parts) {
+      for_rows(parts_[part], [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) {
+          x[i] += alpha * p_[i];
+          r_[i] -= alpha * q_[i];
+        }
+      });
+    }
+    const double rz_next = preconditioner_.apply(r_, z_, parts);
     const double beta = rz_next / rz;
-    parallel_for(p_.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) p_[i] = z_[i] + beta * p_[i];
-    });
+    for (std::size_t part : parts) {
+      for_rows(parts_[part], [&](std::size_t begin, std::size_t end) {
+        for (std::size_t i = begin; i < end; ++i) p_[i] = z_[i] + beta * p_[i];
+      });
+    }
     rz = rz_next;
     report.last_residual = std::sqrt(rz);
     ++report.iterations;

@@ -25,18 +25,28 @@ class ConjugateGradient {
   /// The norm √(bᵀ P⁻¹ b) of the constrained part of b, close to the energy norm of the error it stands for: a residual
   /// weighed so that soft and stiff motions compare.
   double norm(std::span<const Vec3> b);
+  /// What each part of the system adds to the square of the norm.
+  std::span<const double> part_norms_sq(std::span<const Vec3> b);
 
   /// x (in: anything, out: the solution) until the residual's norm is at most `target`, or after `max_iterations`.
   LinearReport solve(std::span<const Vec3> b, double target, int max_iterations, std::span<Vec3> x);
+  /// As if all particles outside of these parts were held: x is zero there, and residuals there do not count.
+  LinearReport solve(std::span<const Vec3> b, double target, int max_iterations, std::span<Vec3> x,
+                     std::span<const std::size_t> parts);
 
   /// Sets the constrained part of each vector entry to zero.
   void filter(std::span<Vec3> b) const { preconditioner_.filter(b); }
 
  private:
-  double multiply(std::span<const Vec3> p, std::span<Vec3> q) const;
+  void select_terms(std::span<const std::size_t> parts);
+  double multiply(std::span<const Vec3> p, std::span<Vec3> q, std::span<const std::size_t> parts) const;
 
   const LinearSystem* system_ = nullptr;
   Preconditioner preconditioner_;
+  std::vector<Part> parts_;
+  std::vector<std::size_t> all_parts_;
+  std::vector<const StencilTerm*> terms_;  // that act on the parts being solved for
+  std::vector<double> part_norms_sq_;
   std::vector<Vec3> r_, z_, p_, q_;
 };
 

@@ -37,15 +37,26 @@ struct Grouping {
   Index count = 0;
 };
 
+/// Rows [begin, end) that the matrix does not couple with others; terms may.
+struct Part {
+  Index begin = 0, end = 0;
+  std::uint64_t version = 1;  ///< another number whenever the values of these rows change
+};
+
 struct LinearSystem {
-  BlockMatrix matrix;                ///< positive definite on the free directions
-  std::uint64_t matrix_version = 1;  ///< another number whenever the values of the matrix change
+  BlockMatrix matrix;       ///< positive definite on the free directions
+  std::vector<Part> parts;  ///< all rows, in their order; empty: they are one part
   std::vector<StencilTerm> terms;
   std::vector<DiagonalTerm> diagonal_terms;
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
   /// Coarse levels of the preconditioner, which moves groups as a whole: of particles, of those groups, and so on, the
-  /// last of them few enough for a dense factorisation. Empty: no coarse level.
+  /// last of them few enough for a dense factorisation. No group spans two parts, and those of one part have consecutive
+  /// numbers. Empty: no coarse level.
   std::vector<Grouping> groupings;
 };
+
+inline std::vector<Part> parts_of(const LinearSystem& system) {
+  return system.parts.empty() ? std::vector<Part>{{0, system.matrix.rows()}} : system.parts;
+}
 
 }  // namespace weft::solver

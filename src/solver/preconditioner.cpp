@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include "core/parallel.hpp"
 
@@ -43,17 +44,19 @@ void Preconditioner::prepare(const LinearSystem& system) {
   const bool same_constraints =
       std::equal(constraints_.begin(), constraints_.end(), system.constraints.begin(), system.constraints.end(),
                  [](const auto& a, const auto& b) { return a.particle == b.particle && a.free == b.free; });
-  const bool same = system_ == &system && matrix_version_ == system.matrix_version && same_constraints;
+  const bool same = system_ == &system && same_constraints;
+  const std::vector<Part> before = std::exchange(parts_, parts_of(system));
   system_ = &system;
   if (!same) {
-    matrix_version_ = system.matrix_version;
     constraints_ = system.constraints;
     constraint_of_.assign(index(system.matrix.rows()), -1);
     for (std::size_t c = 0; c < constraints_.size(); ++c)
       constraint_of_[index(constraints_[c].particle)] = static_cast<Index>(c);
     prepare_levels();
-    if (!levels_.empty()) sum_blocks();
   }
+  if (!levels_.empty())
+    for (std::size_t p = 0; p < parts_.size(); ++p)
+      if (!same || parts_[p].version != before[p].version) sum_blocks(p);
   prepare_particles();
   if (!levels_.empty()) add_terms();
 }
@@ -71,7 +74,16 @@ void Preconditioner::prepare_levels() {
     }
     for (auto* blocks : {&level.of_matrix, &level.inverse}) blocks->assign(index(grouping.count), Mat3::Zero());
     for (auto* vectors : {&level.residual, &level.correction}) vectors->resize(index(grouping.count));
+    level.of_part.clear();
+    for (const Part& part : parts_) {
+      const auto [least, most] =
+          std::minmax_element(level.group_of.begin() + part.begin, level.group_of.begin() + part.end);
+      level.of_part.push_back(part.begin == part.end ? Range{} : Range{index(*least), index(*most) + 1});
+    }
   }
+  if (levels_.empty()) return;
+  const Index size = 3 * system_->groupings.back().count;
+  patches_of_matrix_.setZero(size, size);
 }
 
 void Preconditioner::prepare_particles() {
@@ -96,12 +108,15 @@ void Preconditioner::prepare_particles() {
   }
 }
 
-// The blocks of the matrix, level by level. Most neighbours of a particle are in its own groups: their blocks are added
-// up before they go into the level.
-void Preconditioner::sum_blocks() {
+// The blocks of a part of the matrix, level by level. Most neighbours of a particle are in its own groups: their blocks
+// are added up before they go into the level.
+void Preconditioner::sum_blocks(std::size_t part) {
   const std::size_t depth = levels_.size();
-  const Index size = 3 * system_->groupings.back().count;
-  patches_of_matrix_.setZero(size, size);
+  for (Level& level : levels_)
+    for (std::size_t g = level.of_part[part].begin; g < level.of_part[part].end; ++g) level.of_matrix[g].setZero();
+  const auto first = static_cast<Eigen::Index>(3 * levels_.back().of_part[part].begin);
+  const auto last = static_cast<Eigen::Index>(3 * levels_.back().of_part[part].end);
+  patches_of_matrix_.block(first, first, last - first, last - first).setZero();
   std::array<const Index*, kMaxLevels> group_of{};
   for (std::size_t l = 0; l < depth; ++l) group_of[l] = levels_[l].group_of.data();
   std::array<Mat3, kMaxLevels> own;
@@ -119,7 +134,7 @@ void Preconditioner::sum_blocks() {
     const Index patch_i = group_of[depth - 1][i], patch_j = group_of[depth - 1][j];
     if (patch_i > patch_j) patches_of_matrix_.block<3, 3>(3 * patch_i, 3 * patch_j) += block;
   };
-  system_->matrix.for_each_block([&](Index i, Index j, const auto& block) {
+  system_->matrix.for_each_block(parts_[part].begin, parts_[part].end, [&](Index i, Index j, const auto& block) {
     if (i != row) {
       if (row >= 0) finish_row();
       row = i;
@@ -165,43 +180,57 @@ void Preconditioner::add_terms() {
 }
 
 // From particles to groups to larger groups.
-void Preconditioner::restrict_residual(std::span<const Vec3> r) {
+void Preconditioner::restrict_residual(std::span<const Vec3> r, std::span<const std::size_t> parts) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     std::vector<Vec3>& sums = levels_[l].residual;
-    std::fill(sums.begin(), sums.end(), Vec3::Zero());
     const std::span<const Vec3> members = l == 0 ? r : std::span<const Vec3>(levels_[l - 1].residual);
     const std::vector<Index>& of = system_->groupings[l].of;
-    for (std::size_t m = 0; m < members.size(); ++m) sums[index(of[m])] += members[m];
+    for (std::size_t p : parts) {
+      const Range groups = levels_[l].of_part[p];
+      for (std::size_t g = groups.begin; g < groups.end; ++g) sums[g].setZero();
+      const Range range = l == 0 ? Range{index(parts_[p].begin), index(parts_[p].end)} : levels_[l - 1].of_part[p];
+      for (std::size_t m = range.begin; m < range.end; ++m) sums[index(of[m])] += members[m];
+    }
   }
 }
 
-double Preconditioner::apply(std::span<const Vec3> r, std::span<Vec3> z) {
-  if (!levels_.empty()) {
-    restrict_residual(r);
-    // From the largest groups down: each adds the correction of the group that it is in.
-    Level& patches = levels_.back();
-    patch_vector_.resize(patch_matrix_.rows());
-    for (std::size_t g = 0; g < patches.residual.size(); ++g)
+// From the largest groups down: each adds the correction of the group that it is in.
+void Preconditioner::correct_groups(std::span<const std::size_t> parts) {
+  Level& patches = levels_.back();
+  patch_vector_.setZero(patch_matrix_.rows());
+  for (std::size_t p : parts)
+    for (std::size_t g = patches.of_part[p].begin; g < patches.of_part[p].end; ++g)
       patch_vector_.segment<3>(3 * static_cast<Eigen::Index>(g)) = patches.residual[g];
-    patch_solver_.solveInPlace(patch_vector_);
-    for (std::size_t g = 0; g < patches.residual.size(); ++g)
-      patches.correction[g] = patch_vector_.segment<3>(3 * static_cast<Eigen::Index>(g));
-    for (std::size_t l = levels_.size() - 1; l-- > 0;) {
-      Level& level = levels_[l];
-      const std::vector<Index>& parent_of = system_->groupings[l + 1].of;
-      for (std::size_t g = 0; g < level.residual.size(); ++g)
+  patch_solver_.solveInPlace(patch_vector_);
+  for (std::size_t g = 0; g < patches.correction.size(); ++g)
+    patches.correction[g] = patch_vector_.segment<3>(3 * static_cast<Eigen::Index>(g));
+  for (std::size_t l = levels_.size() - 1; l-- > 0;) {
+    Level& level = levels_[l];
+    const std::vector<Index>& parent_of = system_->groupings[l + 1].of;
+    for (std::size_t p : parts)
+      for (std::size_t g = level.of_part[p].begin; g < level.of_part[p].end; ++g)
         level.correction[g] = level.inverse[g] * level.residual[g] + levels_[l + 1].correction[index(parent_of[g])];
-    }
   }
-  const double sum = parallel_sum(r.size(), kChunk, [&](std::size_t begin, std::size_t end) {
-    double part = 0;
-    for (std::size_t i = begin; i < end; ++i) {
-      z[i] = inverse_diagonal_[i] * r[i];
-      if (!levels_.empty()) z[i] += levels_.front().correction[index(system_->groupings.front().of[i])];
-      part += r[i].dot(z[i]);
-    }
-    return part;
-  });
+}
+
+double Preconditioner::apply(std::span<const Vec3> r, std::span<Vec3> z, std::span<const std::size_t> parts) {
+  if (!levels_.empty()) {
+    restrict_residual(r, parts);
+    correct_groups(parts);
+  }
+  double sum = 0;
+  for (std::size_t p : parts) {
+    const std::size_t first = index(parts_[p].begin);
+    sum += parallel_sum(index(parts_[p].end) - first, kChunk, [&](std::size_t begin, std::size_t end) {
+      double of_chunk = 0;
+      for (std::size_t i = first + begin; i < first + end; ++i) {
+        z[i] = inverse_diagonal_[i] * r[i];
+        if (!levels_.empty()) z[i] += levels_.front().correction[index(system_->groupings.front().of[i])];
+        of_chunk += r[i].dot(z[i]);
+      }
+      return of_chunk;
+    });
+  }
   if (!levels_.empty()) filter(z);
   return sum;
 }

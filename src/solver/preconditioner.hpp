@@ -22,30 +22,36 @@ class Preconditioner {
   /// is kept while they stay the same.
   void prepare(const LinearSystem& system);
 
-  /// z = P⁻¹ r; returns r·z. r obeys the constraints, and so does z.
-  double apply(std::span<const Vec3> r, std::span<Vec3> z);
+  /// z = P⁻¹ r on the rows of these parts, as if r were zero on the others; returns r·z there. r obeys the constraints,
+  /// and so does z.
+  double apply(std::span<const Vec3> r, std::span<Vec3> z, std::span<const std::size_t> parts);
 
   /// Sets the constrained part of each entry to zero.
   void filter(std::span<Vec3> b) const;
 
  private:
+  struct Range {
+    std::size_t begin = 0, end = 0;
+  };
   /// Groups between single particles and patches.
   struct Level {
     std::vector<Index> group_of;  // per particle
+    std::vector<Range> of_part;   // groups of each part
     std::vector<Mat3> of_matrix;  // per group, without terms
     std::vector<Mat3> inverse;    // with them
     std::vector<Vec3> residual, correction;
   };
   void prepare_levels();
   void prepare_particles();
-  void sum_blocks();
+  void sum_blocks(std::size_t part);
   void add_terms();
-  void restrict_residual(std::span<const Vec3> r);
+  void restrict_residual(std::span<const Vec3> r, std::span<const std::size_t> parts);
+  void correct_groups(std::span<const std::size_t> parts);
   Mat3 filtered(Index i, const Mat3& block, Index j) const;
 
   const LinearSystem* system_ = nullptr;
-  std::uint64_t matrix_version_ = 0;
-  std::vector<ParticleConstraint> constraints_;  // that the sums were made with
+  std::vector<Part> parts_;                      // as the sums were made
+  std::vector<ParticleConstraint> constraints_;  // likewise
   std::vector<Index> constraint_of_;             // per particle, −1 for none
   std::vector<Mat3> inverse_diagonal_;           // already filtered: S P⁻¹ S
   std::vector<Level> levels_;                    // the last one is that of the patches
