@@ -62,48 +62,47 @@ void Bend::attach(const solver::BlockMatrix& matrix) {
 }
 
 void Bend::add(const Evaluation& at) const {
-  for (const Difference& d : differences_) {
-    const Vec3 moment = rigidity_ * d.area * weighted_sum(d.particles, d.weights, at.x);
-    for (int k = 0; k < d.count; ++k) at.force[static_cast<std::size_t>(d.particles[k])] -= d.weights[k] * moment;
+  for (std::size_t d = 0; d < differences_.size(); ++d) {
+    const Difference& difference = differences_[d];
+    const Vec3 curvature = weighted_sum(difference.particles, difference.weights, at.x);
+    Vec3 moment = rigidity_ * curvature;
+    if (viscosity_ > 0 || friction_ > 0) moment += damping(d, curvature, at);
+    for (int k = 0; k < difference.count; ++k)
+      at.force[static_cast<std::size_t>(difference.particles[k])] -= difference.area * difference.weights[k] * moment;
   }
-  if (viscosity_ > 0 || friction_ > 0)
-    for (std::size_t d = 0; d < differences_.size(); ++d) add_damping(d, at);
 }
 
-// Damping per area acts along the curvature, with a direction that fades where the sheet is flat: for viscosity below
-// kFlatCurvature, for friction below the curvature that it can keep, where a moment of full size about an axis that
-// turns with every ripple would be stiffer than the bending itself.
-void Bend::add_damping(std::size_t index, const Evaluation& at) const {
+// Moment per area [N/m] against the rate of curvature κ̇ along c, the curvature itself:
+//
+//     η (c·κ̇) c / (‖c‖² + flat²)  +  τ (c·κ̇) c / (D √((c·κ̇)² + ε² D²)),  D² = ‖c‖² + kept².
+//
+// The direction fades where the sheet is flat: for viscosity below kFlatCurvature, for friction below the curvature
+// that it can keep, where a moment of full size about an axis that turns with every ripple would be stiffer than the
+// bending itself.
+Vec3 Bend::damping(std::size_t index, const Vec3& curvature, const Evaluation& at) const {
   const Difference& d = differences_[index];
-  const Vec3 curvature = weighted_sum(d.particles, d.weights, at.x);
-  const Vec3 velocity = weighted_sum(d.particles, d.weights, at.v);
-  const auto direction = [&](double flat) {
-    return Vec3(curvature / std::sqrt(curvature.squaredNorm() + flat * flat));
-  };
-  const Vec3 viscous = direction(kFlatCurvature), dry = direction(kept_curvature_);
-  const double viscous_rate = viscous.dot(velocity), dry_rate = dry.dot(velocity);
-  const double smooth_rate = std::sqrt(dry_rate * dry_rate + kRestRate * kRestRate);
-  const double viscosity = d.area * viscosity_, friction = d.area * friction_ / smooth_rate;  // moment per rate
-  const Vec3 moment = viscosity * viscous_rate * viscous + friction * dry_rate * dry;
-  for (int k = 0; k < d.count; ++k) at.force[static_cast<std::size_t>(d.particles[k])] -= d.weights[k] * moment;
-  if (at.matrix == nullptr) return;
-
-  // The definite form takes the secant of friction: its tangent is definite too, but with it Newton's method jumps to
-  // and fro over the kink at rest and takes half as many iterations more.
-  Mat3 block = at.rate * (viscosity * viscous * viscous.transpose() + friction * dry * dry.transpose());
-  if (at.linearisation == Linearisation::exact) {
-    // Directions turn with the curvature; left out of the definite form as in Stretch.
-    const auto turning = [&](double flat, const Vec3& n) {
-      return Mat3((Mat3::Identity() - n * n.transpose()) / std::sqrt(curvature.squaredNorm() + flat * flat));
-    };
-    const Mat3 viscous_turning = turning(kFlatCurvature, viscous), dry_turning = turning(kept_curvature_, dry);
-    const double tangent = friction * kRestRate * kRestRate / (smooth_rate * smooth_rate);
-    block += (tangent - friction) * at.rate * dry * dry.transpose();
-    block += viscosity * (viscous * (viscous_turning * velocity).transpose() + viscous_rate * viscous_turning);
-    block += tangent * dry * (dry_turning * velocity).transpose() + friction * dry_rate * dry_turning;
+  const double c_sq = curvature.squaredNorm();
+  const double rate = curvature.dot(weighted_sum(d.particles, d.weights, at.v));
+  const double flat_sq = c_sq + kFlatCurvature * kFlatCurvature, kept_sq = c_sq + kept_curvature_ * kept_curvature_;
+  const double smooth_sq = rate * rate + kRestRate * kRestRate * kept_sq;
+  const double viscous = viscosity_ / flat_sq, dry = friction_ / std::sqrt(kept_sq * smooth_sq);
+  if (at.matrix != nullptr) {
+    // The definite form takes the secant of friction: its tangent is definite too, but with it Newton's method jumps to
+    // and fro over the kink at rest and takes half as many iterations more.
+    Mat3 block = at.rate * (viscous + dry) * curvature * curvature.transpose();
+    if (at.linearisation == Linearisation::exact) {
+      const Vec3 velocity = weighted_sum(d.particles, d.weights, at.v);
+      const double dry_by_rate = -dry * rate * rate / smooth_sq;  // d dry/d rate · rate
+      const double dry_by_c_sq = -0.5 * dry * (1 / kept_sq + kRestRate * kRestRate / smooth_sq);
+      block += dry_by_rate * curvature * (velocity + at.rate * curvature).transpose();
+      block += (viscous + dry) * (rate * Mat3::Identity() + curvature * velocity.transpose());
+      block += 2 * rate * (dry_by_c_sq - viscous / flat_sq) * curvature * curvature.transpose();
+    }
+    block *= d.area;
+    for (int a = 0; a < d.count; ++a)
+      for (int b = 0; b < d.count; ++b) at.matrix->add(slots_[index][4 * a + b], d.weights[a] * d.weights[b], block);
   }
-  for (int a = 0; a < d.count; ++a)
-    for (int b = 0; b < d.count; ++b) at.matrix->add(slots_[index][4 * a + b], d.weights[a] * d.weights[b] * block);
+  return (viscous + dry) * rate * curvature;
 }
 
 void Bend::add_constant_stiffness(solver::BlockMatrix& matrix) const {

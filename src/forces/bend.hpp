@@ -47,7 +47,7 @@ class Bend final : public Force {
     int count;
   };
   void add_difference(std::array<Index, 4> particles, std::array<double, 4> weights, double area, int count);
-  void add_damping(std::size_t d, const Evaluation& at) const;
+  Vec3 damping(std::size_t index, const Vec3& curvature, const Evaluation& at) const;
 
   double rigidity_, viscosity_, friction_;
   double kept_curvature_;  // below which friction fades [1/m]

@@ -2,21 +2,8 @@
 
 #include <algorithm>
 #include <cassert>
-#include <cstring>
 
 namespace weft::solver {
-namespace {
-
-// Four doubles in one register where the CPU has it; the compiler splits it where it does not.
-using Lanes = double __attribute__((vector_size(32)));
-
-Lanes load(const double* p) {
-  Lanes lanes;
-  std::memcpy(&lanes, p, sizeof lanes);
-  return lanes;
-}
-
-}  // namespace
 
 BlockMatrix::BlockMatrix(Index rows, std::vector<std::pair<Index, Index>> couplings) {
   const std::size_t count = couplings.size();
