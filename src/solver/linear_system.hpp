@@ -50,8 +50,8 @@ struct LinearSystem {
   std::vector<DiagonalTerm> diagonal_terms;
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
   /// Coarse levels of the preconditioner, which moves groups as a whole: of particles, of those groups, and so on, the
-  /// last of them few enough for a dense factorisation. No group spans two parts, and those of one part have consecutive
-  /// numbers. Empty: no coarse level.
+  /// last of them few enough for a dense factorisation. No group spans two parts, and those of one part have
+  /// consecutive numbers. Empty: no coarse level.
   std::vector<Grouping> groupings;
 };
 
