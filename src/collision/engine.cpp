@@ -260,8 +260,9 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   for (const Proximity& proximity : proximities_)
     if (const double part = share(proximity); part > 0 && !is_pinched(proximity.vertices)) {
       add_contact({proximity.vertices, proximity.weights, proximity.normal, part, kNoLimit}, x_t0, x_t1);
-      if (part == 1) in_contact_.insert(sorted(proximity.vertices));
+      if (part == 1) in_contact_.push_back(sorted(proximity.vertices));
     }
+  std::sort(in_contact_.begin(), in_contact_.end());
   if (!apart(x_t0, x_t1)) adopt_failing(x_t0, x_t1);
   if (parameters_.velocity_constraints) constraints_.prepare(x_t0, x_t1);
 }
@@ -294,7 +295,10 @@ int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1
   for (const CornerPair& pair : failing_) {
     const ClosestFeatures features = closest_features(pair, x_t0);
     const double distance = std::sqrt(features.points.distance_sq);
-    if (!in_contact_.insert(sorted(features.vertices)).second) continue;
+    const std::array<Index, 4> vertices = sorted(features.vertices);
+    const auto place = std::lower_bound(in_contact_.begin(), in_contact_.end(), vertices);
+    if (place != in_contact_.end() && *place == vertices) continue;
+    in_contact_.insert(place, vertices);
     // What is closer than the range already, without being pushed, is only kept from coming closer.
     const Touch touch{features.vertices, features.points.weights, features.points.difference / distance, 1, distance};
     if (!parameters_.velocity_constraints || !constrain_corners(pair, touch, x_t0, x_t1))

@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <set>
 #include <span>
 #include <vector>
 
@@ -145,7 +144,8 @@ class Engine {
   std::vector<Vec3> from_, to_;
   double margin_ = -1;
   std::vector<Proximity> proximities_;
-  std::set<std::array<Index, 4>> in_contact_;  // sorted vertices of the features that push with all their stiffness
+  // Sorted vertices of the features that push with all their stiffness; sorted itself.
+  std::vector<std::array<Index, 4>> in_contact_;
   ContactSet contacts_;
   VelocityConstraints constraints_;
 };

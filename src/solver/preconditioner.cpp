@@ -140,7 +140,7 @@ void Preconditioner::sum_blocks(std::size_t part) {
       row = i;
       std::fill_n(own.begin(), depth, Mat3::Zero());
     }
-    if (constraint_of_[index(i)] < 0 && constraint_of_[index(j)] < 0)
+    if (is_free(i) && is_free(j))
       add(i, j, block);
     else
       add(i, j, filtered(i, block, j));
@@ -151,14 +151,17 @@ void Preconditioner::sum_blocks(std::size_t part) {
 void Preconditioner::add_terms() {
   for (Level& level : levels_) level.inverse = level.of_matrix;
   patch_matrix_ = patches_of_matrix_;
+  const std::vector<Index>& patch_of = levels_.back().group_of;
   const auto add = [&](Index i, const Mat3& unfiltered, Index j) {
-    const Mat3 block = filtered(i, unfiltered, j);
-    for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
+    const Mat3 block = is_free(i) && is_free(j) ? unfiltered : filtered(i, unfiltered, j);
+    // Groups are nested, and the factorisation reads the lower triangle only.
+    for (std::size_t l = levels_.size() - 1; l-- > 0;) {
       const Index group = levels_[l].group_of[index(i)];
-      if (group == levels_[l].group_of[index(j)]) levels_[l].inverse[index(group)] += block;
+      if (group != levels_[l].group_of[index(j)]) break;
+      levels_[l].inverse[index(group)] += block;
     }
-    const std::vector<Index>& patch_of = levels_.back().group_of;
-    patch_matrix_.block<3, 3>(3 * patch_of[index(i)], 3 * patch_of[index(j)]) += block;
+    const Index patch_i = patch_of[index(i)], patch_j = patch_of[index(j)];
+    if (patch_i >= patch_j) patch_matrix_.block<3, 3>(3 * patch_i, 3 * patch_j) += block;
   };
   for (const DiagonalTerm& term : system_->diagonal_terms) add(term.particle, term.stiffness, term.particle);
   for (const StencilTerm& term : system_->terms)
