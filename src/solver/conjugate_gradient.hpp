@@ -25,7 +25,7 @@ class ConjugateGradient {
   /// The norm √(bᵀ P⁻¹ b) of the constrained part of b, close to the energy norm of the error it stands for: a residual
   /// weighed so that soft and stiff motions compare.
   double norm(std::span<const Vec3> b);
-  /// What each part of the system adds to the square of the norm.
+  /// What each part of the system adds to the square of the norm of b, which obeys the constraints.
   std::span<const double> part_norms_sq(std::span<const Vec3> b);
 
   /// x (in: anything, out: the solution) until the residual's norm is at most `target`, or after `max_iterations`.

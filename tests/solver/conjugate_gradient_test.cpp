@@ -92,6 +92,76 @@ TEST(ConjugateGradient, WithGroupsAgreesWithTheDirectSolutionUnderContactsAndCon
   }
 }
 
+// Three parts of twenty particles, coupled by contacts alone.
+LinearSystem system_of_parts(Random& random) {
+  constexpr Index kRows = 60, kPart = 20;
+  LinearSystem system = testing::random_system(kRows, 30, random);
+  std::vector<std::pair<Index, Index>> couplings;
+  for (Index i = 0; i < kRows; ++i)
+    for (Index j = kPart * (i / kPart); j < i; ++j)
+      if (random.below(5) == 0) couplings.emplace_back(i, j);
+  system.matrix = BlockMatrix(kRows, couplings);
+  for (Index i = 0; i < kRows; ++i) system.matrix.add(system.matrix.diagonal(i), random.definite(20));
+  for (const auto& [i, j] : couplings) {
+    const Mat3 block = random.definite(0);
+    system.matrix.add(system.matrix.slot(i, j), block);
+    system.matrix.add(system.matrix.slot(j, i), block);
+  }
+  for (Index p = 0; p < 3; ++p) system.parts.push_back({kPart * p, kPart * (p + 1)});
+  return system;
+}
+
+TEST(ConjugateGradient, PartsAreSolvedAsIfAllOthersWereHeld) {
+  for (const std::vector<Index>& counts : {std::vector<Index>{}, {6}, {30, 6}}) {
+    Random random(31);
+    LinearSystem system = system_of_parts(random);
+    cut_groups(system, counts);
+    const auto b = random.vectors(system.matrix.rows());
+    std::vector<Vec3> x(b.size(), Vec3::Constant(7));
+    ConjugateGradient cg;
+    cg.prepare(system);
+    const std::vector<std::size_t> parts{0, 2};
+    EXPECT_TRUE(cg.solve(b, 1e-13 * cg.norm(b), 1000, x, parts).converged);
+
+    LinearSystem held = system;
+    std::erase_if(held.constraints, [](const auto& c) { return c.particle >= 20 && c.particle < 40; });
+    for (Index i = 20; i < 40; ++i) held.constraints.push_back({i, Mat3::Zero()});
+    const Eigen::VectorXd expected = direct_solution(held, b);
+    EXPECT_LT((testing::flat(x) - expected).norm(), 1e-9 * expected.norm()) << counts.size() << " levels";
+    for (std::size_t i = 20; i < 40; ++i) EXPECT_EQ(x[i], Vec3::Zero());
+  }
+}
+
+TEST(ConjugateGradient, NormsOfPartsAddUpToTheNorm) {
+  Random random(32);
+  LinearSystem system = system_of_parts(random);
+  cut_groups(system, {30, 6});
+  auto b = random.vectors(system.matrix.rows());
+  ConjugateGradient cg;
+  cg.prepare(system);
+  cg.filter(b);
+  double sum = 0;
+  for (double norm_sq : cg.part_norms_sq(b)) {
+    EXPECT_GT(norm_sq, 0);
+    sum += norm_sq;
+  }
+  EXPECT_NEAR(sum, cg.norm(b) * cg.norm(b), 1e-12 * sum);  // 60 terms, rounded
+}
+
+TEST(ConjugateGradient, APartWithAnotherVersionIsReadAnew) {
+  Random random(33);
+  LinearSystem system = system_of_parts(random);
+  cut_groups(system, {30, 6});
+  const auto b = random.vectors(system.matrix.rows());
+  ConjugateGradient used, fresh;
+  used.prepare(system);
+  for (Index i = 20; i < 40; ++i) system.matrix.add_scalar(system.matrix.diagonal(i), 1000);
+  ++system.parts[1].version;
+  used.prepare(system);
+  fresh.prepare(system);
+  EXPECT_EQ(used.norm(b), fresh.norm(b));
+}
+
 TEST(ConjugateGradient, GroupsCarryAPushAlongAStiffChainInFewerIterations) {
   // A free chain of 200 particles, springs a million times stiffer than what holds a particle in its place.
   constexpr Index kRows = 200;
