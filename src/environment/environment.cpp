@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdint>
 #include <variant>
 
 #include "assets/mesh_file.hpp"
@@ -15,6 +16,30 @@ namespace {
 /// Vertices moved by one task; a task then takes some ten microseconds.
 constexpr std::size_t kVerticesPerTask = 4096;
 
+// A number in [−1, 1) that is the same for the same argument on every machine: the mixing function of splitmix64
+// (Steele, Lea & Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
+double noise(std::uint64_t z) {
+  z = (z + 1) * 0x9E3779B97F4A7C15U;
+  z = (z ^ (z >> 30)) * 0xBF58476D1CE4E5B9U;
+  z = (z ^ (z >> 27)) * 0x94D049BB133111EBU;
+  z ^= z >> 31;
+  return static_cast<double>(z >> 11) * 0x1p-52 - 1;
+}
+
+// Where the particles are at time 0: the rest shape, scaled about its middle and shaken.
+std::vector<Vec3> start_positions(const scene::Cloth& cloth, const mesh::Mesh& rest) {
+  std::vector<Vec3> x = rest.positions;
+  if (cloth.start_scale == Vec2(1, 1) && cloth.start_noise == 0) return x;
+  const Mat3 axes = cloth.pose.rotation.toRotationMatrix();
+  const Mat3 scale = axes * Vec3(cloth.start_scale.x(), cloth.start_scale.y(), 1).asDiagonal() * axes.transpose();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    x[i] = cloth.pose.position + scale * (x[i] - cloth.pose.position);
+    for (int axis = 0; axis < 3; ++axis)
+      x[i][axis] += cloth.start_noise * noise(3 * i + static_cast<std::size_t>(axis));
+  }
+  return x;
+}
+
 ClothObject make_cloth(const scene::Cloth& cloth) {
   ClothObject object;
   object.name = cloth.name;
@@ -25,7 +50,8 @@ ClothObject make_cloth(const scene::Cloth& cloth) {
   object.mesh = mesh::make_sheet(object.grid);
   for (Vec3& x : object.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
   const std::size_t n = object.mesh.positions.size();
-  object.motion = {object.mesh.positions, std::vector<Vec3>(n, cloth.velocity), std::vector<Vec3>(n, Vec3::Zero())};
+  object.motion = {start_positions(cloth, object.mesh), std::vector<Vec3>(n, cloth.velocity),
+                   std::vector<Vec3>(n, Vec3::Zero())};
   return object;
 }
 

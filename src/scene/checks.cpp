@@ -42,27 +42,32 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
   }
 }
 
-void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std::string& path, Findings& findings) {
-  check_times(pin.motion.keys, path, findings);
-  check_reference(pin.follow, names_of(scene.obstacles), "an obstacle", path + ".follow", findings);
+void check_part(const Cloth& cloth, const ClothPart& part, const std::string& path, Findings& findings) {
   for (int axis = 0; axis < 2; ++axis) {
-    if (pin.low[axis] <= pin.high[axis]) continue;
-    findings.report(path + ".high", fmt::format("expected >= {}, the low end, got {}", pin.low[axis], pin.high[axis]));
+    if (part.low[axis] <= part.high[axis]) continue;
+    findings.report(path + ".high",
+                    fmt::format("expected >= {}, the low end, got {}", part.low[axis], part.high[axis]));
     return;
   }
   // A part between two rows of particles would hold nothing, silently.
   const auto holds_some = [](double low, double high, int count) {
     for (int i = 0; i < count; ++i) {
       const double at = static_cast<double>(i) / (count - 1);
-      const Pin along{.low = {low, 0}, .high = {high, 1}, .follow = {}, .motion = {}};
+      const ClothPart along{.low = {low, 0}, .high = {high, 1}};
       if (along.holds(at, 0)) return true;
     }
     return false;
   };
-  if (!holds_some(pin.low.x(), pin.high.x(), cloth.particles_weft) ||
-      !holds_some(pin.low.y(), pin.high.y(), cloth.particles_warp)) {
+  if (!holds_some(part.low.x(), part.high.x(), cloth.particles_weft) ||
+      !holds_some(part.low.y(), part.high.y(), cloth.particles_warp)) {
     findings.report(path, "expected a part that holds at least one particle, got one between two rows");
   }
+}
+
+void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std::string& path, Findings& findings) {
+  check_times(pin.motion.keys, path, findings);
+  check_reference(pin.follow, names_of(scene.obstacles), "an obstacle", path + ".follow", findings);
+  check_part(cloth, pin, path, findings);
 }
 
 void check_friction_pairs(const Scene& scene, Findings& findings) {
@@ -91,6 +96,9 @@ void check_cloths(const Scene& scene, Findings& findings) {
     }
     for (std::size_t p = 0; p < cloth.pins.size(); ++p) {
       check_pin(scene, cloth, cloth.pins[p], findings.entry(path + ".pin", p), findings);
+    }
+    for (std::size_t w = 0; w < cloth.weights.size(); ++w) {
+      check_part(cloth, cloth.weights[w], findings.entry(path + ".weight", w), findings);
     }
   }
 }

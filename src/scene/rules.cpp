@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "scene/contact_rules.hpp"
-#include "scene/fabrics.hpp"
+#include "scene/material_rules.hpp"
 #include "scene/rule.hpp"
 #include "scene/table_builder.hpp"
 
@@ -99,45 +99,6 @@ const Table& solver_rules() {
   return kTable;
 }
 
-const Table& material_rules() {
-  const std::string of_fabric = "that of the fabric";
-  static const Table kTable =
-      TableBuilder<Material>("The fabric, by name, by numbers, or by name with some numbers of its own.")
-          .choice_by(
-              "fabric", fabric_names(), "named fabric that gives every number not written here",
-              [](Material& m) { return static_cast<std::size_t>(find_fabric(m.fabric) - fabrics().data()); },
-              [](Material& m, std::size_t index) { m = fabrics()[index].material; })
-          .number("density", &Material::density, above(0, 1e5), "kg/m²", "mass of a square metre")
-          .by_default(of_fabric)
-          .pair("stretch", &Material::stretch_weft, &Material::stretch_warp, within(0, 1e12), "N/m",
-                "stiffness against stretch along weft and warp (k1, k2)")
-          .by_default(of_fabric)
-          .number("shear", &Material::shear, within(0, 1e12), "N/m",
-                  "stiffness against shear (mu); twice the shear modulus of linear elasticity")
-          .by_default(of_fabric)
-          .number("bend", &Material::bend, within(0, 1e6), "N·m", "bending rigidity (B)")
-          .by_default(of_fabric)
-          .number("stretch_viscosity", &Material::stretch_viscosity, within(0, 1e9), "N·s/m",
-                  "stress per rate of stretch")
-          .by_default(of_fabric)
-          .number("shear_viscosity", &Material::shear_viscosity, within(0, 1e9), "N·s/m", "stress per rate of shear")
-          .by_default(of_fabric)
-          .number("bend_viscosity", &Material::bend_viscosity, within(0, 1e6), "N·m·s", "moment per rate of curvature")
-          .by_default(of_fabric)
-          .number("bend_friction", &Material::bend_friction, within(0, 1e6), "N",
-                  "moment per width that a change of curvature must overcome (half of KES' 2HB)")
-          .by_default(of_fabric)
-          .number("thickness", &Material::thickness, above(0, 1), "m", "distance that contact keeps between two layers")
-          .by_default(of_fabric)
-          .number("friction", &Material::friction, within(0, 10), "",
-                  "Coulomb coefficient; of a pair, the geometric mean of both")
-          .by_default(of_fabric)
-          .number("drag", &Material::drag, within(0, 100), "", "air resistance of motion along the normal; 0 for none")
-          .by_default(of_fabric)
-          .build();
-  return kTable;
-}
-
 const Table& cloth_look_rules() {
   static const Table kTable =
       TableBuilder<Look>("How the cloth is drawn.")
@@ -183,19 +144,33 @@ void track_rows(TableBuilder<S>& rows, Member track, Start start) {
   });
 }
 
+/// low and high of a part of a cloth.
+template <class S>
+void part_rows(TableBuilder<S>& rows) {
+  rows.vector("low", &S::low, kWeftWarp, within(0, 1), "", "lower end of the part, in fractions of the size")
+      .single_fills_all();
+  rows.vector("high", &S::high, kWeftWarp, within(0, 1), "", "upper end of the part, in fractions of the size")
+      .single_fills_all();
+}
+
 const Table& pin_rules() {
   static const Table kTable =
       TableBuilder<Pin>("Particles held in place, or moved.")
-          .vector("low", &Pin::low, kWeftWarp, within(0, 1), "", "lower end of the held part, in fractions of the size")
-          .single_fills_all()
-          .vector("high", &Pin::high, kWeftWarp, within(0, 1), "",
-                  "upper end of the held part, in fractions of the size")
-          .single_fills_all()
+          .with(part_rows<Pin>)
           .plain(Type::text, "follow", &Pin::follow, "name of the obstacle whose motion the particles share")
           .by_default("none")
           .excludes("keys")
           .number("release", &Pin::release, within(-1, 1e5), "s", "time at which they are let go; negative: never")
           .with([](auto& rows) { track_rows(rows, &Pin::motion, [](Pin&) { return Pose{}; }); })
+          .build();
+  return kTable;
+}
+
+const Table& weight_rules() {
+  static const Table kTable =
+      TableBuilder<Weight>("Mass that hangs on a part of the cloth, as lead does in the hem of a curtain.")
+          .with(part_rows<Weight>)
+          .number("mass", &Weight::mass, above(0, 1e9), "kg", "in equal shares on all particles of the part")
           .build();
   return kTable;
 }
@@ -214,9 +189,15 @@ const Table& cloth_rules() {
             pose_rows(rows, &Cloth::pose, "of the middle of the sheet, which lies in its x-y plane with weft along x");
           })
           .vector("velocity", &Cloth::velocity, kXyz, within(-1e4, 1e4), "m/s", "at the start")
+          .vector("start_scale", &Cloth::start_scale, kWeftWarp, above(0, 1000), "",
+                  "lengths along weft and warp at the start, times those at rest")
+          .single_fills_all()
+          .number("start_noise", &Cloth::start_noise, within(0, 1000), "m",
+                  "most that a particle is off its place at the start, along each axis; the same in every run")
           .table("material", &Cloth::material, material_rules())
           .table("look", &Cloth::look, cloth_look_rules())
           .list(Type::list, "pin", &Cloth::pins, pin_rules())
+          .list(Type::list, "weight", &Cloth::weights, weight_rules())
           .build();
   return kTable;
 }

@@ -113,21 +113,29 @@ struct PoseTrack {
   std::vector<PoseKey> keys;  ///< empty: stays at the object's own pose
 };
 
-/// Particles held in place, or moved.
-struct Pin {
-  /// Which particles, in fractions of the cloth's rest size along weft and warp: those inside [low, high].
+/// Particles of a cloth, in fractions of its rest size along weft and warp: those inside [low, high].
+struct ClothPart {
   Vec2 low{0, 0}, high{1, 1};
-  std::string follow;   ///< obstacle whose motion they share; empty: none
-  PoseTrack motion;     ///< else displacement of the held particles from where they start (position relative, rotation
-                        ///< about the start centroid)
-  double release = -1;  ///< time at which they are let go [s]; negative: never
 
-  /// Whether the particle at fractions (u, v) of the rest size is held; the slack keeps i / (n - 1) inside a bound that
-  /// was written with fewer digits.
+  /// Whether the particle at fractions (u, v) of the rest size is inside; the slack keeps i / (n - 1) inside a bound
+  /// that was written with fewer digits.
   bool holds(double u, double v) const {
     constexpr double kSlack = 1e-9;
     return u >= low.x() - kSlack && u <= high.x() + kSlack && v >= low.y() - kSlack && v <= high.y() + kSlack;
   }
+};
+
+/// Particles held in place, or moved.
+struct Pin : ClothPart {
+  std::string follow;   ///< obstacle whose motion they share; empty: none
+  PoseTrack motion;     ///< else displacement of the held particles from where they start (position relative, rotation
+                        ///< about the start centroid)
+  double release = -1;  ///< time at which they are let go [s]; negative: never
+};
+
+/// Mass that hangs on particles, in equal shares.
+struct Weight : ClothPart {
+  double mass = 0.1;  ///< [kg]
 };
 
 struct Cloth {
@@ -136,9 +144,12 @@ struct Cloth {
   int particles_weft = 41, particles_warp = 41;
   Pose pose;               ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
   Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
+  Vec2 start_scale{1, 1};  ///< lengths along weft and warp at the start, times those at rest
+  double start_noise = 0;  ///< most that a particle is off its place at the start, along each axis [m]
   Material material;
   Look look;
   std::vector<Pin> pins;
+  std::vector<Weight> weights;
 };
 
 struct Sphere {

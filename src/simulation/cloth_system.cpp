@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "simulation/pins.hpp"
+
 namespace weft::simulation {
 namespace {
 
@@ -26,6 +28,11 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     first_.push_back(first);
     const auto masses = forces::lumped_masses(grid, material.density);
     masses_.insert(masses_.end(), masses.begin(), masses.end());
+    for (const scene::Weight& weight : scene.cloths[c].weights) {
+      const std::vector<Index> carriers = particles_of(weight, grid, first);
+      for (Index particle : carriers)
+        masses_[static_cast<std::size_t>(particle)] += weight.mass / static_cast<double>(carriers.size());
+    }
 
     stretch_.push_back(std::make_unique<forces::Stretch>(
         grid, first,
@@ -167,6 +174,12 @@ double ClothSystem::elastic_energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (const auto& of_cloth : forces_)
     for (const forces::Force* f : of_cloth) sum += f->energy(x);
+  return sum;
+}
+
+double ClothSystem::potential_energy(std::span<const Vec3> x, const Vec3& gravity) const {
+  double sum = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) sum -= masses_[i] * gravity.dot(x[i]);
   return sum;
 }
 

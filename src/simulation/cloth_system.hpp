@@ -47,6 +47,8 @@ class ClothSystem final : public integrator::System {
   Index first_particle(std::size_t cloth) const { return first_[cloth]; }
   double elastic_energy(std::span<const Vec3> x) const;
   double kinetic_energy(std::span<const Vec3> v) const;
+  /// Of gravity, zero at the origin [J].
+  double potential_energy(std::span<const Vec3> x, const Vec3& gravity) const;
   double max_strain(std::span<const Vec3> x) const;
   /// Largest strain of the edges at each particle of one cloth.
   std::vector<float> strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const;

@@ -6,17 +6,6 @@
 namespace weft::simulation {
 namespace {
 
-std::vector<Index> select(const scene::Pin& pin, const mesh::Grid& grid, Index first) {
-  std::vector<Index> particles;
-  for (int j = 0; j < grid.nv; ++j) {
-    for (int i = 0; i < grid.nu; ++i) {
-      if (pin.holds(double(i) / (grid.nu - 1), double(j) / (grid.nv - 1)))
-        particles.push_back(first + grid.index(i, j));
-    }
-  }
-  return particles;
-}
-
 int rigid_named(const environment::Environment& environment, const std::string& name) {
   const auto found = std::find_if(environment.rigids.begin(), environment.rigids.end(),
                                   [&](const environment::RigidObject& rigid) { return rigid.name == name; });
@@ -25,6 +14,17 @@ int rigid_named(const environment::Environment& environment, const std::string& 
 
 }  // namespace
 
+std::vector<Index> particles_of(const scene::ClothPart& part, const mesh::Grid& grid, Index first) {
+  std::vector<Index> particles;
+  for (int j = 0; j < grid.nv; ++j) {
+    for (int i = 0; i < grid.nu; ++i) {
+      if (part.holds(double(i) / (grid.nu - 1), double(j) / (grid.nv - 1)))
+        particles.push_back(first + grid.index(i, j));
+    }
+  }
+  return particles;
+}
+
 Pins::Pins(const scene::Scene& scene, const environment::Environment& environment,
            const std::vector<Index>& first_particle) {
   std::vector<Index> taken;
@@ -32,7 +32,7 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
     const environment::ClothObject& cloth = environment.cloths[c];
     for (const scene::Pin& pin : scene.cloths[c].pins) {
       Group group;
-      for (Index particle : select(pin, cloth.grid, first_particle[c])) {
+      for (Index particle : particles_of(pin, cloth.grid, first_particle[c])) {
         if (std::find(taken.begin(), taken.end(), particle) != taken.end()) continue;
         group.particles.push_back(particle);
         taken.push_back(particle);

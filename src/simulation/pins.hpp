@@ -10,6 +10,9 @@
 
 namespace weft::simulation {
 
+/// The particles of a part of a cloth whose first particle is `first`.
+std::vector<Index> particles_of(const scene::ClothPart& part, const mesh::Grid& grid, Index first);
+
 /// All pins of a scene, evaluated at the end of each step.
 class Pins {
  public:

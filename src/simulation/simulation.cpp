@@ -243,6 +243,7 @@ void Simulation::Impl::write_back() {
 void Simulation::Impl::measure(FrameReport& report) const {
   report.max_strain = system.max_strain(now.x);
   report.kinetic_energy = system.kinetic_energy(now.v);
+  report.potential_energy = system.potential_energy(now.x, scene.physics.gravity);
   report.elastic_energy = system.elastic_energy(now.x);
   report.constraints = static_cast<int>(held.size());
   report.min_distance = std::numeric_limits<double>::infinity();

@@ -20,13 +20,14 @@ struct FrameReport {
   int rejected_steps = 0;                        ///< halved and retried
   int newton_iterations = 0;
   int linear_iterations = 0;
-  int proximities = 0;        ///< pairs of features within 1.5 contact ranges at the start of the last step
-  int constraints = 0;        ///< contacts and pins that acted in the last step
-  double min_distance = 0;    ///< least distance of two surfaces then [m]; infinite if none is within that
-  double max_strain = 0;      ///< largest |length / rest length - 1| of a weft or warp edge
-  double kinetic_energy = 0;  ///< [J]
-  double elastic_energy = 0;  ///< stretch, shear and bending [J]
-  int pinched_pairs = 0;      ///< most triangles of cloth at once that have no room and are in an obstacle
+  int proximities = 0;          ///< pairs of features within 1.5 contact ranges at the start of the last step
+  int constraints = 0;          ///< contacts and pins that acted in the last step
+  double min_distance = 0;      ///< least distance of two surfaces then [m]; infinite if none is within that
+  double max_strain = 0;        ///< largest |length / rest length - 1| of a weft or warp edge
+  double kinetic_energy = 0;    ///< [J]
+  double potential_energy = 0;  ///< of gravity, zero at the origin [J]
+  double elastic_energy = 0;    ///< stretch, shear and bending [J]
+  int pinched_pairs = 0;        ///< most triangles of cloth at once that have no room and are in an obstacle
   std::vector<std::string>
       pinches;  ///< those that begin: "frame 37: 'sheet' has no room between ..., near (x, y, z) m"
 };

@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include "bench/stability.hpp"
+
+namespace weft::bench {
+namespace {
+
+/// A square sheet of cotton, 0.5 m wide, that hangs from two corners; `cloth` adds keys to it, `rest` to the scene.
+std::string hanging(const std::string& cloth, const std::string& rest = {}) {
+  return fmt::format(
+      "[time]\nduration = 1.0\nfps = 25\nstep = 0.01\n\n[contact]\nself = false\nobstacles = false\n{}\n"
+      "[[cloth]]\nname = \"sheet\"\nsize = 0.5\nparticles = 21\nposition = [0, 0, 1]\n{}\n"
+      "[[cloth.pin]]\nlow = [0, 1]\nhigh = [0, 1]\n\n[[cloth.pin]]\nlow = [1, 1]\nhigh = [1, 1]\n",
+      rest.empty() ? "" : "\n" + rest + "\n", cloth);
+}
+
+/// The same sheet free in the air, without contact.
+std::string free_sheet(const std::string& cloth, const std::string& time = "duration = 1.0\nfps = 25\nstep = 0.01") {
+  return fmt::format(
+      "[time]\n{}\n\n[contact]\nself = false\nobstacles = false\n\n"
+      "[[cloth]]\nname = \"sheet\"\nsize = 0.5\nparticles = 21\nposition = [0, 0, 1]\n{}\n",
+      time, cloth);
+}
+
+/// A sheet above a floor, with all contacts.
+std::string above_floor(const std::string& cloth, const std::string& time, const std::string& rest = {}) {
+  return fmt::format(
+      "[time]\n{}\n{}\n[[cloth]]\nname = \"sheet\"\n{}\n[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n", time,
+      rest.empty() ? "" : "\n" + rest + "\n", cloth);
+}
+
+constexpr const char* kSecond = "duration = 1.0\nfps = 25\nstep = 0.01";
+
+std::vector<ExtremeCase> make_cases() {
+  std::vector<ExtremeCase> cases;
+  const auto add = [&](const char* name, const char* what, std::string text, int frames, double driven = 0) {
+    cases.push_back({name, what, std::move(text), frames, {driven}});
+  };
+  add("light", "density 1e-4 kg/m²", hanging("material = { density = 1e-4 }\n"), 25);
+  add("heavy", "density 1e4 kg/m²", hanging("material = { density = 1e4 }\n"), 25);
+  for (int decade : {0, 2, 4, 6, 8})
+    add(fmt::format("ratio_1e{}", decade).c_str(), "stiffness of the warp against that of the weft",
+        hanging(fmt::format("material = {{ stretch = [100, 1e{}] }}\n", decade + 2)), 25);
+  add("needles", "cells of 0.1 m by 1e-5 m",
+      hanging("material = { density = 0.2 }\n") + "", 25);
+  cases.back().text =
+      "[time]\nduration = 1.0\nfps = 25\nstep = 0.01\n\n[contact]\nself = false\nobstacles = false\n\n[[cloth]]\nname = "
+      "\"sheet\"\nsize = [1.0, 1e-3]\nparticles = [11, 101]\nposition = [0, 0, 1]\n\n[[cloth.pin]]\nhigh = [0, 1]\n";
+  add("one_element", "a single cell",
+      "[time]\nduration = 1.0\nfps = 25\nstep = 0.01\n\n[[cloth]]\nname = \"sheet\"\nsize = 0.5\nparticles = 2\n"
+      "position = [0, 0, 1]\n\n[[cloth.pin]]\nhigh = 0\n",
+      25);
+  add("many", "200,704 particles fall on a ball",
+      "[time]\nduration = 0.2\nfps = 25\nstep = 0.02\n\n[[cloth]]\nname = \"sheet\"\nsize = 2\nparticles = 448\n"
+      "position = [0, 0, 0.52]\n\n[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.5\n",
+      3);
+  add("load", "1e5 kg on a chain of 20 particles of 1 kg",
+      "[time]\nduration = 2.0\nfps = 25\nstep = 0.01\n\n[contact]\nself = false\n\n[[cloth]]\nname = \"chain\"\n"
+      "size = [0.01, 0.2]\nparticles = [2, 21]\nposition = [0, 0, 1]\nrotation = [90, 0, 0]\n"
+      "material = { density = 10000, stretch = 1e9, bend = 0, bend_viscosity = 0, bend_friction = 0 }\n\n"
+      "[[cloth.pin]]\nlow = [0, 1]\n\n[[cloth.weight]]\nhigh = [1, 0]\nmass = 1e5\n",
+      50);
+  add("gravity", "gravity a thousand times as strong", hanging("", "[physics]\ngravity = [0, 0, -9810]\n"), 25);
+  add("flattened", "pressed to a thousandth of its width", free_sheet("start_scale = [1e-3, 1]\n"), 25);
+  add("point", "pressed to a thousandth of its size", free_sheet("start_scale = 1e-3\n"), 25);
+  add("randomised", "each particle up to 0.5 m off its place", free_sheet("start_noise = 0.5\n"), 25);
+  add("stretched", "strain 10", free_sheet("start_scale = 11\n"), 25);
+  add("impact", "hits the floor at 300 m/s",
+      above_floor("size = 0.5\nparticles = 31\nposition = [0, 0, 2]\nrotation = [40, 10, 0]\nvelocity = [0, 0, -300]\n",
+                  kSecond),
+      25);
+  add("pin_jumps", "a corner goes 10 m within a frame",
+      hanging("") + "keys = [ { time = 0.2 }, { time = 0.24, position = [10, 0, 0] } ]\ninterpolation = \"linear\"\n", 25,
+      // ½ m v² of all of the sheet at the speed of the pin, and twice that once more where threads snap back.
+      3 * 0.5 * 0.05 * 250 * 250);
+  add("no_stiffness", "no stiffness at all",
+      hanging("material = { stretch = 0, shear = 0, bend = 0, stretch_viscosity = 0, shear_viscosity = 0, "
+              "bend_viscosity = 0, bend_friction = 0 }\n"),
+      25);
+  add("no_gravity", "no gravity, nothing moves", hanging("", "[physics]\ngravity = [0, 0, 0]\n"), 25);
+  add("resting", "at rest on a floor for 10,000 steps",
+      above_floor("size = 0.3\nparticles = 11\nposition = [0, 0, 0.003]\n", "duration = 100\nfps = 1\nstep = 0.01"), 100);
+  return cases;
+}
+
+}  // namespace
+
+const std::vector<ExtremeCase>& extreme_cases() {
+  static const std::vector<ExtremeCase> kCases = make_cases();
+  return kCases;
+}
+
+}  // namespace weft::bench

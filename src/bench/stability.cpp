@@ -1,0 +1,138 @@
+#include "bench/stability.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/error.hpp"
+#include "core/timer.hpp"
+#include "simulation/simulation.hpp"
+
+namespace weft::bench {
+namespace {
+
+// Share of the energies in play that may come up because steps are solved to a tolerance.
+constexpr double kSolverShare = 0.05;
+
+double mechanical_energy(const simulation::FrameReport& report) {
+  return report.kinetic_energy + report.potential_energy + report.elastic_energy;
+}
+
+/// Follows a run from frame to frame.
+class Watch {
+ public:
+  Watch(const scene::Scene& scene, const simulation::Simulation& simulation, const EnergyLimit& limit)
+      : cloths_(scene.cloths.size()), fps_(scene.time.fps), limit_(limit), before_(simulation.snapshot()) {
+    const simulation::FrameReport start = simulation.initial_report();
+    start_energy_ = mechanical_energy(start);
+    largest_energy_ = start.kinetic_energy + start.elastic_energy;
+    potential_low_ = potential_high_ = start.potential_energy;
+  }
+
+  // False where a number is not finite.
+  bool see(const simulation::FrameReport& report, const frame::SnapshotPtr& snapshot, Outcome& outcome) {
+    for (std::size_t c = 0; c < cloths_; ++c) {
+      const auto& x = snapshot->states[c].positions;
+      const auto& x_before = before_->states[c].positions;
+      for (std::size_t i = 0; i < x.size(); ++i) {
+        if (!x[i].allFinite()) return false;
+        outcome.max_speed = std::max(outcome.max_speed, fps_ * (x[i] - x_before[i]).norm());
+      }
+    }
+    before_ = snapshot;
+    const double energy = mechanical_energy(report);
+    if (!std::isfinite(energy)) return false;
+    // What an error may be measured against: the energies that have been there, and the fall so far.
+    largest_energy_ = std::max(largest_energy_, report.elastic_energy);
+    potential_low_ = std::min(potential_low_, report.potential_energy);
+    potential_high_ = std::max(potential_high_, report.potential_energy);
+    const double allowed = limit_.driven + kSolverShare * (largest_energy_ + potential_high_ - potential_low_);
+    outcome.energy_gain = std::max(outcome.energy_gain, (energy - start_energy_) / std::max(allowed, 1e-300));
+    return true;
+  }
+
+ private:
+  std::size_t cloths_;
+  double fps_;
+  EnergyLimit limit_;
+  frame::SnapshotPtr before_;
+  double start_energy_ = 0, largest_energy_ = 0, potential_low_ = 0, potential_high_ = 0;
+};
+
+void run(const scene::Scene& scene, int frames, const EnergyLimit& limit, Outcome& outcome) {
+  simulation::Simulation simulation(scene);
+  Watch watch(scene, simulation, limit);
+  for (int k = 0; k < frames; ++k) {
+    const simulation::FrameReport report = simulation.advance();
+    ++outcome.frames;
+    outcome.steps += report.steps;
+    outcome.rejected_steps += report.rejected_steps;
+    outcome.newton_iterations += report.newton_iterations;
+    outcome.max_strain = report.max_strain;
+    if (!watch.see(report, simulation.snapshot(), outcome)) {
+      outcome.verdict = Verdict::not_finite;
+      return;
+    }
+  }
+  if (outcome.energy_gain > 1) outcome.verdict = Verdict::unbounded;
+}
+
+}  // namespace
+
+std::string_view describe(Verdict verdict) {
+  switch (verdict) {
+    case Verdict::solved:
+      return "solved";
+    case Verdict::refused:
+      return "refused";
+    case Verdict::unbounded:
+      return "unbounded";
+    case Verdict::not_finite:
+      return "not finite";
+  }
+  return "unknown";
+}
+
+Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limit) {
+  Outcome outcome;
+  const double start = thread_cpu_seconds();
+  try {
+    run(scene, frames, limit, outcome);
+  } catch (const Error& error) {
+    outcome.verdict = Verdict::refused;
+    outcome.reason = error.what();
+  }
+  outcome.cpu_s = thread_cpu_seconds() - start;
+  return outcome;
+}
+
+std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each) {
+  constexpr double kSteps[] = {1e-5, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2};
+  constexpr int kDecades = 10, kStepsOfARun = 40;
+  std::vector<MapCell> cells;
+  for (const auto integrator : {scene::Integrator::implicit_euler, scene::Integrator::implicit_midpoint,
+                                scene::Integrator::bdf2}) {
+    for (int decade = 0; decade <= kDecades; ++decade) {
+      for (const double step : kSteps) {
+        scene::Scene scene;
+        scene.name = "swing";
+        scene.time = {.duration = 1000, .fps = 1 / step, .step = step, .integrator = integrator};
+        scene.contact.self = scene.contact.obstacles = false;
+        scene::Cloth cloth;
+        cloth.name = "sheet";
+        cloth.size = {0.5, 0.5};
+        cloth.particles_weft = cloth.particles_warp = 11;
+        cloth.material.stretch_weft = cloth.material.stretch_warp = std::pow(10.0, decade - 2);
+        scene::Pin left, right;
+        left.low = left.high = {0, 1};
+        right.low = right.high = {1, 1};
+        cloth.pins = {left, right};
+        scene.cloths.push_back(cloth);
+        cells.push_back({integrator, cloth.material.stretch_weft, step, try_scene(scene, kStepsOfARun)});
+        if (each) each(cells.back());
+      }
+    }
+  }
+  return cells;
+}
+
+}  // namespace weft::bench

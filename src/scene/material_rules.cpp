@@ -1,0 +1,47 @@
+#include "scene/material_rules.hpp"
+
+#include "scene/fabrics.hpp"
+#include "scene/table_builder.hpp"
+
+namespace weft::scene {
+
+const Table& material_rules() {
+  const std::string of_fabric = "that of the fabric";
+  static const Table kTable =
+      TableBuilder<Material>("The fabric, by name, by numbers, or by name with some numbers of its own.")
+          .choice_by(
+              "fabric", fabric_names(), "named fabric that gives every number not written here",
+              [](Material& m) { return static_cast<std::size_t>(find_fabric(m.fabric) - fabrics().data()); },
+              [](Material& m, std::size_t index) { m = fabrics()[index].material; })
+          .number("density", &Material::density, above(0, 1e5), "kg/m²", "mass of a square metre")
+          .by_default(of_fabric)
+          .pair("stretch", &Material::stretch_weft, &Material::stretch_warp, within(0, 1e12), "N/m",
+                "stiffness against stretch along weft and warp (k1, k2)")
+          .by_default(of_fabric)
+          .number("shear", &Material::shear, within(0, 1e12), "N/m",
+                  "stiffness against shear (mu); twice the shear modulus of linear elasticity")
+          .by_default(of_fabric)
+          .number("bend", &Material::bend, within(0, 1e6), "N·m", "bending rigidity (B)")
+          .by_default(of_fabric)
+          .number("stretch_viscosity", &Material::stretch_viscosity, within(0, 1e9), "N·s/m",
+                  "stress per rate of stretch")
+          .by_default(of_fabric)
+          .number("shear_viscosity", &Material::shear_viscosity, within(0, 1e9), "N·s/m", "stress per rate of shear")
+          .by_default(of_fabric)
+          .number("bend_viscosity", &Material::bend_viscosity, within(0, 1e6), "N·m·s", "moment per rate of curvature")
+          .by_default(of_fabric)
+          .number("bend_friction", &Material::bend_friction, within(0, 1e6), "N",
+                  "moment per width that a change of curvature must overcome (half of KES' 2HB)")
+          .by_default(of_fabric)
+          .number("thickness", &Material::thickness, above(0, 1), "m", "distance that contact keeps between two layers")
+          .by_default(of_fabric)
+          .number("friction", &Material::friction, within(0, 10), "",
+                  "Coulomb coefficient; of a pair, the geometric mean of both")
+          .by_default(of_fabric)
+          .number("drag", &Material::drag, within(0, 100), "", "air resistance of motion along the normal; 0 for none")
+          .by_default(of_fabric)
+          .build();
+  return kTable;
+}
+
+}  // namespace weft::scene
