@@ -109,8 +109,8 @@ std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& ea
   constexpr double kSteps[] = {1e-5, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2};
   constexpr int kDecades = 10, kStepsOfARun = 40;
   std::vector<MapCell> cells;
-  for (const auto integrator : {scene::Integrator::implicit_euler, scene::Integrator::implicit_midpoint,
-                                scene::Integrator::bdf2}) {
+  for (const auto integrator :
+       {scene::Integrator::implicit_euler, scene::Integrator::implicit_midpoint, scene::Integrator::bdf2}) {
     for (int decade = 0; decade <= kDecades; ++decade) {
       for (const double step : kSteps) {
         scene::Scene scene;

@@ -18,4 +18,7 @@ ExitCode thumbnail(const ThumbnailOptions& options);
 /// Prints what this machine offers and tries it.
 ExitCode doctor(const DoctorOptions& options);
 
+/// Measures what this program can do and writes tables and plots; exit code 1 where a case ends in nonsense.
+ExitCode bench(const BenchOptions& options);
+
 }  // namespace weft::cli

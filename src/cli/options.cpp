@@ -21,6 +21,7 @@ constexpr double kMaxFps = 1000;
 template <class Value>
 using Choice = std::pair<const char*, Value>;
 
+constexpr std::array kBenches{Choice<BenchOptions::Kind>{"stability", BenchOptions::Kind::stability}};
 constexpr std::array kQualities{Choice<render::Quality>{"draft", render::Quality::draft},
                                 Choice<render::Quality>{"preview", render::Quality::preview},
                                 Choice<render::Quality>{"final", render::Quality::final}};
@@ -124,6 +125,7 @@ struct Parser {
   ThumbnailOptions thumbnail;
   SchemaOptions schema;
   DoctorOptions doctor;
+  BenchOptions bench;
 
   Parser() {
     app.set_version_flag("--version", fmt::format("weft {}", kVersion), "Print the version");
@@ -142,6 +144,7 @@ struct Parser {
     add_thumbnail();
     add_schema();
     add_doctor();
+    add_bench();
   }
 
   void add_run() {
@@ -193,6 +196,19 @@ struct Parser {
   void add_doctor() {
     CLI::App& command = *app.add_subcommand("doctor", "Test this machine: processor, OpenGL, encoder");
     add_backend(command, doctor.backend);
+  }
+
+  void add_bench() {
+    CLI::App& command = *app.add_subcommand("bench", "Measure: stability of stiff and extreme scenes");
+    command
+        .add_option_function<std::string>(
+            "WHAT", [this](const std::string& text) { bench.kind = parse_choice("WHAT", text, kBenches); },
+            "stability: what comes of stiff and extreme scenes")
+        ->required()
+        ->type_name("");
+    add_value(command, "-o,--output", "DIR", "Folder for tables and plots [output/bench]",
+              [this](const std::string& text) { bench.output = text; });
+    command.footer("\nExample:\n  weft bench stability -o stability");
   }
 
   std::vector<std::string> command_names() const {
@@ -289,6 +305,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "check") return parser.check;
   if (name == "thumbnail") return parser.thumbnail;
   if (name == "schema") return parser.schema;
+  if (name == "bench") return parser.bench;
   return parser.doctor;
 }
 

@@ -58,12 +58,19 @@ struct DoctorOptions {
   render::Backend backend = render::Backend::automatic;
 };
 
+struct BenchOptions {
+  enum class Kind { stability };
+  Kind kind = Kind::stability;
+  std::filesystem::path output;  ///< folder; empty: output/bench
+};
+
 /// Help or version: to be printed on standard output, and that was all.
 struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<RunOptions, CheckOptions, ThumbnailOptions, SchemaOptions, DoctorOptions, PrintText>;
+using Command =
+    std::variant<RunOptions, CheckOptions, ThumbnailOptions, SchemaOptions, DoctorOptions, BenchOptions, PrintText>;
 
 /// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
 Command parse_command_line(const std::vector<std::string>& arguments);

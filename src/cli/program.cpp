@@ -27,6 +27,7 @@ struct Dispatch {
   ExitCode operator()(const ThumbnailOptions& options) const { return thumbnail(options); }
   ExitCode operator()(const SchemaOptions&) const { return print(scene::json_schema() + "\n"); }
   ExitCode operator()(const DoctorOptions& options) const { return doctor(options); }
+  ExitCode operator()(const BenchOptions& options) const { return bench(options); }
   ExitCode operator()(const PrintText& text) const { return print(text.text); }
 };
 

@@ -1,0 +1,79 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <cstdio>
+
+#include "bench/report.hpp"
+#include "bench/stability.hpp"
+#include "cli/commands.hpp"
+#include "cli/output_target.hpp"
+#include "core/log.hpp"
+#include "core/temporary_file.hpp"
+#include "scene/loader.hpp"
+
+namespace weft::cli {
+namespace {
+
+/// How often each verdict was given.
+struct Count {
+  std::array<int, 4> of{};
+  void add(bench::Verdict verdict) { ++of[static_cast<std::size_t>(verdict)]; }
+  int wrong() const { return of[2] + of[3]; }
+  std::string text() const {
+    return fmt::format("{} solved, {} refused by name, {} unbounded, {} not finite", of[0], of[1], of[2], of[3]);
+  }
+};
+
+bench::Outcome try_case(const bench::ExtremeCase& extreme) {
+  scene::LoadResult loaded = scene::load_text(extreme.text, extreme.name + ".toml");
+  if (!loaded.ok()) throw Error(ExitCode::internal, "{}", loaded.describe());
+  return bench::try_scene(loaded.scene, extreme.frames, extreme.limit);
+}
+
+bench::Table try_cases(const std::filesystem::path& folder, Count& count) {
+  bench::Table table{{"case", "what", "verdict", "frames", "steps", "rejected", "Newton a step", "energy gain",
+                      "max speed m/s", "CPU s", "reason"}};
+  for (const bench::ExtremeCase& extreme : bench::extreme_cases()) {
+    write_file(folder / "scenes" / (extreme.name + ".toml"), extreme.text);
+    const bench::Outcome o = try_case(extreme);
+    count.add(o.verdict);
+    log::info(fmt::format("{}: {}{}{}", extreme.name, describe(o.verdict), o.reason.empty() ? "" : ": ", o.reason));
+    table.push_back({extreme.name, extreme.what, std::string(describe(o.verdict)),
+                     fmt::format("{} of {}", o.frames, extreme.frames), std::to_string(o.steps),
+                     std::to_string(o.rejected_steps),
+                     fmt::format("{:.1f}", static_cast<double>(o.newton_iterations) / std::max(1, o.steps)),
+                     fmt::format("{:.2g}", o.energy_gain), fmt::format("{:.3g}", o.max_speed),
+                     fmt::format("{:.2f}", o.cpu_s), o.reason});
+  }
+  return table;
+}
+
+ExitCode bench_stability(const std::filesystem::path& folder) {
+  check_writable(folder / "stability.md");
+  Count map_count, case_count;
+  log::info("stability: the map");
+  const auto cells = bench::stability_map([&](const bench::MapCell& cell) { map_count.add(cell.outcome.verdict); });
+  log::info("stability: extreme cases");
+  const bench::Table cases = try_cases(folder, case_count);
+  const bench::Table map = bench::map_table(cells);
+  write_file(folder / "stability_map.csv", bench::csv(map));
+  write_file(folder / "stability_map.svg", bench::map_svg(cells));
+  write_file(folder / "stability_cases.csv", bench::csv(cases));
+  write_file(
+      folder / "stability.md",
+      fmt::format("# Stability\n\nA sheet of 11 × 11 particles held at two corners, 40 steps: {}.\n\n"
+                  "![map](stability_map.svg)\n\n## Extreme cases\n\n{}. The scenes are in `scenes/`; energy gain "
+                  "is in shares of what is allowed.\n\n{}\n## The map\n\n{}",
+                  map_count.text(), case_count.text(), bench::markdown(cases), bench::markdown(map)));
+  fmt::print("map: {}\ncases: {}\nwritten to {}\n", map_count.text(), case_count.text(),
+             (folder / "stability.md").string());
+  return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;
+}
+
+}  // namespace
+
+ExitCode bench(const BenchOptions& options) {
+  return bench_stability(options.output.empty() ? "output/bench" : options.output);
+}
+
+}  // namespace weft::cli
