@@ -40,7 +40,7 @@ std::vector<ExtremeCase> make_cases() {
   add("heavy", "density 1e4 kg/m²", hanging("material = { density = 1e4 }\n"), 25);
   for (int decade : {0, 2, 4, 6, 8})
     add(fmt::format("ratio_1e{}", decade), fmt::format("warp 1e{} times as stiff as weft", decade),
-        hanging(fmt::format("material = {{ stretch = [100, 1e{}] }}\n", decade + 2)), 25);
+        hanging(fmt::format("material = {{ stretch = [1, 1e{}] }}\n", decade)), 25);
   add("needles", "cells of 0.1 m by 1e-5 m",
       "[time]\nduration = 1.0\nfps = 25\nstep = 0.01\n\n[contact]\nself = false\n\n[[cloth]]\nname = \"sheet\"\n"
       "size = [1.0, 1e-3]\nparticles = [11, 101]\nposition = [0, 0, 1]\n\n[[cloth.pin]]\nhigh = [0, 1]\n",
@@ -68,8 +68,9 @@ std::vector<ExtremeCase> make_cases() {
       above_floor("size = 0.5\nparticles = 31\nposition = [0, 0, 2]\nrotation = [40, 10, 0]\nvelocity = [0, 0, -300]\n",
                   kSecond),
       25);
-  add("pin_jumps", "a corner goes 10 m within a frame",
-      hanging("") + "keys = [ { time = 0.2 }, { time = 0.24, position = [10, 0, 0] } ]\ninterpolation = \"linear\"\n",
+  add("pin_jumps", "the corner that holds it goes 10 m within a frame",
+      free_sheet("\n[[cloth.pin]]\nlow = [1, 1]\ninterpolation = \"linear\"\n"
+                 "keys = [ { time = 0.2 }, { time = 0.24, position = [10, 0, 0] } ]\n"),
       25,
       // ½ m v² of all of the sheet at the speed of the pin, and twice that once more where threads snap back.
       3 * 0.5 * 0.05 * 250 * 250);

@@ -61,7 +61,7 @@ ExitCode bench_stability(const std::filesystem::path& folder) {
   write_file(folder / "stability_cases.csv", bench::csv(cases));
   write_file(
       folder / "stability.md",
-      fmt::format("# Stability\n\nA sheet of 11 × 11 particles held at two corners, 40 steps: {}.\n\n"
+      fmt::format("# Stability\n\nA sheet of 11 × 11 particles held at two corners, 25 steps: {}.\n\n"
                   "![map](stability_map.svg)\n\n## Extreme cases\n\n{}. The scenes are in `scenes/`; energy gain "
                   "is in shares of what is allowed.\n\n{}\n## The map\n\n{}",
                   map_count.text(), case_count.text(), bench::markdown(cases), bench::markdown(map)));

@@ -12,6 +12,7 @@
 #include "integrator/stepper.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
+#include "simulation/energy_bound.hpp"
 #include "simulation/pins.hpp"
 #include "simulation/snapshots.hpp"
 
@@ -74,6 +75,7 @@ struct Simulation::Impl {
   explicit Impl(const scene::Scene& s);
 
   FrameReport advance();
+  void measure_energies(FrameReport& report) const;
   void measure(FrameReport& report) const;
   void report_pinches(FrameReport& report);
   frame::SnapshotPtr make_snapshot() const;
@@ -102,6 +104,7 @@ struct Simulation::Impl {
   std::vector<integrator::HeldParticle> held;
   frame::SnapshotPtr current;
   FrameReport start_report;  // of frame 0
+  std::optional<EnergyBound> energy_bound;
 };
 
 Simulation::Impl::Impl(const scene::Scene& s)
@@ -126,7 +129,9 @@ Simulation::Impl::Impl(const scene::Scene& s)
     if (constrained()) system.use_constraints(&collisions->constraints());
   }
   current = make_snapshot();
+  measure_energies(start_report);
   measure(start_report);
+  energy_bound.emplace(scene, start_report);
 }
 
 Simulation::Impl::Rejection Simulation::Impl::solve(double h, integrator::Stepper::Start start, FrameReport& report) {
@@ -210,6 +215,8 @@ FrameReport Simulation::Impl::advance() {
     const integrator::Stepper stepper_start = stepper;
     try {
       for (int s = 0; s < steps; ++s) advance_over(t_t0 + s * h, h, scene.solver.halvings, report);
+      measure_energies(report);
+      energy_bound->check(frame + 1, report);
     } catch (const Error&) {
       now = start;
       stepper = stepper_start;
@@ -240,11 +247,14 @@ void Simulation::Impl::write_back() {
   }
 }
 
-void Simulation::Impl::measure(FrameReport& report) const {
-  report.max_strain = system.max_strain(now.x);
+void Simulation::Impl::measure_energies(FrameReport& report) const {
   report.kinetic_energy = system.kinetic_energy(now.v);
   report.potential_energy = system.potential_energy(now.x, scene.physics.gravity);
   report.elastic_energy = system.elastic_energy(now.x);
+}
+
+void Simulation::Impl::measure(FrameReport& report) const {
+  report.max_strain = system.max_strain(now.x);
   report.constraints = static_cast<int>(held.size());
   report.min_distance = std::numeric_limits<double>::infinity();
   if (!collisions) return;

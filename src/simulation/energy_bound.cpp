@@ -1,0 +1,58 @@
+#include "simulation/energy_bound.hpp"
+
+#include <algorithm>
+
+#include "core/error.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Share of the energies in play that may have been gained. A run of the midpoint rule that explodes gains all of them
+// within some frames; the worst of what the tolerance of Newton's method did on the stability map is 0.07.
+constexpr double kGain = 0.3;
+// Below this it is rounding [J].
+constexpr double kNothing = 1e-9;
+
+bool is_driven(const scene::Scene& scene) {
+  const auto moves = [](const scene::PoseTrack& track) { return track.keys.size() > 1; };
+  for (const scene::Cloth& cloth : scene.cloths)
+    for (const scene::Pin& pin : cloth.pins)
+      if (moves(pin.motion) || !pin.follow.empty()) return true;
+  const bool bodies = std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                                  [&](const scene::Obstacle& o) { return moves(o.motion); });
+  return bodies || (scene.physics.air_density > 0 && scene.physics.wind != Vec3::Zero());
+}
+
+double mechanical(const FrameReport& report) {
+  return report.kinetic_energy + report.potential_energy + report.elastic_energy;
+}
+
+}  // namespace
+
+EnergyBound::EnergyBound(const scene::Scene& scene, const FrameReport& start)
+    : applies_(!is_driven(scene)),
+      integrator_(scene.time.integrator),
+      start_(mechanical(start)),
+      moving_(start.kinetic_energy),
+      elastic_(start.elastic_energy),
+      potential_low_(start.potential_energy),
+      potential_high_(start.potential_energy) {}
+
+void EnergyBound::check(int frame, const FrameReport& energies) {
+  if (!applies_) return;
+  elastic_ = std::max(elastic_, energies.elastic_energy);
+  potential_low_ = std::min(potential_low_, energies.potential_energy);
+  potential_high_ = std::max(potential_high_, energies.potential_energy);
+  const double in_play = moving_ + elastic_ + potential_high_ - potential_low_;
+  const double gain = mechanical(energies) - start_;
+  if (!(gain > kGain * in_play + kNothing)) return;
+  throw Error(ExitCode::simulation_failed,
+              "frame {}: the cloth has {:.3g} J more than at the start, with {:.3g} J in play and nothing that drives "
+              "it; try a smaller time.step or solver.newton_tolerance{}",
+              frame, gain, in_play,
+              integrator_ == scene::Integrator::implicit_midpoint
+                  ? ", or integrator = \"bdf2\": the midpoint rule damps nothing"
+                  : "");
+}
+
+}  // namespace weft::simulation

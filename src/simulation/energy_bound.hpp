@@ -1,0 +1,27 @@
+// Tells energy that comes from nowhere: a method of integration that runs away stays finite for long.
+#pragma once
+
+#include "environment/environment.hpp"
+#include "scene/scene.hpp"
+#include "simulation/simulation.hpp"
+
+namespace weft::simulation {
+
+/// Where nothing drives a scene (no moving pin or body, no wind), its mechanical energy can only fall, but for what
+/// contacts hold for a while and what steps solved to a tolerance add.
+class EnergyBound {
+ public:
+  EnergyBound(const scene::Scene& scene, const FrameReport& start);
+
+  /// Throws Error(simulation_failed) where the energies of this frame are more than there can be.
+  void check(int frame, const FrameReport& energies);
+
+ private:
+  bool applies_;
+  scene::Integrator integrator_;
+  double start_;                           // mechanical energy [J]
+  double moving_, elastic_;                // kinetic energy of the start, most elastic energy so far [J]
+  double potential_low_, potential_high_;  // so far [J]
+};
+
+}  // namespace weft::simulation

@@ -1,0 +1,71 @@
+// Verdicts on runs, and tables of them.
+#include <gtest/gtest.h>
+
+#include "bench/report.hpp"
+#include "bench/stability.hpp"
+#include "support/scene_runs.hpp"
+
+namespace weft::bench {
+namespace {
+
+const ExtremeCase& case_named(const std::string& name) {
+  for (const ExtremeCase& extreme : extreme_cases())
+    if (extreme.name == name) return extreme;
+  throw std::invalid_argument(name);
+}
+
+Outcome outcome_of(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  const ExtremeCase& extreme = case_named(name);
+  return try_scene(support::scene_of_text(extreme.text, overrides), std::min(extreme.frames, 10), extreme.limit);
+}
+
+TEST(Stability, EveryExtremeCaseIsAScene) {
+  EXPECT_GE(extreme_cases().size(), 15u);
+  for (const ExtremeCase& extreme : extreme_cases()) {
+    SCOPED_TRACE(extreme.name);
+    EXPECT_NO_THROW(support::scene_of_text(extreme.text));
+  }
+}
+
+TEST(Stability, SmallExtremeCasesAreSolved) {
+  for (const char* name : {"light", "heavy", "ratio_1e4", "load", "gravity", "flattened", "point", "randomised",
+                           "stretched", "pin_jumps", "no_stiffness", "no_gravity", "one_element"}) {
+    const Outcome outcome = outcome_of(name);
+    EXPECT_EQ(outcome.verdict, Verdict::solved) << name << ": " << outcome.reason;
+    EXPECT_EQ(outcome.frames, 10) << name;
+  }
+}
+
+TEST(Stability, WhatCannotBeSolvedIsRefusedWithItsReason) {
+  const Outcome outcome = outcome_of("ratio_1e8", {"solver.newton_iterations=1", "solver.halvings=0"});
+  EXPECT_EQ(outcome.verdict, Verdict::refused);
+  EXPECT_NE(outcome.reason.find("Newton's method did not reach its tolerance"), std::string::npos) << outcome.reason;
+}
+
+TEST(Stability, MoreEnergyThanDrivesItIsUnbounded) {
+  const ExtremeCase& jump = case_named("pin_jumps");
+  EXPECT_EQ(try_scene(support::scene_of_text(jump.text), 10, {.driven = 1e-3}).verdict, Verdict::unbounded);
+}
+
+TEST(Report, FieldsWithCommasQuotesAndLinesAreQuoted) {
+  EXPECT_EQ(csv({{"a", "b"}, {"1,2", "say \"x\""}, {"two\nlines", ""}}),
+            "a,b\n\"1,2\",\"say \"\"x\"\"\"\n\"two\nlines\",\n");
+}
+
+TEST(Report, MarkdownHasARuleUnderTheHeaderAndEscapesBars) {
+  EXPECT_EQ(markdown({{"a", "b"}, {"x|y", "1"}}), "| a | b |\n|---|---|\n| x\\|y | 1 |\n");
+}
+
+TEST(Report, MapHasAColoredCellForEachRun) {
+  std::vector<MapCell> cells(2);
+  cells[0] = {scene::Integrator::implicit_euler, 100, 0.01, {}};
+  cells[1] = {scene::Integrator::bdf2, 100, 0.1, {.verdict = Verdict::refused, .reason = "why"}};
+  const std::string svg = map_svg(cells);
+  EXPECT_NE(svg.find("#7fbf7b"), std::string::npos);
+  EXPECT_NE(svg.find("#f1c453"), std::string::npos);
+  EXPECT_EQ(map_table(cells).size(), 3u);
+  EXPECT_EQ(map_table(cells)[2].back(), "why");
+}
+
+}  // namespace
+}  // namespace weft::bench

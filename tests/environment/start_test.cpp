@@ -1,0 +1,57 @@
+// Starts that are scaled or shaken.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+
+#include "environment/environment.hpp"
+
+namespace weft::environment {
+namespace {
+
+scene::Scene turned_sheet() {
+  scene::Scene scene;
+  scene::Cloth cloth;
+  cloth.name = "sheet";
+  cloth.size = {1, 2};
+  cloth.particles_weft = 5;
+  cloth.particles_warp = 9;
+  cloth.pose.position = {1, 2, 3};
+  cloth.pose.rotation = Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, -1).normalized()));
+  scene.cloths.push_back(cloth);
+  return scene;
+}
+
+TEST(Start, ScaleStretchesAlongWeftAndWarpAboutTheMiddleAndLeavesTheRestShape) {
+  const Environment at_rest(turned_sheet());
+  scene::Scene scene = turned_sheet();
+  scene.cloths[0].start_scale = {3, 0.25};
+  const Environment scaled(scene);
+  EXPECT_EQ(scaled.cloths[0].mesh.positions, at_rest.cloths[0].mesh.positions);
+  const auto& x = scaled.cloths[0].motion.positions;
+  EXPECT_NEAR((x[4] - x[0]).norm(), 3 * 1, 1e-12);
+  EXPECT_NEAR((x[40] - x[0]).norm(), 0.25 * 2, 1e-12);
+  EXPECT_LT((x[22] - Vec3(1, 2, 3)).norm(), 1e-12);  // the middle
+}
+
+TEST(Start, NoiseIsBoundedDifferentForEachParticleAndTheSameInEveryRun) {
+  scene::Scene scene = turned_sheet();
+  const Environment at_rest(scene);
+  scene.cloths[0].start_noise = 0.01;
+  const Environment shaken(scene), again(scene);
+  const auto &x = shaken.cloths[0].motion.positions, &rest = at_rest.cloths[0].motion.positions;
+  EXPECT_EQ(x, again.cloths[0].motion.positions);
+  std::set<double> offsets;
+  double most = 0;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      offsets.insert(x[i][axis] - rest[i][axis]);
+      most = std::max(most, std::abs(x[i][axis] - rest[i][axis]));
+    }
+  EXPECT_EQ(offsets.size(), 3 * x.size());
+  EXPECT_LE(most, 0.01);
+  EXPECT_GT(most, 0.009);  // of 135 numbers even in ±0.01, all below 0.009 has a chance of 7e-7
+}
+
+}  // namespace
+}  // namespace weft::environment

@@ -1,0 +1,66 @@
+// Runs that gain energy from nowhere end with a name.
+#include <gtest/gtest.h>
+
+#include "core/error.hpp"
+#include "simulation/scenes.hpp"
+
+namespace weft::simulation {
+namespace {
+
+/// A stiff sheet that hangs from two corners, at steps far too long for the midpoint rule.
+scene::Scene runaway() {
+  scene::Scene scene = testing::sheet_alone(0.5, 11, 1);
+  scene.time = {.duration = 10, .fps = 10, .step = 0.1, .integrator = scene::Integrator::implicit_midpoint};
+  scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 1e4;
+  scene::Pin left, right;
+  left.low = left.high = {0, 1};
+  right.low = right.high = {1, 1};
+  scene.cloths[0].pins = {left, right};
+  return scene;
+}
+
+/// Frames until the simulation refuses, at most 100; its words.
+std::string refusal(Simulation& simulation) {
+  for (int k = 0; k < 100; ++k) {
+    const int before = simulation.snapshot()->frame;
+    try {
+      simulation.advance();
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::simulation_failed);
+      EXPECT_EQ(simulation.snapshot()->frame, before);  // the last good frame is kept
+      return error.what();
+    }
+  }
+  return {};
+}
+
+TEST(EnergyBound, RunawayOfTheMidpointRuleIsRefusedByName) {
+  Simulation simulation(runaway());
+  const std::string words = refusal(simulation);
+  EXPECT_NE(words.find("more than at the start"), std::string::npos) << words;
+  EXPECT_NE(words.find("bdf2"), std::string::npos) << words;
+}
+
+TEST(EnergyBound, OtherMethodsPass) {
+  for (auto integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2}) {
+    scene::Scene scene = runaway();
+    scene.time.integrator = integrator;
+    Simulation simulation(scene);
+    EXPECT_EQ(refusal(simulation), "");
+  }
+}
+
+TEST(EnergyBound, PinsThatMoveMayBringEnergy) {
+  scene::Scene scene = testing::sheet_alone(0.5, 5, 1);
+  scene.physics.gravity = Vec3::Zero();
+  scene::Pin pin;
+  pin.motion.keys = {{0, {}}, {1, {{3, 0, 0}, Quat::Identity()}}};
+  scene.cloths[0].pins.push_back(pin);
+  Simulation simulation(scene);
+  FrameReport report;
+  for (int k = 0; k < 10; ++k) report = simulation.advance();
+  EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // far from rest: 3 m in a second
+}
+
+}  // namespace
+}  // namespace weft::simulation
