@@ -40,4 +40,12 @@ struct StageTotals {
 
 StageTotals total_times(const std::vector<FrameRecord>& frames);
 
+struct StepTotals {
+  long long accepted = 0, rejected = 0;
+  long long inexact = 0;      ///< of the accepted ones, with an error above the tolerance
+  double error_estimate = 0;  ///< [m]
+};
+
+StepTotals total_steps(const std::vector<FrameRecord>& frames);
+
 }  // namespace weft::cli

@@ -31,6 +31,7 @@ Json finite(double value) {
 
 Json totals_json(const RunReport& report) {
   const StageTotals totals = total_times(report.frames);
+  const StepTotals steps = total_steps(report.frames);
   return {{"simulate", totals.simulate.wall_s},
           {"collide", totals.collide.wall_s},
           {"render", totals.render.wall_s},
@@ -44,7 +45,11 @@ Json totals_json(const RunReport& report) {
           {"encode_cpu", totals.encode.cpu_s},
           {"meshes_cpu", totals.meshes.cpu_s},
           {"setup_cpu", report.setup.cpu_s},
-          {"cpu", report.cpu_s}};
+          {"cpu", report.cpu_s},
+          {"steps", steps.accepted},
+          {"rejected_steps", steps.rejected},
+          {"inexact_steps", steps.inexact},
+          {"error_estimate_m", steps.error_estimate}};
 }
 
 }  // namespace
@@ -57,6 +62,17 @@ StageTotals total_times(const std::vector<FrameRecord>& frames) {
     totals.render += record.render;
     totals.encode += record.encode;
     totals.meshes += record.meshes;
+  }
+  return totals;
+}
+
+StepTotals total_steps(const std::vector<FrameRecord>& frames) {
+  StepTotals totals;
+  for (const FrameRecord& record : frames) {
+    totals.accepted += record.report.steps;
+    totals.rejected += record.report.rejected_steps;
+    totals.inexact += record.report.inexact_steps;
+    totals.error_estimate += record.report.error_estimate;
   }
   return totals;
 }
@@ -76,6 +92,8 @@ Json frame_json(const FrameRecord& record) {
           {"encode_cpu_ms", 1e3 * record.encode.cpu_s},
           {"steps", report.steps},
           {"rejected_steps", report.rejected_steps},
+          {"inexact_steps", report.inexact_steps},
+          {"error_estimate_m", finite(report.error_estimate)},
           {"newton_iterations", report.newton_iterations},
           {"linear_iterations", report.linear_iterations},
           {"proximities", report.proximities},

@@ -65,10 +65,9 @@ std::string joule(double energy) {
 }
 
 std::string figures_table(const RunReport& report) {
-  long long steps = 0, rejected = 0, newton = 0, linear = 0;
+  const StepTotals steps = total_steps(report.frames);
+  long long newton = 0, linear = 0;
   for (const FrameRecord& record : report.frames) {
-    steps += record.report.steps;
-    rejected += record.report.rejected_steps;
     newton += record.report.newton_iterations;
     linear += record.report.linear_iterations;
   }
@@ -79,8 +78,10 @@ std::string figures_table(const RunReport& report) {
   const auto strain = [](const simulation::FrameReport& r) { return r.max_strain; };
   return format_table(
       {{"particles", fmt::format("{} in {} objects", report.particles, report.objects.size())},
-       {"steps",
-        fmt::format("{} and {} rejected; {} Newton and {} linear iterations", steps, rejected, newton, linear)},
+       {"steps", fmt::format("{} and {} rejected; {} Newton and {} linear iterations", steps.accepted, steps.rejected,
+                             newton, linear)},
+       {"error estimate", fmt::format("{:.2g} mm of position from the time steps, summed up over all of them",
+                                      1e3 * steps.error_estimate)},
        {"smallest distance", none_near ? "nothing came near" : at_largest(report.frames, "{:.3g} mm", nearness, -1e3)},
        {"largest strain", at_largest(report.frames, "{:.2f} %", strain, 100)},
        {"energy at the end",
@@ -106,21 +107,25 @@ std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
   std::vector<std::string> warnings;
   if (frames.empty()) return warnings;
   double strain = 0, distance = std::numeric_limits<double>::infinity();
-  long long steps = 0, rejected = 0;
+  const StepTotals steps = total_steps(frames);
   for (const FrameRecord& record : frames) {
     strain = std::max(strain, record.report.max_strain);
     distance = std::min(distance, record.report.min_distance);
-    steps += record.report.steps;
-    rejected += record.report.rejected_steps;
   }
   if (strain > kLargeStrain) {
     warnings.push_back(fmt::format(
         "threads were stretched or squeezed by up to {:.0f} %: a stiffer material or a smaller time.step may be needed",
         100 * strain));
   }
-  if (rejected > steps / 4) {
+  if (steps.rejected > steps.accepted / 4) {
+    warnings.push_back(fmt::format("{} of {} steps were rejected: a smaller time.step would be faster", steps.rejected,
+                                   steps.accepted + steps.rejected));
+  }
+  if (steps.inexact > 0) {
     warnings.push_back(
-        fmt::format("{} of {} steps were rejected: a smaller time.step would be faster", rejected, steps + rejected));
+        fmt::format("{} of {} steps were taken with an error above time.tolerance: an impact would have "
+                    "made them too short",
+                    steps.inexact, steps.accepted));
   }
   if (const auto pinched = std::count_if(frames.begin(), frames.end(),
                                          [](const FrameRecord& record) { return record.report.pinched_pairs > 0; });

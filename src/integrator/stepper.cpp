@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace weft::integrator {
 namespace {
@@ -17,6 +18,11 @@ constexpr double kOvershoot = 0.7;
 constexpr int kLineTrials = 6;
 // A part of the system (a cloth) is left alone while its residual is below this share of its share of the goal.
 constexpr double kSolvedShare = 0.5;
+// What Newton leaves is a wrong velocity, the same way in step after step: a force that is not there. Within this time
+// [s] it may move the cloth by this share of the tolerance of one step. The time is that of a swing of cloth of a
+// metre, in which the method's own errors of velocity do as much as those of position.
+constexpr double kSwing = 0.3;
+constexpr double kResidualShare = 0.1;
 
 double dot(std::span<const double> a, std::span<const double> b) {
   double sum = 0;
@@ -55,7 +61,7 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
   if (method_ == Method::implicit_midpoint) return {0.5 * h, 2.0, 0.5};
   if (method_ == Method::implicit_euler || previous_h_ == 0) return {h, 1.0, 1.0};
 
-  // BDF2 with variable steps; zero-stable for r < 1 + √2.
+  // BDF2 with variable steps; those who choose them keep to longest_step().
   const double r = h / previous_h_;
   const double now_weight = (1 + r) * (1 + r) / (1 + 2 * r), before_weight = r * r / (1 + 2 * r);
   for (std::size_t i = 0; i < n; ++i) {
@@ -106,6 +112,24 @@ double Stepper::force_scale(std::span<const double> masses, double weight, const
   for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = masses[i] / stage.beta * (v_[i] - v_hat_[i]);
   cg_.filter(scale_);
   return std::max(weight, cg_.norm(scale_));
+}
+
+// Norm of a residual that still matters beside the tolerance of positions; infinite where there is none. In this norm
+// the residual is the energy norm of the displacement δ that it stands for, and √(δᵀ M δ) / β is not more than that. δ
+// leaves behind a velocity of δ / β: for that to move a part by a share of the tolerance within kSwing, δ itself must
+// be smaller than that by h / kSwing. A share of the tolerance alone would not do: with steps h that follow the
+// tolerance as h^(p+1), the force that is left, M δ / β², would shrink as h^(p-1) only, and cost the method an order.
+double Stepper::residual_that_matters(std::span<const double> masses, double h, const Stage& stage,
+                                      std::span<const solver::Part> parts) const {
+  if (parameters_.position_tolerance == 0) return std::numeric_limits<double>::infinity();
+  double least = std::numeric_limits<double>::infinity();
+  for (const solver::Part& part : parts) {
+    double mass = 0;
+    for (auto i = static_cast<std::size_t>(part.begin); i < static_cast<std::size_t>(part.end); ++i) mass += masses[i];
+    least = std::min(least, mass);
+  }
+  const double displacement = kResidualShare * parameters_.position_tolerance * (h / kSwing) / stage.end_rate;
+  return displacement * std::sqrt(least) / stage.beta;
 }
 
 // Parts of the system whose residual is more than their share of the goal.
@@ -187,6 +211,7 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
   hold(now, stage, held, scratch);
 
   StepReport report;
+  const double matters = residual_that_matters(masses, h, stage, solver::parts_of(scratch));
   for (;;) {
     evaluate(now, stage);
     std::fill(force_.begin(), force_.end(), Vec3::Zero());
@@ -194,7 +219,7 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
     cg_.prepare(scratch);
     gather_residual(masses, stage);
     const double before = cg_.norm(residual_), at_rest = weight(masses, gravity);
-    const auto goal = [&] { return parameters_.tolerance * force_scale(masses, at_rest, stage); };
+    const auto goal = [&] { return std::min(parameters_.tolerance * force_scale(masses, at_rest, stage), matters); };
     if (report.newton_iterations == 0) report.first_residual = before;
     const double target =
         std::min(std::max(parameters_.linear_tolerance * before, kLinearShare * goal()), kLeastLinear * before);
@@ -228,12 +253,46 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
     next.x[i] = particle.x_end + free * (next.x[i] - particle.x_end);
     next.v[i] = particle.v_end + free * (next.v[i] - particle.v_end);
   }
+  report.local_error = local_error(masses, now, next, h, solver::parts_of(scratch));
   return report;
+}
+
+// Estimate of the local error of positions [m]; the formulas stand at the class.
+double Stepper::local_error(std::span<const double> masses, const State& now, const State& next, double h,
+                            std::span<const solver::Part> parts) {
+  const bool first_order = method_ == Method::implicit_euler || previous_h_ == 0;
+  const double r = first_order ? 1 : h / previous_h_;
+  const bool bdf2 = method_ == Method::bdf2;
+  const double of_gain = bdf2 ? 0.75 * h : 0.5 * h;
+  const double of_change = bdf2 ? h * h * (1 + r) / (2 * (1 + 2 * r)) : h * h * r / (6 * (1 + r));
+  for (std::size_t i = 0; i < masses.size(); ++i) {
+    const Vec3 gain = next.v[i] - now.v[i];
+    if (first_order)
+      scale_[i] = of_gain * gain;
+    else
+      scale_[i] = of_change * (gain / h - (now.v[i] - previous_.v[i]) / previous_h_);
+  }
+  cg_.filter(scale_);
+  double largest_sq = 0;
+  for (const solver::Part& part : parts) {
+    double mass = 0, sum = 0;
+    for (auto i = static_cast<std::size_t>(part.begin); i < static_cast<std::size_t>(part.end); ++i) {
+      mass += masses[i];
+      sum += masses[i] * scale_[i].squaredNorm();
+    }
+    largest_sq = std::max(largest_sq, sum / mass);
+  }
+  return std::sqrt(largest_sq);
 }
 
 Vec3 Stepper::constraint_force(Index particle, double mass) const {
   const auto i = static_cast<std::size_t>(particle);
   return mass / beta_ * (v_[i] - v_hat_[i]) - force_[i] - constant_force_[i];
+}
+
+double Stepper::longest_step() const {
+  const bool bounded = method_ == Method::bdf2 && previous_h_ > 0;
+  return bounded ? kLargestRatio * previous_h_ : std::numeric_limits<double>::infinity();
 }
 
 void Stepper::accept(const State& before, double h) {

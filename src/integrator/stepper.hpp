@@ -21,6 +21,9 @@ struct NewtonParameters {
   int max_iterations = 60;
   double linear_tolerance = 0.1;  ///< of one linear solve, relative to its own right hand side
   int max_linear_iterations = 1000;
+  /// Where the local error of a step is held below a tolerance, that tolerance [m]; 0: nowhere. The residual is then
+  /// also below what would matter beside it: see Stepper::residual_that_matters().
+  double position_tolerance = 0;
 };
 
 enum class Verdict { solved, not_finite, newton_stalled, indefinite };
@@ -31,6 +34,7 @@ struct StepReport {
   int newton_iterations = 0;
   int linear_iterations = 0;
   double first_residual = 0, last_residual = 0;  ///< weighed norms; comparable within one step
+  double local_error = 0;                        ///< estimate of what this step adds to the error of positions [m]
 };
 
 /// Every method is one implicit stage  x = x̂ + β v,  M (v − v̂) = β f(x, v)  with its own β, x̂ and v̂:
@@ -41,8 +45,26 @@ struct StepReport {
 ///     BDF2       h(1+r)/(1+2r)  ((1+r)² y0 − r² y₋)/(1+2r), r = h/h₋         the stage
 ///
 /// Checked on x'' = −ω² x against the exact damping and phase of each (tests/integrator).
+///
+/// The local error of positions follows from velocities that are there anyway. With D the change of the mean
+/// acceleration from the last step to this one, (v1 − v0)/h − (v0 − v₋)/h₋, its leading terms are
+///
+///     Euler      h²/2 x''                           ≈ h/2 (v1 − v0)
+///     midpoint   h³/12 x'''                         ≈ h² r / (6 (1+r)) D
+///     BDF2       3/2 h³ (1+r)² / (6 r (1+2r)) x'''  ≈ h² (1+r) / (2 (1+2r)) D
+///
+/// (Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, 1993, III.2 and III.5). The 3/2 of BDF2 is for
+/// the steps that follow, which take a third of each change of the error on. Steps without a history are estimated as
+/// Euler's: right for BDF2, which then is Euler; an upper bound for midpoint. Errors of velocity show in positions only
+/// later, through the steps that follow, and are not in it. It is measured per part of the system (a cloth): the root
+/// of the mean square over its mass, which refinement of the mesh leaves as it is, and that a single particle in a
+/// contact does not decide; the largest part counts. Held directions have none.
 class Stepper {
  public:
+  /// Largest growth from one step to the next of BDF2. It is zero-stable below 1 + √2 (Hairer, Nørsett & Wanner I,
+  /// III.5): there a change of the error is taken on in full by each next step, with this ratio by four fifths.
+  static constexpr double kLargestRatio = 2;
+
   Stepper(Method method, const NewtonParameters& parameters) : method_(method), parameters_(parameters) {}
 
   /// Where the search for the end of a step starts: at unchanged velocity, or at what `next` holds, for a step that is
@@ -61,6 +83,9 @@ class Stepper {
   /// Makes `before`, the state at the start of the step over h just accepted, the history of the next step.
   void accept(const State& before, double h);
 
+  /// Longest step that may follow the last one accepted [s]; infinite where the method has no bound.
+  double longest_step() const;
+
   /// Forgets the history: the next BDF2 step is an Euler step. For the start and after a jump.
   void restart() { previous_h_ = 0; }
 
@@ -74,6 +99,10 @@ class Stepper {
   void hold(const State& now, const Stage& stage, std::span<const HeldParticle> held, solver::LinearSystem& scratch);
   double weight(std::span<const double> masses, const Vec3& gravity);
   double force_scale(std::span<const double> masses, double weight, const Stage& stage);
+  double residual_that_matters(std::span<const double> masses, double h, const Stage& stage,
+                               std::span<const solver::Part> parts) const;
+  double local_error(std::span<const double> masses, const State& now, const State& next, double h,
+                     std::span<const solver::Part> parts);
   std::span<const std::size_t> unsolved_parts(double goal);
   double search_along_delta(const System& system, const State& now, const Stage& stage);
   double residual(const System& system, const State& now, const Stage& stage);

@@ -22,6 +22,11 @@ Place place_of_key(const toml::key& key, const toml::node& node) {
   return key.source().begin.line > 0 ? place_of(key.source()) : place_of(node.source());
 }
 
+/// Whether a value comes from the command line: such nodes have a source path, and no line.
+bool is_override(const toml::node& node) {
+  return !place_of(node.source()).override_text.empty();
+}
+
 }  // namespace
 
 bool is_name(std::string_view text) {
@@ -95,9 +100,13 @@ void Reader::read_rule(const toml::table& table, const Rule& rule, void* target,
   findings_.saw(key, place_of(node->source()));
 
   if (!rule.excludes.empty() && table.contains(rule.excludes)) {
-    findings_.report(key, place_of(node->source()),
-                     fmt::format("expected either {} or {}, got both", rule.key, rule.excludes));
-    return;
+    // What --set says replaces what the file says in the other way.
+    const bool set_here = is_override(*node), set_there = is_override(*table.get(rule.excludes));
+    if (set_here == set_there) {
+      findings_.report(key, place_of(node->source()),
+                       fmt::format("expected either {} or {}, got both", rule.key, rule.excludes));
+    }
+    if (set_here <= set_there) return;
   }
   if (rule.type == Type::table) {
     if (const auto* inner = node->as_table()) {

@@ -66,6 +66,13 @@ const Table& time_rules() {
           .number("fps", &Time::fps, above(0, 1000), "Hz", "frames a second; frame k is the state at k / fps")
           .number("step", &Time::step, within(1e-7, 1), "s",
                   "largest time step; a frame is cut into equal steps no longer than this")
+          .excludes("tolerance")
+          .written_if([](Time& time) { return !time.tolerance; })
+          .number("tolerance", &Time::tolerance, within(1e-8, 1), "m",
+                  "instead of step: steps as long as the estimated error of the positions that each of them adds, as "
+                  "root mean square over a cloth, stays below this")
+          .by_default("none; steps are those of step")
+          .excludes("step")
           .choice(
               "integrator", &Time::integrator, {"implicit_euler", "implicit_midpoint", "bdf2"},
               "method of time integration; the midpoint rule damps nothing and is no choice for scenes with contact")

@@ -22,6 +22,8 @@ struct Time {
   double duration = 5;  ///< [s]; the scene has round(duration * fps) + 1 frames
   double fps = 25;      ///< frames a second
   double step = 0.01;   ///< largest time step [s]; a frame is cut into equal steps no longer than this
+  std::optional<double> tolerance =
+      std::nullopt;  ///< instead of `step`: local error of the positions of a cloth in one step [m]
   Integrator integrator = Integrator::implicit_euler;
 };
 

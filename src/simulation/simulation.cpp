@@ -9,6 +9,7 @@
 #include "core/error.hpp"
 #include "core/timer.hpp"
 #include "environment/environment.hpp"
+#include "integrator/step_control.hpp"
 #include "integrator/stepper.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
@@ -40,8 +41,16 @@ integrator::Method method_of(scene::Integrator integrator) {
   return integrator::Method::implicit_euler;
 }
 
-integrator::NewtonParameters newton_of(const scene::Solver& solver) {
-  return {solver.newton_tolerance, solver.newton_iterations, solver.linear_tolerance, solver.linear_iterations};
+integrator::NewtonParameters newton_of(const scene::Scene& scene) {
+  return {scene.solver.newton_tolerance, scene.solver.newton_iterations, scene.solver.linear_tolerance,
+          scene.solver.linear_iterations, scene.time.tolerance.value_or(0)};
+}
+
+std::optional<integrator::StepControl> step_control_of(const scene::Scene& scene) {
+  if (!scene.time.tolerance) return std::nullopt;
+  // The first step is one of Euler's, whose error in free fall is ½ h² g.
+  const double first = std::sqrt(2 * *scene.time.tolerance / std::max(scene.physics.gravity.norm(), 1.0));
+  return integrator::StepControl(method_of(scene.time.integrator), *scene.time.tolerance, first);
 }
 
 std::vector<Index> first_particles(const scene::Scene& scene, const ClothSystem& system) {
@@ -83,7 +92,11 @@ struct Simulation::Impl {
   // Why a step was rejected; empty where it was not.
   using Rejection = std::optional<std::string>;
 
+  void advance_equally(double t_t0, double t_t1, FrameReport& report);
   void advance_over(double t, double h, int halvings, FrameReport& report);
+  void advance_controlled(double t_t0, double t_t1, FrameReport& report);
+  void accept(double h, FrameReport& report);
+  [[noreturn]] void give_up(double t, double h, const std::string& reason) const;
   Rejection attempt(double t, double h, bool may_pinch, FrameReport& report);
   Rejection solve(double h, integrator::Stepper::Start start, FrameReport& report);
   void write_back();
@@ -95,11 +108,13 @@ struct Simulation::Impl {
   Pins pins;
   SnapshotMaker snapshots;
   integrator::Stepper stepper;
+  std::optional<integrator::StepControl> control;  // where the scene has a tolerance instead of a step
   solver::LinearSystem linear_system;
   std::optional<CollisionStage> collisions;
 
   int frame = 0;
   integrator::State now, next;
+  double local_error = 0;          // of the step in `next`, estimated [m]
   std::vector<Vec3> acceleration;  // mean over the last step [m/s²]
   std::vector<integrator::HeldParticle> held;
   frame::SnapshotPtr current;
@@ -113,7 +128,8 @@ Simulation::Impl::Impl(const scene::Scene& s)
       system(scene, environment),
       pins(scene, environment, first_particles(scene, system)),
       snapshots(scene, environment),
-      stepper(method_of(scene.time.integrator), newton_of(scene.solver)),
+      stepper(method_of(scene.time.integrator), newton_of(scene)),
+      control(step_control_of(scene)),
       linear_system(system.make_linear_system()) {
   for (const environment::ClothObject& cloth : environment.cloths) {
     now.x.insert(now.x.end(), cloth.motion.positions.begin(), cloth.motion.positions.end());
@@ -139,6 +155,7 @@ Simulation::Impl::Rejection Simulation::Impl::solve(double h, integrator::Steppe
       stepper.step(system, now, h, scene.physics.gravity, held, linear_system, next, start);
   report.newton_iterations += step.newton_iterations;
   report.linear_iterations += step.linear_iterations;
+  local_error = step.local_error;
   if (step.verdict == integrator::Verdict::solved) return std::nullopt;
   return fmt::format("{} (residual {:.3g} of {:.3g} after {} iterations)", integrator::describe(step.verdict),
                      step.last_residual, step.first_residual, step.newton_iterations);
@@ -181,25 +198,72 @@ Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, bool m
   }
 }
 
-// Goes from t to t + h, in two halves where one step is rejected.
-void Simulation::Impl::advance_over(double t, double h, int halvings, FrameReport& report) {
-  const bool may_pinch = halvings == 0 || scene.solver.halvings - halvings >= kHalvingsBeforePinch;
-  if (const Rejection rejection = attempt(t, h, may_pinch, report)) {
-    ++report.rejected_steps;
-    if (halvings == 0)
-      throw Error(
-          ExitCode::simulation_failed,
-          "frame {}: the step at t = {:.6g} s was rejected down to h = {:.3g} s: {}; try a smaller time.step or "
-          "softer material",
-          frame + 1, t, h, *rejection);
-    advance_over(t, 0.5 * h, halvings - 1, report);
-    advance_over(t + 0.5 * h, 0.5 * h, halvings - 1, report);
-    return;
-  }
+void Simulation::Impl::give_up(double t, double h, const std::string& reason) const {
+  throw Error(ExitCode::simulation_failed,
+              "frame {}: the step at t = {:.6g} s was rejected down to h = {:.3g} s: {}; try a smaller time.{} or "
+              "softer material",
+              frame + 1, t, h, reason, control ? "tolerance" : "step");
+}
+
+// Makes `next`, reached over h, the state.
+void Simulation::Impl::accept(double h, FrameReport& report) {
   stepper.accept(now, h);
   for (std::size_t i = 0; i < acceleration.size(); ++i) acceleration[i] = (next.v[i] - now.v[i]) / h;
   std::swap(now, next);
   ++report.steps;
+  report.error_estimate += local_error;
+}
+
+// In equal steps, no longer than time.step.
+void Simulation::Impl::advance_equally(double t_t0, double t_t1, FrameReport& report) {
+  const int steps = std::max(1, static_cast<int>(std::ceil((t_t1 - t_t0) / scene.time.step - 1e-9)));
+  const double h = (t_t1 - t_t0) / steps;
+  for (int s = 0; s < steps; ++s) advance_over(t_t0 + s * h, h, scene.solver.halvings, report);
+}
+
+// Goes from t to t + h, in two halves where one step is rejected, or longer than may follow the last one.
+void Simulation::Impl::advance_over(double t, double h, int halvings, FrameReport& report) {
+  const bool may_pinch = halvings == 0 || scene.solver.halvings - halvings >= kHalvingsBeforePinch;
+  const bool too_long = h > (1 + 1e-9) * stepper.longest_step();
+  if (!too_long) {
+    const Rejection rejection = attempt(t, h, may_pinch, report);
+    if (!rejection) return accept(h, report);
+    ++report.rejected_steps;
+    if (halvings == 0) give_up(t, h, *rejection);
+    --halvings;
+  }
+  advance_over(t, 0.5 * h, halvings, report);
+  advance_over(t + 0.5 * h, 0.5 * h, halvings, report);
+}
+
+// In steps whose error is time.tolerance. What is left of the frame is cut into equal steps no longer than wanted, so
+// that none is much shorter than those before, and the same length is kept while nothing speaks against it.
+void Simulation::Impl::advance_controlled(double t_t0, double t_t1, FrameReport& report) {
+  double t = t_t0, h = 0;
+  int left = 0, retries = 0;
+  for (;;) {
+    const double longest = std::min(control->wanted(), stepper.longest_step());
+    const int needed = std::max(1, static_cast<int>(std::ceil((t_t1 - t) / longest - 1e-9)));
+    if (needed != left) {
+      left = needed;
+      h = (t_t1 - t) / left;
+    }
+    const bool last_try = retries == scene.solver.halvings;
+    const Rejection rejection = attempt(t, h, last_try || retries >= kHalvingsBeforePinch, report);
+    if (rejection && last_try) give_up(t, h, *rejection);
+    // An impact may ask for steps without end: after as many tries its error is taken as it is.
+    if (rejection || !(last_try || control->accepts(h, local_error))) {
+      ++report.rejected_steps, ++retries;
+      rejection ? control->unsolved(h) : control->too_inexact(h, local_error);
+      continue;
+    }
+    report.inexact_steps += !control->meets(local_error);
+    control->accepted(h, local_error);
+    accept(h, report);
+    retries = 0;
+    if (--left == 0) return;
+    t += h;
+  }
 }
 
 FrameReport Simulation::Impl::advance() {
@@ -208,18 +272,18 @@ FrameReport Simulation::Impl::advance() {
     const Stopwatch watch(report.simulate_wall_s, report.simulate_cpu_s);
     // Frame k is at k / fps exactly, whatever the steps between.
     const double t_t0 = frame / scene.time.fps, t_t1 = (frame + 1) / scene.time.fps;
-    const int steps = std::max(1, static_cast<int>(std::ceil((t_t1 - t_t0) / scene.time.step - 1e-9)));
-    const double h = (t_t1 - t_t0) / steps;
     system.forget();
     const integrator::State start = now;
     const integrator::Stepper stepper_start = stepper;
+    const auto control_start = control;
     try {
-      for (int s = 0; s < steps; ++s) advance_over(t_t0 + s * h, h, scene.solver.halvings, report);
+      control ? advance_controlled(t_t0, t_t1, report) : advance_equally(t_t0, t_t1, report);
       measure_energies(report);
       energy_bound->check(frame + 1, report);
     } catch (const Error&) {
       now = start;
       stepper = stepper_start;
+      control = control_start;
       throw;
     }
     environment.move_to(t_t1);

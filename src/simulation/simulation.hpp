@@ -17,7 +17,9 @@ struct FrameReport {
   double simulate_wall_s = 0, simulate_cpu_s = 0;
   double collide_wall_s = 0, collide_cpu_s = 0;  ///< part of simulate
   int steps = 0;                                 ///< accepted
-  int rejected_steps = 0;                        ///< halved and retried
+  int rejected_steps = 0;                        ///< done again, shorter
+  int inexact_steps = 0;                         ///< accepted although their error was above time.tolerance
+  double error_estimate = 0;  ///< sum over the steps of what each adds to the error of positions [m], estimated
   int newton_iterations = 0;
   int linear_iterations = 0;
   int proximities = 0;          ///< pairs of features within 1.5 contact ranges at the start of the last step

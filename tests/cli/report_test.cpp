@@ -22,6 +22,7 @@ std::vector<FrameRecord> two_frames() {
   report.simulate_cpu_s = 0.018;
   report.collide_wall_s = 0.005;
   report.steps = 4;
+  report.error_estimate = 0.00123;
   report.rejected_steps = 1;
   report.min_distance = 0.002;
   report.max_strain = 0.05;
@@ -39,6 +40,17 @@ TEST(FrameJson, GivesMillisecondsAndNoInfinity) {
   EXPECT_DOUBLE_EQ(json.at("encode_ms"), 7);
   EXPECT_DOUBLE_EQ(json.at("encode_cpu_ms"), 6);
   EXPECT_DOUBLE_EQ(json.at("min_distance_m"), 0.002);
+  EXPECT_DOUBLE_EQ(json.at("error_estimate_m"), 0.00123);
+}
+
+TEST(StatsJson, SumsUpSteps) {
+  RunReport report;
+  report.frames = two_frames();
+  report.frames.push_back(report.frames.back());
+  const auto totals = stats_json(report).at("totals");
+  EXPECT_EQ(totals.at("steps"), 8);
+  EXPECT_EQ(totals.at("rejected_steps"), 2);
+  EXPECT_DOUBLE_EQ(totals.at("error_estimate_m"), 0.00246);
 }
 
 TEST(Summary, NamesTheFramesOfTheExtremes) {
@@ -51,8 +63,9 @@ TEST(Summary, NamesTheFramesOfTheExtremes) {
   report.fps = 25;
   report.output_bytes = 1'234'567;
   const std::string text = summary(report);
-  for (const char* part : {"a.mp4: 1 frame, 64x36 at 25 fps, 1.2 MB\n", "2 mm (frame 1)\n", "5.00 % (frame 1)\n",
-                           "4 and 1 rejected;", "  simulate      0.02 s  0.02 s      18.0 ms\n"}) {
+  for (const char* part :
+       {"a.mp4: 1 frame, 64x36 at 25 fps, 1.2 MB\n", "2 mm (frame 1)\n", "5.00 % (frame 1)\n", "4 and 1 rejected;",
+        "error estimate     1.2 mm of position", "  simulate      0.02 s  0.02 s      18.0 ms\n"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
 }
@@ -69,6 +82,11 @@ TEST(Warnings, ComeOnlyWithFiguresThatLookWrong) {
   frames[1].report.rejected_steps = 2;
   ASSERT_EQ(find_warnings(frames).size(), 1u);
   EXPECT_EQ(find_warnings(frames)[0], "2 of 6 steps were rejected: a smaller time.step would be faster");
+  frames[1].report.inexact_steps = 1;
+  ASSERT_EQ(find_warnings(frames).size(), 2u);
+  EXPECT_EQ(find_warnings(frames)[1].substr(0, 70),
+            "1 of 4 steps were taken with an error above time.tolerance: an impact ");
+  frames[1].report.inexact_steps = 0;
   frames[1].report.max_strain = 0.4;
   frames[1].report.min_distance = 0;
   EXPECT_EQ(find_warnings(frames).size(), 3u);

@@ -85,6 +85,9 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:4:9: obstacle.b.keys.0.time: expected a number from -100000 to 100000 s, got none\n"},
     {"RotationTwice", "[[cloth]]\nname = 'band'\nquaternion = [1, 0, 0, 0]\nrotation = [0, 0, 90]\n",
      "s.toml:4:12: cloth.band.rotation: expected either rotation or quaternion, got both\n"},
+    {"StepBesideTolerance", kFloor + "[time]\nstep = 0.01\ntolerance = 1e-4\n",
+     "s.toml:3:8: time.step: expected either step or tolerance, got both\n"
+     "s.toml:4:13: time.tolerance: expected either tolerance or step, got both\n"},
     {"FollowBesideKeys", kFloor + "[[cloth]]\nname = 'a'\n[[cloth.pin]]\nfollow = 'floor'\nkeys = [{ time = 0 }]\n",
      "s.toml:5:10: cloth.a.pin.0.follow: expected either follow or keys, got both\n"},
 

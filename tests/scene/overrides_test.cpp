@@ -60,6 +60,20 @@ TEST(Override, CanMendWhatTheFileHasWrong) {
   EXPECT_EQ(load_text(kScene + "[time]\nfps = 0\n", "s.toml", {"time.fps=50"}).describe(), "");
 }
 
+TEST(Override, OfStepOrToleranceReplacesTheOtherOne) {
+  const auto load_time = [](const std::string& in_file, const std::string& override_text) {
+    const LoadResult result = load_text(kScene + "[time]\n" + in_file + "\n", "s.toml", {override_text});
+    EXPECT_EQ(result.describe(), "");
+    return result.scene.time;
+  };
+  EXPECT_EQ(load_time("step = 0.005", "time.tolerance=1e-4").tolerance, 1e-4);
+  EXPECT_EQ(load_time("tolerance = 1e-4", "time.step=0.005").tolerance, std::nullopt);
+  EXPECT_EQ(load_time("tolerance = 1e-4", "time.step=0.005").step, 0.005);
+  EXPECT_EQ(messages({"time.step=0.005", "time.tolerance=1e-4"}),
+            "--set time.step=0.005: time.step: expected either step or tolerance, got both\n"
+            "--set time.tolerance=1e-4: time.tolerance: expected either tolerance or step, got both\n");
+}
+
 TEST(Override, IsCheckedLikeTheFile) {
   EXPECT_EQ(messages({"cloth.band.material.stretch=-1"}),
             "--set cloth.band.material.stretch=-1: cloth.band.material.stretch: expected >= 0 N/m, got -1\n");

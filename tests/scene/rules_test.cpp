@@ -150,6 +150,17 @@ TEST(EffectiveScene, ReadsBackAsTheSameScene) {
   EXPECT_EQ(second.scene.hash, first.scene.hash);
 }
 
+TEST(Effective, SaysEitherStepOrTolerance) {
+  const std::string cloth = "[[cloth]]\nname = 'a'\n[time]\n";
+  const std::string by_step = effective_scene(load_here(cloth).scene);
+  EXPECT_NE(by_step.find("step = 0.01\n"), std::string::npos);
+  EXPECT_EQ(by_step.find("tolerance = 1e-04"), std::string::npos);
+  const std::string by_tolerance = effective_scene(load_here(cloth + "tolerance = 1e-4\n").scene);
+  EXPECT_NE(by_tolerance.find("tolerance = 0.0001\n"), std::string::npos);
+  EXPECT_EQ(by_tolerance.find("step = "), std::string::npos);
+  EXPECT_EQ(load_here(by_tolerance).describe(), "");
+}
+
 TEST(Hash, LeavesOutCommentsOrderSpellingAndGivenDefaults) {
   const auto hash = [](const std::string& text) {
     const LoadResult result = load_here(text);

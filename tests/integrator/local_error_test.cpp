@@ -1,0 +1,241 @@
+// Estimates of local errors, the lengths of steps that follow from them, and how fast BDF2 may let steps grow.
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <numeric>
+
+#include "integrator/small_systems.hpp"
+#include "integrator/step_control.hpp"
+
+namespace weft::integrator {
+namespace {
+
+// Above the rounding of x / h², and far below the errors looked at.
+constexpr NewtonParameters kTight{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
+
+constexpr Method kMethods[] = {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2};
+
+// The motion of the hardening spring after a time t of either sign, by classical Runge-Kutta with an error below 1e-14.
+State moved(State now, double t) {
+  constexpr int kSteps = 200;
+  const auto a = [](const Vec3& x) { return testing::HardeningSpring::force_at(x); };
+  const double h = t / kSteps;
+  Vec3 &x = now.x[0], &v = now.v[0];
+  for (int s = 0; s < kSteps; ++s) {
+    const Vec3 v1 = v, a1 = a(x);
+    const Vec3 v2 = v + 0.5 * h * a1, a2 = a(x + 0.5 * h * v1);
+    const Vec3 v3 = v + 0.5 * h * a2, a3 = a(x + 0.5 * h * v2);
+    const Vec3 v4 = v + h * a3, a4 = a(x + h * v3);
+    x += h / 6 * (v1 + 2 * v2 + 2 * v3 + v4);
+    v += h / 6 * (a1 + 2 * a2 + 2 * a3 + a4);
+  }
+  return now;
+}
+
+struct Errors {
+  double estimated, made;
+};
+
+// One step from a point of the exact motion, with an exact history or with none (r = 0).
+Errors errors_of_one_step(Method method, double h, double r) {
+  const testing::HardeningSpring spring;
+  const State now{{Vec3(1, 0.2, -0.3)}, {Vec3(0.1, 0.8, 0.4)}};
+  Stepper stepper(method, kTight);
+  solver::LinearSystem scratch = spring.make_linear_system();
+  if (r > 0) stepper.accept(moved(now, -h / r), h / r);
+  State next;
+  const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, scratch, next);
+  EXPECT_EQ(report.verdict, Verdict::solved);
+  return {report.local_error, (next.x[0] - moved(now, h).x[0]).norm()};
+}
+
+TEST(LocalError, OfOneStepIsEstimatedUpToTermsOfTheNextOrder) {
+  // The next term is h times the first one, times a few.
+  for (Method method : kMethods) {
+    for (double r : {0.5, 1.0, 1.9}) {
+      // What BDF2 makes in one step grows by half in those that follow, and the estimate says the whole.
+      const double whole = method == Method::bdf2 ? 1.5 : 1;
+      for (double h : {0.02, 0.01, 0.005}) {
+        const Errors errors = errors_of_one_step(method, h, r);
+        const double off = std::abs(errors.estimated / (whole * errors.made) - 1);
+        EXPECT_LT(off, 10 * h) << "method " << static_cast<int>(method) << ", r = " << r << ", h = " << h;
+      }
+    }
+  }
+}
+
+TEST(LocalError, WithoutAHistoryIsThatOfEuler) {
+  const double h = 0.005;
+  const Errors euler = errors_of_one_step(Method::implicit_euler, h, 0);
+  const Errors bdf2 = errors_of_one_step(Method::bdf2, h, 0);
+  const Errors midpoint = errors_of_one_step(Method::implicit_midpoint, h, 0);
+  EXPECT_NEAR(euler.estimated, euler.made, 0.05 * euler.made);
+  EXPECT_NEAR(bdf2.estimated, 1.5 * bdf2.made, 0.05 * bdf2.made);
+  EXPECT_EQ(bdf2.made, euler.made);
+  // Of midpoint a bound: it has no error of this order.
+  EXPECT_GT(midpoint.estimated, 100 * midpoint.made);
+}
+
+TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
+  // Free fall with Euler: every free particle is ahead by ½ h² g.
+  const testing::Spring nothing(0, {1, 3, 2});
+  solver::LinearSystem scratch = nothing.make_linear_system();
+  scratch.parts = {{0, 2}, {2, 3}};
+  const Vec3 g(0, 0, -10);
+  const double h = 0.1, ahead = 0.5 * h * h * 10;
+  const State now{std::vector<Vec3>(3, Vec3::Zero()), std::vector<Vec3>(3, Vec3::Zero())};
+  State next;
+  const auto error_with = [&](std::vector<Index> held_particles) {
+    std::vector<HeldParticle> held;
+    for (Index p : held_particles) held.push_back({{p, Mat3::Zero()}, Vec3::Zero(), Vec3::Zero()});
+    Stepper stepper(Method::implicit_euler, kTight);
+    return stepper.step(nothing, now, h, g, held, scratch, next).local_error;
+  };
+  EXPECT_NEAR(error_with({}), ahead, 1e-12);
+  EXPECT_NEAR(error_with({1, 2}), std::sqrt(1.0 / 4) * ahead, 1e-12);
+  EXPECT_NEAR(error_with({0, 2}), std::sqrt(3.0 / 4) * ahead, 1e-12);
+  EXPECT_NEAR(error_with({0, 1}), ahead, 1e-12);
+  EXPECT_EQ(error_with({0, 1, 2}), 0);
+}
+
+// Lengths of steps that are accepted where the error of a step over h, taken at time t, is error(t, h).
+std::vector<double> lengths(Method method, double tolerance, const std::function<double(double t, double h)>& error,
+                            double end) {
+  StepControl control(method, tolerance, 1e-3);
+  std::vector<double> accepted;
+  double t = 0;
+  while (t < end) {
+    const double h = control.wanted(), e = error(t, h);
+    if (!control.accepts(h, e)) {
+      control.too_inexact(h, e);
+      continue;
+    }
+    control.accepted(h, e);
+    accepted.push_back(h);
+    t += h;
+  }
+  return accepted;
+}
+
+TEST(StepControl, BringsTheErrorOfSmoothMotionJustBelowTheTolerance) {
+  for (Method method : kMethods) {
+    const int power = method == Method::implicit_euler ? 2 : 3;
+    const auto error = [&](double, double h) { return 5 * std::pow(h, power); };
+    for (double tolerance : {1e-3, 1e-6}) {
+      const double h = lengths(method, tolerance, error, 3).back();
+      EXPECT_LE(error(0, h), tolerance);
+      // The aim is 0.7; a step that would change by less than a tenth stays as it is.
+      EXPECT_GT(error(0, h), 0.7 / std::pow(1.1, power) * tolerance);
+    }
+  }
+}
+
+TEST(StepControl, NeverLetsAStepGrowByMoreThanBdf2Bears) {
+  // Errors that jump by three decades to and fro.
+  const auto error = [](double t, double h) { return (std::fmod(t, 0.4) < 0.2 ? 50 : 0.05) * h * h * h; };
+  const std::vector<double> steps = lengths(Method::bdf2, 1e-5, error, 5);
+  double largest = 0;
+  for (std::size_t i = 1; i < steps.size(); ++i) largest = std::max(largest, steps[i] / steps[i - 1]);
+  EXPECT_LE(largest, Stepper::kLargestRatio);
+  EXPECT_GT(largest, 1.3);
+}
+
+TEST(StepControl, PassesAJumpOfVelocityInABoundedNumberOfSteps) {
+  // From t = 0.5 to the end of the step around it the error is that of a jump by 10 m/s; the tolerance is met by steps
+  // of 1e-5 s only. Down by a fifth at a time, up by a half: 5 and 17 steps.
+  int tries = 0;
+  const auto error = [&](double t, double h) {
+    ++tries;
+    return 5 * h * h + (t <= 0.5 && t + h > 0.5 ? 10 * h : 0);
+  };
+  lengths(Method::implicit_euler, 5e-4, error, 1);
+  EXPECT_LT(tries, 200);
+  // And one that no step meets is passed with the least one.
+  const auto wall = [&](double t, double h) { return t <= 0.5 && t + h > 0.5 ? 1 : 5 * h * h; };
+  EXPECT_DOUBLE_EQ(std::ranges::min(lengths(Method::implicit_euler, 5e-4, wall, 1)), StepControl::kLeastStep);
+}
+
+TEST(StepControl, DoesNotGrowAtOnceAfterAStepWasDoneAgain) {
+  StepControl control(Method::bdf2, 1e-4, 0.01);
+  control.unsolved(0.01);
+  EXPECT_DOUBLE_EQ(control.wanted(), 0.005);
+  control.accepted(0.005, 1e-9);
+  EXPECT_DOUBLE_EQ(control.wanted(), 0.005);
+  control.accepted(0.005, 1e-9);
+  EXPECT_DOUBLE_EQ(control.wanted(), 0.0075);
+}
+
+TEST(Bdf2Ratio, LongestStepFollowsTheLastOne) {
+  Stepper bdf2(Method::bdf2, kTight), euler(Method::implicit_euler, kTight);
+  EXPECT_EQ(bdf2.longest_step(), std::numeric_limits<double>::infinity());
+  for (Stepper* stepper : {&bdf2, &euler}) stepper->accept({{Vec3::Zero()}, {Vec3::Zero()}}, 0.01);
+  EXPECT_DOUBLE_EQ(bdf2.longest_step(), 0.02);
+  EXPECT_EQ(euler.longest_step(), std::numeric_limits<double>::infinity());
+  bdf2.restart();
+  EXPECT_EQ(bdf2.longest_step(), std::numeric_limits<double>::infinity());
+}
+
+// By how much steps that grow by r each, from y = ω h = 1e-4 until 1e-2, change the difference between two states that
+// should be nearly the same: by the formula, and by the Stepper.
+struct Growth {
+  double formula, stepper;
+  int steps;
+};
+Growth change_while_growing(double r) {
+  constexpr double kOmega = 1e4, kOff = 0.1;
+  const testing::Spring spring(kOmega * kOmega);
+  solver::LinearSystem scratch = spring.make_linear_system();
+  // Here x − x̂ = −β² ω² x: to six digits above the rounding of x.
+  Stepper stepper(Method::bdf2, {.tolerance = 1e-6, .max_iterations = 40, .linear_tolerance = 1e-12});
+  double h = 1e-4 / kOmega, before = 1 + kOff, now = 1, v_before = 0, v_now = 0;
+  stepper.accept({{Vec3(before, 0, 0)}, {Vec3::Zero()}}, h);
+  State state{{Vec3(now, 0, 0)}, {Vec3::Zero()}}, next;
+  int steps = 0;
+  while (h * kOmega < 1e-2) {
+    h *= r;
+    const double a = (1 + r) * (1 + r) / (1 + 2 * r), b = r * r / (1 + 2 * r), beta = h * (1 + r) / (1 + 2 * r);
+    const double x_hat = a * now - b * before, v_hat = a * v_now - b * v_before;
+    const double x = (x_hat + beta * v_hat) / (1 + beta * beta * kOmega * kOmega);
+    before = std::exchange(now, x);
+    v_before = std::exchange(v_now, (x - x_hat) / beta);
+    EXPECT_EQ(stepper.step(spring, state, h, Vec3::Zero(), {}, scratch, next).verdict, Verdict::solved);
+    stepper.accept(state, h);
+    std::swap(state, next);
+    ++steps;
+  }
+  return {(before - now) / kOff, (next.x[0].x() - state.x[0].x()) / kOff, steps};
+}
+
+TEST(Bdf2Ratio, UpToTheBoundErrorsOfTheHistoryFadeAndBeyondTheyGrow) {
+  for (double r : {1.5, Stepper::kLargestRatio, 1 + std::sqrt(2.0), 3.0}) {
+    const Growth growth = change_while_growing(r);
+    // Each step takes r² / (1 + 2r) of the difference on; the motion itself makes y² / 2 of it at most.
+    const double expected = std::pow(r * r / (1 + 2 * r), growth.steps);
+    EXPECT_NEAR(growth.formula, expected, 0.01) << "r = " << r;
+    EXPECT_NEAR(growth.stepper, growth.formula, 1e-4) << "r = " << r;
+  }
+  EXPECT_LT(change_while_growing(Stepper::kLargestRatio).formula, 0.25);
+  EXPECT_GT(change_while_growing(3).formula, 3);
+}
+
+TEST(Bdf2Ratio, StiffOscillatorDecaysWhateverTheStepsWithinTheBound) {
+  // Steps that double seven times and then fall back at once, around y = ω h from 1 to 128.
+  constexpr double kOmega = 1e3;
+  const testing::Spring spring(kOmega * kOmega);
+  solver::LinearSystem scratch = spring.make_linear_system();
+  Stepper stepper(Method::bdf2, kTight);
+  State now{{Vec3(1, 0, 0)}, {Vec3::Zero()}}, next;
+  double size = 1;
+  for (int s = 0; s < 160; ++s) {
+    const double h = std::ldexp(1 / kOmega, s % 8);
+    ASSERT_EQ(stepper.step(spring, now, h, Vec3::Zero(), {}, scratch, next).verdict, Verdict::solved);
+    stepper.accept(now, h);
+    std::swap(now, next);
+    size = std::hypot(now.x[0].x(), now.v[0].x() / kOmega);
+    ASSERT_LT(size, 1.5) << "step " << s;
+  }
+  EXPECT_LT(size, 1e-6);
+}
+
+}  // namespace
+}  // namespace weft::integrator

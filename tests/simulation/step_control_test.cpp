@@ -1,0 +1,135 @@
+// time.tolerance: steps of their own choice, which end on frames.
+#include <gtest/gtest.h>
+
+#include "simulation/scenes.hpp"
+
+namespace weft::simulation {
+namespace {
+
+scene::Scene falling_sheet(scene::Integrator integrator, double tolerance) {
+  scene::Scene scene = testing::sheet_alone(1, 5, 2);
+  scene.time.integrator = integrator;
+  scene.time.tolerance = tolerance;
+  testing::solve_tightly(scene);
+  scene.solver.halvings = 8;
+  return scene;
+}
+
+// How much lower than after free fall the sheet is after so many frames [m].
+double ahead_of_free_fall(const Simulation& simulation, int frames) {
+  const double t = frames / 25.0;
+  return 2 - 0.5 * 9.81 * t * t - testing::sheet_of(simulation.snapshot())[7].z();
+}
+
+TEST(StepTolerance, StepsEndOnFramesWhateverTheirLength) {
+  // The midpoint rule is exact in free fall, so that every frame shows whether its steps add up to it.
+  Simulation simulation(falling_sheet(scene::Integrator::implicit_midpoint, 1e-5));
+  int steps = 0;
+  for (int k = 1; k <= 10; ++k) {
+    const FrameReport report = simulation.advance();
+    steps += report.steps;
+    // The steps know no error, and grow to whole frames.
+    if (k > 5) {
+      EXPECT_EQ(report.steps, 1);
+    }
+    // What Newton leaves; a step too many or too few would be off by centimetres.
+    EXPECT_NEAR(ahead_of_free_fall(simulation, k), 0, 1e-8);
+  }
+  EXPECT_GT(steps, 12);
+}
+
+TEST(StepTolerance, EstimateIsTheErrorInFreeFall) {
+  // Each step of Euler over h is ahead by ½ h² g, and stays so.
+  Simulation simulation(falling_sheet(scene::Integrator::implicit_euler, 1e-5));
+  double estimate = 0;
+  for (int k = 1; k <= 10; ++k) {
+    const FrameReport report = simulation.advance();
+    EXPECT_LE(report.error_estimate, 1e-5 * report.steps);
+    EXPECT_GT(report.error_estimate, 0.4e-5 * report.steps);
+    estimate += report.error_estimate;
+    EXPECT_NEAR(ahead_of_free_fall(simulation, k), estimate, 1e-9);
+  }
+}
+
+TEST(StepTolerance, EstimateIsThereWithFixedStepsToo) {
+  scene::Scene scene = falling_sheet(scene::Integrator::implicit_euler, 1);
+  scene.time.tolerance.reset();
+  scene.time.step = 0.01;
+  Simulation simulation(scene);
+  EXPECT_EQ(simulation.initial_report().error_estimate, 0);
+  EXPECT_NEAR(simulation.advance().error_estimate, 4 * 0.5 * 1e-4 * 9.81, 1e-9);
+}
+
+// A sheet that falls on the floor, all of it at once.
+scene::Scene landing_sheet(scene::Integrator integrator, double tolerance) {
+  scene::Scene scene = falling_sheet(integrator, tolerance);
+  scene.contact.self = scene.contact.obstacles = true;
+  scene.solver = {};
+  scene.cloths[0].pose.position.z() = 0.3;
+  scene.obstacles.push_back(testing::obstacle("floor", scene::Plane{}));
+  return scene;
+}
+
+TEST(StepTolerance, ImpactTakesShortStepsButNotWithoutEnd) {
+  for (scene::Integrator integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2}) {
+    Simulation simulation(landing_sheet(integrator, 1e-4));
+    int most = 0, rejected = 0;
+    for (int k = 1; k <= 25; ++k) {
+      const FrameReport report = simulation.advance();
+      most = std::max(most, report.steps);
+      rejected += report.rejected_steps;
+      EXPECT_GT(report.min_distance, 0);
+    }
+    EXPECT_GT(rejected, 0);
+    // 2.4 m/s to nothing: the tolerance asks for some 1e-4 s, once.
+    EXPECT_LT(most, 200);
+    EXPECT_GT(testing::lowest(testing::sheet_of(simulation.snapshot())), 0);
+  }
+}
+
+TEST(StepTolerance, GivesTheSameBitsAgain) {
+  for (scene::Integrator integrator : {scene::Integrator::implicit_euler, scene::Integrator::bdf2}) {
+    Simulation first(landing_sheet(integrator, 1e-4)), second(landing_sheet(integrator, 1e-4));
+    for (int k = 1; k <= 12; ++k) {
+      first.advance();
+      second.advance();
+      ASSERT_EQ(testing::sheet_of(first.snapshot()), testing::sheet_of(second.snapshot())) << "frame " << k;
+    }
+  }
+}
+
+TEST(StepTolerance, ErrorThatAStepCannotMeetIsTakenAndCounted) {
+  // No halvings: each step is tried once.
+  scene::Scene scene = landing_sheet(scene::Integrator::bdf2, 1e-4);
+  scene.solver.halvings = 0;
+  Simulation simulation(scene);
+  int inexact = 0;
+  for (int k = 1; k <= 10; ++k) {
+    const FrameReport report = simulation.advance();
+    EXPECT_EQ(report.rejected_steps, 0);
+    inexact += report.inexact_steps;
+  }
+  EXPECT_GT(inexact, 0);
+}
+
+TEST(StepTolerance, StepThatCannotBeSolvedEndsTheRunWithTheStateBefore) {
+  scene::Scene scene = falling_sheet(scene::Integrator::bdf2, 1e-4);
+  scene.solver.newton_iterations = 1;
+  scene.solver.linear_iterations = 1;
+  scene.cloths[0].pins.push_back({.low = {0, 1}, .follow = {}, .motion = {}});
+  Simulation simulation(scene);
+  std::string said[2];
+  for (std::string& text : said) {
+    try {
+      for (int k = 0; k < 25; ++k) simulation.advance();
+    } catch (const std::exception& error) {
+      text = error.what();
+    }
+    EXPECT_NE(text.find("try a smaller time.tolerance"), std::string::npos) << text;
+  }
+  // Tried again from there, it fails in the same way.
+  EXPECT_EQ(said[0], said[1]);
+}
+
+}  // namespace
+}  // namespace weft::simulation

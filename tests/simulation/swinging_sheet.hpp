@@ -1,0 +1,68 @@
+// A sheet pinned at two corners that swings, without contact: what its end depends on is the time integration alone.
+#pragma once
+
+#include <cmath>
+#include <vector>
+
+#include "simulation/scenes.hpp"
+
+namespace weft::simulation::testing {
+
+/// A square metre, flat at the start, held at two neighbouring corners. Forces are smooth: no dry friction of bending.
+inline scene::Scene swinging_sheet(int particles, double stretch, double shear, double bend) {
+  scene::Scene scene = sheet_alone(1, particles, 0);
+  scene::Cloth& cloth = scene.cloths[0];
+  cloth.material.stretch_weft = cloth.material.stretch_warp = stretch;
+  cloth.material.shear = shear;
+  cloth.material.bend = bend;
+  cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
+  for (double u : {0.0, 1.0}) {
+    scene::Pin corner;
+    corner.low = corner.high = {u, 1};
+    cloth.pins.push_back(corner);
+  }
+  return scene;
+}
+
+inline const char* name_of(scene::Integrator integrator) {
+  switch (integrator) {
+    case scene::Integrator::implicit_euler:
+      return "implicit_euler";
+    case scene::Integrator::implicit_midpoint:
+      return "implicit_midpoint";
+    case scene::Integrator::bdf2:
+      return "bdf2";
+  }
+  return "";
+}
+
+struct SwingEnd {
+  std::vector<Vec3> x;
+  double estimate = 0;  ///< sum of the local errors as estimated [m]
+  int steps = 0, rejected = 0, newton = 0;
+};
+
+/// The scene after so many frames.
+inline SwingEnd swing(const scene::Scene& scene, int frames) {
+  Simulation simulation(scene);
+  SwingEnd end;
+  FrameReport report;
+  for (int k = 0; k < frames; ++k) {
+    report = simulation.advance();
+    end.estimate += report.error_estimate;
+    end.steps += report.steps;
+    end.rejected += report.rejected_steps;
+    end.newton += report.newton_iterations;
+  }
+  end.x = sheet_of(simulation.snapshot());
+  return end;
+}
+
+/// Root mean square of the distances of two states [m].
+inline double rms_distance(const std::vector<Vec3>& a, const std::vector<Vec3>& b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+}  // namespace weft::simulation::testing
