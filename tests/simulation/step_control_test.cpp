@@ -116,7 +116,9 @@ TEST(StepTolerance, StepThatCannotBeSolvedEndsTheRunWithTheStateBefore) {
   scene::Scene scene = falling_sheet(scene::Integrator::bdf2, 1e-4);
   scene.solver.newton_iterations = 1;
   scene.solver.linear_iterations = 1;
-  scene.cloths[0].pins.push_back({.low = {0, 1}, .follow = {}, .motion = {}});
+  scene::Pin edge;
+  edge.low = {0, 1};
+  scene.cloths[0].pins.push_back(edge);
   Simulation simulation(scene);
   std::string said[2];
   for (std::string& text : said) {
