@@ -12,6 +12,7 @@
 
 #include "forces/sheets.hpp"
 #include "forces/triangle_meshes.hpp"
+#include "mesh/quads.hpp"
 
 namespace weft::forces {
 namespace {
@@ -171,12 +172,12 @@ double plate_error(const Make& make, int cells, bool along_u, bool along_v) {
   return dot(loads, statics.solve(loads)) / dot(loads, exact) - 1;
 }
 
-/// Particles whose bending a border may touch: four rows of them.
+/// Particles that bending at the border may reach: three rows of them.
 std::vector<char> near_border(const Sample& sample) {
   std::vector<char> near(sample.areas.size());
   for (std::size_t i = 0; i < near.size(); ++i)
     near[i] = on_border(sample.mesh.uv[i], 0) || on_border(sample.mesh.uv[i], 1);
-  for (int ring = 0; ring < 3; ++ring) {
+  for (int ring = 0; ring < 2; ++ring) {
     const std::vector<char> before = near;
     for (const mesh::Triangle& t : sample.mesh.topology.triangles)
       for (Index a : t)
@@ -233,8 +234,9 @@ void report_all(const std::string& mesh, const Make& make) {
   report(mesh, "bent along weft", [&](int n) { return plate_error(make, n, true, false); });
   report(mesh, "bent along warp", [&](int n) { return plate_error(make, n, false, true); });
   report(mesh, "plate on four sides", [&](int n) { return plate_error(make, n, true, true); });
-  report(mesh, "ridge across 45°", [&](int n) { return ridge_error(make, n, 45); });
-  report(mesh, "ridge across -45°", [&](int n) { return ridge_error(make, n, -45); });
+  // Of coarser meshes the held rows leave too little.
+  report(mesh, "ridge across 45°", [&](int n) { return ridge_error(make, 2 * n, 45); });
+  report(mesh, "ridge across -45°", [&](int n) { return ridge_error(make, 2 * n, -45); });
 }
 
 TEST(Continuum, IsApproachedByQuads) {
