@@ -54,7 +54,7 @@ render::Settings render_settings(const scene::Scene& scene, const SceneOptions& 
 std::string describe_scene(const scene::Scene& scene) {
   std::size_t particles = 0;
   for (const scene::Cloth& cloth : scene.cloths) {
-    particles += static_cast<std::size_t>(cloth.particles_weft) * static_cast<std::size_t>(cloth.particles_warp);
+    particles += static_cast<std::size_t>(rectangle_particles(cloth));
   }
   return fmt::format("{}, {}, {}, {} at {:.4g} fps", counted(scene.cloths.size(), "cloth", "cloths"),
                      counted(scene.obstacles.size(), "obstacle", "obstacles"),

@@ -2,11 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdint>
+#include <numbers>
 #include <variant>
 
 #include "assets/mesh_file.hpp"
+#include "core/error.hpp"
 #include "core/parallel.hpp"
+#include "mesh/geometry.hpp"
 #include "mesh/quads.hpp"
 #include "mesh/shapes.hpp"
 
@@ -40,14 +44,79 @@ std::vector<Vec3> start_positions(const scene::Cloth& cloth, const mesh::Mesh& r
   return x;
 }
 
-ClothObject make_cloth(const scene::Cloth& cloth) {
+void use_quads(const mesh::Grid& grid, ClothObject& object) {
+  object.grid = grid;
+  object.mesh = mesh::make_sheet(grid);
+  object.spacing = std::min(grid.lu, grid.lv);
+  for (int j = 0; j < grid.nv; ++j)
+    for (int i = 0; i < grid.nu; ++i)
+      object.fractions.emplace_back(double(i) / (grid.nu - 1), double(j) / (grid.nv - 1));
+}
+
+void use_triangles(mesh::Mesh mesh, ClothObject& object) {
+  object.sheet = mesh::make_sheet_of(mesh);
+  object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
+  const Box3 box = mesh::bounding_box(mesh.positions);
+  const Vec3 size = box.sizes();
+  mesh.uv.clear();
+  for (const Vec3& x : mesh.positions) {
+    const Vec3 from_corner = x - box.min();
+    mesh.uv.emplace_back(from_corner.x(), from_corner.y());
+    object.fractions.emplace_back(size.x() > 0 ? from_corner.x() / size.x() : 0,
+                                  size.y() > 0 ? from_corner.y() / size.y() : 0);
+  }
+  object.mesh = std::move(mesh);
+}
+
+/// The triangles of a cloth's file. Throws Error(asset_unreadable) where they are no sheet.
+mesh::Mesh load_sheet(const scene::Cloth& cloth, const std::string& where) {
+  mesh::Mesh mesh = assets::load_mesh(cloth.file, cloth.scale, where).mesh;
+  mesh.topology.quads.clear();
+  const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
+  if (!report.manifold())
+    throw Error(
+        ExitCode::asset_unreadable,
+        "{}: mesh file {}: expected edges of one or two triangles that face the same way, got {} of more and {} "
+        "that face both ways",
+        where, cloth.file.string(), report.non_manifold.size(), report.misoriented.size());
+  return mesh;
+}
+
+/// A part that holds no particle would hold nothing, silently; of rectangles the scene's check has told already.
+void check_parts(const scene::Cloth& cloth, const ClothObject& object, const std::string& where) {
+  const auto check = [&](const scene::ClothPart& part, const char* kind) {
+    if (std::ranges::none_of(object.fractions, [&](const Vec2& at) { return part.holds(at.x(), at.y()); }))
+      throw Error(ExitCode::scene_invalid,
+                  "{}: expected a {} that holds at least one particle, got one that holds none", where, kind);
+  };
+  for (const scene::Pin& pin : cloth.pins) check(pin, "pin");
+  for (const scene::Weight& weight : cloth.weights) check(weight, "weight");
+}
+
+ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth) {
   ClothObject object;
   object.name = cloth.name;
-  object.grid = {.nu = cloth.particles_weft,
-                 .nv = cloth.particles_warp,
-                 .lu = cloth.size.x() / (cloth.particles_weft - 1),
-                 .lv = cloth.size.y() / (cloth.particles_warp - 1)};
-  object.mesh = mesh::make_sheet(object.grid);
+  const std::string where =
+      fmt::format("{}:{}:{}: cloth.{}", scene.file.string(), cloth.line, cloth.column, cloth.name);
+  const mesh::Grid grid{.nu = cloth.particles_weft,
+                        .nv = cloth.particles_warp,
+                        .lu = cloth.size.x() / (cloth.particles_weft - 1),
+                        .lv = cloth.size.y() / (cloth.particles_warp - 1)};
+  switch (cloth.shape) {
+    case scene::ClothShape::quads:
+      use_quads(grid, object);
+      break;
+    case scene::ClothShape::aligned_triangles:
+      use_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::aligned), object);
+      break;
+    case scene::ClothShape::crossed_triangles:
+      use_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::crossed), object);
+      break;
+    case scene::ClothShape::mesh:
+      use_triangles(load_sheet(cloth, where), object);
+      check_parts(cloth, object, where);
+      break;
+  }
   for (Vec3& x : object.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
   const std::size_t n = object.mesh.positions.size();
   object.motion = {start_positions(cloth, object.mesh), std::vector<Vec3>(n, cloth.velocity),
@@ -124,7 +193,7 @@ void place(RigidObject& object, const PoseSample& pose) {
 }  // namespace
 
 Environment::Environment(const scene::Scene& scene) {
-  for (const scene::Cloth& cloth : scene.cloths) cloths.push_back(make_cloth(cloth));
+  for (const scene::Cloth& cloth : scene.cloths) cloths.push_back(make_cloth(scene, cloth));
   for (const scene::Obstacle& obstacle : scene.obstacles) {
     rigids.push_back(make_rigid(scene, obstacle));
     tracks_.emplace_back(obstacle.motion, obstacle.pose);

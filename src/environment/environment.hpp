@@ -7,6 +7,7 @@
 #include "core/types.hpp"
 #include "environment/track.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/sheet.hpp"
 #include "scene/scene.hpp"
 
 namespace weft::environment {
@@ -18,11 +19,16 @@ struct Motion {
   std::vector<Vec3> accelerations;  ///< [m/s²]
 };
 
-/// A deformable sheet. The solver owns the truth while it steps and writes it back here.
+/// A deformable sheet, of quads or of triangles. The solver owns the truth while it steps and writes it back here.
 struct ClothObject {
   std::string name;
-  mesh::Grid grid;
-  mesh::Mesh mesh;  ///< rest shape in the world pose of the start; uv = (i lu, j lv)
+  mesh::Grid grid;              ///< of quads
+  mesh::Sheet sheet;            ///< of triangles, in the cloth's own coordinates; empty for quads
+  mesh::Mesh mesh;              ///< rest shape in the world pose of the start; uv: weft and warp from its corner
+  std::vector<Vec2> fractions;  ///< place of each particle in fractions of the rest size along weft and warp
+  /// Least distance between particles of a grid [m]; of triangles √2 times the least height, which is the same for the
+  /// two halves of a square.
+  double spacing = 0;
   Motion motion;
 };
 

@@ -2,7 +2,31 @@
 
 #include <cmath>
 
+#include "mesh/geometry.hpp"
+
 namespace weft::forces {
+namespace {
+
+struct Flow {
+  const AirParameters& parameters;
+  double h;  // [s]
+  std::span<Vec3> force;
+};
+
+// Drag on a face with this area vector, mean velocity and mass of its own.
+template <std::size_t Corners>
+void push(const std::array<Index, Corners>& face, const Vec3& area, const Vec3& velocity, double mass,
+          const Flow& flow) {
+  const double size = area.norm();
+  if (size == 0) return;
+  const Vec3 n = area / size;
+  const double speed = n.dot(velocity - flow.parameters.wind);
+  const double coefficient = 0.5 * flow.parameters.density * flow.parameters.drag * size;  // c [kg/m]
+  const double drag = coefficient * std::abs(speed) * speed / (1 + flow.h * coefficient * std::abs(speed) / mass);
+  for (Index p : face) flow.force[static_cast<std::size_t>(p)] -= 1.0 / Corners * drag * n;
+}
+
+}  // namespace
 
 Air::Air(const mesh::Grid& grid, Index first, const AirParameters& parameters) : parameters_(parameters) {
   for (int j = 0; j + 1 < grid.nv; ++j)
@@ -11,23 +35,31 @@ Air::Air(const mesh::Grid& grid, Index first, const AirParameters& parameters) :
                         first + grid.index(i, j + 1)});
 }
 
+Air::Air(const mesh::Sheet& sheet, Index first, double cloth_density, const AirParameters& parameters)
+    : parameters_(parameters) {
+  for (mesh::Triangle t : sheet.triangles) {
+    const double mass = cloth_density * mesh::area_vector(t, sheet.rest).norm();
+    for (Index& corner : t) corner += first;
+    triangles_.push_back({t, mass});
+  }
+}
+
 void Air::add(std::span<const Vec3> x, std::span<const Vec3> v, std::span<const double> masses, double h,
               std::span<Vec3> force) const {
+  const Flow flow{parameters_, h, force};
   for (const auto& cell : cells_) {
     const auto [a, b, c, d] =
         std::array<std::size_t, 4>{static_cast<std::size_t>(cell[0]), static_cast<std::size_t>(cell[1]),
                                    static_cast<std::size_t>(cell[2]), static_cast<std::size_t>(cell[3])};
     // Area vector of a quad, planar or not: half the cross product of its diagonals.
     const Vec3 area = 0.5 * (x[c] - x[a]).cross(x[d] - x[b]);
-    const double size = area.norm();
-    if (size == 0) continue;
-    const Vec3 n = area / size;
-    const double speed = n.dot(0.25 * (v[a] + v[b] + v[c] + v[d]) - parameters_.wind);
-    const double coefficient = 0.5 * parameters_.density * parameters_.drag * size;  // c [kg/m]
     // A corner's mass serves up to four cells: a quarter of the corners' sum bounds what this cell may slow down.
     const double mass = 0.25 * (masses[a] + masses[b] + masses[c] + masses[d]);
-    const double drag = coefficient * std::abs(speed) * speed / (1 + h * coefficient * std::abs(speed) / mass);
-    for (std::size_t p : {a, b, c, d}) force[p] -= 0.25 * drag * n;
+    push(cell, area, 0.25 * (v[a] + v[b] + v[c] + v[d]), mass, flow);
+  }
+  for (const auto& [t, mass] : triangles_) {
+    const auto velocity = [&](std::size_t k) -> const Vec3& { return v[static_cast<std::size_t>(t[k])]; };
+    push(t, mesh::area_vector(t, x), (velocity(0) + velocity(1) + velocity(2)) / 3, mass, flow);
   }
 }
 

@@ -7,6 +7,7 @@
 
 #include "core/types.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/sheet.hpp"
 
 namespace weft::forces {
 
@@ -16,10 +17,13 @@ struct AirParameters {
   double drag = 1.0;         ///< coefficient of the motion along the normal
 };
 
-/// Quadratic drag of the motion along the normal of each cell: f = −½ ρ c A ‖v_n‖ v_n, shared by its four corners.
+/// Quadratic drag of the motion along the normal of each cell or triangle: f = −½ ρ c A ‖v_n‖ v_n, shared by its
+/// corners.
 class Air {
  public:
   Air(const mesh::Grid& grid, Index first, const AirParameters& parameters);
+  /// `cloth_density` [kg/m²].
+  Air(const mesh::Sheet& sheet, Index first, double cloth_density, const AirParameters& parameters);
 
   /// force += the drag at (x, v) [N]. Over a step h drag alone would take an inner particle of mass m from v to
   /// v / (1 + h c ‖v‖ / m), the exact solution of m v' = −c ‖v‖ v; the force returned gives just that, so it never
@@ -30,6 +34,11 @@ class Air {
  private:
   AirParameters parameters_;
   std::vector<std::array<Index, 4>> cells_;  // corners in the order (0,0), (1,0), (1,1), (0,1)
+  struct Triangle {
+    mesh::Triangle corners;
+    double mass;  // [kg]
+  };
+  std::vector<Triangle> triangles_;
 };
 
 }  // namespace weft::forces

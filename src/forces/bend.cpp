@@ -1,17 +1,7 @@
 #include "forces/bend.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 namespace weft::forces {
 namespace {
-
-// Curvature below which its direction is too uncertain to damp along [1/m]: a radius of 10 m is flat to the eye.
-constexpr double kFlatCurvature = 0.1;
-
-// Rate of curvature at which friction has reached most of its size [1/(m·s)]: a fold of 10 cm then moves at 5 mm/s.
-// Smaller holds better and makes the system stiffer: friction / kRestRate acts like a viscosity.
-constexpr double kRestRate = 0.5;
 
 Vec3 weighted_sum(const std::array<Index, 4>& particles, const std::array<double, 4>& weights,
                   std::span<const Vec3> x) {
@@ -23,8 +13,7 @@ Vec3 weighted_sum(const std::array<Index, 4>& particles, const std::array<double
 }  // namespace
 
 Bend::Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters)
-    : rigidity_(parameters.rigidity), viscosity_(parameters.viscosity), friction_(parameters.friction) {
-  kept_curvature_ = std::max(kFlatCurvature, rigidity_ > 0 ? friction_ / rigidity_ : 0.0);
+    : rigidity_(parameters.rigidity), damping_(parameters) {
   const auto at = [&](int i, int j) { return first + grid.index(i, j); };
   const double uu = 1 / (grid.lu * grid.lu), vv = 1 / (grid.lv * grid.lv), uv = 1 / (grid.lu * grid.lv);
   for (int j = 0; j < grid.nv; ++j) {
@@ -66,43 +55,22 @@ void Bend::add(const Evaluation& at) const {
     const Difference& difference = differences_[d];
     const Vec3 curvature = weighted_sum(difference.particles, difference.weights, at.x);
     Vec3 moment = rigidity_ * curvature;
-    if (viscosity_ > 0 || friction_ > 0) moment += damping(d, curvature, at);
+    if (damping_.any()) moment += damping(d, curvature, at);
     for (int k = 0; k < difference.count; ++k)
       at.force[static_cast<std::size_t>(difference.particles[k])] -= difference.area * difference.weights[k] * moment;
   }
 }
 
-// Moment per area [N/m] against the rate of curvature κ̇ along c, the curvature itself:
-//
-//     η (c·κ̇) c / (‖c‖² + flat²)  +  τ (c·κ̇) c / (D √((c·κ̇)² + ε² D²)),  D² = ‖c‖² + kept².
-//
-// The direction fades where the sheet is flat: for viscosity below kFlatCurvature, for friction below the curvature
-// that it can keep, where a moment of full size about an axis that turns with every ripple would be stiffer than the
-// bending itself.
+// Moment against the rate of curvature; its Jacobian goes into the matrix, if there is one.
 Vec3 Bend::damping(std::size_t index, const Vec3& curvature, const Evaluation& at) const {
   const Difference& d = differences_[index];
-  const double c_sq = curvature.squaredNorm();
-  const double rate = curvature.dot(weighted_sum(d.particles, d.weights, at.v));
-  const double flat_sq = c_sq + kFlatCurvature * kFlatCurvature, kept_sq = c_sq + kept_curvature_ * kept_curvature_;
-  const double smooth_sq = rate * rate + kRestRate * kRestRate * kept_sq;
-  const double viscous = viscosity_ / flat_sq, dry = friction_ / std::sqrt(kept_sq * smooth_sq);
-  if (at.matrix != nullptr) {
-    // The definite form takes the secant of friction: its tangent is definite too, but with it Newton's method jumps to
-    // and fro over the kink at rest and takes half as many iterations more.
-    Mat3 block = at.rate * (viscous + dry) * curvature * curvature.transpose();
-    if (at.linearisation == Linearisation::exact) {
-      const Vec3 velocity = weighted_sum(d.particles, d.weights, at.v);
-      const double dry_by_rate = -dry * rate * rate / smooth_sq;  // d dry/d rate · rate
-      const double dry_by_c_sq = -0.5 * dry * (1 / kept_sq + kRestRate * kRestRate / smooth_sq);
-      block += dry_by_rate * curvature * (velocity + at.rate * curvature).transpose();
-      block += (viscous + dry) * (rate * Mat3::Identity() + curvature * velocity.transpose());
-      block += 2 * rate * (dry_by_c_sq - viscous / flat_sq) * curvature * curvature.transpose();
-    }
-    block *= d.area;
-    for (int a = 0; a < d.count; ++a)
-      for (int b = 0; b < d.count; ++b) at.matrix->add(slots_[index][4 * a + b], d.weights[a] * d.weights[b], block);
-  }
-  return (viscous + dry) * rate * curvature;
+  const Vec3 velocity = weighted_sum(d.particles, d.weights, at.v);
+  if (at.matrix == nullptr) return damping_.moment(curvature, velocity);
+  const auto [moment, jacobian] = damping_.linearised(curvature, velocity, at.rate, at.linearisation);
+  const Mat3 block = d.area * jacobian;
+  for (int a = 0; a < d.count; ++a)
+    for (int b = 0; b < d.count; ++b) at.matrix->add(slots_[index][4 * a + b], d.weights[a] * d.weights[b], block);
+  return moment;
 }
 
 void Bend::add_constant_stiffness(solver::BlockMatrix& matrix) const {

@@ -3,15 +3,10 @@
 
 #include <array>
 
+#include "forces/bend_damping.hpp"
 #include "forces/force.hpp"
 
 namespace weft::forces {
-
-struct BendParameters {
-  double rigidity = 0;   ///< B [N·m]
-  double viscosity = 0;  ///< moment per rate of curvature [N·m·s]
-  double friction = 0;   ///< moment per width that a change of curvature must overcome [N]; half of KES' 2HB
-};
 
 /// Seed "Elastic Model", bending f = −B Δ² along the normal (restoring sign): a plate with ν = 0, energy density
 /// ½ B (‖s_uu‖² + 2 ‖s_uv‖² + ‖s_vv‖²), by central differences on lines and in cells; free edges come out of the
@@ -21,11 +16,7 @@ struct BendParameters {
 /// energy becomes quadratic in the positions, with a constant, definite Jacobian that is assembled once (Bergou et al.,
 /// "A Quadratic Bending Model for Inextensible Surfaces", 2006). What is added in the plane is B/l² against k: for
 /// cotton at l = 1 cm, 0.5 N/m against 1000 N/m.
-/// Viscosity and friction act on the rate of ‖s_uu‖ and so on, along the unit vector of the curvature itself, so that a
-/// curved piece may turn rigidly without loss. Friction is that of Kawabata's hysteresis of bending ("The
-/// Standardization and Analysis of Hand Evaluation", 1980): a moment of constant size against the change, smooth below
-/// a rate of kRestRate. Without it the hem of a draped sheet tips over at a few centimetres a second for seconds on
-/// end; with it the sheet lies still.
+/// Viscosity and friction: see BendDamping.
 class Bend final : public Force {
  public:
   Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters);
@@ -35,8 +26,8 @@ class Bend final : public Force {
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> x) const override;
 
-  /// Adds the constant part −∂f/∂x of the elastic forces; `add` leaves it out.
-  void add_constant_stiffness(solver::BlockMatrix& matrix) const;
+  /// All of the elastic part.
+  void add_constant_stiffness(solver::BlockMatrix& matrix) const override;
 
  private:
   /// A second difference Σ w_k x_k [1/m²·m] that stands for `area`; unused entries repeat particle 0 with weight 0.
@@ -49,8 +40,8 @@ class Bend final : public Force {
   void add_difference(std::array<Index, 4> particles, std::array<double, 4> weights, double area, int count);
   Vec3 damping(std::size_t index, const Vec3& curvature, const Evaluation& at) const;
 
-  double rigidity_, viscosity_, friction_;
-  double kept_curvature_;  // below which friction fades [1/m]
+  double rigidity_;
+  BendDamping damping_;
   std::vector<Difference> differences_;
   std::vector<std::array<solver::Slot, 16>> slots_;  // row-major over pairs of particles
 };

@@ -1,5 +1,7 @@
 #include "forces/force.hpp"
 
+#include "mesh/geometry.hpp"
+
 namespace weft::forces {
 
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density) {
@@ -8,6 +10,15 @@ std::vector<double> lumped_masses(const mesh::Grid& grid, double density) {
     for (int i = 0; i < grid.nu; ++i)
       masses[static_cast<std::size_t>(grid.index(i, j))] =
           density * line_width(i, grid.nu, grid.lu) * line_width(j, grid.nv, grid.lv);
+  return masses;
+}
+
+std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density) {
+  std::vector<double> masses(sheet.rest.size());
+  for (const mesh::Triangle& t : sheet.triangles) {
+    const double third = density * mesh::area_vector(t, sheet.rest).norm() / 3;
+    for (Index i : t) masses[static_cast<std::size_t>(i)] += third;
+  }
   return masses;
 }
 

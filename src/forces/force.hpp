@@ -7,6 +7,7 @@
 
 #include "core/types.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/sheet.hpp"
 #include "solver/block_matrix.hpp"
 
 namespace weft::forces {
@@ -40,6 +41,18 @@ class Force {
   virtual void add(const Evaluation& at) const = 0;
   /// Elastic energy [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
+
+  /// Adds the part of −∂f/∂x that never changes, if there is one; `add` leaves it out.
+  virtual void add_constant_stiffness(solver::BlockMatrix& /*matrix*/) const {}
+};
+
+/// What resists motion within the sheet, and knows how far it is stretched.
+class Membrane : public Force {
+ public:
+  /// Largest relative change of length of a piece of weft or warp.
+  virtual double max_strain(std::span<const Vec3> x) const = 0;
+  /// Raises heat[particle − first] to the largest strain next to it.
+  virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const = 0;
 };
 
 /// Share of the sheet's area that belongs to grid line `i` of `count` with spacing `l`: half a spacing at the border
@@ -50,5 +63,7 @@ inline double line_width(int i, int count, double l) {
 
 /// Lumped masses of a grid [kg], ρ times the area of each particle (ρ in kg/m²).
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
+/// And of triangles, a third of each to each of its corners.
+std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density);
 
 }  // namespace weft::forces

@@ -17,7 +17,7 @@ struct StretchParameters {
 /// Energy of an edge d = x_j − x_i of rest length l that stands for the area A: ½ k A (‖d‖/l − 1)². The force density
 /// of the seed, k/l² [(x_i − x_j) − l (x_i − x_j)/‖x_i − x_j‖], is that on x_j; times A it is the force here.
 /// Viscosity: dissipation ½ η A (d/dt ‖d‖/l)², the same form on the strain rate.
-class Stretch final : public Force {
+class Stretch final : public Membrane {
  public:
   Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters);
 
@@ -27,9 +27,9 @@ class Stretch final : public Force {
   double energy(std::span<const Vec3> x) const override;
 
   /// Largest |‖d‖/l − 1| of all edges.
-  double max_strain(std::span<const Vec3> x) const;
+  double max_strain(std::span<const Vec3> x) const override;
   /// Raises heat[particle − first] to the largest strain of the edges that meet there.
-  void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const;
+  void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
 
  private:
   struct Edge {

@@ -117,16 +117,19 @@ std::string effective_scene(const Scene& scene) {
 std::uint64_t hash_of(const Scene& scene) {
   Fnv1a hash;
   Scene copy = scene;
-  for (Obstacle& obstacle : copy.obstacles) {
-    auto* mesh = std::get_if<MeshFile>(&obstacle.shape);
-    if (mesh == nullptr) continue;
-    std::ifstream file(mesh->path, std::ios::binary);
+  // The content of mesh files counts, and not their folder.
+  const auto add_file = [&](std::filesystem::path& path) {
+    std::ifstream file(path, std::ios::binary);
     std::array<char, 1 << 16> block;
     while (file.read(block.data(), block.size()) || file.gcount() > 0) {
       hash.add({block.data(), static_cast<std::size_t>(file.gcount())});
     }
-    mesh->path = mesh->path.filename();
-  }
+    path = path.filename();
+  };
+  for (Obstacle& obstacle : copy.obstacles)
+    if (auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) add_file(mesh->path);
+  for (Cloth& cloth : copy.cloths)
+    if (cloth.shape == ClothShape::mesh) add_file(cloth.file);
   hash.add(effective_scene(copy));
   return hash.value();
 }

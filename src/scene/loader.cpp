@@ -23,6 +23,11 @@ void read_document(toml::table document, const std::vector<std::string>& overrid
     scene.obstacles[i].line = place.line;
     scene.obstacles[i].column = place.column;
   }
+  for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
+    const Place& place = findings.place(findings.entry("cloth", i));
+    scene.cloths[i].line = place.line;
+    scene.cloths[i].column = place.column;
+  }
 }
 
 /// `text`: nothing where the file could not be read, which `findings` then knows.

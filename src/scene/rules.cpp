@@ -182,18 +182,36 @@ const Table& weight_rules() {
   return kTable;
 }
 
+/// The keys of each shape, in the order of ClothShape.
+void cloth_shape_rows(TableBuilder<Cloth>& rows) {
+  using Rows = TableBuilder<Cloth>;
+  for (const char* name : {"quads", "aligned_triangles", "crossed_triangles"})
+    rows.variant(name, Rows()
+                           .vector("size", &Cloth::size, kWeftWarp, kExtent, "m", "along weft and warp, at rest")
+                           .single_fills_all()
+                           .pair("particles", &Cloth::particles_weft, &Cloth::particles_warp, within(2, 2000), "",
+                                 "number along weft and warp")
+                           .whole());
+  rows.variant("mesh", Rows()
+                           .plain(Type::file, "file", &Cloth::file,
+                                  "mesh file of the rest shape, flat or not, with its weft along x; relative paths "
+                                  "start at the scene's folder")
+                           .need(Need::required)
+                           .number("scale", &Cloth::scale, above(0, 1e6), "", "factor on all lengths of the file"));
+}
+
 const Table& cloth_rules() {
   static const Table kTable =
-      TableBuilder<Cloth>("A rectangular sheet of cloth.")
+      TableBuilder<Cloth>("A sheet of cloth: a rectangle, or the shape of a mesh file.")
           .plain(Type::name, "name", &Cloth::name, "unlike that of any other cloth or obstacle")
           .need(Need::required)
-          .vector("size", &Cloth::size, kWeftWarp, kExtent, "m", "along weft and warp, at rest")
-          .single_fills_all()
-          .pair("particles", &Cloth::particles_weft, &Cloth::particles_warp, within(2, 2000), "",
-                "number along weft and warp")
-          .whole()
+          .choice("shape", &Cloth::shape, {"quads", "aligned_triangles", "crossed_triangles", "mesh"},
+                  "what it is made of: a rectangle of quads or of triangles, or the triangles of a mesh file")
+          .selects()
+          .with(cloth_shape_rows)
           .with([](auto& rows) {
-            pose_rows(rows, &Cloth::pose, "of the middle of the sheet, which lies in its x-y plane with weft along x");
+            pose_rows(rows, &Cloth::pose,
+                      "of the middle of the sheet, or the origin of the mesh; weft lies along its x, warp along its y");
           })
           .vector("velocity", &Cloth::velocity, kXyz, within(-1e4, 1e4), "m/s", "at the start")
           .vector("start_scale", &Cloth::start_scale, kWeftWarp, above(0, 1000), "",

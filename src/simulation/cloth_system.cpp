@@ -1,8 +1,15 @@
 #include "simulation/cloth_system.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
+#include "forces/bend.hpp"
+#include "forces/shear.hpp"
+#include "forces/stretch.hpp"
+#include "forces/triangle_bend.hpp"
+#include "forces/triangle_membrane.hpp"
+#include "mesh/geometry.hpp"
 #include "simulation/pins.hpp"
 
 namespace weft::simulation {
@@ -16,75 +23,122 @@ constexpr Index kPatches = 70;
 // with; residuals are exact always.
 constexpr double kStaleMotion = 0.005;
 
+bool bends(const scene::Material& m) {
+  return m.bend > 0 || m.bend_viscosity > 0 || m.bend_friction > 0;
+}
+bool meets_air(const scene::Material& m, const scene::Physics& physics) {
+  return physics.air_density > 0 && m.drag > 0;
+}
+forces::StretchParameters stretch_of(const scene::Material& m) {
+  return {m.stretch_weft, m.stretch_warp, m.stretch_viscosity};
+}
+forces::ShearParameters shear_of(const scene::Material& m) {
+  return {m.shear, m.shear_viscosity};
+}
+forces::BendParameters bend_of(const scene::Material& m) {
+  return {m.bend, m.bend_viscosity, m.bend_friction};
+}
+forces::AirParameters air_of(const scene::Material& m, const scene::Physics& physics) {
+  return {physics.air_density, physics.wind, m.drag};
+}
+
+/// A cell of a lattice across the rest shape, along its normal first and along weft last.
+using Box = std::array<int, 3>;
+
+// One box per particle: its place in the grid, or in a lattice as fine as the triangles are on average.
+std::vector<Box> boxes_of(const environment::ClothObject& cloth) {
+  std::vector<Box> boxes;
+  for (int j = 0; j < cloth.grid.nv; ++j)
+    for (int i = 0; i < cloth.grid.nu; ++i) boxes.push_back({0, j, i});
+  if (cloth.sheet.triangles.empty()) return boxes;
+  const std::vector<Vec3>& rest = cloth.sheet.rest;
+  const Vec3 corner = mesh::bounding_box(rest).min();
+  const double side = std::sqrt(mesh::surface_area(cloth.sheet.triangles, rest) / static_cast<double>(rest.size()));
+  for (const Vec3& x : rest) {
+    const Vec3 place = (x - corner) / side;
+    boxes.push_back({static_cast<int>(place.z()), static_cast<int>(place.y()), static_cast<int>(place.x())});
+  }
+  return boxes;
+}
+
 }  // namespace
 
 ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environment& environment) {
-  std::vector<std::pair<Index, Index>> couplings;
   Index first = 0;
   forces_.resize(scene.cloths.size());
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const scene::Material& material = scene.cloths[c].material;
-    const mesh::Grid& grid = environment.cloths[c].grid;
+    const environment::ClothObject& cloth = environment.cloths[c];
     first_.push_back(first);
-    const auto masses = forces::lumped_masses(grid, material.density);
+    const auto masses = cloth.sheet.triangles.empty() ? forces::lumped_masses(cloth.grid, material.density)
+                                                      : forces::lumped_masses(cloth.sheet, material.density);
     masses_.insert(masses_.end(), masses.begin(), masses.end());
     for (const scene::Weight& weight : scene.cloths[c].weights) {
-      const std::vector<Index> carriers = particles_of(weight, grid, first);
+      const std::vector<Index> carriers = particles_of(weight, cloth, first);
       for (Index particle : carriers)
         masses_[static_cast<std::size_t>(particle)] += weight.mass / static_cast<double>(carriers.size());
     }
-
-    stretch_.push_back(std::make_unique<forces::Stretch>(
-        grid, first,
-        forces::StretchParameters{material.stretch_weft, material.stretch_warp, material.stretch_viscosity}));
-    forces_[c].push_back(stretch_.back().get());
-    if (material.shear > 0 || material.shear_viscosity > 0) {
-      shear_.push_back(std::make_unique<forces::Shear>(
-          grid, first, forces::ShearParameters{material.shear, material.shear_viscosity}));
-      forces_[c].push_back(shear_.back().get());
-    }
-    if (material.bend > 0 || material.bend_viscosity > 0 || material.bend_friction > 0) {
-      bend_.push_back(std::make_unique<forces::Bend>(
-          grid, first, forces::BendParameters{material.bend, material.bend_viscosity, material.bend_friction}));
-      forces_[c].push_back(bend_.back().get());
-    }
-    if (scene.physics.air_density > 0 && material.drag > 0)
-      air_.emplace_back(grid, first,
-                        forces::AirParameters{scene.physics.air_density, scene.physics.wind, material.drag});
-    first += grid.size();
+    if (cloth.sheet.triangles.empty())
+      add_quad_forces(c, cloth.grid, material, scene.physics);
+    else
+      add_triangle_forces(c, cloth.sheet, material, scene.physics);
+    spacing_ = std::min(spacing_, cloth.spacing);
+    first += static_cast<Index>(masses.size());
   }
   first_.push_back(first);
-  for (const auto& cloth : environment.cloths) spacing_ = std::min({spacing_, cloth.grid.lu, cloth.grid.lv});
-  std::vector<mesh::Grid> grids;
-  for (const auto& cloth : environment.cloths) grids.push_back(cloth.grid);
-  cut_groups(grids);
+  cut_groups(environment);
 
+  std::vector<std::pair<Index, Index>> couplings;
   for (const auto& of_cloth : forces_)
-    for (const forces::Force* force : of_cloth) force->couple(couplings);
+    for (const auto& force : of_cloth) force->couple(couplings);
   base_ = solver::BlockMatrix(first, std::move(couplings));
-  for (const auto& force : stretch_) force->attach(base_);
-  for (const auto& force : shear_) force->attach(base_);
-  for (const auto& force : bend_) force->attach(base_);
+  for (const auto& of_cloth : forces_)
+    for (const auto& force : of_cloth) force->attach(base_);
+}
+
+void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, const scene::Material& material,
+                                  const scene::Physics& physics) {
+  const Index first = first_[cloth];
+  auto stretch = std::make_unique<forces::Stretch>(grid, first, stretch_of(material));
+  membranes_.push_back(stretch.get());
+  forces_[cloth].push_back(std::move(stretch));
+  if (material.shear > 0 || material.shear_viscosity > 0)
+    forces_[cloth].push_back(std::make_unique<forces::Shear>(grid, first, shear_of(material)));
+  if (bends(material)) forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
+  if (meets_air(material, physics)) air_.emplace_back(grid, first, air_of(material, physics));
+}
+
+void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Material& material,
+                                      const scene::Physics& physics) {
+  const Index first = first_[cloth];
+  auto membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
+  membranes_.push_back(membrane.get());
+  forces_[cloth].push_back(std::move(membrane));
+  if (bends(material))
+    forces_[cloth].push_back(std::make_unique<forces::TriangleBend>(sheet, first, bend_of(material)));
+  if (meets_air(material, physics)) air_.emplace_back(sheet, first, material.density, air_of(material, physics));
 }
 
 // Two by two, again and again, until kPatches or fewer are left in all, or one of each cloth.
-void ClothSystem::cut_groups(const std::vector<mesh::Grid>& grids) {
-  struct Size {
-    int u, v;
-  };
-  std::vector<Size> sizes;
-  for (const mesh::Grid& grid : grids) sizes.push_back({grid.nu, grid.nv});
-  const auto halved = [](int n) { return (n + 1) / 2; };
+void ClothSystem::cut_groups(const environment::Environment& environment) {
+  std::vector<std::vector<Box>> boxes;
+  for (const environment::ClothObject& cloth : environment.cloths) boxes.push_back(boxes_of(cloth));
   do {
     solver::Grouping grouping;
-    for (Size& size : sizes) {
-      for (int j = 0; j < size.v; ++j)
-        for (int i = 0; i < size.u; ++i) grouping.of.push_back(grouping.count + i / 2 + halved(size.u) * (j / 2));
-      size = {halved(size.u), halved(size.v)};
-      grouping.count += size.u * size.v;
+    for (std::vector<Box>& members : boxes) {
+      for (Box& box : members)
+        for (int& place : box) place /= 2;
+      std::vector<Box> halved = members;
+      std::ranges::sort(halved);
+      halved.erase(std::unique(halved.begin(), halved.end()), halved.end());
+      for (const Box& box : members)
+        grouping.of.push_back(grouping.count +
+                              static_cast<Index>(std::ranges::lower_bound(halved, box) - halved.begin()));
+      grouping.count += static_cast<Index>(halved.size());
+      members = std::move(halved);
     }
     groupings_.push_back(std::move(grouping));
-  } while (groupings_.back().count > std::max(kPatches, static_cast<Index>(grids.size())));
+  } while (groupings_.back().count > std::max(kPatches, static_cast<Index>(boxes.size())));
 }
 
 void ClothSystem::explicit_forces(const integrator::State& at, double h, std::span<Vec3> force) const {
@@ -110,7 +164,7 @@ void ClothSystem::add_cloth_forces(std::size_t cloth, const integrator::StagePoi
     // The forces number particles through all cloths.
     evaluated_.resize(at.x.size());
     std::fill_n(evaluated_.begin() + first_[cloth], count, Vec3::Zero());
-    for (const forces::Force* f : forces_[cloth]) f->add({at.x, at.v, evaluated_, matrix, at.rate});
+    for (const auto& f : forces_[cloth]) f->add({at.x, at.v, evaluated_, matrix, at.rate});
     latest.x.assign(x.begin(), x.end());
     latest.v.assign(v.begin(), v.end());
     latest.force.assign(evaluated_.begin() + first_[cloth], evaluated_.begin() + first_[cloth + 1]);
@@ -123,7 +177,8 @@ void ClothSystem::prepare_base(double rate) const {
   base_.set_zero();
   for (std::size_t i = 0; i < masses_.size(); ++i)
     base_.add_scalar(base_.diagonal(static_cast<Index>(i)), rate * rate * masses_[i]);
-  for (const auto& bend : bend_) bend->add_constant_stiffness(base_);
+  for (const auto& of_cloth : forces_)
+    for (const auto& force : of_cloth) force->add_constant_stiffness(base_);
   base_rate_ = rate;
 }
 
@@ -173,7 +228,7 @@ solver::LinearSystem ClothSystem::make_linear_system() const {
 double ClothSystem::elastic_energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (const auto& of_cloth : forces_)
-    for (const forces::Force* f : of_cloth) sum += f->energy(x);
+    for (const auto& f : of_cloth) sum += f->energy(x);
   return sum;
 }
 
@@ -191,13 +246,13 @@ double ClothSystem::kinetic_energy(std::span<const Vec3> v) const {
 
 double ClothSystem::max_strain(std::span<const Vec3> x) const {
   double largest = 0;
-  for (const auto& stretch : stretch_) largest = std::max(largest, stretch->max_strain(x));
+  for (const forces::Membrane* membrane : membranes_) largest = std::max(largest, membrane->max_strain(x));
   return largest;
 }
 
 std::vector<float> ClothSystem::strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const {
   std::vector<float> heat(static_cast<std::size_t>(first_[cloth + 1] - first_[cloth]));
-  stretch_[cloth]->strain_per_particle(x, heat);
+  membranes_[cloth]->strain_per_particle(x, heat);
   return heat;
 }
 

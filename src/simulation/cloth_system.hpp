@@ -10,10 +10,7 @@
 #include "collision/response/velocity_constraints.hpp"
 #include "environment/environment.hpp"
 #include "forces/air.hpp"
-#include "forces/bend.hpp"
 #include "forces/force.hpp"
-#include "forces/shear.hpp"
-#include "forces/stretch.hpp"
 #include "integrator/system.hpp"
 #include "scene/scene.hpp"
 
@@ -58,15 +55,17 @@ class ClothSystem final : public integrator::System {
   bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
   void add_cloth_forces(std::size_t cloth, const integrator::StagePoint& at, std::span<Vec3> force,
                         solver::BlockMatrix* matrix) const;
-  void cut_groups(const std::vector<mesh::Grid>& grids);
+  void add_quad_forces(std::size_t cloth, const mesh::Grid& grid, const scene::Material& material,
+                       const scene::Physics& physics);
+  void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Material& material,
+                           const scene::Physics& physics);
+  void cut_groups(const environment::Environment& environment);
 
   std::vector<Index> first_;  // per cloth, and the total at the end
   std::vector<double> masses_;
-  std::vector<std::unique_ptr<forces::Stretch>> stretch_;  // per cloth
-  std::vector<std::unique_ptr<forces::Bend>> bend_;        // of the cloths that have it
-  std::vector<std::unique_ptr<forces::Shear>> shear_;
+  std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;  // per cloth, all of the stiff ones
+  std::vector<const forces::Membrane*> membranes_;                   // of them, one per cloth
   std::vector<forces::Air> air_;
-  std::vector<std::vector<const forces::Force*>> forces_;  // per cloth, all of the stiff ones
   collision::ContactSet* contacts_ = nullptr;
   const collision::VelocityConstraints* constraints_ = nullptr;
   std::vector<solver::Grouping> groupings_;  // of the preconditioner

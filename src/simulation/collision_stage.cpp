@@ -87,10 +87,9 @@ std::vector<collision::Body> make_bodies(const scene::Scene& scene, const enviro
     first += count;
   };
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
-    const mesh::Grid& grid = environment.cloths[c].grid;
     const scene::Material& material = scene.cloths[c].material;
     add(environment.cloths[c].mesh, true,
-        std::min(material.thickness, kThicknessOfSpacing * std::min(grid.lu, grid.lv)), material.friction);
+        std::min(material.thickness, kThicknessOfSpacing * environment.cloths[c].spacing), material.friction);
   }
   for (std::size_t r : colliding_rigids(scene, environment))
     add(environment.rigids[r].mesh, false, 0, scene.obstacles[r].friction);

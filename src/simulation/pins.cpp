@@ -14,14 +14,10 @@ int rigid_named(const environment::Environment& environment, const std::string& 
 
 }  // namespace
 
-std::vector<Index> particles_of(const scene::ClothPart& part, const mesh::Grid& grid, Index first) {
+std::vector<Index> particles_of(const scene::ClothPart& part, const environment::ClothObject& cloth, Index first) {
   std::vector<Index> particles;
-  for (int j = 0; j < grid.nv; ++j) {
-    for (int i = 0; i < grid.nu; ++i) {
-      if (part.holds(double(i) / (grid.nu - 1), double(j) / (grid.nv - 1)))
-        particles.push_back(first + grid.index(i, j));
-    }
-  }
+  for (std::size_t i = 0; i < cloth.fractions.size(); ++i)
+    if (part.holds(cloth.fractions[i].x(), cloth.fractions[i].y())) particles.push_back(first + static_cast<Index>(i));
   return particles;
 }
 
@@ -32,7 +28,7 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
     const environment::ClothObject& cloth = environment.cloths[c];
     for (const scene::Pin& pin : scene.cloths[c].pins) {
       Group group;
-      for (Index particle : particles_of(pin, cloth.grid, first_particle[c])) {
+      for (Index particle : particles_of(pin, cloth, first_particle[c])) {
         if (std::find(taken.begin(), taken.end(), particle) != taken.end()) continue;
         group.particles.push_back(particle);
         taken.push_back(particle);

@@ -11,7 +11,7 @@
 namespace weft::simulation {
 
 /// The particles of a part of a cloth whose first particle is `first`.
-std::vector<Index> particles_of(const scene::ClothPart& part, const mesh::Grid& grid, Index first);
+std::vector<Index> particles_of(const scene::ClothPart& part, const environment::ClothObject& cloth, Index first);
 
 /// All pins of a scene, evaluated at the end of each step.
 class Pins {

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "forces/sheets.hpp"
+#include "forces/triangle_meshes.hpp"
 
 namespace weft::forces {
 namespace {
@@ -15,7 +16,14 @@ struct AllForces {
   Stretch stretch{kGrid, 0, {1000, 700, 5}};
   Shear shear{kGrid, 0, {100, 5}};
   Bend bend{kGrid, 0, {1e-3, 1e-4}};
-  std::vector<std::pair<std::string, const Force*>> list{{"stretch", &stretch}, {"shear", &shear}, {"bend", &bend}};
+  mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
+  TriangleMembrane membrane{sheet, 0, {1000, 700, 5}, {100, 5}};
+  TriangleBend triangle_bend{sheet, 0, {1e-3, 1e-4}};
+  std::vector<std::pair<std::string, const Force*>> list{{"stretch", &stretch},
+                                                         {"shear", &shear},
+                                                         {"bend", &bend},
+                                                         {"membrane of triangles", &membrane},
+                                                         {"bend of triangles", &triangle_bend}};
 };
 
 TEST(Invariance, NoForceAtRestAndAfterRigidMotion) {
@@ -96,12 +104,14 @@ TEST(Invariance, ClothThatIsNotTheFirstPushesItsOwnParticlesOnly) {
   const Shear shear(kGrid, 7, {100, 5});
   const Bend bend(kGrid, 7, {1e-3, 1e-4});
   const AllForces own;
+  const TriangleMembrane membrane(own.sheet, 7, {1000, 700, 5}, {100, 5});
+  const TriangleBend triangle_bend(own.sheet, 7, {1e-3, 1e-4});
   const Positions x = testing::crumpled(kGrid, 0.004, 1), v = testing::random_vectors(x.size(), 1, 4);
   Positions all_x = testing::random_vectors(7, 1, 5), all_v = testing::random_vectors(7, 1, 6);
   all_x.insert(all_x.end(), x.begin(), x.end());
   all_v.insert(all_v.end(), v.begin(), v.end());
-  const Force* shifted[] = {&stretch, &shear, &bend};
-  for (std::size_t k = 0; k < 3; ++k) {
+  const Force* shifted[] = {&stretch, &shear, &bend, &membrane, &triangle_bend};
+  for (std::size_t k = 0; k < 5; ++k) {
     const Positions f = testing::force_of(*shifted[k], all_x, all_v);
     EXPECT_EQ(Positions(f.begin(), f.begin() + 7), Positions(7, Vec3::Zero()));
     EXPECT_EQ(Positions(f.begin() + 7, f.end()), testing::force_of(*own.list[k].second, x, v));

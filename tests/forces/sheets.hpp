@@ -10,6 +10,8 @@
 #include "forces/force.hpp"
 #include "forces/shear.hpp"
 #include "forces/stretch.hpp"
+#include "forces/triangle_bend.hpp"
+#include "forces/triangle_membrane.hpp"
 #include "mesh/mesh.hpp"
 
 namespace weft::forces::testing {
@@ -82,7 +84,7 @@ inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Posi
   force.attach(matrix);
   Positions f = zeros(x);
   force.add({x, v, f, &matrix, rate, linearisation});
-  if (const auto* bend = dynamic_cast<const Bend*>(&force)) bend->add_constant_stiffness(matrix);
+  force.add_constant_stiffness(matrix);
 
   for (const auto& [i, j] : std::vector(pairs)) pairs.emplace_back(j, i);
   for (Index i = 0; i < rows; ++i) pairs.emplace_back(i, i);
@@ -97,6 +99,28 @@ inline Eigen::Map<const Eigen::VectorXd> dense(const Positions& x) {
 
 inline double largest(const Positions& x) {
   return dense(x).cwiseAbs().maxCoeff();
+}
+
+/// −(∂f/∂x + rate ∂f/∂v) by central differences at ε and half of it, put together so that the error of order ε²
+/// cancels.
+inline Eigen::MatrixXd stiffness_by_differences(const Force& force, const Positions& x, const Positions& v, double rate,
+                                                double epsilon) {
+  Eigen::MatrixXd jacobian(3 * x.size(), 3 * x.size());
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto at = [&](double offset) {
+        Positions moved_x = x, moved_v = v;
+        moved_x[i][axis] += offset;
+        moved_v[i][axis] += rate * offset;
+        return force_of(force, moved_x, moved_v);
+      };
+      const auto difference = [&](double e) {
+        const Positions above = at(e), below = at(-e);
+        return Eigen::VectorXd((dense(below) - dense(above)) / (2 * e));
+      };
+      jacobian.col(static_cast<Eigen::Index>(3 * i) + axis) = (4 * difference(epsilon / 2) - difference(epsilon)) / 3;
+    }
+  return jacobian;
 }
 
 }  // namespace weft::forces::testing

@@ -124,7 +124,7 @@ TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
 }
 
 TEST(Rules, EachKeyOfAVariantChangesTheSceneAndItsHash) {
-  for (const std::string list : {"obstacle", "light"}) {
+  for (const std::string list : {"obstacle", "cloth", "light"}) {
     const Table& table = *scene_rules().find(list)->table;
     for (const Variant& variant : table.variants) {
       const std::string file = variant.name == "mesh" ? ", file = 'triangle.obj'" : "";
@@ -247,7 +247,7 @@ TEST(Schema, StatesTypeRangeDefaultAndChoices) {
   EXPECT_EQ(fps["maximum"], 1000);
   EXPECT_EQ(fps["default"], 25);
   EXPECT_EQ(time["properties"]["integrator"]["enum"], json({"implicit_euler", "implicit_midpoint", "bdf2"}));
-  EXPECT_EQ(schema["properties"]["cloth"]["items"]["required"], json({"name"}));
+  EXPECT_EQ(schema["properties"]["cloth"]["items"]["oneOf"][0]["required"], json({"name"}));
 }
 
 TEST(Schema, AcceptsWhatTheLoaderAccepts) {
@@ -264,11 +264,12 @@ TEST(Schema, RefusesWhatTheLoaderRefuses) {
   EXPECT_EQ(violation("[time]\nduraton = 1\n"), "time.duraton: unknown property");
   EXPECT_EQ(violation("[contact]\nself = 1\n"), "contact.self: wrong type");
   EXPECT_EQ(violation("[physics]\nwind = [1, 2]\n"), "physics.wind: wrong number of items");
-  EXPECT_EQ(violation("cloth = [{ size = 1 }]\n"), "cloth.0: name is missing");
+  EXPECT_EQ(violation("cloth = [{ name = 'a', pin = [1] }]\n"), "cloth.0: none of the choices fits");
   EXPECT_EQ(violation("obstacle = [{ name = 'a', shape = 'sphere', height = 1 }]\n"),
             "obstacle.0: none of the choices fits");
   EXPECT_EQ(violation("[render]\nsky_color = '#12'\n"), "render.sky_color: none of the choices fits");
-  EXPECT_EQ(violation("cloth = [{ name = '1' }]\n"), "cloth.0.name: wrong pattern");
+  EXPECT_EQ(violation("camera = [{ name = '1', position = [1, 2, 3], target = [0, 0, 0] }]\n"),
+            "camera.0.name: wrong pattern");
 }
 
 }  // namespace

@@ -1,0 +1,45 @@
+// Bending of cloth made of triangles, about flat rest shapes and others.
+#pragma once
+
+#include "forces/bend_damping.hpp"
+#include "forces/triangle_curvature.hpp"
+
+namespace weft::forces {
+
+/// The plate of Bend on triangles: energy ½ B A Σ_ab ‖s_ab − κ_ab n‖², summed over uu, vv and twice uv, with the
+/// curvature vectors of CurvatureStencil, the triangle's unit normal n and the signed curvature κ_ab of the rest shape:
+/// positive where the sheet bends toward the front. Where the rest shape is curved, what its s_ab has in the plane is
+/// taken out along s_u and s_v, so that the rest shape itself has no energy.
+///
+/// The part without κ is quadratic with a constant, definite Jacobian, as for quads; only triangles with rest curvature
+/// add to it in every evaluation, −B A κ_ab n·s_ab. Viscosity and friction: see BendDamping.
+class TriangleBend final : public Force {
+ public:
+  TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::BlockMatrix& matrix) override;
+  void add(const Evaluation& at) const override;
+  double energy(std::span<const Vec3> x) const override;
+  void add_constant_stiffness(solver::BlockMatrix& matrix) const override;
+
+ private:
+  struct Element {
+    std::vector<Index> particles;     // corners first
+    std::vector<Vec3> weights;        // of s_uu, s_vv and s_uv [1/m²]
+    double area;                      // [m²]
+    Vec3 rest = Vec3::Zero();         // κ_uu, κ_vv, κ_uv [1/m]
+    std::vector<solver::Slot> slots;  // row-major over pairs of particles
+  };
+  /// s_uu, s_vv, s_uv as columns.
+  static Mat3 curvature(const Element& element, std::span<const Vec3> x);
+  static void find_rest(Element& element, const std::array<Vec2, 3>& material, std::span<const Vec3> rest);
+  void add_damping(const Element& element, const Mat3& curvature, const Evaluation& at, Mat3& moment) const;
+  void add_rest_moment(const Element& element, const Mat3& curvature, const Evaluation& at) const;
+
+  double rigidity_;
+  BendDamping damping_;
+  std::vector<Element> elements_;
+};
+
+}  // namespace weft::forces

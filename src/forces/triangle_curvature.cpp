@@ -1,0 +1,201 @@
+#include "forces/triangle_curvature.hpp"
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <map>
+#include <numbers>
+
+namespace weft::forces {
+namespace {
+
+using Point = std::complex<double>;
+
+// Rings of triangles around an edge, at most, whose vertices make its slope. One is enough for nearly all edges; with
+// the border near or its vertices nearly on a conic it takes two.
+constexpr int kMaxRings = 3;
+// Size that a correction to the slope between the two opposite vertices may have, relative to it. More, and the slope
+// would be a small difference of large numbers: another ring then makes it better than that.
+constexpr double kMaxCorrection = 1;
+// Rounding of the moments of a stencil whose lengths are about one.
+constexpr double kExact = 1e-9;
+
+/// Derivative of a function at the middle of an edge, outward from its first triangle [1/m].
+using Slope = std::vector<std::pair<Index, double>>;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+class Slopes {
+ public:
+  explicit Slopes(const mesh::Sheet& sheet) : sheet_(sheet), edges_(mesh::collect_edges(sheet.triangles)) {}
+
+  const mesh::EdgeSet& edges() const { return edges_; }
+  Slope across(const mesh::Edge& edge) const;
+
+ private:
+  /// Triangles around an edge, unfolded into the plane of the first.
+  struct Patch {
+    std::vector<std::pair<Index, std::array<Point, 3>>> triangles;
+    std::vector<std::pair<Index, Point>> vertices;
+    std::size_t last_ring = 0;  // first triangle of it
+  };
+  void add_ring(Patch& patch) const;
+  void add_neighbour(Patch& patch, std::size_t member, std::size_t side) const;
+  std::size_t side_of(Index triangle, const mesh::Edge& edge) const;
+  Point material(Index triangle, std::size_t corner) const {
+    const Vec2& m = sheet_.material[at(triangle)][corner % 3];
+    return {m.x(), m.y()};
+  }
+
+  const mesh::Sheet& sheet_;
+  mesh::EdgeSet edges_;
+};
+
+// Which side of the triangle an edge is.
+std::size_t Slopes::side_of(Index triangle, const mesh::Edge& edge) const {
+  const auto& of = edges_.of_triangle[at(triangle)];
+  const auto index = static_cast<Index>(&edge - edges_.edges.data());
+  return static_cast<std::size_t>(std::find(of.begin(), of.end(), index) - of.begin());
+}
+
+// Unfolds the triangle beyond one side of a member, if there is one that is not there yet.
+void Slopes::add_neighbour(Patch& patch, std::size_t member, std::size_t side) const {
+  const auto [triangle, corners] = patch.triangles[member];
+  const mesh::Edge& edge = edges_.edges[at(edges_.of_triangle[at(triangle)][side])];
+  const Index next = edge.triangles[0] == triangle ? edge.triangles[1] : edge.triangles[0];
+  if (next < 0 || std::ranges::any_of(patch.triangles, [&](const auto& t) { return t.first == next; })) return;
+  // Both run counter-clockwise, so the neighbour runs along the side the other way.
+  const std::size_t m = side_of(next, edge);
+  const Point from = corners[(side + 1) % 3], to = corners[side];
+  Point turn = (to - from) / (material(next, m + 1) - material(next, m));
+  turn /= std::abs(turn);
+  const Point apex = from + turn * (material(next, m + 2) - material(next, m));
+  std::array<Point, 3> places;
+  places[m] = from, places[(m + 1) % 3] = to, places[(m + 2) % 3] = apex;
+  patch.triangles.emplace_back(next, places);
+  const Index vertex = sheet_.triangles[at(next)][(m + 2) % 3];
+  if (std::ranges::none_of(patch.vertices, [&](const auto& v) { return v.first == vertex; }))
+    patch.vertices.emplace_back(vertex, apex);
+}
+
+void Slopes::add_ring(Patch& patch) const {
+  const std::size_t first = patch.last_ring, last = patch.triangles.size();
+  patch.last_ring = last;
+  for (std::size_t member = first; member < last; ++member)
+    for (std::size_t side = 0; side < 3; ++side) add_neighbour(patch, member, side);
+}
+
+// Starts from the difference of the two vertices opposite the edge, exact for linear functions, and adds the smallest
+// weights that make it exact for quadratic ones. All that is invariant under linear maps of the patch, so that
+// stretched meshes do as well as others.
+Slope Slopes::across(const mesh::Edge& edge) const {
+  const Index triangle = edge.triangles[0];
+  const std::size_t side = side_of(triangle, edge);
+  Patch patch;
+  patch.triangles.push_back({triangle, {material(triangle, 0), material(triangle, 1), material(triangle, 2)}});
+  for (std::size_t k : {side, (side + 1) % 3, (side + 2) % 3})
+    patch.vertices.emplace_back(sheet_.triangles[at(triangle)][k], material(triangle, k));
+  add_neighbour(patch, 0, side);
+
+  const Point p = patch.vertices[0].second, q = patch.vertices[1].second;
+  const Point along = q - p, over = patch.vertices[3].second - patch.vertices[2].second;
+  const auto cross = [](const Point& a, const Point& b) { return (std::conj(a) * b).imag(); };
+  const double determinant = cross(along, over);
+  Eigen::VectorXd best;
+  for (int ring = 1; ring <= kMaxRings && best.size() == 0; ++ring) {
+    add_ring(patch);
+    const auto count = static_cast<Eigen::Index>(patch.vertices.size());
+    Eigen::MatrixXd moments(6, count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Point d = patch.vertices[static_cast<std::size_t>(k)].second - 0.5 * (p + q);
+      const double a = cross(d, over) / determinant, b = cross(along, d) / determinant;  // d = a along + b over
+      moments.col(k) << 1, a, b, a * a, a * b, b * b;
+    }
+    Eigen::VectorXd weights = Eigen::VectorXd::Zero(count);
+    weights[3] = 1, weights[2] = -1;
+    Eigen::VectorXd wanted = Eigen::VectorXd::Unit(6, 2);
+    wanted -= moments * weights;
+    const Eigen::VectorXd correction = moments.completeOrthogonalDecomposition().solve(wanted);
+    if ((moments * correction - wanted).norm() < kExact && correction.norm() < kMaxCorrection * std::numbers::sqrt2)
+      best = weights + correction;
+  }
+  // Too few triangles for quadratics: a mesh of one or two, or a corner of one.
+  if (best.size() == 0) best = (Eigen::VectorXd(4) << 0, 0, -1, 1).finished();
+
+  // From the direction `over` to the outward normal: over = c t + d n.
+  const double length = std::abs(along), c = (std::conj(along) * over).real() / length, d = -determinant / length;
+  best[1] -= c / length;
+  best[0] += c / length;
+  Slope slope;
+  for (Eigen::Index k = 0; k < best.size(); ++k)
+    slope.emplace_back(patch.vertices[static_cast<std::size_t>(k)].first, best[k] / d);
+  return slope;
+}
+
+// Matrices as (uu, vv, √2 uv), whose dot product is that of the matrices.
+Vec3 packed(const Eigen::Matrix2d& m) {
+  return {m(0, 0), m(1, 1), std::numbers::sqrt2 * 0.5 * (m(0, 1) + m(1, 0))};
+}
+
+// The part of a packed matrix that moments about free borders with these packed n nᵀ leave.
+Mat3 projection(const std::vector<Vec3>& free) {
+  Mat3 p = Mat3::Identity();
+  for (const Vec3& direction : free) {
+    const Vec3 rest = p * direction;
+    // Two borders in line count once.
+    if (rest.norm() > 1e-6) p -= rest * rest.transpose() / rest.squaredNorm();
+  }
+  return p;
+}
+
+}  // namespace
+
+std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet) {
+  const Slopes slopes(sheet);
+  const mesh::EdgeSet& edges = slopes.edges();
+  std::vector<Slope> across(edges.edges.size());
+  for (std::size_t e = 0; e < across.size(); ++e)
+    if (edges.edges[e].triangles[1] >= 0) across[e] = slopes.across(edges.edges[e]);
+
+  std::vector<CurvatureStencil> stencils(sheet.triangles.size());
+  for (std::size_t t = 0; t < stencils.size(); ++t) {
+    const auto& m = sheet.material[t];
+    const mesh::Triangle& corners = sheet.triangles[t];
+    const Vec2 a = m[1] - m[0], b = m[2] - m[0];
+    const double area = 0.5 * (a.x() * b.y() - a.y() * b.x());
+    std::map<Index, Vec3> weights;
+    const auto add = [&](Index vertex, const Vec3& weight) {
+      weights.try_emplace(vertex, Vec3::Zero()).first->second += weight;
+    };
+    std::vector<Vec3> free;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec2 side = m[(k + 1) % 3] - m[k], along = side.normalized(), outward(along.y(), -along.x());
+      const Vec3 twist = packed(outward * along.transpose()) / area;  // length of the side cancels that of ∂/∂t
+      add(corners[(k + 1) % 3], twist);
+      add(corners[k], -twist);
+      const Vec3 bend = packed(outward * outward.transpose());
+      const auto e = at(edges.of_triangle[t][k]);
+      if (edges.edges[e].triangles[1] < 0) free.push_back(bend);
+      const double sign = edges.edges[e].triangles[0] == static_cast<Index>(t) ? 1 : -1;
+      for (const auto& [vertex, slope] : across[e]) add(vertex, sign * slope * side.norm() / area * bend);
+    }
+    const Mat3 kept = projection(free);
+    const auto append = [&](Index vertex, Vec3 weight) {
+      weight = kept * weight;
+      weight.z() /= std::numbers::sqrt2;
+      stencils[t].vertices.push_back(vertex);
+      stencils[t].weights.push_back(weight);
+    };
+    for (Index corner : corners) append(corner, weights.at(corner));
+    // What is left of vertices that symmetry cancels is rounding.
+    for (const auto& [vertex, weight] : weights)
+      if (std::find(corners.begin(), corners.end(), vertex) == corners.end() && weight.norm() * area > kExact)
+        append(vertex, weight);
+  }
+  return stencils;
+}
+
+}  // namespace weft::forces

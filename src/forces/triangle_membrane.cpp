@@ -1,0 +1,164 @@
+#include "forces/triangle_membrane.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::forces {
+namespace {
+
+// Below this stretch a thread has no direction any more: it pulls nowhere, and the matrix stays finite.
+constexpr double kCollapsed = 1e-12;
+
+double length_of(const Vec3& s) {
+  return std::max(s.norm(), kCollapsed);
+}
+
+// k (‖s‖ − 1) s/‖s‖ with viscosity: the stress along a thread [N/m].
+Vec3 tension(double k, double viscosity, const Vec3& s, const Vec3& rate) {
+  const double length = length_of(s);
+  const Vec3 n = s / length;
+  return (k * (length - 1) + viscosity * n.dot(rate)) * n;
+}
+
+}  // namespace
+
+TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
+                                   const ShearParameters& shear)
+    : first_(first), stretch_(stretch), shear_(shear) {
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
+    Element element;
+    for (std::size_t k = 0; k < 3; ++k) element.particles[k] = first + sheet.triangles[t][k];
+    const auto& m = sheet.material[t];
+    Eigen::Matrix2d sides;
+    sides << m[1] - m[0], m[2] - m[0];
+    element.area = 0.5 * sides.determinant();
+    const Eigen::Matrix2d inverse = sides.inverse();
+    element.gradients[1] = inverse.row(0);
+    element.gradients[2] = inverse.row(1);
+    element.gradients[0] = -(element.gradients[1] + element.gradients[2]);
+    elements_.push_back(element);
+  }
+}
+
+void TriangleMembrane::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+  for (const Element& e : elements_)
+    for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(e.particles[k], e.particles[(k + 1) % 3]);
+}
+
+void TriangleMembrane::attach(const solver::BlockMatrix& matrix) {
+  slots_.resize(elements_.size());
+  for (std::size_t e = 0; e < elements_.size(); ++e)
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b)
+        slots_[e][3 * a + b] = matrix.slot(elements_[e].particles[a], elements_[e].particles[b]);
+}
+
+// By differences to the first corner, so that only they are rounded.
+TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, std::span<const Vec3> x) {
+  const auto& [a, b, c] = element.particles;
+  const Vec3& origin = x[static_cast<std::size_t>(a)];
+  const Vec3 p = x[static_cast<std::size_t>(b)] - origin, q = x[static_cast<std::size_t>(c)] - origin;
+  const Vec2 &gp = element.gradients[1], &gq = element.gradients[2];
+  return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
+}
+
+void TriangleMembrane::add(const Evaluation& at) const {
+  for (std::size_t e = 0; e < elements_.size(); ++e) {
+    const Element& element = elements_[e];
+    const Gradient s = gradient(element, at.x), rate = gradient(element, at.v);
+    // ½ μ ⟨s_u, s_v⟩ with viscosity, the shear stress.
+    const double stress =
+        0.5 * (shear_.modulus * s.u.dot(s.v) + shear_.viscosity * (rate.u.dot(s.v) + s.u.dot(rate.v)));
+    const Vec3 along_u = element.area * (tension(stretch_.weft, stretch_.viscosity, s.u, rate.u) + stress * s.v);
+    const Vec3 along_v = element.area * (tension(stretch_.warp, stretch_.viscosity, s.v, rate.v) + stress * s.u);
+    for (std::size_t k = 0; k < 3; ++k)
+      at.force[static_cast<std::size_t>(element.particles[k])] -=
+          element.gradients[k].x() * along_u + element.gradients[k].y() * along_v;
+    if (at.matrix == nullptr) continue;
+
+    Hessian h;
+    h.uu = stretch_hessian(stretch_.weft, s.u, rate.u, at);
+    h.vv = stretch_hessian(stretch_.warp, s.v, rate.v, at);
+    add_shear_hessian(s, rate, at, h);
+    for (std::size_t a = 0; a < 3; ++a) {
+      const Vec2 ga = element.area * element.gradients[a];
+      const Mat3 by_u = ga.x() * h.uu + ga.y() * h.vu, by_v = ga.x() * h.uv + ga.y() * h.vv;
+      for (std::size_t b = 0; b < 3; ++b)
+        at.matrix->add(slots_[e][3 * a + b], element.gradients[b].x() * by_u + element.gradients[b].y() * by_v);
+    }
+  }
+}
+
+// ∂/∂s + rate ∂/∂ṡ of the tension; see Stretch::stiffness, whose edge of unit length this is.
+Mat3 TriangleMembrane::stretch_hessian(double k, const Vec3& s, const Vec3& rate, const Evaluation& at) const {
+  const double length = length_of(s);
+  const Vec3 n = s / length;
+  const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
+  double lateral = 1 - 1 / length;
+  if (at.linearisation == Linearisation::definite) lateral = std::max(lateral, 0.0);
+  Mat3 hessian = (k + at.rate * stretch_.viscosity) * along + (k * lateral) * across;
+  if (at.linearisation == Linearisation::exact && stretch_.viscosity > 0)
+    hessian += stretch_.viscosity / length * (n * (across * rate).transpose() + n.dot(rate) * across);
+  return hessian;
+}
+
+// As Shear: exactly, or of the second derivative 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²) the half whose
+// sign agrees with the stress.
+void TriangleMembrane::add_shear_hessian(const Gradient& s, const Gradient& rate, const Evaluation& at,
+                                         Hessian& h) const {
+  const double outer = 0.5 * (shear_.modulus + at.rate * shear_.viscosity);
+  const double elastic = 0.5 * shear_.modulus * s.u.dot(s.v);
+  h.uu += outer * s.v * s.v.transpose();
+  h.uv += outer * s.v * s.u.transpose();
+  h.vu += outer * s.u * s.v.transpose();
+  h.vv += outer * s.u * s.u.transpose();
+  if (at.linearisation == Linearisation::definite) {
+    h.uu.diagonal().array() += 0.5 * std::abs(elastic);
+    h.vv.diagonal().array() += 0.5 * std::abs(elastic);
+    h.uv.diagonal().array() += 0.5 * elastic;
+    h.vu.diagonal().array() += 0.5 * elastic;
+    return;
+  }
+  const double viscosity = 0.5 * shear_.viscosity;
+  const double stress = elastic + viscosity * (rate.u.dot(s.v) + s.u.dot(rate.v));
+  h.uu += viscosity * s.v * rate.v.transpose();
+  h.uv += viscosity * s.v * rate.u.transpose();
+  h.vu += viscosity * s.u * rate.v.transpose();
+  h.vv += viscosity * s.u * rate.u.transpose();
+  h.uv.diagonal().array() += stress;
+  h.vu.diagonal().array() += stress;
+}
+
+double TriangleMembrane::energy(std::span<const Vec3> x) const {
+  double sum = 0;
+  for (const Element& element : elements_) {
+    const Gradient s = gradient(element, x);
+    const double weft = s.u.norm() - 1, warp = s.v.norm() - 1, c = s.u.dot(s.v);
+    sum += element.area *
+           (0.5 * stretch_.weft * weft * weft + 0.5 * stretch_.warp * warp * warp + 0.25 * shear_.modulus * c * c);
+  }
+  return sum;
+}
+
+double TriangleMembrane::strain(const Element& element, std::span<const Vec3> x) const {
+  const Gradient s = gradient(element, x);
+  return std::max(std::abs(s.u.norm() - 1), std::abs(s.v.norm() - 1));
+}
+
+double TriangleMembrane::max_strain(std::span<const Vec3> x) const {
+  double largest = 0;
+  for (const Element& element : elements_) largest = std::max(largest, strain(element, x));
+  return largest;
+}
+
+void TriangleMembrane::strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const {
+  for (const Element& element : elements_) {
+    const auto largest = static_cast<float>(strain(element, x));
+    for (Index p : element.particles) {
+      float& value = heat[static_cast<std::size_t>(p - first_)];
+      value = std::max(value, largest);
+    }
+  }
+}
+
+}  // namespace weft::forces

@@ -1,0 +1,58 @@
+// Stretch and shear of cloth made of triangles, elastic and viscous.
+#pragma once
+
+#include <array>
+
+#include "forces/shear.hpp"
+#include "forces/stretch.hpp"
+#include "mesh/sheet.hpp"
+
+namespace weft::forces {
+
+/// The continuum of Stretch and Shear on triangles of constant strain: s_u and s_v are the derivatives of the positions
+/// along weft and warp, linear in each triangle (the elements of Baraff & Witkin, "Large Steps in Cloth Simulation",
+/// 1998, with the energy of the continuum). Energy density
+///
+///     ½ k1 (‖s_u‖ − 1)² + ½ k2 (‖s_v‖ − 1)² + ¼ μ ⟨s_u, s_v⟩²
+///
+/// and the same forms on the rates. Every linear map has exactly the stress of the continuum, however the triangles
+/// lie.
+class TriangleMembrane final : public Membrane {
+ public:
+  TriangleMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
+                   const ShearParameters& shear);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::BlockMatrix& matrix) override;
+  void add(const Evaluation& at) const override;
+  double energy(std::span<const Vec3> x) const override;
+  double max_strain(std::span<const Vec3> x) const override;
+  void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
+
+ private:
+  struct Element {
+    std::array<Index, 3> particles;
+    std::array<Vec2, 3> gradients;  // s_u = Σ gradients[k].x() x_k, s_v likewise [1/m]
+    double area;                    // [m²]
+  };
+  /// Derivatives along weft and warp, of positions or of velocities.
+  struct Gradient {
+    Vec3 u, v;
+  };
+  /// Second derivatives of the energy density by s_u and s_v, and what stands for them.
+  struct Hessian {
+    Mat3 uu = Mat3::Zero(), uv = Mat3::Zero(), vu = Mat3::Zero(), vv = Mat3::Zero();
+  };
+  static Gradient gradient(const Element& element, std::span<const Vec3> x);
+  double strain(const Element& element, std::span<const Vec3> x) const;
+  Mat3 stretch_hessian(double k, const Vec3& s, const Vec3& rate, const Evaluation& at) const;
+  void add_shear_hessian(const Gradient& s, const Gradient& rate, const Evaluation& at, Hessian& hessian) const;
+
+  Index first_;
+  StretchParameters stretch_;
+  ShearParameters shear_;
+  std::vector<Element> elements_;
+  std::vector<std::array<solver::Slot, 9>> slots_;  // row-major over pairs of corners
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,140 @@
+// Cloth of triangles: exact where the continuum is simple, whatever the mesh.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "forces/sheets.hpp"
+#include "forces/triangle_meshes.hpp"
+
+namespace weft::forces {
+namespace {
+
+using testing::kMeshings;
+using testing::Positions;
+
+const Vec2 kSize(0.4, 0.3);  // [m]
+
+Positions mapped(const mesh::Mesh& mesh, const std::function<Vec3(double, double)>& surface) {
+  Positions x;
+  for (const Vec2& uv : mesh.uv) x.push_back(surface(uv.x(), uv.y()));
+  return x;
+}
+
+// Vertices at least `rings` edges away from the border.
+std::vector<char> inside(const mesh::Sheet& sheet, int rings) {
+  std::vector<char> result(sheet.rest.size(), 1);
+  for (const mesh::Edge& edge : mesh::collect_edges(sheet.triangles).edges)
+    if (edge.triangles[1] < 0)
+      for (Index v : edge.vertices) result[static_cast<std::size_t>(v)] = 0;
+  for (int ring = 1; ring < rings; ++ring) {
+    const std::vector<char> before = result;
+    for (const mesh::Triangle& t : sheet.triangles)
+      for (Index a : t)
+        for (Index b : t)
+          if (!before[static_cast<std::size_t>(a)]) result[static_cast<std::size_t>(b)] = 0;
+  }
+  return result;
+}
+
+TEST(TriangleMembrane, LinearMapHasTheEnergyAndTheStressOfTheContinuum) {
+  const Vec3 su(1.05, 0.1, 0.02), sv(-0.04, 0.97, 0.1);
+  const double weft = 1000, warp = 700, shear = 90;
+  const double c = su.dot(sv);
+  const double density =
+      0.5 * weft * std::pow(su.norm() - 1, 2) + 0.5 * warp * std::pow(sv.norm() - 1, 2) + 0.25 * shear * c * c;
+  const Vec3 traction_u = weft * (su.norm() - 1) * su.normalized() + 0.5 * shear * c * sv;  // on a cut across weft
+  for (const testing::Meshing& meshing : kMeshings) {
+    const mesh::Mesh mesh = meshing.make(kSize, 8);
+    const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+    const TriangleMembrane membrane(sheet, 0, {weft, warp, 0}, {shear, 0});
+    const Positions x = mapped(mesh, [&](double u, double v) -> Vec3 { return su * u + sv * v; });
+    const double area = kSize.prod();
+    EXPECT_NEAR(membrane.energy(x), density * area, 1e-12 * density * area) << meshing.name;
+    const Positions f = testing::force_of(membrane, x, testing::zeros(x));
+    const std::vector<char> inner = inside(sheet, 1);
+    Vec3 work = Vec3::Zero();  // of the virtual displacement that stretches the weft uniformly
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      if (inner[i]) {
+        EXPECT_LT(f[i].norm(), 1e-11) << meshing.name;
+      }
+      work -= mesh.uv[i].x() * f[i];
+    }
+    EXPECT_LT((work - traction_u * area).norm(), 1e-12 * traction_u.norm() * area) << meshing.name;
+  }
+}
+
+TEST(TriangleCurvature, IsExactForEveryQuadraticWhereNoSideIsFree) {
+  for (const testing::Meshing& meshing : kMeshings) {
+    const mesh::Mesh mesh = meshing.make(kSize, 8);
+    const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+    const auto stencils = curvature_stencils(sheet);
+    const mesh::EdgeSet edges = mesh::collect_edges(sheet.triangles);
+    int exact = 0;
+    for (std::size_t t = 0; t < stencils.size(); ++t) {
+      Vec3 curvature = Vec3::Zero();
+      for (std::size_t k = 0; k < stencils[t].vertices.size(); ++k) {
+        const Vec2& uv = mesh.uv[static_cast<std::size_t>(stencils[t].vertices[k])];
+        const double w = 0.7 * uv.x() * uv.x() - 1.1 * uv.x() * uv.y() + 0.4 * uv.y() * uv.y() + 0.3 * uv.x() - 0.2;
+        curvature += stencils[t].weights[k] * w;
+      }
+      bool free = false;
+      for (Index e : edges.of_triangle[t]) free = free || edges.edges[static_cast<std::size_t>(e)].triangles[1] < 0;
+      if (free) continue;
+      ++exact;
+      // Weights of 1/l², 1e4 to 1e6, times values of one, rounded.
+      EXPECT_LT((curvature - Vec3(1.4, 0.8, -1.1)).norm(), 2e-9) << meshing.name << ", triangle " << t;
+    }
+    EXPECT_GT(exact, static_cast<int>(stencils.size()) / 2);
+  }
+}
+
+TEST(TriangleBend, ConstantMomentLeavesNoForceInside) {
+  for (const testing::Meshing& meshing : kMeshings) {
+    const mesh::Mesh mesh = meshing.make(kSize, 16);
+    const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+    const TriangleBend bend(sheet, 0, {1, 0});
+    const Positions x = mapped(mesh, [](double u, double v) { return Vec3(u, v, u * u - 0.6 * u * v + 0.3 * v * v); });
+    const Positions f = testing::force_of(bend, x, testing::zeros(x));
+    const std::vector<char> inner = inside(sheet, 5);
+    double largest = 0;
+    for (std::size_t i = 0; i < f.size(); ++i)
+      if (inner[i]) largest = std::max(largest, f[i].norm());
+    // Against the forces at the border.
+    EXPECT_LT(largest, 1e-9 * testing::largest(f)) << meshing.name;
+  }
+}
+
+TEST(TriangleBend, OnlyRigidMotionsAndStretchCostNothing) {
+  // Lowest frequency of a free square plate (ν = 0): 15.57 √(B/ρ)/L², to which these meshes converge when refined;
+  // what matters is that no mesh has a softer mode.
+  for (const testing::Meshing& meshing : kMeshings) {
+    const mesh::Mesh mesh = meshing.make({1, 1}, 10);
+    const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+    TriangleBend bend(sheet, 0, {1, 0});
+    const Eigen::MatrixXd full =
+        testing::stiffness_of(bend, sheet.rest, testing::zeros(sheet.rest), 0, Linearisation::definite);
+    const auto masses = lumped_masses(sheet, 1);
+    const auto count = static_cast<Eigen::Index>(masses.size());
+    Eigen::MatrixXd scaled(count, count);
+    for (Eigen::Index i = 0; i < count; ++i)
+      for (Eigen::Index j = 0; j < count; ++j)
+        scaled(i, j) = full(3 * i + 2, 3 * j + 2) /
+                       std::sqrt(masses[static_cast<std::size_t>(i)] * masses[static_cast<std::size_t>(j)]);
+    const Eigen::VectorXd squares = scaled.selfadjointView<Eigen::Lower>().eigenvalues();
+    EXPECT_LT(std::abs(squares[2]), 1e-7) << meshing.name;
+    EXPECT_NEAR(std::sqrt(squares[3]), 15.57, 0.02 * 15.57) << meshing.name;
+  }
+}
+
+TEST(TriangleMasses, AddUpToTheSheets) {
+  for (const testing::Meshing& meshing : kMeshings) {
+    double sum = 0;
+    for (double mass : lumped_masses(mesh::make_sheet_of(meshing.make(kSize, 8)), 0.2)) sum += mass;
+    EXPECT_NEAR(sum, 0.2 * kSize.prod(), 1e-15) << meshing.name;
+  }
+}
+
+}  // namespace
+}  // namespace weft::forces
