@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/incomplete_cholesky.hpp"
 #include "solver/linear_system.hpp"
 #include "solver/preconditioner.hpp"
 
@@ -16,7 +17,9 @@ struct LinearReport {
   bool definite = true;  ///< false: a direction of no or negative curvature came up and the iteration ended there
 };
 
-/// Solves A x = b on the free directions.
+/// Solves A x = b on the free directions. The preconditioner P is cheap and goes far where a tenth of the residual may
+/// stay; where more is asked for, or where it takes long, a factor L is made and P⁻¹ + 16 (L Lᵀ)⁻¹ takes its place.
+/// Norms remain those of P.
 class ConjugateGradient {
  public:
   /// Prepares the preconditioner for this system, which must outlive the calls that follow.
@@ -40,9 +43,14 @@ class ConjugateGradient {
  private:
   void select_terms(std::span<const std::size_t> parts);
   double multiply(std::span<const Vec3> p, std::span<Vec3> q, std::span<const std::size_t> parts) const;
+  bool make_factor();
+  double add_factor(std::span<Vec3> z, std::span<const std::size_t> parts);
 
   const LinearSystem* system_ = nullptr;
   Preconditioner preconditioner_;
+  IncompleteCholesky factor_;
+  enum class Factor { not_made, made, none } factor_state_ = Factor::not_made;  // of the system as prepared
+  std::vector<Part> factor_parts_;                                              // scratch
   std::vector<Part> parts_;
   std::vector<std::size_t> all_parts_;
   std::vector<const StencilTerm*> terms_;  // that act on the parts being solved for

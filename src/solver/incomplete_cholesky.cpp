@@ -1,0 +1,104 @@
+#include "solver/incomplete_cholesky.hpp"
+
+#include <Eigen/Cholesky>
+
+namespace weft::solver {
+namespace {
+
+// Where a pivot is not definite the factorisation starts anew with a diagonal larger by this share, then by four times
+// as much and so on (Manteuffel, "An Incomplete Factorization Technique for Positive Definite Linear Systems", 1980).
+// Starting with a tenth of it cost a third more iterations on soft sheets, for what is then left of the pivots is
+// small.
+constexpr double kFirstShift = 1e-3;
+constexpr double kLargestShift = 10;
+
+std::size_t index(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+}  // namespace
+
+// The lower triangle of S (A + diagonal blocks of the terms) S + (I − S).
+void IncompleteCholesky::read(const LinearSystem& system) {
+  const Index rows = system.matrix.rows();
+  std::vector<const Mat3*> free(index(rows), nullptr);
+  for (const ParticleConstraint& c : system.constraints) free[index(c.particle)] = &c.free;
+  row_start_.assign(1, 0);
+  columns_.clear();
+  matrix_.clear();
+  system.matrix.for_each_block(0, rows, [&](Index i, Index j, const auto& block) {
+    if (j > i) return;
+    columns_.push_back(j);
+    matrix_.push_back(block);
+    if (j == i) row_start_.push_back(columns_.size());
+  });
+  const auto diagonal = [&](Index i) -> Mat3& { return matrix_[row_start_[index(i) + 1] - 1]; };
+  for (const DiagonalTerm& term : system.diagonal_terms) diagonal(term.particle) += term.stiffness;
+  for (const StencilTerm& term : system.terms)
+    for (int k = 0; k < 4; ++k) diagonal(term.particles[k]) += term.weights[k] * term.weights[k] * term.stiffness;
+  if (system.constraints.empty()) return;
+  for (Index i = 0; i < rows; ++i)
+    for (std::size_t s = row_start_[index(i)]; s < row_start_[index(i) + 1]; ++s) {
+      const Mat3 *free_i = free[index(i)], *free_j = free[index(columns_[s])];
+      if (free_i != nullptr) matrix_[s] = (*free_i * matrix_[s]).eval();
+      if (free_j != nullptr) matrix_[s] = (matrix_[s] * *free_j).eval();
+      if (columns_[s] == i && free_i != nullptr) matrix_[s] += Mat3::Identity() - *free_i;
+    }
+}
+
+bool IncompleteCholesky::factorise(const LinearSystem& system) {
+  read(system);
+  factor_.resize(matrix_.size());
+  y_.resize(row_start_.size() - 1);
+  for (double shift = 0; shift <= kLargestShift; shift = shift == 0 ? kFirstShift : 4 * shift)
+    if (try_factorise(shift)) return true;
+  return false;
+}
+
+// Row by row: L_ij = (A_ij − Σ_k L_ik L_jkᵀ) L_jj⁻ᵀ over the columns k that both rows have.
+bool IncompleteCholesky::try_factorise(double shift) {
+  for (std::size_t i = 0; i + 1 < row_start_.size(); ++i) {
+    const std::size_t begin = row_start_[i], last = row_start_[i + 1] - 1;
+    for (std::size_t s = begin; s < last; ++s) {
+      const std::size_t j = index(columns_[s]), end_of_j = row_start_[j + 1] - 1;
+      Mat3 sum = matrix_[s];
+      for (std::size_t p = begin, q = row_start_[j]; p < s && q < end_of_j;) {
+        if (columns_[p] == columns_[q]) sum.noalias() -= factor_[p] * factor_[q].transpose();
+        const bool step_p = columns_[p] <= columns_[q], step_q = columns_[q] <= columns_[p];
+        p += step_p;
+        q += step_q;
+      }
+      factor_[s].noalias() = sum * factor_[end_of_j].transpose();
+    }
+    Mat3 pivot = (1 + shift) * matrix_[last];
+    for (std::size_t s = begin; s < last; ++s) pivot.noalias() -= factor_[s] * factor_[s].transpose();
+    const Eigen::LLT<Mat3> root(pivot);
+    if (root.info() != Eigen::Success || !pivot.allFinite()) return false;
+    factor_[last] = root.matrixL().solve(Mat3::Identity());
+  }
+  return true;
+}
+
+double IncompleteCholesky::add(double factor, std::span<const Vec3> r, std::span<Vec3> z, std::span<const Part> parts) {
+  double sum = 0;
+  for (const Part& part : parts) {
+    const std::size_t first = index(part.begin), end = index(part.end);
+    for (std::size_t i = first; i < end; ++i) {
+      Vec3 left = r[i];
+      const std::size_t last = row_start_[i + 1] - 1;
+      for (std::size_t s = row_start_[i]; s < last; ++s) left.noalias() -= factor_[s] * y_[index(columns_[s])];
+      y_[i].noalias() = factor_[last] * left;
+    }
+    for (std::size_t i = end; i-- > first;) {
+      const std::size_t last = row_start_[i + 1] - 1;
+      const Vec3 of_row = factor_[last].transpose() * y_[i];
+      for (std::size_t s = row_start_[i]; s < last; ++s)
+        y_[index(columns_[s])].noalias() -= factor_[s].transpose() * of_row;
+      z[i] += factor * of_row;
+      sum += factor * r[i].dot(of_row);
+    }
+  }
+  return sum;
+}
+
+}  // namespace weft::solver

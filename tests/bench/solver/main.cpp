@@ -1,0 +1,214 @@
+// Linear solvers on systems of 10³ to 2·10⁵ particles, one thread, as CSV and Markdown tables:
+//   bench_solver FILE.csv [MOST_PARTICLES [SOLVER]]
+#include <fmt/core.h>
+#include <malloc.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <functional>
+#include <string>
+
+#include "bench/solver/solvers.hpp"
+#include "core/parallel.hpp"
+#include "core/timer.hpp"
+
+namespace weft::bench {
+namespace {
+
+constexpr double kMostSeconds = 8;  // of one solution
+constexpr int kMostDirect = 20000;  // particles
+
+double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
+  double sum = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
+  return sum;
+}
+
+/// Bytes that malloc has handed out.
+double bytes_in_use() {
+  const auto info = mallinfo2();
+  return static_cast<double>(info.uordblks + info.hblkhd);
+}
+
+struct Solution {
+  int iterations = 0;
+  double seconds = 0;
+  bool reached = false;
+  double residual = 0;  // computed anew
+};
+
+// Conjugate gradients from zero until ‖b − A x‖₂ is below these shares of ‖b‖₂.
+std::vector<Solution> solve(const SheetSystem& sheet, Inverse& inverse, std::span<const double> tolerances) {
+  const std::size_t n = sheet.b.size();
+  std::vector<Vec3> x(n, Vec3::Zero()), r = sheet.b, z(n), p(n), q(n);
+  std::vector<Solution> solutions(tolerances.size());
+  Solution now;
+  const double start = thread_cpu_seconds(), of_b = std::sqrt(dot(r, r));
+  inverse.apply(r, z);
+  p = z;
+  double rz = dot(r, z);
+  std::size_t next = 0;
+  for (;;) {
+    multiply(sheet.system, p, q);
+    const double alpha = rz / dot(p, q);
+    for (std::size_t i = 0; i < n; ++i) {
+      x[i] += alpha * p[i];
+      r[i] -= alpha * q[i];
+    }
+    ++now.iterations;
+    now.seconds = thread_cpu_seconds() - start;
+    now.residual = std::sqrt(dot(r, r)) / of_b;
+    now.reached = true;
+    while (next < tolerances.size() && now.residual <= tolerances[next]) solutions[next++] = now;
+    now.reached = false;
+    if (next == tolerances.size() || now.seconds > kMostSeconds) break;
+    inverse.apply(r, z);
+    const double rz_next = dot(r, z);
+    for (std::size_t i = 0; i < n; ++i) p[i] = z[i] + (rz_next / rz) * p[i];
+    rz = rz_next;
+  }
+  for (; next < tolerances.size(); ++next) solutions[next] = now;
+  multiply(sheet.system, x, q);
+  for (std::size_t i = 0; i < n; ++i) q[i] = sheet.b[i] - q[i];
+  solutions.back().residual = std::sqrt(dot(q, q)) / of_b;
+  return solutions;
+}
+
+struct Entry {
+  std::string name;
+  std::function<std::unique_ptr<Inverse>()> make;
+};
+
+struct Row {
+  std::string solver;
+  Pose pose;
+  double stiffness;
+  int particles;
+  double megabytes, analysis, setup;
+  Solution loose, tight;
+  double total(const Solution& s) const { return setup + s.seconds; }
+};
+
+constexpr double kTolerances[] = {0.1, 1e-6};
+constexpr int kSides[] = {32, 63, 127, 250, 447};
+
+const std::vector<Entry>& entries() {
+  static const std::vector<Entry> kEntries{
+      {"block Jacobi", block_jacobi},
+      {"additive levels", additive_multilevel},
+      {"levels + IC(0)", levels_and_factor},
+      {"IC(0)", incomplete_cholesky},
+      {"V-cycle, bilinear", geometric_multigrid},
+      {"V-cycle, aggregates, 3", [] { return aggregation_multigrid(3); }},
+      {"V-cycle, aggregates, 6", [] { return aggregation_multigrid(6); }},
+      {"CHOLMOD simplicial", [] { return cholmod(false); }},
+      {"CHOLMOD supernodal", [] { return cholmod(true); }},
+  };
+  return kEntries;
+}
+
+// One solver on one system; memory is what it holds beside the matrix while it solves.
+Row measure(const Entry& entry, const SheetSystem& sheet, Pose pose, double stiffness) {
+  Row row{entry.name, pose, stiffness, sheet.side * sheet.side, 0, 0, 0, {}, {}};
+  const double before = bytes_in_use();
+  const auto inverse = entry.make();
+  const double start = thread_cpu_seconds();
+  inverse->analyse(sheet);
+  const double analysed = thread_cpu_seconds();
+  inverse->factorise(sheet);
+  row.analysis = analysed - start;
+  row.setup = thread_cpu_seconds() - analysed;
+  row.megabytes = (bytes_in_use() - before) / 1e6;
+  const auto solutions = solve(sheet, *inverse, kTolerances);
+  row.loose = solutions[0];
+  row.tight = solutions[1];
+  return row;
+}
+
+// Slope of log seconds over log particles by least squares, of the systems where 1e-6 was reached.
+double exponent(std::span<const Row> rows, const std::string& solver, Pose pose, double stiffness) {
+  double n = 0, x = 0, y = 0, xx = 0, xy = 0;
+  for (const Row& row : rows) {
+    if (row.solver != solver || row.pose != pose || row.stiffness != stiffness || !row.tight.reached) continue;
+    const double u = std::log(row.particles), v = std::log(row.total(row.tight));
+    n += 1, x += u, y += v, xx += u * u, xy += u * v;
+  }
+  return n < 3 ? std::nan("") : (n * xy - x * y) / (n * xx - x * x);
+}
+
+void print_tables(std::span<const Row> rows) {
+  for (const Pose pose : {Pose::hanging, Pose::lying})
+    for (const double k : {10.0, 1e3, 1e6}) {
+      fmt::print("\n{}, {:g} N/m: CPU s to 1e-6, setup included (iterations; to 0.1)\n\n| solver |",
+                 pose == Pose::hanging ? "Hanging" : "Lying", k);
+      for (const int side : kSides) fmt::print(" {} |", side * side);
+      fmt::print(" exponent | MB at most |\n|---|---|---|---|---|---|---|---|\n");
+      for (const Entry& entry : entries()) {
+        fmt::print("| {} |", entry.name);
+        double megabytes = 0;
+        for (const int side : kSides) {
+          const auto row = std::find_if(rows.begin(), rows.end(), [&](const Row& r) {
+            return r.solver == entry.name && r.pose == pose && r.stiffness == k && r.particles == side * side;
+          });
+          if (row == rows.end()) {
+            fmt::print(" – |");
+            continue;
+          }
+          megabytes = std::max(megabytes, row->megabytes);
+          const auto seconds = [&](const Solution& s) {
+            return s.reached ? fmt::format("{:.3g}", row->total(s)) : fmt::format("> {:.2g}", row->total(s));
+          };
+          fmt::print(" {} ({}; {}) |", seconds(row->tight), row->tight.iterations, seconds(row->loose));
+        }
+        fmt::print(" {:.2f} | {:.0f} |\n", exponent(rows, entry.name, pose, k), megabytes);
+      }
+    }
+}
+
+void write_csv(std::span<const Row> rows, const std::string& file) {
+  std::ofstream out(file);
+  out << "pose,stiffness,particles,solver,megabytes,analysis_s,setup_s,iterations_0.1,solve_s_0.1,reached_0.1,"
+         "iterations_1e-6,solve_s_1e-6,reached_1e-6,residual\n";
+  for (const Row& r : rows)
+    out << fmt::format("{},{:g},{},\"{}\",{:.2f},{:.5f},{:.5f},{},{:.5f},{},{},{:.5f},{},{:.2e}\n",
+                       r.pose == Pose::hanging ? "hanging" : "lying", r.stiffness, r.particles, r.solver, r.megabytes,
+                       r.analysis, r.setup, r.loose.iterations, r.loose.seconds, r.loose.reached, r.tight.iterations,
+                       r.tight.seconds, r.tight.reached, r.tight.residual);
+}
+
+}  // namespace
+
+void run(int most, const std::string& only, const std::string& csv) {
+  set_thread_count(1);
+  mallopt(M_MMAP_THRESHOLD, 1 << 16);  // freed blocks go back, so that what is in use is what is held
+  std::vector<Row> rows;
+  for (const int side : kSides)
+    for (const Pose pose : {Pose::hanging, Pose::lying})
+      for (const double k : {10.0, 1e3, 1e6}) {
+        if (side * side > most) continue;
+        const SheetSystem sheet = sheet_system(side, k, pose);
+        for (const Entry& entry : entries()) {
+          const bool direct = entry.name.starts_with("CHOLMOD");
+          // Its cost does not depend on stiffness or pose, and at 2·10⁵ particles a factorisation takes minutes.
+          if (direct && side * side > kMostDirect && (k != 1e3 || pose != Pose::hanging)) continue;
+          if (entry.name.find(only) == std::string::npos) continue;
+          rows.push_back(measure(entry, sheet, pose, k));
+          write_csv(rows, csv);
+        }
+      }
+  print_tables(rows);
+}
+
+}  // namespace weft::bench
+
+int main(int argc, char** argv) {
+  const std::vector<std::string> words(argv + 1, argv + argc);
+  if (words.empty() || words.size() > 3) {
+    fmt::print(stderr, "expected: FILE.csv [MOST_PARTICLES [SOLVER]]\n");
+    return EXIT_FAILURE;
+  }
+  weft::bench::run(words.size() > 1 ? std::stoi(words[1]) : 250000, words.size() > 2 ? words[2] : "", words[0]);
+  return EXIT_SUCCESS;
+}
