@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "core/error.hpp"
+#include "simulation/collision_stage.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -13,14 +14,13 @@ constexpr double kGain = 0.3;
 // Below this it is rounding [J].
 constexpr double kNothing = 1e-9;
 
-bool is_driven(const scene::Scene& scene) {
+bool is_alone(const scene::Scene& scene) {
+  if (CollisionStage::needed(scene)) return false;
   const auto moves = [](const scene::PoseTrack& track) { return track.keys.size() > 1; };
   for (const scene::Cloth& cloth : scene.cloths)
     for (const scene::Pin& pin : cloth.pins)
-      if (moves(pin.motion) || !pin.follow.empty()) return true;
-  const bool bodies = std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
-                                  [&](const scene::Obstacle& o) { return moves(o.motion); });
-  return bodies || (scene.physics.air_density > 0 && scene.physics.wind != Vec3::Zero());
+      if (moves(pin.motion) || !pin.follow.empty()) return false;
+  return scene.physics.air_density == 0 || scene.physics.wind == Vec3::Zero();
 }
 
 double mechanical(const FrameReport& report) {
@@ -30,7 +30,7 @@ double mechanical(const FrameReport& report) {
 }  // namespace
 
 EnergyBound::EnergyBound(const scene::Scene& scene, const FrameReport& start)
-    : applies_(!is_driven(scene)),
+    : applies_(is_alone(scene)),
       integrator_(scene.time.integrator),
       start_(mechanical(start)),
       moving_(start.kinetic_energy),

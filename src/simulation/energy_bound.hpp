@@ -7,8 +7,8 @@
 
 namespace weft::simulation {
 
-/// Where nothing drives a scene (no moving pin or body, no wind), its mechanical energy can only fall, but for what
-/// contacts hold for a while and what steps solved to a tolerance add.
+/// Where nothing drives a scene (no moving pin or body, no wind) and nothing can touch in it, its mechanical energy can
+/// only fall, but for what steps solved to a tolerance add. Contacts at long steps may bring some: they are left out.
 class EnergyBound {
  public:
   EnergyBound(const scene::Scene& scene, const FrameReport& start);
