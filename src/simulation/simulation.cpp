@@ -188,7 +188,6 @@ Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, bool m
     if (Rejection rejection = solve(h, start, report)) return rejection;
     const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
     if (revise() > 0 && round < rounds) continue;
-    if (constrained()) collisions->accept_constraints();
     if (collisions->apart(next)) return std::nullopt;
     if (round < rounds && collisions->adopt_failing() > 0) {
       revise();
@@ -208,6 +207,7 @@ void Simulation::Impl::give_up(double t, double h, const std::string& reason) co
 // Makes `next`, reached over h, the state.
 void Simulation::Impl::accept(double h, FrameReport& report) {
   stepper.accept(now, h);
+  if (collisions && constrained()) collisions->accept_constraints();
   for (std::size_t i = 0; i < acceleration.size(); ++i) acceleration[i] = (next.v[i] - now.v[i]) / h;
   std::swap(now, next);
   ++report.steps;

@@ -15,13 +15,14 @@ constexpr std::size_t kChunk = 4096;
 
 // A target below this share of the right hand side takes the factor at once, any other from this many iterations on: to
 // make it costs as much as some 35 iterations without it. Scenes ask for 0.1 and need ten. CPU time to 1e-6 without the
-// factor over that with it (bench_solver, 10³ to 1.6·10⁴ particles): hanging in plain folds 2 to 4 with soft, 2 with
-// cotton, 40 with threads of 1e6 N/m; lying crumpled 0.6 to 1.2, a loss that buys the worst case.
+// factor over that with it (bench_solver, 10³ to 1.6·10⁴ particles): hanging in plain folds 1.7 to 3.6 with soft, 2
+// with cotton, 40 with threads of 1e6 N/m; lying crumpled 0.6 to 1.2, and 0.55 with 62,500 particles: a loss that buys
+// the worst case.
 constexpr double kTight = 1e-3;
 constexpr int kPatience = 40;
 // Weight of the factor beside the levels: both are right about long waves, and with equal weights these count twice,
 // which took twice the iterations of the factor alone on plain folds; with 16 as many. On crumpled stiff sheets both
-// together need half to a third of what the factor needs alone.
+// together need about half of what the factor needs alone.
 constexpr double kFactorWeight = 16;
 
 // Calls body(begin, end) for chunks of the rows of a part.
