@@ -1,0 +1,77 @@
+// A body of bones and skin, and the motions that it knows. From a file or made by us, it is the same.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+#include "mesh/mesh.hpp"
+
+namespace weft::character {
+
+using Affine = Eigen::Affine3d;
+
+/// One node of the hierarchy. Joints are nodes; so is whatever else has a place in a file.
+struct Node {
+  std::string name;
+  Index parent = -1;                  ///< comes before its children; -1 for a root
+  Affine local = Affine::Identity();  ///< node to parent, at rest
+};
+
+/// What moves vertices: at any pose a vertex is where global(node) · offset takes it.
+struct Bone {
+  Index node = 0;
+  Affine offset = Affine::Identity();  ///< mesh to node, in the pose in which the skin was bound
+};
+
+struct Influence {
+  Index bone = 0;
+  double weight = 0;  ///< those of one vertex add up to 1
+};
+
+/// A displaced copy of the mesh that is blended in by a weight.
+struct MorphTarget {
+  std::string name;
+  std::vector<Vec3> displacements;  ///< per vertex [m]
+};
+
+/// A value at times [s] that strictly increase; linear between them (rotations along the shortest way), constant
+/// outside.
+template <typename Value>
+struct Curve {
+  std::vector<double> times;
+  std::vector<Value> values;
+};
+
+/// How one node moves against its parent. An empty curve: as at rest.
+struct Channel {
+  Index node = 0;
+  Curve<Vec3> position;
+  Curve<Quat> rotation;
+  Curve<Vec3> scale;
+};
+
+struct MorphChannel {
+  Index target = 0;
+  Curve<double> weight;
+};
+
+struct Clip {
+  std::string name;
+  double duration = 0;  ///< [s]
+  std::vector<Channel> channels;
+  std::vector<MorphChannel> morphs;
+};
+
+/// Lengths in metres, axes of the scene's up axis.
+struct Character {
+  std::vector<Node> nodes;
+  std::vector<Bone> bones;
+  mesh::Mesh mesh;                     ///< as bound; copies of vertices at the same place are one vertex
+  std::vector<Index> first_influence;  ///< per vertex, and the number of all at the end
+  std::vector<Influence> influences;
+  std::vector<MorphTarget> morphs;
+  std::vector<Clip> clips;
+};
+
+}  // namespace weft::character
