@@ -2,19 +2,13 @@
 #pragma once
 
 #include <cstddef>
-#include <cstdint>
 #include <filesystem>
 #include <string>
 
+#include "assets/source.hpp"
 #include "mesh/mesh.hpp"
 
 namespace weft::assets {
-
-/// Larger files are refused: they would be scans, far beyond what cloth can collide with frame by frame.
-inline constexpr std::uintmax_t kMaxMeshFileBytes = std::uintmax_t{256} << 20;
-
-/// Coordinates from here on are taken for damage [m]: no scene is a thousand kilometres wide.
-inline constexpr double kMaxCoordinate = 1e6;
 
 /// A mesh and what was done to it.
 struct LoadedMesh {

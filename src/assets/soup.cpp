@@ -13,26 +13,31 @@
 #include <stdexcept>
 #include <utility>
 
+#include "mesh/geometry.hpp"
 #include "mesh/polygon.hpp"
+#include "mesh/quads.hpp"
 
 namespace weft::assets {
 namespace {
 
 using Transform = Eigen::Matrix4d;
 
+/// Faces flatter than this (area by longest side squared) count as having no area: their normal is rounding noise of
+/// the single precision that assimp reads with.
+constexpr double kFlatFace = 1e-7;
+
+bool has_area(const mesh::Triangle& t, const std::vector<Vec3>& x) {
+  const auto corner = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(t[k])]; };
+  const double longest_sq = std::max({(corner(1) - corner(0)).squaredNorm(), (corner(2) - corner(1)).squaredNorm(),
+                                      (corner(0) - corner(2)).squaredNorm()});
+  return mesh::area_vector(t, x).norm() > kFlatFace * longest_sq;
+}
+
 Transform to_eigen(const aiMatrix4x4& m) {
   Transform result;
   for (unsigned r = 0; r < 4; ++r)
     for (unsigned c = 0; c < 4; ++c) result(r, c) = static_cast<double>(m[r][c]);
   return result;
-}
-
-void append_face(Soup& soup, std::span<const Index> corners) {
-  if (corners.size() == 4) {
-    soup.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
-  } else {
-    mesh::triangulate_polygon(corners, soup.positions, soup.triangles);
-  }
 }
 
 /// Appends one mesh under a node's transform.
@@ -83,6 +88,14 @@ void take(std::string_view& bytes, std::vector<T>& list) {
 
 }  // namespace
 
+void append_face(Soup& soup, std::span<const Index> corners) {
+  if (corners.size() == 4) {
+    soup.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
+  } else {
+    mesh::triangulate_polygon(corners, soup.positions, soup.triangles);
+  }
+}
+
 Soup read_soup(const std::filesystem::path& file) {
   Assimp::Importer importer;
   const aiScene* scene = importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
@@ -101,6 +114,19 @@ Soup read_soup(const std::filesystem::path& file) {
     }
   }
   return soup;
+}
+
+mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles) {
+  mesh::Topology topology;
+  topology.triangles = mesh::split_quads(soup.quads, soup.positions);
+  const auto flat = [&](const mesh::Triangle& t) { return !has_area(t, soup.positions); };
+  if (soup.triangles.empty() && std::none_of(topology.triangles.begin(), topology.triangles.end(), flat)) {
+    topology.quads = soup.quads;
+  } else {
+    topology.triangles.insert(topology.triangles.end(), soup.triangles.begin(), soup.triangles.end());
+    removed_triangles = std::erase_if(topology.triangles, flat);
+  }
+  return topology;
 }
 
 std::string to_bytes(const Soup& soup) {

@@ -1,11 +1,14 @@
 // Faces as they come out of a file, before anything is joined or removed.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "mesh/mesh.hpp"
 #include "mesh/topology.hpp"
 
 namespace weft::assets {
@@ -21,6 +24,13 @@ struct Soup {
 /// ignored. Throws std::runtime_error with assimp's words. Damaged files can crash assimp or keep it busy for ever:
 /// call it through run_isolated.
 Soup read_soup(const std::filesystem::path& file);
+
+/// Appends a polygon of the soup's vertices; one of more than four corners is triangulated.
+void append_face(Soup& soup, std::span<const Index> corners);
+
+/// The joined surface of a soup: triangles, and quads where the soup holds nothing else and none of them is flat.
+/// Triangles without area (a corner named twice, or all corners on a line) are left out and counted.
+mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles);
 
 /// A soup as plain bytes, for the way between two processes of the same program, and back.
 std::string to_bytes(const Soup& soup);

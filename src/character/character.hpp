@@ -32,7 +32,8 @@ struct Influence {
 /// A displaced copy of the mesh that is blended in by a weight.
 struct MorphTarget {
   std::string name;
-  std::vector<Vec3> displacements;  ///< per vertex [m]
+  std::vector<Vec3> displacements;  ///< per vertex of the mesh as bound [m]
+  double weight = 0;                ///< at rest
 };
 
 /// A value at times [s] that strictly increase; linear between them (rotations along the shortest way), constant
@@ -67,7 +68,7 @@ struct Clip {
 struct Character {
   std::vector<Node> nodes;
   std::vector<Bone> bones;
-  mesh::Mesh mesh;                     ///< as bound; copies of vertices at the same place are one vertex
+  mesh::Mesh mesh;                     ///< as bound; copies of a vertex that always move together are one vertex
   std::vector<Index> first_influence;  ///< per vertex, and the number of all at the end
   std::vector<Influence> influences;
   std::vector<MorphTarget> morphs;

@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 #include <variant>
 
 #include "assets/mesh_file.hpp"
 #include "core/error.hpp"
+#include "core/log.hpp"
 #include "core/parallel.hpp"
+#include "environment/acting.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/quads.hpp"
 #include "mesh/shapes.hpp"
@@ -161,12 +164,14 @@ struct MakeMesh {
   }
 };
 
-RigidObject make_rigid(const scene::Scene& scene, const scene::Obstacle& obstacle) {
-  RigidObject object;
+BodyObject make_obstacle(const scene::Scene& scene, const scene::Obstacle& obstacle) {
+  BodyObject object;
   object.name = obstacle.name;
   object.mesh = std::visit(MakeMesh{scene, obstacle}, obstacle.shape);
   object.moving = obstacle.motion.keys.size() > 1;
   object.collide = obstacle.collide;
+  object.friction = obstacle.friction;
+  object.look = obstacle.look;
   const auto* plane = std::get_if<scene::Plane>(&obstacle.shape);
   object.infinite_floor = plane != nullptr && plane->infinite;
   const std::size_t n = object.mesh.positions.size();
@@ -176,7 +181,7 @@ RigidObject make_rigid(const scene::Scene& scene, const scene::Obstacle& obstacl
 }
 
 /// Writes world positions, velocities and accelerations of all vertices of a body.
-void place(RigidObject& object, const PoseSample& pose) {
+void place(BodyObject& object, const PoseSample& pose) {
   const Mat3 rotation = pose.rotation.toRotationMatrix();
   const std::vector<Vec3>& body = object.mesh.positions;
   Motion& motion = object.motion;
@@ -190,20 +195,48 @@ void place(RigidObject& object, const PoseSample& pose) {
   });
 }
 
+/// The same for a body that one thing or the other moves.
+struct Place {
+  BodyObject& object;
+  double t;
+
+  void operator()(const Track& track) const { place(object, track.at(t)); }
+  void operator()(const KeyFrames& keys) const { keys.at(t, object.motion); }
+};
+
+BodyObject make_character(const scene::Character& character, const Actor& actor) {
+  const std::vector<Vec3> zero(actor.mesh.positions.size(), Vec3::Zero());
+  return {.name = character.name,
+          .mesh = actor.mesh,
+          .character = true,
+          .moving = actor.keys.moving(),
+          .collide = character.collide,
+          .infinite_floor = false,
+          .friction = character.friction,
+          .look = character.look,
+          .motion = {zero, zero, zero}};
+}
+
 }  // namespace
 
 Environment::Environment(const scene::Scene& scene) {
   for (const scene::Cloth& cloth : scene.cloths) cloths.push_back(make_cloth(scene, cloth));
   for (const scene::Obstacle& obstacle : scene.obstacles) {
-    rigids.push_back(make_rigid(scene, obstacle));
-    tracks_.emplace_back(obstacle.motion, obstacle.pose);
-    place(rigids.back(), tracks_.back().at(0));
+    bodies.push_back(make_obstacle(scene, obstacle));
+    movers_.emplace_back(Track(obstacle.motion, obstacle.pose));
   }
+  for (const scene::Character& character : scene.characters) {
+    Actor actor = make_actor(scene, character);
+    for (const std::string& warning : actor.warnings) log::warn(warning);
+    bodies.push_back(make_character(character, actor));
+    movers_.emplace_back(std::move(actor.keys));
+  }
+  for (std::size_t k = 0; k < bodies.size(); ++k) std::visit(Place{bodies[k], 0}, movers_[k]);
 }
 
 void Environment::move_to(double t) {
-  for (std::size_t k = 0; k < rigids.size(); ++k)
-    if (rigids[k].moving) place(rigids[k], tracks_[k].at(t));
+  for (std::size_t k = 0; k < bodies.size(); ++k)
+    if (bodies[k].moving) std::visit(Place{bodies[k], t}, movers_[k]);
 }
 
 }  // namespace weft::environment

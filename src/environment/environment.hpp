@@ -2,22 +2,17 @@
 #pragma once
 
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "core/types.hpp"
+#include "environment/key_frames.hpp"
 #include "environment/track.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/sheet.hpp"
 #include "scene/scene.hpp"
 
 namespace weft::environment {
-
-/// State of the vertices of one object in world space.
-struct Motion {
-  std::vector<Vec3> positions;      ///< [m]
-  std::vector<Vec3> velocities;     ///< [m/s]
-  std::vector<Vec3> accelerations;  ///< [m/s²]
-};
 
 /// A deformable sheet, of quads or of triangles. The solver owns the truth while it steps and writes it back here.
 struct ClothObject {
@@ -32,13 +27,17 @@ struct ClothObject {
   Motion motion;
 };
 
-/// A rigid body, still or moved by key frames.
-struct RigidObject {
+/// A body that moves cloth and is not moved by it: an obstacle, still or moved as a rigid body, or a character.
+struct BodyObject {
   std::string name;
-  mesh::Mesh mesh;  ///< in the body's own coordinates; shapes already turned to the scene's up axis
+  mesh::Mesh
+      mesh;  ///< of obstacles in their own coordinates, turned to the scene's up axis; of characters as they start
+  bool character = false;
   bool moving = false;
   bool collide = true;
   bool infinite_floor = false;
+  double friction = 0.3;
+  scene::Look look;
   Motion motion;
 };
 
@@ -47,18 +46,19 @@ class Environment {
   /// Makes meshes and the state at time 0. Throws Error(asset_unreadable) naming file and scene line.
   explicit Environment(const scene::Scene& scene);
 
-  /// Puts the moving rigid objects where they are at time t [s], with exact velocities and accelerations. Linear in the
-  /// vertices of moving objects; allocates nothing.
+  /// Puts the moving bodies where they are at time t [s], with exact velocities and accelerations. Linear in the
+  /// vertices of moving bodies; allocates nothing.
   void move_to(double t);
 
-  /// Pose of rigid object `rigid` at any time [s], whatever the last move_to was.
-  PoseSample pose(std::size_t rigid, double t) const { return tracks_[rigid].at(t); }
+  /// Pose of an obstacle at any time [s], whatever the last move_to was.
+  PoseSample pose(std::size_t obstacle, double t) const { return std::get<Track>(movers_[obstacle]).at(t); }
 
   std::vector<ClothObject> cloths;
-  std::vector<RigidObject> rigids;  ///< in the order of scene.obstacles
+  std::vector<BodyObject> bodies;  ///< in the order of scene.obstacles, then of scene.characters
 
  private:
-  std::vector<Track> tracks_;  ///< one per rigid
+  using Mover = std::variant<Track, KeyFrames>;
+  std::vector<Mover> movers_;  ///< one per body
 };
 
 }  // namespace weft::environment

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "scene/reader.hpp"
+#include "scene/sequence_files.hpp"
 
 namespace weft::scene {
 
@@ -74,11 +75,12 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
 void check_friction_pairs(const Scene& scene, Findings& findings) {
   std::vector<std::string> names = names_of(scene.cloths);
   for (const std::string& name : names_of(scene.obstacles)) names.push_back(name);
+  for (const std::string& name : names_of(scene.characters)) names.push_back(name);
   for (std::size_t i = 0; i < scene.contact.pairs.size(); ++i) {
     const FrictionPair& pair = scene.contact.pairs[i];
     const std::string path = fmt::format("contact.pair.{}", i);
-    check_reference(pair.first, names, "a cloth or obstacle", path + ".first", findings);
-    check_reference(pair.second, names, "a cloth or obstacle", path + ".second", findings);
+    check_reference(pair.first, names, "a cloth, obstacle or character", path + ".first", findings);
+    check_reference(pair.second, names, "a cloth, obstacle or character", path + ".second", findings);
     if (pair.static_friction && *pair.static_friction < pair.friction)
       findings.report(path + ".static_friction",
                       fmt::format("expected >= {}, that of sliding, got {}", pair.friction, *pair.static_friction));
@@ -130,6 +132,29 @@ void check_obstacles(const Scene& scene, Findings& findings) {
   }
 }
 
+void check_characters(const Scene& scene, Findings& findings) {
+  std::vector<std::string> others = names_of(scene.cloths);
+  for (const std::string& name : names_of(scene.obstacles)) others.push_back(name);
+  for (std::size_t i = 0; i < scene.characters.size(); ++i) {
+    const Character& character = scene.characters[i];
+    const std::string& path = findings.entry("character", i);
+    if (!character.name.empty() && std::find(others.begin(), others.end(), character.name) != others.end())
+      findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth or obstacle has",
+                                                  in_quotes(character.name)));
+    const auto* file = std::get_if<CharacterFile>(&character.source);
+    if (file != nullptr && file->stance == Stance::rest && character.blend <= 0)
+      findings.report(path + ".blend",
+                      fmt::format("expected > 0 s to get from the rest pose to the clip, got {}", character.blend));
+    const auto* sequence = std::get_if<MeshSequence>(&character.source);
+    if (sequence == nullptr || sequence->files.empty()) continue;
+    if (const std::size_t count = sequence_files(sequence->files).size(); count < 2)
+      findings.report(path + ".files",
+                      fmt::format("expected a folder, or a file name with a *, of at least 2 files, got "
+                                  "{}: {} there",
+                                  in_quotes(sequence->files), count));
+  }
+}
+
 void check_cameras(const Scene& scene, Findings& findings) {
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     const Camera& camera = scene.cameras[i];
@@ -150,8 +175,9 @@ void check_cameras(const Scene& scene, Findings& findings) {
 }  // namespace
 
 void check(const Scene& scene, Findings& findings) {
-  if (scene.cloths.empty() && scene.obstacles.empty() && !findings.has("cloth") && !findings.has("obstacle")) {
-    findings.report("", "expected at least one [[cloth]] or [[obstacle]], got none");
+  const bool empty = scene.cloths.empty() && scene.obstacles.empty() && scene.characters.empty();
+  if (empty && !findings.has("cloth") && !findings.has("obstacle") && !findings.has("character")) {
+    findings.report("", "expected at least one [[cloth]], [[obstacle]] or [[character]], got none");
   }
   if (const double frames = scene.time.duration * scene.time.fps; frames > kMaxFrames) {
     findings.report("time.duration",
@@ -160,6 +186,7 @@ void check(const Scene& scene, Findings& findings) {
   check_cloths(scene, findings);
   check_friction_pairs(scene, findings);
   check_obstacles(scene, findings);
+  check_characters(scene, findings);
   check_cameras(scene, findings);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {
     check_times(scene.lights[i].keys, findings.entry("light", i), findings);

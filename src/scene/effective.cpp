@@ -7,6 +7,7 @@
 
 #include "scene/loader.hpp"
 #include "scene/rule.hpp"
+#include "scene/sequence_files.hpp"
 
 namespace weft::scene {
 
@@ -130,6 +131,15 @@ std::uint64_t hash_of(const Scene& scene) {
     if (auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) add_file(mesh->path);
   for (Cloth& cloth : copy.cloths)
     if (cloth.shape == ClothShape::mesh) add_file(cloth.file);
+  for (Character& character : copy.characters) {
+    if (auto* file = std::get_if<CharacterFile>(&character.source)) {
+      add_file(file->path);
+      if (file->motion) add_file(*file->motion);
+    } else if (auto* sequence = std::get_if<MeshSequence>(&character.source)) {
+      for (std::filesystem::path path : sequence_files(sequence->files)) add_file(path);
+      sequence->files = std::filesystem::path(sequence->files).filename().string();
+    }
+  }
   hash.add(effective_scene(copy));
   return hash.value();
 }

@@ -17,11 +17,20 @@ void read_document(toml::table document, const std::vector<std::string>& overrid
   for (const std::string& text : overrides) apply_override(text, document, findings);
   Reader reader(findings, scene.file.parent_path());
   reader.read(document, scene_rules(), &scene, "");
+  for (Character& character : scene.characters)
+    if (auto* sequence = std::get_if<MeshSequence>(&character.source); sequence && !sequence->files.empty())
+      sequence->files =
+          std::filesystem::absolute(scene.file.parent_path() / sequence->files).lexically_normal().string();
   check(scene, findings);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     const Place place = findings.place(findings.entry("obstacle", i) + ".file");
     scene.obstacles[i].line = place.line;
     scene.obstacles[i].column = place.column;
+  }
+  for (std::size_t i = 0; i < scene.characters.size(); ++i) {
+    const Place& place = findings.place(findings.entry("character", i));
+    scene.characters[i].line = place.line;
+    scene.characters[i].column = place.column;
   }
   for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
     const Place& place = findings.place(findings.entry("cloth", i));

@@ -3,8 +3,9 @@
 // machine.
 #include <array>
 #include <cmath>
-#include <numbers>
 
+#include "scene/character_rules.hpp"
+#include "scene/common_rules.hpp"
 #include "scene/contact_rules.hpp"
 #include "scene/material_rules.hpp"
 #include "scene/rule.hpp"
@@ -21,40 +22,11 @@ void assign(Quat& target, const Value& value) {
 
 namespace {
 
-const Range kPlace = within(-1e5, 1e5);   // [m]
-const Range kExtent = above(0, 1e4);      // [m]
-const Range kMoment = within(-1e5, 1e5);  // [s]
-const std::vector<std::string> kXyz = {"x", "y", "z"};
 const std::vector<std::string> kWeftWarp = {"weft", "warp"};
-const std::vector<std::string> kInterpolations = {"linear", "cubic"};
 
 /// Turns a vector that is meant for z up the way that the scene's up axis has it.
 Vec3 turned_up(UpAxis up, const Vec3& z_up) {
   return up == UpAxis::z ? z_up : Vec3(z_up.x(), z_up.z(), -z_up.y());
-}
-
-/// Turns about the fixed x, then y, then z axis.
-Quat from_angles(const std::vector<double>& degrees) {
-  const auto turn = [&](std::size_t i, const Vec3& axis) {
-    return Quat(Eigen::AngleAxisd(degrees[i] * std::numbers::pi / 180, axis));
-  };
-  return turn(2, Vec3::UnitZ()) * turn(1, Vec3::UnitY()) * turn(0, Vec3::UnitX());
-}
-
-/// position, and quaternion or rotation. `otherwise` says what holds where they are absent.
-template <class S, class Member>
-void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
-  const auto rotation = [pose](S& s) -> Quat& { return std::invoke(pose, s).rotation; };
-  rows.vector(
-          "position", [pose](S& s) -> Vec3& { return std::invoke(pose, s).position; }, kXyz, kPlace, "m", position_of)
-      .by_default(otherwise);
-  rows.vector("quaternion", rotation, {"w", "x", "y", "z"}, within(-1e3, 1e3), "",
-              "rotation as a quaternion, of any length but 0")
-      .nonzero()
-      .by_default(otherwise);
-  rows.respelling("rotation", "quaternion", {"rx", "ry", "rz"}, within(-36000, 36000), "degrees",
-                  "rotation about the fixed x, then y, then z axis",
-                  [rotation](S& s, const std::vector<double>& angles) { rotation(s) = from_angles(angles); });
 }
 
 const std::string kHeld = "that of the key before; of the first key, that of the thing itself";
@@ -115,17 +87,6 @@ const Table& cloth_look_rules() {
           .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
           .number("thread_spacing", &Look::thread_spacing, within(0, 10), "m", "of the drawn weave; 0 draws none")
           .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture")
-          .build();
-  return kTable;
-}
-
-const Table& obstacle_look_rules() {
-  static const Table kTable =
-      TableBuilder<Look>("How the obstacle is drawn.")
-          .color("color", &Look::color, "of the surface")
-          .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
-          .plain(Type::boolean, "checker", &Look::checker, "faint grid of 0.5 m tiles, to give a floor scale")
-          .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture; it still collides")
           .build();
   return kTable;
 }
@@ -203,7 +164,7 @@ void cloth_shape_rows(TableBuilder<Cloth>& rows) {
 const Table& cloth_rules() {
   static const Table kTable =
       TableBuilder<Cloth>("A sheet of cloth: a rectangle, or the shape of a mesh file.")
-          .plain(Type::name, "name", &Cloth::name, "unlike that of any other cloth or obstacle")
+          .plain(Type::name, "name", &Cloth::name, "unlike that of any other object")
           .need(Need::required)
           .choice("shape", &Cloth::shape, {"quads", "aligned_triangles", "crossed_triangles", "mesh"},
                   "what it is made of: a rectangle of quads or of triangles, or the triangles of a mesh file")
@@ -281,7 +242,7 @@ const Table& obstacle_rules() {
                                                Cylinder{}, HalfPipe{}, Plane{}, MeshFile{}};
   static const Table kTable =
       TableBuilder<Obstacle>("A rigid body, still or moved by key frames.")
-          .plain(Type::name, "name", &Obstacle::name, "unlike that of any other cloth or obstacle")
+          .plain(Type::name, "name", &Obstacle::name, "unlike that of any other object")
           .need(Need::required)
           .choice_by(
               "shape", {"sphere", "box", "cone", "torus", "cylinder", "half_pipe", "plane", "mesh"},
@@ -480,6 +441,7 @@ const Table& scene_rules() {
                                   .table("contact", &Scene::contact, contact_rules())
                                   .table("render", &Scene::render, render_rules())
                                   .list(Type::list, "obstacle", &Scene::obstacles, obstacle_rules())
+                                  .list(Type::list, "character", &Scene::characters, character_rules())
                                   .list(Type::list, "cloth", &Scene::cloths, cloth_rules())
                                   .list(Type::list, "camera", &Scene::cameras, camera_rules(), append_camera)
                                   .list(Type::list, "light", &Scene::lights, light_rules(), append_light)

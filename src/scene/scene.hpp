@@ -209,6 +209,54 @@ struct Obstacle {
   int line = 0, column = 0;  ///< where the scene names it, for errors of its file
 };
 
+enum class FileUp { as_file, x, y, z };
+enum class Stance { first, rest };
+
+/// A joint of the body that `motion` is to move, where its name is none that is known.
+struct JointNames {
+  std::string name;                   ///< one of character::joint_names()
+  std::optional<std::string> body;    ///< in the character's file
+  std::optional<std::string> motion;  ///< in the file of the motion
+};
+
+/// A skinned and animated character from a file.
+struct CharacterFile {
+  std::filesystem::path path;                   ///< absolute after checking
+  std::optional<std::filesystem::path> motion;  ///< file whose motion it takes over; absolute after checking
+  std::vector<JointNames> joints;
+  std::optional<std::string> clip;  ///< of `motion`, else of the file itself; absent: the first
+  bool loop = false;                ///< again and again, each round from where the last one has come to
+  double crossfade = 0;             ///< [s] of clip time at the end of a round that pass over into the next
+  Stance stance = Stance::first;    ///< pose that is held while dressing
+};
+
+/// Key frames as mesh files, one after the other.
+struct MeshSequence {
+  std::string files;  ///< a folder, or a file name with one *; relative paths start at the scene's folder
+  double fps = 25;    ///< [1/s]
+};
+
+using CharacterSource = std::variant<CharacterFile, MeshSequence>;
+
+/// A body that moves by itself, stored as key frames of its vertices.
+struct Character {
+  std::string name;
+  CharacterSource source;
+  std::optional<double> scale;  ///< metres per unit of the file; absent: what the file says, else 1
+  FileUp up = FileUp::as_file;
+  Pose pose;                              ///< of the file's origin
+  double dressing = 0;                    ///< [s] it stands still
+  double blend = 0;                       ///< [s] in which it then gets going
+  double start = 0;                       ///< time of the clip that it gets going from [s]
+  double speed = 1;                       ///< of the clip
+  std::optional<double> keys_per_second;  ///< absent: those of the clip
+  Interpolation interpolation = Interpolation::cubic;
+  double friction = 0.3;
+  bool collide = true;
+  Look look;
+  int line = 0, column = 0;  ///< where the scene names it, for errors of its file
+};
+
 struct CameraKey {
   double time = 0;
   Vec3 position{0, 0, 0}, target{0, 0, 0};  ///< [m]
@@ -258,6 +306,7 @@ struct Scene {
   Contact contact;
   std::vector<Cloth> cloths;
   std::vector<Obstacle> obstacles;
+  std::vector<Character> characters;
   std::vector<Camera> cameras;
   std::vector<Light> lights;
   Render render;

@@ -14,17 +14,18 @@ namespace {
 // least 0.7 spacings apart; much more, and a sheared sheet would push against itself in its own plane.
 constexpr double kThicknessOfSpacing = 0.25;
 
-bool obstacles_collide(const scene::Scene& scene) {
-  return scene.contact.obstacles && std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
-                                                [](const scene::Obstacle& o) { return o.collide; });
+bool bodies_collide(const scene::Scene& scene) {
+  const auto collides = [](const auto& body) { return body.collide; };
+  return scene.contact.obstacles &&
+         (std::ranges::any_of(scene.obstacles, collides) || std::ranges::any_of(scene.characters, collides));
 }
 
-std::vector<std::size_t> colliding_rigids(const scene::Scene& scene, const environment::Environment& environment) {
-  std::vector<std::size_t> rigids;
-  if (!obstacles_collide(scene)) return rigids;
-  for (std::size_t r = 0; r < environment.rigids.size(); ++r)
-    if (environment.rigids[r].collide) rigids.push_back(r);
-  return rigids;
+std::vector<std::size_t> colliding_bodies(const scene::Scene& scene, const environment::Environment& environment) {
+  std::vector<std::size_t> bodies;
+  if (!bodies_collide(scene)) return bodies;
+  for (std::size_t b = 0; b < environment.bodies.size(); ++b)
+    if (environment.bodies[b].collide) bodies.push_back(b);
+  return bodies;
 }
 
 // The triangles of a mesh with its vertices numbered from `first`.
@@ -35,17 +36,17 @@ std::vector<collision::Triangle> shifted(const mesh::Mesh& mesh, Index first) {
   return triangles;
 }
 
-// Bodies are the cloths of the scene and then the obstacles that collide.
+// The engine's bodies are the cloths of the scene and then what else collides.
 std::vector<collision::PairFriction> friction_pairs(const scene::Scene& scene,
                                                     const environment::Environment& environment) {
   std::vector<std::string> names;
   for (const scene::Cloth& cloth : scene.cloths) names.push_back(cloth.name);
-  for (std::size_t r : colliding_rigids(scene, environment)) names.push_back(scene.obstacles[r].name);
+  for (std::size_t b : colliding_bodies(scene, environment)) names.push_back(environment.bodies[b].name);
   std::vector<collision::PairFriction> pairs;
   for (const scene::FrictionPair& pair : scene.contact.pairs) {
     const auto a = std::find(names.begin(), names.end(), pair.first),
                b = std::find(names.begin(), names.end(), pair.second);
-    if (a == names.end() || b == names.end()) continue;  // an obstacle that does not collide
+    if (a == names.end() || b == names.end()) continue;  // a body that does not collide
     pairs.push_back({static_cast<std::size_t>(a - names.begin()),
                      static_cast<std::size_t>(b - names.begin()),
                      {pair.friction, pair.static_friction.value_or(pair.friction)}});
@@ -91,8 +92,8 @@ std::vector<collision::Body> make_bodies(const scene::Scene& scene, const enviro
     add(environment.cloths[c].mesh, true,
         std::min(material.thickness, kThicknessOfSpacing * environment.cloths[c].spacing), material.friction);
   }
-  for (std::size_t r : colliding_rigids(scene, environment))
-    add(environment.rigids[r].mesh, false, 0, scene.obstacles[r].friction);
+  for (std::size_t b : colliding_bodies(scene, environment))
+    add(environment.bodies[b].mesh, false, 0, environment.bodies[b].friction);
   return bodies;
 }
 
@@ -100,8 +101,8 @@ std::vector<Vec3> start_positions(const scene::Scene& scene, const environment::
   std::vector<Vec3> x;
   for (const auto& cloth : environment.cloths)
     x.insert(x.end(), cloth.motion.positions.begin(), cloth.motion.positions.end());
-  for (std::size_t r : colliding_rigids(scene, environment)) {
-    const auto& positions = environment.rigids[r].motion.positions;
+  for (std::size_t b : colliding_bodies(scene, environment)) {
+    const auto& positions = environment.bodies[b].motion.positions;
     x.insert(x.end(), positions.begin(), positions.end());
   }
   return x;
@@ -110,19 +111,19 @@ std::vector<Vec3> start_positions(const scene::Scene& scene, const environment::
 }  // namespace
 
 bool CollisionStage::needed(const scene::Scene& scene) {
-  return !scene.cloths.empty() && (scene.contact.self || obstacles_collide(scene));
+  return !scene.cloths.empty() && (scene.contact.self || bodies_collide(scene));
 }
 
 CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Environment& environment,
                                const ClothSystem& system)
-    : rigids_(colliding_rigids(scene, environment)),
+    : bodies_(colliding_bodies(scene, environment)),
       particles_(system.masses().size()),
       all_t0_(start_positions(scene, environment)),
       all_t1_(all_t0_),
       engine_(make_bodies(scene, environment), engine_parameters(scene, environment), all_t0_,
               {system.masses().begin(), system.masses().end()}) {
   for (const auto& cloth : environment.cloths) names_.push_back(cloth.name);
-  for (std::size_t r : rigids_) names_.push_back(environment.rigids[r].name);
+  for (std::size_t b : bodies_) names_.push_back(environment.bodies[b].name);
   if (const auto meeting = engine_.find_meeting(all_t0_))
     throw Error(
         ExitCode::scene_invalid,
@@ -142,8 +143,8 @@ void CollisionStage::begin_step(environment::Environment& environment, const int
                                 std::span<const integrator::HeldParticle> held, double t, double h) {
   const auto copy_obstacles = [&](std::vector<Vec3>& all) {
     auto place = all.begin() + static_cast<std::ptrdiff_t>(particles_);
-    for (std::size_t r : rigids_) {
-      const auto& positions = environment.rigids[r].motion.positions;
+    for (std::size_t b : bodies_) {
+      const auto& positions = environment.bodies[b].motion.positions;
       place = std::copy(positions.begin(), positions.end(), place);
     }
   };

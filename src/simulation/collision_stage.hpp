@@ -71,7 +71,7 @@ class CollisionStage {
   void note_pinches();
 
   std::vector<std::string> names_;   // per body
-  std::vector<std::size_t> rigids_;  // of the environment, those that collide
+  std::vector<std::size_t> bodies_;  // of the environment, those that collide
   std::size_t particles_;
   std::vector<Vec3> all_t0_, all_t1_;  // particles, then vertices of the obstacles
   std::vector<std::uint8_t> movable_;

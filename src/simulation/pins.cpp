@@ -6,10 +6,10 @@
 namespace weft::simulation {
 namespace {
 
-int rigid_named(const environment::Environment& environment, const std::string& name) {
-  const auto found = std::find_if(environment.rigids.begin(), environment.rigids.end(),
-                                  [&](const environment::RigidObject& rigid) { return rigid.name == name; });
-  return found == environment.rigids.end() ? -1 : static_cast<int>(found - environment.rigids.begin());
+int obstacle_named(const environment::Environment& environment, const std::string& name) {
+  const auto found = std::find_if(environment.bodies.begin(), environment.bodies.end(),
+                                  [&](const environment::BodyObject& body) { return body.name == name; });
+  return found == environment.bodies.end() ? -1 : static_cast<int>(found - environment.bodies.begin());
 }
 
 }  // namespace
@@ -39,7 +39,7 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
         return cloth.motion.positions[static_cast<std::size_t>(particle - first_particle[c])];
       };
       group.release = pin.release;
-      group.follow = pin.follow.empty() ? -1 : rigid_named(environment, pin.follow);
+      group.follow = pin.follow.empty() ? -1 : obstacle_named(environment, pin.follow);
       if (group.follow >= 0) {
         const environment::PoseSample pose = environment.pose(static_cast<std::size_t>(group.follow), 0);
         for (Index particle : group.particles)

@@ -33,7 +33,7 @@ class Pins {
     std::vector<Index> particles;
     std::vector<Vec3> arms;  // from the motion's origin at time 0, in its own directions [m]
     double release = -1;     // [s]; negative: never
-    int follow = -1;         // rigid object, or −1 for `track`
+    int follow = -1;         // obstacle, or −1 for `track`
     std::optional<environment::Track> track;
     Vec3 origin;  // of the particles at the start, about which `track` turns [m]
   };

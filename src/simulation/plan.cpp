@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 
+#include "environment/acting.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::simulation {
@@ -79,13 +80,15 @@ void plan_search(const scene::Search& search, bool any, std::vector<PlanItem>& i
 void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
   const auto obstacles =
       std::count_if(scene.obstacles.begin(), scene.obstacles.end(), [](const scene::Obstacle& o) { return o.collide; });
+  const auto characters = std::ranges::count_if(scene.characters, [](const scene::Character& c) { return c.collide; });
   const auto moving = std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
                                     [](const scene::Obstacle& o) { return o.motion.keys.size() > 1; });
-  const bool with_obstacles = scene.contact.obstacles && obstacles > 0 && !scene.cloths.empty();
+  const bool with_obstacles = scene.contact.obstacles && obstacles + characters > 0 && !scene.cloths.empty();
+  std::string bodies = fmt::format("{} obstacle{}", obstacles, obstacles == 1 ? "" : "s");
+  if (characters > 0) bodies += fmt::format(", {} character{}", characters, characters == 1 ? "" : "s");
   const bool self = scene.contact.self && !scene.cloths.empty();
-  items.push_back(when("collision: cloth and obstacles", with_obstacles,
-                       fmt::format("{} obstacle{}", obstacles, obstacles == 1 ? "" : "s"),
-                       obstacles == 0 ? "no obstacle collides" : "contact.obstacles is false"));
+  items.push_back(when("collision: cloth and obstacles", with_obstacles, bodies,
+                       obstacles + characters == 0 ? "no obstacle collides" : "contact.obstacles is false"));
   items.push_back(when("collision: cloth and cloth", self, "itself and others", "contact.self is false"));
   items.push_back(of_cloths(
       "collision: friction", scene, [&](const Cloth& c) { return (with_obstacles || self) && c.material.friction > 0; },
@@ -99,6 +102,18 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
                        "no obstacle moves"));
 }
 
+// How much the key frames of characters hold; only their files tell.
+void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
+  if (scene.characters.empty()) items.push_back({"motion: characters", false, "no character"});
+  for (const scene::Character& character : scene.characters) {
+    const environment::KeyFrameCount count = environment::count_key_frames(scene, character);
+    items.push_back({fmt::format("motion: character {}", character.name), true,
+                     fmt::format("{} key frame{} of {} vertices, {:.4g} MB, {}", count.keys, count.keys == 1 ? "" : "s",
+                                 count.vertices, static_cast<double>(count.bytes) / 1e6,
+                                 character.interpolation == scene::Interpolation::cubic ? "cubic" : "linear")});
+  }
+}
+
 }  // namespace
 
 std::vector<PlanItem> plan(const Scene& scene) {
@@ -106,6 +121,7 @@ std::vector<PlanItem> plan(const Scene& scene) {
   plan_forces(scene, items);
   plan_constraints(scene, items);
   plan_collisions(scene, items);
+  plan_characters(scene, items);
 
   const char* method = scene.time.integrator == scene::Integrator::implicit_euler      ? "implicit Euler"
                        : scene.time.integrator == scene::Integrator::implicit_midpoint ? "implicit midpoint"

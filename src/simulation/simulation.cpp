@@ -370,9 +370,9 @@ std::vector<ObjectInfo> Simulation::objects() const {
     objects.push_back(
         {cloth.name, frame::ObjectKind::cloth, cloth.mesh.positions.size(),
          cloth.mesh.topology.quads.empty() ? cloth.mesh.topology.triangles.size() : cloth.mesh.topology.quads.size()});
-  for (const environment::RigidObject& rigid : impl_->environment.rigids)
-    objects.push_back(
-        {rigid.name, frame::ObjectKind::obstacle, rigid.mesh.positions.size(), rigid.mesh.topology.triangles.size()});
+  for (const environment::BodyObject& body : impl_->environment.bodies)
+    objects.push_back({body.name, body.character ? frame::ObjectKind::character : frame::ObjectKind::obstacle,
+                       body.mesh.positions.size(), body.mesh.topology.triangles.size()});
   return objects;
 }
 

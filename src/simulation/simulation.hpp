@@ -47,7 +47,8 @@ struct PlanItem {
   std::string reason;
 };
 
-/// What a simulation of this scene is put together from; reads no mesh file and builds nothing.
+/// What a simulation of this scene is put together from; builds nothing, and reads no file but those of characters,
+/// whose memory is known from them alone. Throws Error(asset_unreadable, scene_invalid) where they cannot be used.
 std::vector<PlanItem> plan(const scene::Scene& scene);
 
 class Simulation {

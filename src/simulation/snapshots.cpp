@@ -6,6 +6,9 @@ namespace {
 using CameraValue = environment::Spline<7>::Value;
 using LightValue = environment::Spline<10>::Value;
 
+// Bodies of characters are round: what is modelled with few faces is drawn smooth up to this angle [degrees].
+constexpr double kCharacterCrease = 80;
+
 // How much paler the back of a cloth is than its front where the scene does not say.
 constexpr double kBackPaleness = 0.35;
 
@@ -85,10 +88,11 @@ SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Envir
   for (std::size_t c = 0; c < scene.cloths.size(); ++c)
     surfaces_.push_back(
         make_surface(scene.cloths[c].name, frame::ObjectKind::cloth, environment.cloths[c].mesh, scene.cloths[c].look));
-  for (std::size_t r = 0; r < scene.obstacles.size(); ++r) {
-    auto surface = std::make_shared<frame::Surface>(*make_surface(scene.obstacles[r].name, frame::ObjectKind::obstacle,
-                                                                  environment.rigids[r].mesh, scene.obstacles[r].look));
-    surface->infinite_floor = environment.rigids[r].infinite_floor;
+  for (const environment::BodyObject& body : environment.bodies) {
+    const auto kind = body.character ? frame::ObjectKind::character : frame::ObjectKind::obstacle;
+    auto surface = std::make_shared<frame::Surface>(*make_surface(body.name, kind, body.mesh, body.look));
+    surface->infinite_floor = body.infinite_floor;
+    if (body.character) surface->crease_angle = kCharacterCrease;
     surfaces_.push_back(std::move(surface));
   }
   for (const scene::Camera& camera : scene.cameras) {
@@ -140,8 +144,8 @@ frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const environment
   for (const environment::ClothObject& cloth : environment.cloths)
     snapshot->states.push_back({cloth.motion.positions, {}});
   for (std::size_t c = 0; c < heat.size(); ++c) snapshot->states[c].heat = std::move(heat[c]);
-  for (const environment::RigidObject& rigid : environment.rigids)
-    snapshot->states.push_back({rigid.motion.positions, {}});
+  for (const environment::BodyObject& body : environment.bodies)
+    snapshot->states.push_back({body.motion.positions, {}});
   snapshot->cameras = cameras_at(time);
   snapshot->lights = lights_at(time);
   return snapshot;

@@ -37,7 +37,7 @@ scene::Scene scene_with(const scene::Shape& shape, scene::UpAxis up = scene::UpA
   return scene;
 }
 
-Box3 bounds_of(const RigidObject& object) {
+Box3 bounds_of(const BodyObject& object) {
   return mesh::bounding_box(object.motion.positions);
 }
 
@@ -79,12 +79,12 @@ TEST(Cloth, LiesInThePlaneOfItsPoseWithWeftAlongXAndWarpAlongY) {
 TEST(Shapes, TurnTheirAxisUpWhereYIsUp) {
   const scene::Cone cone{.radius = 0.5, .height = 3};
   const Environment z_up(scene_with(cone)), y_up(scene_with(cone, scene::UpAxis::y));
-  EXPECT_LT((bounds_of(z_up.rigids[0]).sizes() - Vec3(1, 1, 3)).norm(), kRounding);
-  EXPECT_LT((bounds_of(y_up.rigids[0]).sizes() - Vec3(1, 3, 1)).norm(), kRounding);
+  EXPECT_LT((bounds_of(z_up.bodies[0]).sizes() - Vec3(1, 1, 3)).norm(), kRounding);
+  EXPECT_LT((bounds_of(y_up.bodies[0]).sizes() - Vec3(1, 3, 1)).norm(), kRounding);
   // The tip: alone at the top.
-  const auto& body = y_up.rigids[0].mesh.positions;
+  const auto& body = y_up.bodies[0].mesh.positions;
   EXPECT_EQ(std::count_if(body.begin(), body.end(), [](const Vec3& x) { return x.y() > 1.499; }), 1);
-  EXPECT_GT(mesh::enclosed_volume(y_up.rigids[0].mesh.topology.triangles, body), 0);
+  EXPECT_GT(mesh::enclosed_volume(y_up.bodies[0].mesh.topology.triangles, body), 0);
 }
 
 TEST(Shapes, AreMadeAsTheSceneSaysInTheSameOrder) {
@@ -108,25 +108,25 @@ TEST(Shapes, AreMadeAsTheSceneSaysInTheSameOrder) {
       scene.obstacles.back().segments = 16;
     }
     const Environment environment(scene);
-    ASSERT_EQ(environment.rigids.size(), cases.size());
+    ASSERT_EQ(environment.bodies.size(), cases.size());
     for (std::size_t k = 0; k < cases.size(); ++k) {
       const Vec3& expected = up == scene::UpAxis::z ? cases[k].z_up : cases[k].y_up;
-      EXPECT_LT((bounds_of(environment.rigids[k]).sizes() - expected).norm(), kRounding) << k;
-      EXPECT_EQ(environment.rigids[k].infinite_floor, k == 5);
+      EXPECT_LT((bounds_of(environment.bodies[k]).sizes() - expected).norm(), kRounding) << k;
+      EXPECT_EQ(environment.bodies[k].infinite_floor, k == 5);
     }
   }
 }
 
 TEST(HalfPipe, OpensAgainstGravityWhicheverAxisIsUp) {
   const scene::HalfPipe pipe{.radius = 1, .length = 4, .thickness = 0.5};
-  EXPECT_NEAR(bounds_of(Environment(scene_with(pipe)).rigids[0]).max().z(), 0, kRounding);
-  EXPECT_NEAR(bounds_of(Environment(scene_with(pipe, scene::UpAxis::y)).rigids[0]).max().y(), 0, kRounding);
+  EXPECT_NEAR(bounds_of(Environment(scene_with(pipe)).bodies[0]).max().z(), 0, kRounding);
+  EXPECT_NEAR(bounds_of(Environment(scene_with(pipe, scene::UpAxis::y)).bodies[0]).max().y(), 0, kRounding);
 }
 
 TEST(Plane, FacesUpAndIsNoFloorToTheHorizonIfFinite) {
   for (const auto up : {scene::UpAxis::z, scene::UpAxis::y}) {
     const Environment environment(scene_with(scene::Plane{.size = {2, 2}, .infinite = false}, up));
-    const RigidObject& plane = environment.rigids[0];
+    const BodyObject& plane = environment.bodies[0];
     EXPECT_FALSE(plane.infinite_floor);
     const Vec3 normal = up == scene::UpAxis::z ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
     for (const auto& t : plane.mesh.topology.triangles)
@@ -134,12 +134,12 @@ TEST(Plane, FacesUpAndIsNoFloorToTheHorizonIfFinite) {
   }
 }
 
-TEST(RigidObject, AtRestStandsAtItsPoseForAllTimes) {
+TEST(Obstacle, AtRestStandsAtItsPoseForAllTimes) {
   scene::Scene scene = scene_with(scene::BoxShape{.size = {2, 4, 6}, .bevel = 0});
   scene.obstacles[0].pose = {{1, 2, 3}, about({0, 0, 1}, kPi / 2)};
   scene.obstacles[0].collide = false;
   Environment environment(scene);
-  const RigidObject& box = environment.rigids[0];
+  const BodyObject& box = environment.bodies[0];
   EXPECT_FALSE(box.moving);
   EXPECT_FALSE(box.collide);
   for (const double t : {0.0, 5.0}) {
@@ -160,21 +160,21 @@ scene::Scene scene_with_tumbling_torus() {
   return scene;
 }
 
-TEST(RigidObject, InMotionStartsWithTheStateOfTimeZero) {
+TEST(Obstacle, InMotionStartsWithTheStateOfTimeZero) {
   Environment environment(scene_with_tumbling_torus());
-  ASSERT_TRUE(environment.rigids[0].moving);
-  const Motion start = environment.rigids[0].motion;
+  ASSERT_TRUE(environment.bodies[0].moving);
+  const Motion start = environment.bodies[0].motion;
   EXPECT_GT(start.velocities[0].norm(), 0);
   environment.move_to(1);
-  EXPECT_NE(environment.rigids[0].motion.positions, start.positions);
+  EXPECT_NE(environment.bodies[0].motion.positions, start.positions);
   environment.move_to(0);
-  EXPECT_EQ(environment.rigids[0].motion.positions, start.positions);
-  EXPECT_EQ(environment.rigids[0].motion.velocities, start.velocities);
+  EXPECT_EQ(environment.bodies[0].motion.positions, start.positions);
+  EXPECT_EQ(environment.bodies[0].motion.velocities, start.velocities);
 }
 
-TEST(RigidObject, InMotionKeepsItsShapeAndFollowsItsPose) {
+TEST(Obstacle, InMotionKeepsItsShapeAndFollowsItsPose) {
   Environment environment(scene_with_tumbling_torus());
-  const RigidObject& torus = environment.rigids[0];
+  const BodyObject& torus = environment.bodies[0];
   for (const double t : {0.2, 0.5, 1.7, 9.0}) {
     environment.move_to(t);
     const PoseSample pose = environment.pose(0, t);
@@ -185,9 +185,9 @@ TEST(RigidObject, InMotionKeepsItsShapeAndFollowsItsPose) {
   }
 }
 
-TEST(RigidObject, InMotionHasTheVelocityAndAccelerationOfEachVertex) {
+TEST(Obstacle, InMotionHasTheVelocityAndAccelerationOfEachVertex) {
   Environment environment(scene_with_tumbling_torus());
-  const RigidObject& torus = environment.rigids[0];
+  const BodyObject& torus = environment.bodies[0];
   const double h = 1e-4;
   for (const double t : {0.25, 1.1}) {
     environment.move_to(t - h);
@@ -210,7 +210,7 @@ TEST(MeshFile, IsLoadedScaledAndTakenAsItLiesWhicheverAxisIsUp) {
   std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n";
   const Environment environment(scene_with(scene::MeshFile{.path = file, .scale = 0.5}, scene::UpAxis::y));
   fs::remove(file);
-  EXPECT_EQ(environment.rigids[0].motion.positions, (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(environment.bodies[0].motion.positions, (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}}));
 }
 
 TEST(MeshFile, ThatIsMissingIsNamedWithTheSceneLine) {

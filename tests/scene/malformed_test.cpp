@@ -31,8 +31,10 @@ const std::vector<Malformed> kMalformed = {
     // The file as a whole.
     {"EmptyFile", "", "s.toml: expected a scene, got an empty file\n"},
     {"BlankFile", " \n\t\n", "s.toml: expected a scene, got an empty file\n"},
-    {"OnlyComments", "# nothing\n", "s.toml:1:1: expected at least one [[cloth]] or [[obstacle]], got none\n"},
-    {"NoObjects", "[time]\nfps = 24\n", "s.toml:1:1: expected at least one [[cloth]] or [[obstacle]], got none\n"},
+    {"OnlyComments", "# nothing\n",
+     "s.toml:1:1: expected at least one [[cloth]], [[obstacle]] or [[character]], got none\n"},
+    {"NoObjects", "[time]\nfps = 24\n",
+     "s.toml:1:1: expected at least one [[cloth]], [[obstacle]] or [[character]], got none\n"},
     {"BinaryData",
      std::string("\x7f"
                  "ELF\x02\0\0",
@@ -61,7 +63,8 @@ const std::vector<Malformed> kMalformed = {
     {"StaticFrictionBelowThatOfSliding",
      kFloor + "[[cloth]]\nname = 'band'\n[[contact.pair]]\nfirst = 'band'\nsecond = 'flor'\nfriction = 0.5\n"
               "static_friction = 0.4\n",
-     "s.toml:6:10: contact.pair.0.second: expected the name of a cloth or obstacle, got \"flor\"; did you mean floor?\n"
+     "s.toml:6:10: contact.pair.0.second: expected the name of a cloth, obstacle or character, got \"flor\"; did you "
+     "mean floor?\n"
      "s.toml:8:19: contact.pair.0.static_friction: expected >= 0.5, that of sliding, got 0.4\n"},
     {"KeyOfAnInnerTable", "[[cloth]]\nname = 'band'\nthickness = 0.002\n",
      "s.toml:3:1: cloth.band.thickness: unknown key; did you mean material.thickness?\n"},
@@ -71,6 +74,7 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:4:1: light.sun.cone_angle: unknown key of a sun; it belongs to spot\n"},
     {"KeyWithOddCharacters", kFloor + "\"a b\\u0007\" = 3\n",
      "s.toml:2:1: \"a b\\x07\": unknown key; known here: up, title, time, physics, solver, contact, render, obstacle, "
+     "character, "
      "cloth, camera, light\n"},
     {"MissingName", "[[cloth]]\nsize = 1\n",
      "s.toml:1:1: cloth.0.name: expected a name of letters, digits, _ and -, starting with a letter, at most 64 long, "
@@ -151,6 +155,13 @@ const std::vector<Malformed> kMalformed = {
     {"NameTwice", "[[cloth]]\nname = 'band'\n[[cloth]]\nname = 'band'\nsize = 0\n",
      "s.toml:4:8: cloth.1.name: expected a name used once, got \"band\" again\n"
      "s.toml:5:8: cloth.1.size: expected > 0 m, got 0\n"},
+    {"NameOfClothAndCharacter", kBand + "[[character]]\nname = 'band'\nsource = 'sequence'\nfiles = '/none/*.obj'\n",
+     "s.toml:3:8: character.band.name: expected a name used once, got \"band\", which a cloth or obstacle has\n"
+     "s.toml:5:9: character.band.files: expected a folder, or a file name with a *, of at least 2 files, got "
+     "\"/none/*.obj\": 0 there\n"},
+    {"KeyOfTheOtherSource", "[[character]]\nname = 'a'\nsource = 'sequence'\nloop = true\n",
+     "s.toml:1:1: character.a.files: expected a text, got none\n"
+     "s.toml:4:1: character.a.loop: unknown key of a sequence; it belongs to file\n"},
     {"NameOfClothAndObstacle", kBand + "[[obstacle]]\nname = 'band'\nshape = 'box'\n",
      "s.toml:3:8: obstacle.band.name: expected a name used once, got \"band\", which a cloth has\n"},
     {"NameThatIsAPath", "[[cloth]]\nname = '../band'\n",

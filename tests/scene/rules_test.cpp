@@ -37,6 +37,13 @@ file = "triangle.obj"
 [[obstacle]]
 name = "sphere"
 shape = "sphere"
+[[character]]
+name = "dancer"
+file = "triangle.obj"
+[[character]]
+name = "film"
+source = "sequence"
+files = "frames"
 )";
 
 LoadResult load_here(const std::string& text, const std::vector<std::string>& overrides = {}) {
@@ -93,7 +100,7 @@ void expect_change(const std::string& text, const std::string& override_text) {
 /// Names, references and files need more than any other value; scene_test covers them.
 bool is_plain_value(const std::string& path, const Rule& rule) {
   return rule.type != Type::name && rule.type != Type::file && !path.ends_with("follow") && path != "render.camera" &&
-         !path.ends_with("shape") && !path.ends_with("kind");
+         !path.ends_with("shape") && !path.ends_with("kind") && !path.ends_with("source");
 }
 
 TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
@@ -114,6 +121,7 @@ TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
                    try_rule(path, rule, now);
                  });
   for_each_value(*root.find("obstacle")->table, "obstacle.sphere.", try_rule);
+  for_each_value(*root.find("character")->table, "character.dancer.", try_rule);
   for_each_value(*root.find("camera")->table, "camera.v.", try_rule);
   for_each_value(*root.find("light")->table, "light.sun.", try_rule);
   // Spot checks that the walk went where it should.
@@ -124,16 +132,19 @@ TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
 }
 
 TEST(Rules, EachKeyOfAVariantChangesTheSceneAndItsHash) {
-  for (const std::string list : {"obstacle", "cloth", "light"}) {
+  for (const std::string list : {"obstacle", "cloth", "character", "light"}) {
     const Table& table = *scene_rules().find(list)->table;
     for (const Variant& variant : table.variants) {
-      const std::string file = variant.name == "mesh" ? ", file = 'triangle.obj'" : "";
+      const std::string file = variant.name == "mesh"       ? ", file = 'triangle.obj'"
+                               : variant.name == "file"     ? ", file = 'triangle.obj', blend = 1"
+                               : variant.name == "sequence" ? ", files = 'frames'"
+                                                            : "";
       std::string text = list + " = [{ name = 'x', " + table.selector + " = '" + variant.name + "'" + file + " }]\n";
       if (list == "light") text += "cloth = [{ name = 'c' }]\n";
       const auto defaults = table.make();
       table.find(table.selector)->set(defaults.get(), variant.name);
       for (const Rule& rule : variant.rules) {
-        if (!rule.get || rule.type == Type::file) continue;
+        if (!rule.get || rule.type == Type::file || rule.key == "files") continue;
         expect_change(text, list + ".x." + rule.key + "=" + another_value(rule, rule.get(defaults.get())));
       }
     }

@@ -112,6 +112,39 @@ TEST_F(EveryKey, OfAClothFillsItsMember) {
   EXPECT_FALSE(cloth.look.visible);
 }
 
+TEST_F(EveryKey, OfACharacterFillsItsMember) {
+  ASSERT_EQ(scene_.characters.size(), 2u);
+  const Character& character = scene_.characters[0];
+  EXPECT_EQ(character.name, "dancer");
+  const auto& file = std::get<CharacterFile>(character.source);
+  EXPECT_EQ(file.path, kFolder + "triangle.obj");
+  EXPECT_EQ(file.motion, kFolder + "triangle.obj");
+  EXPECT_EQ(file.clip, "Walk");
+  EXPECT_EQ(file.stance, Stance::rest);
+  EXPECT_TRUE(file.loop);
+  EXPECT_EQ(file.crossfade, 0.3);
+  ASSERT_EQ(file.joints.size(), 1u);
+  EXPECT_EQ(file.joints[0].name, "Hips");
+  EXPECT_EQ(file.joints[0].body, "pelvis");
+  EXPECT_EQ(file.joints[0].motion, "root");
+  EXPECT_EQ(character.scale, 0.011);
+  EXPECT_EQ(character.up, FileUp::z);
+  EXPECT_EQ(character.pose.position, Vec3(0.31, 0.32, 0.33));
+  EXPECT_LT((character.pose.rotation * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
+  EXPECT_EQ(character.dressing, 1.25);
+  EXPECT_EQ(character.blend, 0.55);
+  EXPECT_EQ(character.start, 0.35);
+  EXPECT_EQ(character.speed, 1.15);
+  EXPECT_EQ(character.keys_per_second, 48);
+  EXPECT_EQ(character.interpolation, Interpolation::linear);
+  EXPECT_EQ(character.friction, 0.47);
+  EXPECT_FALSE(character.collide);
+  EXPECT_EQ(character.look.color, Vec3(0x10 / 255.0, 0x20 / 255.0, 0x30 / 255.0));
+  const auto& sequence = std::get<MeshSequence>(scene_.characters[1].source);
+  EXPECT_EQ(sequence.files, kFolder + "frames/*.obj");
+  EXPECT_EQ(sequence.fps, 12);
+}
+
 TEST_F(EveryKey, OfAPinFillsItsMember) {
   ASSERT_EQ(scene_.cloths[0].pins.size(), 2u);
   const Pin& following = scene_.cloths[0].pins[0];

@@ -1,0 +1,101 @@
+#include "assets/character_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <assimp/Importer.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "assets/character_reader.hpp"
+#include "assets/source.hpp"
+
+namespace weft::assets {
+namespace {
+
+/// Assimp's readers turn their formats to y up.
+constexpr int kUsualUp = 1;
+
+ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh) {
+  Assimp::Importer importer;
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, !with_mesh);
+  const aiScene* scene = importer.ReadFile(file.string(), 0);
+  if (scene == nullptr || scene->mRootNode == nullptr) throw std::runtime_error(importer.GetErrorString());
+  return to_character(*scene);
+}
+
+/// Warnings of a file get its name; it is turned to the scene's axes and scaled to metres.
+LoadedCharacter finish(const Source& source, ReadCharacter read, const FileAxes& axes) {
+  LoadedCharacter loaded{std::move(read.character), {}};
+  for (const std::string& warning : read.warnings) loaded.warnings.push_back(source.describe(warning));
+  const int up = axes.up == scene::FileUp::as_file ? read.up.value_or(kUsualUp) : static_cast<int>(axes.up) - 1;
+  transform(loaded.character, axes.scale.value_or(read.metres_per_unit.value_or(1)), turn_up(up, axes.scene_up));
+  return loaded;
+}
+
+ReadCharacter read_isolated(const Source& source, bool with_mesh) {
+  const std::string bytes = source.read([&] {
+    ReadCharacter read = read_file(source.file, with_mesh);
+    return to_bytes(read);
+  });
+  return character_from_bytes(bytes);
+}
+
+template <class Value, class Change>
+void change(character::Curve<Value>& curve, const Change& change) {
+  for (Value& value : curve.values) value = change(value);
+}
+
+}  // namespace
+
+Mat3 turn_up(int up, scene::UpAxis scene_up) {
+  const int to = scene_up == scene::UpAxis::z ? 2 : 1;
+  // The axes in their cyclic order from the one that points up; a turn by a third goes one on.
+  Mat3 turn = Mat3::Zero();
+  if (up == 1 && to == 2) return (turn << 1, 0, 0, 0, 0, -1, 0, 1, 0).finished();
+  if (up == 2 && to == 1) return (turn << 1, 0, 0, 0, 0, 1, 0, -1, 0).finished();
+  for (int axis = 0; axis < 3; ++axis) turn((axis + to - up + 3) % 3, axis) = 1;
+  return turn;
+}
+
+void transform(character::Character& character, double scale, const Mat3& axes) {
+  const Quat turn(axes);
+  const Mat3 sizes = axes.cwiseAbs();
+  const auto move = [&](const Vec3& x) -> Vec3 { return scale * (axes * x); };
+  const auto conjugate = [&](character::Affine& map) {
+    map.linear() = axes * map.linear() * axes.transpose();
+    map.translation() = move(map.translation());
+  };
+  for (character::Node& node : character.nodes) conjugate(node.local);
+  for (character::Bone& bone : character.bones) conjugate(bone.offset);
+  for (Vec3& x : character.mesh.positions) x = move(x);
+  for (character::MorphTarget& target : character.morphs)
+    for (Vec3& x : target.displacements) x = move(x);
+  for (character::Clip& clip : character.clips)
+    for (character::Channel& channel : clip.channels) {
+      change(channel.position, move);
+      change(channel.rotation, [&](const Quat& q) { return (turn * q * turn.conjugate()).normalized(); });
+      change(channel.scale, [&](const Vec3& s) -> Vec3 { return sizes * s; });
+    }
+}
+
+LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where) {
+  const Source source{file, where, "character"};
+  LoadedCharacter loaded = finish(source, read_isolated(source, true), axes);
+  if (loaded.character.mesh.topology.triangles.empty())
+    source.fail("expected a mesh with faces that have an area, got none");
+  for (const Vec3& x : loaded.character.mesh.positions)
+    if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
+      source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(), x.y(),
+                              x.z()));
+  return loaded;
+}
+
+LoadedCharacter load_motion(const std::filesystem::path& file, const FileAxes& axes, const std::string& where) {
+  const Source source{file, where, "motion"};
+  LoadedCharacter loaded = finish(source, read_isolated(source, false), axes);
+  if (loaded.character.clips.empty()) source.fail("expected a motion, got a file without animation");
+  return loaded;
+}
+
+}  // namespace weft::assets

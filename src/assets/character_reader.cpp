@@ -1,0 +1,342 @@
+#include "assets/character_reader.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <unordered_map>
+#include <utility>
+
+#include "assets/clip_reader.hpp"
+#include "assets/soup.hpp"
+#include "mesh/polygon.hpp"
+
+namespace weft::assets {
+namespace {
+
+using character::Affine;
+
+/// Vertices of all parts with all their copies, before joining: many times what cloth can collide with in use.
+constexpr std::size_t kMaxVertices = 4'000'000;
+
+/// Sums of weights that are off by more than rounding and the few bits that some formats store.
+constexpr double kWeightSlack = 0.02;
+
+Affine to_affine(const aiMatrix4x4& m) {
+  Affine map;
+  map.matrix() << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, 0, 0, 0, 1;
+  return map;
+}
+
+bool invertible(const Affine& map) {
+  const double size = map.linear().norm();
+  return std::abs(map.linear().determinant()) > 1e-9 * size * size * size;
+}
+
+/// The weights of one vertex, by bone.
+using Weights = std::vector<character::Influence>;
+
+class CharacterReader {
+ public:
+  explicit CharacterReader(const aiScene& scene) : scene_(scene) {}
+
+  ReadCharacter read() {
+    read_nodes();
+    for (std::size_t n = 0; n < nodes_.size(); ++n)
+      for (const unsigned m : std::span(nodes_[n]->mMeshes, nodes_[n]->mNumMeshes)) {
+        if (m >= scene_.mNumMeshes)
+          throw std::runtime_error(fmt::format("node \"{}\": expected one of {} meshes, got number {}",
+                                               character_.nodes[n].name, scene_.mNumMeshes, m));
+        read_mesh(*scene_.mMeshes[m], static_cast<Index>(n));
+      }
+    join_vertices();
+    make_faces();
+    for (const aiAnimation* animation : std::span(scene_.mAnimations, scene_.mNumAnimations))
+      character_.clips.push_back(to_clip(*animation, targets_, read_.warnings));
+    name_clips();
+    read_units();
+    return std::move(read_);
+  }
+
+ private:
+  void read_nodes() {
+    // The walk keeps its own stack: files can nest nodes deeper than ours is.
+    std::vector<std::pair<const aiNode*, Index>> stack{{scene_.mRootNode, -1}};
+    while (!stack.empty()) {
+      const auto [node, parent] = stack.back();
+      stack.pop_back();
+      const auto index = static_cast<Index>(nodes_.size());
+      const std::string name = node->mName.C_Str();
+      nodes_.push_back(node);
+      character_.nodes.push_back({name, parent, to_affine(node->mTransformation)});
+      const Affine& local = character_.nodes.back().local;
+      if (!local.matrix().allFinite())
+        throw std::runtime_error(fmt::format("node \"{}\": expected finite numbers, got others", name));
+      globals_.push_back(parent < 0 ? local : globals_[static_cast<std::size_t>(parent)] * local);
+      targets_.nodes.emplace(name, index);
+      for (unsigned c = node->mNumChildren; c-- > 0;) stack.emplace_back(node->mChildren[c], index);
+    }
+  }
+
+  void read_mesh(const aiMesh& mesh, Index node) {
+    const std::string name = mesh.mName.C_Str();
+    const bool faces = std::any_of(mesh.mFaces, mesh.mFaces + mesh.mNumFaces,
+                                   [](const aiFace& face) { return face.mNumIndices >= 3; });
+    if (!faces) return;
+    // Skinned meshes are where their bones are, whichever node shows them.
+    if (mesh.mNumBones > 0 && !skinned_.insert(&mesh).second) return;
+    const std::size_t base = soup_.positions.size();
+    if (base + mesh.mNumVertices > kMaxVertices)
+      throw std::runtime_error(fmt::format("mesh \"{}\": expected at most {} vertices in all", name, kMaxVertices));
+
+    Affine placing = globals_[static_cast<std::size_t>(node)];
+    std::vector<Weights> weights = read_weights(mesh, node, placing);
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const aiVector3D& x = mesh.mVertices[v];
+      soup_.positions.push_back(placing * Vec3(x.x, x.y, x.z));
+      if (!soup_.positions.back().allFinite())
+        throw std::runtime_error(
+            fmt::format("mesh \"{}\": expected finite coordinates, got others at vertex {}", name, v));
+    }
+    std::move(weights.begin(), weights.end(), std::back_inserter(weights_));
+    read_faces(mesh, base, placing.linear().determinant() < 0);
+    read_morphs(mesh, node, base, placing);
+  }
+
+  /// The weights of each vertex of a mesh. Of a skinned mesh `placing` becomes the map from the mesh to where its most
+  /// important bone holds it at rest, and the bones' offsets start from there, so that all meshes share one space.
+  std::vector<Weights> read_weights(const aiMesh& mesh, Index node, Affine& placing) {
+    std::vector<Weights> weights(mesh.mNumVertices);
+    std::vector<std::pair<Index, Affine>> bones;  // node and offset, of those that hold something
+    double most = 0;
+    for (const aiBone* bone : std::span(mesh.mBones, mesh.mNumBones)) {
+      double total = 0;
+      for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights))
+        total += check_weight(mesh, *bone, w);
+      if (total == 0) continue;
+      const auto found = targets_.nodes.find(bone->mName.C_Str());
+      if (found == targets_.nodes.end())
+        throw std::runtime_error(fmt::format("mesh \"{}\": expected a node for each bone, got none named \"{}\"",
+                                             mesh.mName.C_Str(), bone->mName.C_Str()));
+      const Affine offset = to_affine(bone->mOffsetMatrix);
+      if (!offset.matrix().allFinite())
+        throw std::runtime_error(fmt::format("mesh \"{}\", bone \"{}\": expected finite numbers, got others",
+                                             mesh.mName.C_Str(), bone->mName.C_Str()));
+      const auto index = static_cast<Index>(character_.bones.size() + bones.size());
+      bones.emplace_back(found->second, offset);
+      for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights))
+        if (w.mWeight > 0) weights[w.mVertexId].push_back({index, w.mWeight});
+      const Affine held = globals_[static_cast<std::size_t>(found->second)] * offset;
+      if (total > most && invertible(held)) {
+        most = total;
+        placing = held;
+      }
+    }
+    const Affine back = invertible(placing) ? placing.inverse() : Affine::Identity();
+    if (!invertible(placing)) placing = Affine::Identity();
+    for (const auto& [bone_node, offset] : bones) character_.bones.push_back({bone_node, offset * back});
+    hold_the_rest(mesh, node, placing, weights);
+    return weights;
+  }
+
+  double check_weight(const aiMesh& mesh, const aiBone& bone, const aiVertexWeight& weight) const {
+    const auto fail = [&](const std::string& why) {
+      throw std::runtime_error(
+          fmt::format("mesh \"{}\", bone \"{}\": {}", mesh.mName.C_Str(), bone.mName.C_Str(), why));
+    };
+    if (weight.mVertexId >= mesh.mNumVertices)
+      fail(fmt::format("expected one of {} vertices, got number {}", mesh.mNumVertices, weight.mVertexId));
+    if (!std::isfinite(weight.mWeight) || weight.mWeight < 0)
+      fail(fmt::format("expected a weight >= 0, got {:g} at vertex {}", weight.mWeight, weight.mVertexId));
+    return weight.mWeight;
+  }
+
+  /// Makes weights add up to 1. Vertices without any go with the node of the mesh.
+  void hold_the_rest(const aiMesh& mesh, Index node, const Affine& placing, std::vector<Weights>& weights) {
+    std::size_t loose = 0;
+    double furthest = 1;
+    std::size_t furthest_vertex = 0;
+    Index own = -1;
+    for (std::size_t v = 0; v < weights.size(); ++v) {
+      double sum = 0;
+      for (const character::Influence& influence : weights[v]) sum += influence.weight;
+      if (sum <= 0) {
+        ++loose;
+        if (own < 0) {
+          own = static_cast<Index>(character_.bones.size());
+          character_.bones.push_back({node, placing.inverse()});
+        }
+        weights[v] = {{own, 1}};
+        continue;
+      }
+      if (std::abs(sum - 1) > std::abs(furthest - 1)) {
+        furthest = sum;
+        furthest_vertex = v;
+      }
+      for (character::Influence& influence : weights[v]) influence.weight /= sum;
+    }
+    if (std::abs(furthest - 1) > kWeightSlack)
+      read_.warnings.push_back(
+          fmt::format("mesh \"{}\": weights of a vertex should add up to 1; they were scaled, those "
+                      "of vertex {} from {:g}",
+                      mesh.mName.C_Str(), furthest_vertex, furthest));
+    if (loose > 0 && mesh.mNumBones > 0)
+      read_.warnings.push_back(fmt::format("mesh \"{}\": {} of {} vertices have no bone; they go with node \"{}\"",
+                                           mesh.mName.C_Str(), loose, weights.size(),
+                                           character_.nodes[static_cast<std::size_t>(node)].name));
+  }
+
+  void read_faces(const aiMesh& mesh, std::size_t base, bool mirrored) {
+    std::vector<Index> corners;
+    for (const aiFace& face : std::span(mesh.mFaces, mesh.mNumFaces)) {
+      if (face.mNumIndices < 3) continue;
+      corners.clear();
+      for (const unsigned v : std::span(face.mIndices, face.mNumIndices)) {
+        if (v >= mesh.mNumVertices)
+          throw std::runtime_error(fmt::format("mesh \"{}\": expected one of {} vertices in each face, got number {}",
+                                               mesh.mName.C_Str(), mesh.mNumVertices, v));
+        corners.push_back(static_cast<Index>(base + v));
+      }
+      // A mirroring transform turns faces inside out; reverse them to keep their outside.
+      if (mirrored) std::reverse(corners.begin(), corners.end());
+      append_face(soup_, corners);
+    }
+  }
+
+  void read_morphs(const aiMesh& mesh, Index node, std::size_t base, const Affine& placing) {
+    const std::string name = mesh.mName.C_Str();
+    const ClipTargets::Morphs group{static_cast<Index>(morphs_.size()), static_cast<Index>(mesh.mNumAnimMeshes)};
+    for (const aiAnimMesh* target : std::span(mesh.mAnimMeshes, mesh.mNumAnimMeshes)) {
+      Morph morph{.name = target->mName.C_Str(), .weight = target->mWeight, .first = base, .displacements = {}};
+      if (!std::isfinite(target->mWeight) || (target->HasPositions() && target->mNumVertices != mesh.mNumVertices))
+        throw std::runtime_error(
+            fmt::format("mesh \"{}\", morph target \"{}\": expected {} vertices and a finite weight, got {} and {:g}",
+                        name, morph.name, mesh.mNumVertices, target->mNumVertices, target->mWeight));
+      for (unsigned v = 0; target->HasPositions() && v < mesh.mNumVertices; ++v) {
+        const aiVector3D by = target->mVertices[v] - mesh.mVertices[v];
+        morph.displacements.push_back(placing.linear() * Vec3(by.x, by.y, by.z));
+        if (!morph.displacements.back().allFinite())
+          throw std::runtime_error(
+              fmt::format("mesh \"{}\", morph target \"{}\": expected finite coordinates, got "
+                          "others at vertex {}",
+                          name, morph.name, v));
+      }
+      morphs_.push_back(std::move(morph));
+    }
+    if (group.count == 0) return;
+    const std::string& of_node = character_.nodes[static_cast<std::size_t>(node)].name;
+    targets_.morphs.emplace(of_node, group);
+    if (name != of_node) targets_.morphs.emplace(name, group);
+  }
+
+  /// Copies of a vertex with the same place, weights and displacements become one, so that the surface is joined where
+  /// seams of texture or normals cut it; those that no face names are dropped.
+  void join_vertices() {
+    std::unordered_map<std::string, Index> known;
+    std::vector<Index> renamed(soup_.positions.size(), -1);
+    std::vector<std::size_t> kept;
+    std::string key;
+    const auto rename = [&](Index& v) {
+      const auto old = static_cast<std::size_t>(v);
+      if (renamed[old] < 0) {
+        write_key(old, key);
+        const auto [found, is_new] = known.emplace(key, static_cast<Index>(kept.size()));
+        if (is_new) kept.push_back(old);
+        renamed[old] = found->second;
+      }
+      v = renamed[old];
+    };
+    for (auto& q : soup_.quads) std::for_each(q.begin(), q.end(), rename);
+    for (auto& t : soup_.triangles) std::for_each(t.begin(), t.end(), rename);
+
+    std::vector<Vec3> positions;
+    for (const std::size_t old : kept) {
+      positions.push_back(soup_.positions[old]);
+      character_.first_influence.push_back(static_cast<Index>(character_.influences.size()));
+      character_.influences.insert(character_.influences.end(), weights_[old].begin(), weights_[old].end());
+    }
+    character_.first_influence.push_back(static_cast<Index>(character_.influences.size()));
+    for (Morph& morph : morphs_) {
+      std::vector<Vec3> displacements;
+      for (const std::size_t old : kept) displacements.push_back(morph.at(old));
+      character_.morphs.push_back({std::move(morph.name), std::move(displacements), morph.weight});
+    }
+    soup_.positions = std::move(positions);
+  }
+
+  /// Everything that decides where a vertex goes, as bytes.
+  void write_key(std::size_t v, std::string& key) const {
+    const auto put = [&](double number) {
+      number += 0.0;  // 0 and -0 are one
+      key.append(reinterpret_cast<const char*>(&number), sizeof number);
+    };
+    key.clear();
+    for (const double x : soup_.positions[v]) put(x);
+    for (const character::Influence& influence : weights_[v]) {
+      put(influence.bone);
+      put(influence.weight);
+    }
+    for (const Morph& morph : morphs_)
+      for (const double x : morph.at(v)) put(x);
+  }
+
+  void make_faces() {
+    std::size_t flat = 0;
+    character_.mesh.topology = make_topology(soup_, flat);
+    character_.mesh.positions = std::move(soup_.positions);
+    if (flat > 0)
+      read_.warnings.push_back(fmt::format("{} triangle{} without area left out", flat, flat == 1 ? "" : "s"));
+  }
+
+  /// A clip without a name is called by its number, from 1.
+  void name_clips() {
+    for (std::size_t c = 0; c < character_.clips.size(); ++c)
+      if (character_.clips[c].name.empty()) character_.clips[c].name = std::to_string(c + 1);
+  }
+
+  /// FBX says what it measures in; the readers of other formats turn them to y up, and metres where they know.
+  void read_units() {
+    double centimetres = 0;
+    std::int32_t up = 0;
+    if (scene_.mMetaData == nullptr) return;
+    if (scene_.mMetaData->Get("UnitScaleFactor", centimetres) && std::isfinite(centimetres) && centimetres > 0)
+      read_.metres_per_unit = 0.01 * centimetres;
+    if (scene_.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) read_.up = up;
+  }
+
+  /// A morph target of one mesh.
+  struct Morph {
+    std::string name;
+    double weight = 0;
+    std::size_t first = 0;  // vertex of the soup
+    std::vector<Vec3> displacements;
+
+    Vec3 at(std::size_t v) const {
+      return v >= first && v - first < displacements.size() ? displacements[v - first] : Vec3(Vec3::Zero());
+    }
+  };
+
+  const aiScene& scene_;
+  ReadCharacter read_;
+  character::Character& character_ = read_.character;
+  std::vector<const aiNode*> nodes_;
+  std::vector<Affine> globals_;  // at rest, of the nodes
+  Soup soup_;
+  std::vector<Weights> weights_;  // of the vertices of the soup
+  std::vector<Morph> morphs_;
+  std::set<const aiMesh*> skinned_;  // that have been read
+  ClipTargets targets_;
+};
+
+}  // namespace
+
+ReadCharacter to_character(const aiScene& scene) {
+  return CharacterReader(scene).read();
+}
+
+}  // namespace weft::assets

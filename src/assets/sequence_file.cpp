@@ -1,0 +1,101 @@
+#include "assets/sequence_file.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <utility>
+
+#include "assets/soup.hpp"
+#include "assets/source.hpp"
+
+namespace weft::assets {
+namespace {
+
+/// Positions of all files together: many times what cloth can collide with in use [bytes].
+constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
+
+void check_same_faces(const Source& source, const Soup& first, const Soup& other) {
+  const auto fail = [&](const char* what, std::size_t expected, std::size_t got) {
+    source.fail(fmt::format("expected {} {}, as in the first file of the sequence, got {}", expected, what, got));
+  };
+  if (other.positions.size() != first.positions.size())
+    fail("vertices", first.positions.size(), other.positions.size());
+  if (other.triangles.size() != first.triangles.size())
+    fail("triangles", first.triangles.size(), other.triangles.size());
+  if (other.quads.size() != first.quads.size()) fail("quads", first.quads.size(), other.quads.size());
+  if (other.triangles != first.triangles || other.quads != first.quads)
+    source.fail("expected faces over the same vertices as in the first file of the sequence, got others");
+}
+
+/// Splits groups of vertices that are together so far where a file has them at different places.
+void split_groups(const std::vector<Vec3>& positions, std::vector<Index>& groups) {
+  std::map<std::pair<Index, std::array<double, 3>>, Index> known;
+  for (std::size_t v = 0; v < groups.size(); ++v) {
+    const Vec3 x = positions[v] + Vec3::Zero();  // 0 and -0 are one
+    groups[v] = known.emplace(std::pair(groups[v], std::array{x.x(), x.y(), x.z()}), static_cast<Index>(known.size()))
+                    .first->second;
+  }
+}
+
+std::vector<Vec3> kept_of(const std::vector<Vec3>& positions, const std::vector<std::size_t>& kept) {
+  std::vector<Vec3> result;
+  for (const std::size_t v : kept) result.push_back(positions[v]);
+  return result;
+}
+
+}  // namespace
+
+LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const FileAxes& axes,
+                             const std::string& where) {
+  const Mat3 turn = axes.scale.value_or(1) *
+                    turn_up(axes.up == scene::FileUp::as_file ? 1 : static_cast<int>(axes.up) - 1, axes.scene_up);
+  Soup first;
+  std::vector<Index> groups;
+  LoadedSequence loaded;
+  for (const std::filesystem::path& file : files) {
+    const Source source{file, where, "mesh"};
+    Soup soup = from_bytes(source.read([&] { return to_bytes(read_soup(file)); }));
+    for (Vec3& x : soup.positions) {
+      x = turn * x;
+      if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
+        source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(),
+                                x.y(), x.z()));
+    }
+    if (loaded.positions.empty()) {
+      if (soup.triangles.empty() && soup.quads.empty()) source.fail("expected faces, got none");
+      if (soup.positions.size() * sizeof(Vec3) * files.size() > kMaxBytes)
+        source.fail(fmt::format("expected at most {} bytes of key frames, got {} of {} vertices", kMaxBytes,
+                                files.size(), soup.positions.size()));
+      first = soup;
+      groups.assign(soup.positions.size(), 0);
+    } else {
+      check_same_faces(source, first, soup);
+    }
+    split_groups(soup.positions, groups);
+    loaded.positions.push_back(std::move(soup.positions));
+  }
+
+  // Groups become vertices, in the order in which faces first name them.
+  std::vector<Index> renamed(groups.size(), -1);
+  std::vector<std::size_t> kept;
+  const auto rename = [&](Index& v) {
+    Index& name = renamed[static_cast<std::size_t>(groups[static_cast<std::size_t>(v)])];
+    if (name < 0) {
+      name = static_cast<Index>(kept.size());
+      kept.push_back(static_cast<std::size_t>(v));
+    }
+    v = name;
+  };
+  for (auto& q : first.quads) std::for_each(q.begin(), q.end(), rename);
+  for (auto& t : first.triangles) std::for_each(t.begin(), t.end(), rename);
+  for (std::vector<Vec3>& positions : loaded.positions) positions = kept_of(positions, kept);
+  first.positions = loaded.positions.front();
+  std::size_t flat = 0;
+  loaded.mesh.topology = make_topology(first, flat);
+  loaded.mesh.positions = std::move(first.positions);
+  return loaded;
+}
+
+}  // namespace weft::assets

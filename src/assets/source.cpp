@@ -1,0 +1,66 @@
+#include "assets/source.hpp"
+
+#include <fmt/format.h>
+
+#include <exception>
+#include <fstream>
+#include <system_error>
+
+#include "assets/isolated.hpp"
+#include "core/error.hpp"
+
+namespace weft::assets {
+namespace {
+
+/// A PLY header without end keeps assimp 5.2 busy for ever; refusing it here spares the user the wait for the time
+/// limit.
+void check_ply_header(const Source& source) {
+  constexpr std::size_t kHeaderBytes = 1 << 16;  // of which real headers take a hundredth
+  std::ifstream in(source.file, std::ios::binary);
+  std::string start(kHeaderBytes, '\0');
+  in.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(in.gcount()));
+  const bool ply = start.starts_with("ply") || start.starts_with("PLY");
+  if (ply && start.find("\nend_header\n") == std::string::npos && start.find("\nend_header\r") == std::string::npos)
+    source.fail("expected a line end_header in the first 64 kB of a PLY file, got none");
+}
+
+/// Processor time that reading may take [s]: many times what assimp needs for its slowest text formats (about 10 MB/s),
+/// so that only files which keep it busy for ever are stopped.
+unsigned time_limit(std::uintmax_t bytes) {
+  return 5 + static_cast<unsigned>(bytes >> 20);
+}
+
+}  // namespace
+
+void Source::fail(const std::string& why) const {
+  throw Error(ExitCode::asset_unreadable, describe(why));
+}
+
+std::string Source::describe(const std::string& what) const {
+  return fmt::format("{}: {} file {}: {}", where, kind, file.string(), what);
+}
+
+void Source::check() const {
+  std::error_code error;
+  const auto status = std::filesystem::status(file, error);
+  if (!std::filesystem::exists(status)) fail("expected a readable file, got none at this path");
+  if (!std::filesystem::is_regular_file(status)) fail("expected a regular file, got a folder or a device");
+  const std::uintmax_t bytes = std::filesystem::file_size(file, error);
+  if (error) fail(error.message());
+  if (bytes == 0) fail(fmt::format("expected a {}, got an empty file", kind));
+  if (bytes > kMaxMeshFileBytes)
+    fail(fmt::format("expected at most {} bytes, got {}; reduce the mesh", kMaxMeshFileBytes, bytes));
+  check_ply_header(*this);
+}
+
+std::string Source::read(const std::function<std::string()>& read) const {
+  check();
+  try {
+    return run_isolated(read, time_limit(std::filesystem::file_size(file)));
+  } catch (const std::exception& error) {
+    fail(error.what());
+  }
+}
+
+}  // namespace weft::assets

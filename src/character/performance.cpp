@@ -1,0 +1,96 @@
+#include "character/performance.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace weft::character {
+namespace {
+
+/// From 0 to 1 without a jerk at either end: zero first derivatives there.
+double smooth(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * (3 - 2 * u);
+}
+
+}  // namespace
+
+double clip_time(const Timing& timing, double t) {
+  const double going = t - timing.dressing;
+  if (going <= 0) return timing.start;
+  if (going >= timing.blend) return timing.start + timing.speed * (going - timing.blend / 2);
+  // The integral of smooth(): the speed rises from 0 to its whole.
+  const double u = going / timing.blend;
+  return timing.start + timing.speed * timing.blend * (u * u * u * (1 - u / 2));
+}
+
+Performance::Performance(const Character& character, const Clip& clip, const Playing& playing, const Vec3& up)
+    : character_(character), clip_(clip), playing_(playing), up_(up), rest_(rest_pose(character)) {
+  for (const Channel& channel : clip.channels)
+    if (channel.position.times.size() > 1 && (root_ < 0 || channel.node < root_)) root_ = channel.node;
+  if (root_ >= 0) {
+    const Index parent = character.nodes[static_cast<std::size_t>(root_)].parent;
+    if (parent >= 0) root_to_world_ = global_transforms(character, rest_)[static_cast<std::size_t>(parent)].linear();
+  }
+  const double fade = std::min(playing.crossfade, clip.duration / 2);
+  playing_.crossfade = fade;
+  period_ = clip.duration - fade;
+  if (playing.loop) travel_ = way(pose_at(character, clip, fade / 2), pose_at(character, clip, period_ + fade / 2));
+  if (playing.from_rest) shift_ = way(at_clip_time(playing.timing.start), rest_);
+}
+
+Vec3 Performance::way(const Pose& a, const Pose& b) const {
+  if (root_ < 0) return Vec3::Zero();
+  const auto node = static_cast<std::size_t>(root_);
+  const Vec3 whole = root_to_world_ * (b.nodes[node].position - a.nodes[node].position);
+  return whole - whole.dot(up_) * up_;
+}
+
+void Performance::displace(Pose& pose, const Vec3& by) const {
+  if (root_ >= 0) pose.nodes[static_cast<std::size_t>(root_)].position += root_to_world_.inverse() * by;
+}
+
+Pose Performance::at_clip_time(double t) const {
+  if (!playing_.loop || period_ <= 0) return pose_at(character_, clip_, t);
+  const double round = std::floor(t / period_), into = t - round * period_;
+  Pose pose = pose_at(character_, clip_, into);
+  displace(pose, round * travel_);
+  if (round >= 1 && into < playing_.crossfade) {
+    Pose last = pose_at(character_, clip_, period_ + into);
+    displace(last, (round - 1) * travel_);
+    pose = blend(last, pose, smooth(into / playing_.crossfade));
+  }
+  return pose;
+}
+
+Pose Performance::at(double t) const {
+  const Timing& timing = playing_.timing;
+  if (playing_.from_rest && t <= timing.dressing) return rest_;
+  Pose pose = at_clip_time(clip_time(timing, t));
+  displace(pose, shift_);
+  if (playing_.from_rest && t < timing.dressing + timing.blend)
+    pose = blend(rest_, pose, smooth((t - timing.dressing) / timing.blend));
+  return pose;
+}
+
+double Performance::gap() const {
+  if (!playing_.loop || playing_.crossfade > 0) return 0;
+  std::vector<Vec3> end(character_.mesh.positions.size()), begin(end.size());
+  Pose next = pose_at(character_, clip_, 0);
+  displace(next, travel_);
+  skin(character_, pose_at(character_, clip_, clip_.duration), end);
+  skin(character_, next, begin);
+  double gap = 0;
+  for (std::size_t v = 0; v < end.size(); ++v) gap = std::max(gap, (end[v] - begin[v]).norm());
+  return gap;
+}
+
+double key_rate(const Clip& clip) {
+  std::size_t most = 1;
+  for (const Channel& channel : clip.channels)
+    most = std::max({most, channel.position.times.size(), channel.rotation.times.size(), channel.scale.times.size()});
+  for (const MorphChannel& channel : clip.morphs) most = std::max(most, channel.weight.times.size());
+  return clip.duration > 0 ? static_cast<double>(most - 1) / clip.duration : 0;
+}
+
+}  // namespace weft::character

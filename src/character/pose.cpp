@@ -1,0 +1,128 @@
+#include "character/pose.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+#include "core/parallel.hpp"
+
+namespace weft::character {
+namespace {
+
+/// Vertices skinned by one task; a task then takes some hundred microseconds.
+constexpr std::size_t kVerticesPerTask = 2048;
+
+Vec3 between(const Vec3& a, const Vec3& b, double weight) {
+  return a + weight * (b - a);
+}
+double between(double a, double b, double weight) {
+  return a + weight * (b - a);
+}
+Quat between(const Quat& a, const Quat& b, double weight) {
+  return a.slerp(weight, b);
+}
+
+/// At least one key.
+template <class Value>
+Value value_at(const Curve<Value>& curve, double t) {
+  const auto after = std::upper_bound(curve.times.begin(), curve.times.end(), t);
+  if (after == curve.times.begin()) return curve.values.front();
+  if (after == curve.times.end()) return curve.values.back();
+  const auto k = static_cast<std::size_t>(after - curve.times.begin());
+  const double weight = (t - curve.times[k - 1]) / (curve.times[k] - curve.times[k - 1]);
+  return between(curve.values[k - 1], curve.values[k], weight);
+}
+
+/// The rotation of a map: its columns made perpendicular one after the other. A mirroring map turns its first axis.
+Mat3 rotation_of(const Mat3& linear) {
+  Vec3 x = linear.col(0), y = linear.col(1);
+  if (linear.determinant() < 0) x = -x;
+  const double length = std::max({linear.col(0).norm(), linear.col(1).norm(), linear.col(2).norm()});
+  // A map that crushes an axis says nothing about its rotation.
+  if (!(x.norm() > 1e-9 * length) || !(x.cross(y).norm() > 1e-9 * x.norm() * length)) return Mat3::Identity();
+  x.normalize();
+  y = (y - y.dot(x) * x).normalized();
+  Mat3 rotation;
+  rotation << x, y, x.cross(y);
+  return rotation;
+}
+
+}  // namespace
+
+Affine Placement::to_affine() const {
+  Affine map;
+  map.linear() = rotation.toRotationMatrix() * stretch;
+  map.translation() = position;
+  map.makeAffine();
+  return map;
+}
+
+Placement to_placement(const Affine& map) {
+  const Mat3 rotation = rotation_of(map.linear());
+  return {map.translation(), Quat(rotation).normalized(), rotation.transpose() * map.linear()};
+}
+
+Pose rest_pose(const Character& character) {
+  Pose pose;
+  for (const Node& node : character.nodes) pose.nodes.push_back(to_placement(node.local));
+  for (const MorphTarget& target : character.morphs) pose.morphs.push_back(target.weight);
+  return pose;
+}
+
+Pose pose_at(const Character& character, const Clip& clip, double t) {
+  Pose pose = rest_pose(character);
+  for (const Channel& channel : clip.channels) {
+    Placement& node = pose.nodes[static_cast<std::size_t>(channel.node)];
+    if (!channel.position.times.empty()) node.position = value_at(channel.position, t);
+    if (!channel.rotation.times.empty()) node.rotation = value_at(channel.rotation, t).normalized();
+    if (!channel.scale.times.empty()) node.stretch = value_at(channel.scale, t).asDiagonal();
+  }
+  for (const MorphChannel& channel : clip.morphs)
+    if (!channel.weight.times.empty())
+      pose.morphs[static_cast<std::size_t>(channel.target)] = value_at(channel.weight, t);
+  return pose;
+}
+
+Pose blend(const Pose& a, const Pose& b, double weight) {
+  Pose pose = a;
+  for (std::size_t n = 0; n < pose.nodes.size(); ++n) {
+    Placement& node = pose.nodes[n];
+    node.position = between(node.position, b.nodes[n].position, weight);
+    node.rotation = between(node.rotation, b.nodes[n].rotation, weight).normalized();
+    node.stretch += weight * (b.nodes[n].stretch - node.stretch);
+  }
+  for (std::size_t m = 0; m < pose.morphs.size(); ++m) pose.morphs[m] = between(pose.morphs[m], b.morphs[m], weight);
+  return pose;
+}
+
+std::vector<Affine> global_transforms(const Character& character, const Pose& pose) {
+  std::vector<Affine> globals;
+  globals.reserve(pose.nodes.size());
+  for (std::size_t n = 0; n < pose.nodes.size(); ++n) {
+    const Index parent = character.nodes[n].parent;
+    const Affine local = pose.nodes[n].to_affine();
+    globals.push_back(parent < 0 ? local : globals[static_cast<std::size_t>(parent)] * local);
+  }
+  return globals;
+}
+
+void skin(const Character& character, const Pose& pose, std::span<Vec3> out) {
+  using Map = Eigen::Matrix<double, 3, 4>;
+  const std::vector<Affine> globals = global_transforms(character, pose);
+  std::vector<Map> bones;
+  for (const Bone& bone : character.bones)
+    bones.push_back((globals[static_cast<std::size_t>(bone.node)] * bone.offset).matrix().topRows<3>());
+  parallel_for(out.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      Vec3 shape = character.mesh.positions[v];
+      for (std::size_t m = 0; m < pose.morphs.size(); ++m)
+        if (pose.morphs[m] != 0) shape += pose.morphs[m] * character.morphs[m].displacements[v];
+      Map map = Map::Zero();
+      for (auto i = static_cast<std::size_t>(character.first_influence[v]);
+           i < static_cast<std::size_t>(character.first_influence[v + 1]); ++i)
+        map += character.influences[i].weight * bones[static_cast<std::size_t>(character.influences[i].bone)];
+      out[v] = map * shape.homogeneous();
+    }
+  });
+}
+
+}  // namespace weft::character

@@ -1,0 +1,44 @@
+// Where every node of a character is at a moment.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "character/character.hpp"
+
+namespace weft::character {
+
+/// Node to parent, in the parts that poses are blended by: the affine map x -> position + rotation · stretch · x.
+struct Placement {
+  Vec3 position{0, 0, 0};           ///< [m]
+  Quat rotation{1, 0, 0, 0};        ///< of unit length
+  Mat3 stretch = Mat3::Identity();  ///< scale, mirroring and shear
+
+  Affine to_affine() const;
+};
+
+struct Pose {
+  std::vector<Placement> nodes;
+  std::vector<double> morphs;  ///< weight of each morph target
+};
+
+/// Takes a map apart; put together again it is the same up to rounding, whatever shear it holds.
+Placement to_placement(const Affine& map);
+
+/// The pose without any clip.
+Pose rest_pose(const Character& character);
+
+/// The pose of a clip at time t [s] after its start; before and after the clip that of its ends.
+Pose pose_at(const Character& character, const Clip& clip, double t);
+
+/// From `a` (weight 0) to `b` (weight 1): positions and stretches along straight lines, rotations the shortest way.
+Pose blend(const Pose& a, const Pose& b, double weight);
+
+/// Node to world for every node.
+std::vector<Affine> global_transforms(const Character& character, const Pose& pose);
+
+/// Where the vertices are in a pose (linear blend skinning over the blended shapes); parallel over vertices. `out`: as
+/// many as the mesh has.
+void skin(const Character& character, const Pose& pose, std::span<Vec3> out);
+
+}  // namespace weft::character

@@ -1,0 +1,80 @@
+#include "environment/key_frames.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <utility>
+
+#include "core/parallel.hpp"
+
+namespace weft::environment {
+namespace {
+
+/// Vertices moved by one task; a task then takes some ten microseconds.
+constexpr std::size_t kVerticesPerTask = 4096;
+
+}  // namespace
+
+KeyFrames::KeyFrames(scene::Interpolation interpolation, double first_time, double interval,
+                     std::vector<std::vector<Vec3>> keys, bool from_rest)
+    : first_time_(first_time), interval_(interval), keys_(std::move(keys)) {
+  if (interpolation == scene::Interpolation::cubic && moving()) bend(from_rest);
+}
+
+/// The tridiagonal system of natural_second_derivatives (spline.hpp) for equal lengths h, divided by h:
+///   m[i-1] + 4 m[i] + m[i+1] = 6 (x[i-1] - 2 x[i] + x[i+1]) / h²
+/// with m = 0 at the end, and at the start m = 0, or for no velocity there 2 m[0] + m[1] = 6 (x[1] - x[0]) / h².
+void KeyFrames::bend(bool from_rest) {
+  const std::size_t n = keys_.size(), vertices = keys_.front().size();
+  const double factor = 6 / (interval_ * interval_);
+  bends_.assign(n, std::vector<Vec3>(vertices, Vec3::Zero()));
+  // The same elimination for every vertex: row i says m[i] = rest - upper[i] m[i+1].
+  std::vector<double> upper(n, 0.0), pivot(n, 1.0);
+  if (from_rest) {
+    pivot[0] = 2;
+    upper[0] = 0.5;
+  }
+  for (std::size_t i = 1; i + 1 < n; ++i) {
+    pivot[i] = 4 - upper[i - 1];
+    upper[i] = 1 / pivot[i];
+  }
+  parallel_for(vertices, kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+    if (from_rest)
+      for (std::size_t v = begin; v < end; ++v) bends_[0][v] = factor * (keys_[1][v] - keys_[0][v]) / pivot[0];
+    for (std::size_t i = 1; i + 1 < n; ++i)
+      for (std::size_t v = begin; v < end; ++v)
+        bends_[i][v] = (factor * (keys_[i - 1][v] - 2 * keys_[i][v] + keys_[i + 1][v]) - bends_[i - 1][v]) / pivot[i];
+    for (std::size_t i = n - 1; i-- > 0;)
+      for (std::size_t v = begin; v < end; ++v) bends_[i][v] -= upper[i] * bends_[i + 1][v];
+  });
+}
+
+void KeyFrames::at(double t, Motion& motion) const {
+  const double place = (t - first_time_) / interval_;
+  const auto last = static_cast<double>(keys_.size() - 1);
+  const bool stands = !(place >= 0) || place >= last;
+  const auto i = static_cast<std::size_t>(std::clamp(std::floor(place), 0.0, last));
+  const double h = interval_, s = stands ? 0 : t - first_time_ - static_cast<double>(i) * h;
+  parallel_for(motion.positions.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      motion.positions[v] = keys_[i][v];
+      motion.velocities[v] = motion.accelerations[v] = Vec3::Zero();
+      if (stands) continue;
+      Vec3 slope = (keys_[i + 1][v] - keys_[i][v]) / h, bend = Vec3::Zero(), jerk = Vec3::Zero();
+      if (!bends_.empty()) {
+        bend = bends_[i][v];
+        jerk = (bends_[i + 1][v] - bend) / h;
+        slope -= h / 6 * (2 * bend + bends_[i + 1][v]);
+      }
+      motion.positions[v] += s * (slope + s * (bend / 2 + s / 6 * jerk));
+      motion.velocities[v] = slope + s * (bend + s / 2 * jerk);
+      motion.accelerations[v] = bend + s * jerk;
+    }
+  });
+}
+
+std::size_t KeyFrames::bytes() const {
+  return (keys_.size() + bends_.size()) * keys_.front().size() * sizeof(Vec3);
+}
+
+}  // namespace weft::environment

@@ -1,0 +1,44 @@
+// Bodies whose vertices are stored as key frames before the simulation starts (seed, "System").
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "core/types.hpp"
+#include "scene/scene.hpp"
+
+namespace weft::environment {
+
+/// State of the vertices of one object in world space.
+struct Motion {
+  std::vector<Vec3> positions;      ///< [m]
+  std::vector<Vec3> velocities;     ///< [m/s]
+  std::vector<Vec3> accelerations;  ///< [m/s²]
+};
+
+/// Vertices through equally spaced key frames, as Spline does it: along straight lines, or along cubic splines that are
+/// twice continuously differentiable. Before the first key the body stands, after the last one it stands again.
+class KeyFrames {
+ public:
+  /// `from_rest`: it stands before the first key, so the spline starts with no velocity there; else with no
+  /// acceleration, as it ends. At least one key; `interval` [s] is positive.
+  KeyFrames(scene::Interpolation interpolation, double first_time, double interval, std::vector<std::vector<Vec3>> keys,
+            bool from_rest);
+
+  /// Writes positions and their exact derivatives; at a corner of linear motion those of the later piece. Parallel over
+  /// vertices, allocates nothing.
+  void at(double t, Motion& motion) const;
+
+  bool moving() const { return keys_.size() > 1; }
+  std::size_t bytes() const;
+
+ private:
+  void bend(bool from_rest);
+
+  double first_time_, interval_;  // [s]
+  std::vector<std::vector<Vec3>> keys_;
+  std::vector<std::vector<Vec3>> bends_;  // second derivatives at the keys [m/s²]; none for linear motion
+};
+
+}  // namespace weft::environment

@@ -1,0 +1,99 @@
+#include "scene/character_rules.hpp"
+
+#include <array>
+
+#include "scene/common_rules.hpp"
+
+namespace weft::scene {
+namespace {
+
+const Table& joint_rules() {
+  static const Table kTable =
+      TableBuilder<JointNames>("A joint that the motion moves, where its name is none of those that are known.")
+          .plain(
+              Type::name, "name", &JointNames::name,
+              "Hips, Spine, Chest, Neck, Head, and Shoulder, UpperArm, LowerArm, Hand, UpperLeg, LowerLeg, Foot, Toes "
+              "with Left or Right before it")
+          .need(Need::required)
+          .plain(Type::text, "body", &JointNames::body, "what it is called in the character's file")
+          .by_default("found by its name")
+          .plain(Type::text, "motion", &JointNames::motion, "what it is called in the file of the motion")
+          .by_default("found by its name")
+          .build();
+  return kTable;
+}
+
+/// Access to a member of the source that a character has.
+template <class Kind, class Field>
+auto of_source(Field Kind::*field) {
+  return [field](Character& c) -> Field& { return std::get<Kind>(c.source).*field; };
+}
+
+/// The keys of each source, in the order of CharacterSource.
+void source_rows(TableBuilder<Character>& rows) {
+  using Rows = TableBuilder<Character>;
+  rows.variant(
+      "file",
+      Rows()
+          .plain(Type::file, "file", of_source(&CharacterFile::path),
+                 "with skeleton, skin and animations; relative paths start at the scene's folder")
+          .need(Need::required)
+          .plain(Type::file, "motion", of_source(&CharacterFile::motion),
+                 "file, such as BVH, of a skeleton whose motion it takes over")
+          .by_default("none")
+          .list(Type::list, "joint", of_source(&CharacterFile::joints), joint_rules())
+          .plain(Type::text, "clip", of_source(&CharacterFile::clip),
+                 "animation of the motion, else of the file itself")
+          .by_default("the first")
+          .choice("stance", of_source(&CharacterFile::stance), {"first", "rest"},
+                  "pose that it stands in before: the one at start, or that without any animation")
+          .plain(Type::boolean, "loop", of_source(&CharacterFile::loop),
+                 "again and again, each round from where the last one has come to")
+          .number("crossfade", of_source(&CharacterFile::crossfade), within(0, 60), "s",
+                  "time of the clip at the end of a round that passes over into the next; 0 for clips that close"));
+  rows.variant(
+      "sequence",
+      Rows()
+          .plain(Type::text, "files", of_source(&MeshSequence::files),
+                 "folder of mesh files, or a file name with one *, in the order of the numbers in their names; "
+                 "relative paths start at the scene's folder")
+          .need(Need::required)
+          .number("fps", of_source(&MeshSequence::fps), above(0, 1000), "Hz", "files a second"));
+}
+
+}  // namespace
+
+const Table& character_rules() {
+  static const std::array<CharacterSource, 2> kSources = {CharacterFile{}, MeshSequence{}};
+  static const Table kTable =
+      TableBuilder<Character>("A body that moves by itself.")
+          .plain(Type::name, "name", &Character::name, "unlike that of any other object")
+          .need(Need::required)
+          .choice_by(
+              "source", {"file", "sequence"}, "where it comes from; decides which further keys it has",
+              [](Character& c) { return c.source.index(); },
+              [](Character& c, std::size_t index) { c.source = kSources[index]; })
+          .selects()
+          .with(source_rows)
+          .number("scale", &Character::scale, above(0, 1e6), "", "metres per unit of the file")
+          .by_default("what the file says, else 1")
+          .choice("up", &Character::up, {"as_file", "x", "y", "z"},
+                  "axis of the file that points up; usually the file says")
+          .with([](auto& rows) { pose_rows(rows, &Character::pose, "of the file's origin"); })
+          .number("dressing", &Character::dressing, within(0, 3600), "s", "how long it stands still before it moves")
+          .number("blend", &Character::blend, within(0, 60), "s", "in which it then gets going")
+          .number("start", &Character::start, within(0, 86400), "s", "time of the clip that it gets going from")
+          .number("speed", &Character::speed, above(0, 100), "", "of the clip; 1 as it is")
+          .number("keys_per_second", &Character::keys_per_second, within(1, 1000), "Hz",
+                  "key frames that are stored before the simulation starts")
+          .by_default("as many as the clip has, 10 to 120")
+          .choice("interpolation", &Character::interpolation, kInterpolations, "between its key frames")
+          .number("friction", &Character::friction, within(0, 10), "",
+                  "Coulomb coefficient; of a pair, the geometric mean of both")
+          .plain(Type::boolean, "collide", &Character::collide, "false lets cloth pass through it")
+          .table("look", &Character::look, obstacle_look_rules())
+          .build();
+  return kTable;
+}
+
+}  // namespace weft::scene

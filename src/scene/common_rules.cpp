@@ -1,0 +1,25 @@
+#include "scene/common_rules.hpp"
+
+#include <numbers>
+
+namespace weft::scene {
+
+Quat from_angles(const std::vector<double>& degrees) {
+  const auto turn = [&](std::size_t i, const Vec3& axis) {
+    return Quat(Eigen::AngleAxisd(degrees[i] * std::numbers::pi / 180, axis));
+  };
+  return turn(2, Vec3::UnitZ()) * turn(1, Vec3::UnitY()) * turn(0, Vec3::UnitX());
+}
+
+const Table& obstacle_look_rules() {
+  static const Table kTable =
+      TableBuilder<Look>("How the obstacle is drawn.")
+          .color("color", &Look::color, "of the surface")
+          .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
+          .plain(Type::boolean, "checker", &Look::checker, "faint grid of 0.5 m tiles, to give a floor scale")
+          .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture; it still collides")
+          .build();
+  return kTable;
+}
+
+}  // namespace weft::scene

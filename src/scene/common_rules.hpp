@@ -1,0 +1,40 @@
+// What several tables of the scene format have in common.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "scene/rule.hpp"
+#include "scene/table_builder.hpp"
+
+namespace weft::scene {
+
+inline const Range kPlace = within(-1e5, 1e5);   // [m]
+inline const Range kExtent = above(0, 1e4);      // [m]
+inline const Range kMoment = within(-1e5, 1e5);  // [s]
+inline const std::vector<std::string> kXyz = {"x", "y", "z"};
+inline const std::vector<std::string> kInterpolations = {"linear", "cubic"};
+
+/// Turns about the fixed x, then y, then z axis.
+Quat from_angles(const std::vector<double>& degrees);
+
+/// position, and quaternion or rotation. `otherwise` says what holds where they are absent.
+template <class S, class Member>
+void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
+  const auto rotation = [pose](S& s) -> Quat& { return std::invoke(pose, s).rotation; };
+  rows.vector(
+          "position", [pose](S& s) -> Vec3& { return std::invoke(pose, s).position; }, kXyz, kPlace, "m", position_of)
+      .by_default(otherwise);
+  rows.vector("quaternion", rotation, {"w", "x", "y", "z"}, within(-1e3, 1e3), "",
+              "rotation as a quaternion, of any length but 0")
+      .nonzero()
+      .by_default(otherwise);
+  rows.respelling("rotation", "quaternion", {"rx", "ry", "rz"}, within(-36000, 36000), "degrees",
+                  "rotation about the fixed x, then y, then z axis",
+                  [rotation](S& s, const std::vector<double>& angles) { rotation(s) = from_angles(angles); });
+}
+
+/// Look of what is not cloth.
+const Table& obstacle_look_rules();
+
+}  // namespace weft::scene

@@ -1,0 +1,256 @@
+// What assimp gives, made by hand and spoilt part by part.
+#include "assets/character_reader.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "character/pose.hpp"
+
+namespace weft::assets {
+namespace {
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
+
+/// Two triangles that hang on two joints, and a mesh without bones at two nodes. aiScene owns and deletes all of it.
+class Scenes : public testing::Test {
+ protected:
+  Scenes() {
+    root_->mChildren = new aiNode* [3] { hip_, knee_, box_node_ };
+    root_->mNumChildren = 3;
+    for (aiNode* child : {hip_, knee_, box_node_}) child->mParent = root_;
+    knee_->mTransformation.a4 = 1;      // at (1, 0, 0)
+    box_node_->mTransformation.b4 = 5;  // at (0, 5, 0)
+    scene_.mRootNode = root_;
+
+    leg_->mName = "leg";
+    set_vertices(*leg_, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}});
+    set_faces(*leg_, {{0, 1, 2}, {1, 3, 2}});
+    leg_->mNumBones = 2;
+    leg_->mBones = new aiBone* [2] { bone("hip", {{0, 1}, {1, 0.5F}, {2, 1}}), bone("knee", {{1, 0.5F}, {3, 1}}) };
+    leg_->mBones[1]->mOffsetMatrix.a4 = -1;
+    box_->mName = "box";
+    set_vertices(*box_, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}});
+    set_faces(*box_, {{0, 1, 2}});
+    scene_.mMeshes = new aiMesh* [2] { leg_, box_ };
+    scene_.mNumMeshes = 2;
+    show(*root_, {0, 1});
+    show(*box_node_, {1});
+
+    clip_->mName = "walk";
+    clip_->mDuration = 20;
+    clip_->mTicksPerSecond = 10;
+    clip_->mChannels = new aiNodeAnim* [1] { channel_ };
+    clip_->mNumChannels = 1;
+    channel_->mNodeName = "knee";
+    channel_->mPositionKeys = new aiVectorKey[2]{{0, {1, 0, 0}}, {20, {1, 0, 3}}};
+    channel_->mNumPositionKeys = 2;
+    scene_.mAnimations = new aiAnimation* [1] { clip_ };
+    scene_.mNumAnimations = 1;
+  }
+
+  static aiNode* node(const char* name) { return new aiNode(name); }
+  static aiBone* bone(const char* name, std::initializer_list<aiVertexWeight> weights) {
+    auto* bone = new aiBone;
+    bone->mName = name;
+    bone->mNumWeights = static_cast<unsigned>(weights.size());
+    bone->mWeights = new aiVertexWeight[weights.size()];
+    std::copy(weights.begin(), weights.end(), bone->mWeights);
+    return bone;
+  }
+  static void set_vertices(aiMesh& mesh, std::initializer_list<aiVector3D> vertices) {
+    mesh.mNumVertices = static_cast<unsigned>(vertices.size());
+    mesh.mVertices = new aiVector3D[vertices.size()];
+    std::copy(vertices.begin(), vertices.end(), mesh.mVertices);
+  }
+  static void set_faces(aiMesh& mesh, std::initializer_list<std::initializer_list<unsigned>> faces) {
+    mesh.mNumFaces = static_cast<unsigned>(faces.size());
+    mesh.mFaces = new aiFace[faces.size()];
+    aiFace* face = mesh.mFaces;
+    for (const auto& corners : faces) {
+      face->mNumIndices = static_cast<unsigned>(corners.size());
+      face->mIndices = new unsigned[corners.size()];
+      std::copy(corners.begin(), corners.end(), face->mIndices);
+      ++face;
+    }
+  }
+  static void show(aiNode& at, std::initializer_list<unsigned> meshes) {
+    at.mNumMeshes = static_cast<unsigned>(meshes.size());
+    at.mMeshes = new unsigned[meshes.size()];
+    std::copy(meshes.begin(), meshes.end(), at.mMeshes);
+  }
+
+  /// Through bytes and back, as between processes.
+  ReadCharacter read() {
+    ReadCharacter read = to_character(scene_);
+    return character_from_bytes(to_bytes(read));
+  }
+  std::string refusal() {
+    try {
+      static_cast<void>(read());
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "taken";
+  }
+  std::string warning() {
+    const auto warnings = read().warnings;
+    EXPECT_EQ(warnings.size(), 1u);
+    return warnings.empty() ? "" : warnings.front();
+  }
+
+  aiScene scene_;
+  aiNode *root_ = node("root"), *hip_ = node("hip"), *knee_ = node("knee"), *box_node_ = node("crate");
+  aiMesh *leg_ = new aiMesh, *box_ = new aiMesh;
+  aiAnimation* clip_ = new aiAnimation;
+  aiNodeAnim* channel_ = new aiNodeAnim;
+};
+
+TEST_F(Scenes, BecomeNodesBonesOneMeshAndClips) {
+  const ReadCharacter got = read();
+  const character::Character& body = got.character;
+  EXPECT_TRUE(got.warnings.empty());
+  ASSERT_EQ(body.nodes.size(), 4u);
+  EXPECT_EQ(body.nodes[2].name, "knee");
+  EXPECT_EQ(body.nodes[2].parent, 0);
+  // The leg, and the mesh without bones once for each node that shows it: 4 + 3 + 3 vertices, each with its weights.
+  EXPECT_EQ(body.mesh.positions.size(), 10u);
+  EXPECT_EQ(body.mesh.topology.triangles.size(), 4u);
+  EXPECT_EQ(body.bones.size(), 4u);
+  ASSERT_EQ(body.clips.size(), 1u);
+  EXPECT_EQ(body.clips[0].duration, 2);
+  EXPECT_EQ(body.clips[0].channels[0].position.times, (std::vector<double>{0, 2}));
+  // In the middle of the clip the knee is 1.5 m up; vertex 1 has half of it, vertex 3 all.
+  std::vector<Vec3> x(10);
+  character::skin(body, character::pose_at(body, body.clips[0], 1), x);
+  EXPECT_EQ(x[1], Vec3(1, 0, 0.75));
+  EXPECT_EQ(x[3], Vec3(2, 0, 1.5));
+  EXPECT_EQ(x[2], Vec3(0, 1, 0));
+  EXPECT_NE(std::find(x.begin(), x.end(), Vec3(0, 6, 0)), x.end()) << "the copy at the crate";
+}
+
+TEST_F(Scenes, WithABindPoseElsewhereStandWhereTheirMostImportantBoneHoldsThem) {
+  hip_->mTransformation.c4 = 7;
+  const character::Character body = read().character;
+  EXPECT_EQ(body.mesh.positions[0], Vec3(0, 0, 7));
+  std::vector<Vec3> x(body.mesh.positions.size());
+  character::skin(body, character::rest_pose(body), x);
+  EXPECT_EQ(x[0], Vec3(0, 0, 7));
+  EXPECT_EQ(x[3], Vec3(2, 0, 0)) << "held by the knee alone, which has not moved";
+}
+
+TEST_F(Scenes, WithSeamsAreJoinedWhereCopiesMoveTogether) {
+  // A third triangle on copies of vertices 1 and 2; the copy of 2 has other weights.
+  delete[] leg_->mVertices;
+  set_vertices(*leg_, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}, {1, 0, -0.0F}, {0, 1, 0}, {3, 3, 0}});
+  delete[] leg_->mFaces;
+  set_faces(*leg_, {{0, 1, 2}, {1, 3, 2}, {4, 6, 5}});
+  delete leg_->mBones[0];
+  delete leg_->mBones[1];
+  leg_->mBones[0] = bone("hip", {{0, 1}, {1, 0.5F}, {2, 1}, {4, 0.5F}, {6, 1}});
+  leg_->mBones[1] = bone("knee", {{1, 0.5F}, {3, 1}, {4, 0.5F}, {5, 1}});
+  EXPECT_EQ(read().character.mesh.positions.size(), 6u + 6u);
+}
+
+TEST_F(Scenes, WithWeightsThatNearlySumAreScaledSilentlyAndOthersWithAWarning) {
+  leg_->mBones[0]->mWeights[0].mWeight = 0.99F;
+  EXPECT_TRUE(read().warnings.empty());
+  leg_->mBones[0]->mWeights[0].mWeight = 0.25F;
+  EXPECT_EQ(warning(),
+            "mesh \"leg\": weights of a vertex should add up to 1; they were scaled, those of vertex 0 from 0.25");
+  EXPECT_EQ(read().character.influences[0].weight, 1);
+}
+
+TEST_F(Scenes, WithVerticesWithoutABoneHangThemOnTheNodeOfTheMesh) {
+  leg_->mBones[0]->mWeights[0].mWeight = 0;
+  EXPECT_EQ(warning(), "mesh \"leg\": 1 of 4 vertices have no bone; they go with node \"root\"");
+}
+
+TEST_F(Scenes, WithPartsThatCannotBeUsedAreRefusedByTheirNames) {
+  leg_->mBones[1]->mName = "ankle";
+  EXPECT_EQ(refusal(), "mesh \"leg\": expected a node for each bone, got none named \"ankle\"");
+  leg_->mBones[1]->mName = "knee";
+  leg_->mBones[1]->mWeights[0].mWeight = kNan;
+  EXPECT_EQ(refusal(), "mesh \"leg\", bone \"knee\": expected a weight >= 0, got nan at vertex 1");
+  leg_->mBones[1]->mWeights[0] = {9, 0.5F};
+  EXPECT_EQ(refusal(), "mesh \"leg\", bone \"knee\": expected one of 4 vertices, got number 9");
+  leg_->mBones[1]->mWeights[0] = {1, 0.5F};
+  leg_->mVertices[2].y = kNan;
+  EXPECT_EQ(refusal(), "mesh \"leg\": expected finite coordinates, got others at vertex 2");
+  leg_->mVertices[2].y = 1;
+  box_->mFaces[0].mIndices[1] = 3;
+  EXPECT_EQ(refusal(), "mesh \"box\": expected one of 3 vertices in each face, got number 3");
+  box_->mFaces[0].mIndices[1] = 1;
+  hip_->mTransformation.b2 = kNan;
+  EXPECT_EQ(refusal(), "node \"hip\": expected finite numbers, got others");
+  hip_->mTransformation.b2 = 1;
+  root_->mMeshes[1] = 2;
+  EXPECT_EQ(refusal(), "node \"root\": expected one of 2 meshes, got number 2");
+  root_->mMeshes[1] = 1;
+  EXPECT_EQ(refusal(), "taken");
+}
+
+TEST_F(Scenes, WithChannelsThatCannotBeUsedAreRefusedByTheirNames) {
+  channel_->mPositionKeys[1].mTime = -1;
+  EXPECT_EQ(refusal(), "clip \"walk\", channel \"knee\": expected key times that increase, got -0.1 s after 0 s");
+  channel_->mPositionKeys[1].mTime = kNan;
+  EXPECT_EQ(refusal(),
+            "clip \"walk\", channel \"knee\": expected key times within a day, got nan ticks of 10 a second");
+  channel_->mPositionKeys[1] = {20, {1, kNan, 0}};
+  EXPECT_EQ(refusal(), "clip \"walk\", channel \"knee\": expected finite numbers, got others in the key at 2 s");
+}
+
+TEST_F(Scenes, WithKeysPastTheEndOrForNoNodeAreTakenWithAWarning) {
+  channel_->mPositionKeys[1].mTime = 25;
+  EXPECT_EQ(
+      warning(),
+      "clip \"walk\", channel \"knee\": its last key, at 2.5 s, is past the end at 2 s; the clip is taken to be that "
+      "long");
+  EXPECT_EQ(read().character.clips[0].duration, 2.5);
+  channel_->mPositionKeys[1].mTime = 20;
+  channel_->mNodeName = "tail";
+  EXPECT_EQ(warning(), "clip \"walk\": 1 channel left out, which name no part of the file: \"tail\"");
+}
+
+TEST_F(Scenes, WithMorphTargetsAreBlendedByTheirChannels) {
+  auto* target = new aiAnimMesh;
+  target->mName = "swell";
+  target->mWeight = 0;
+  target->mNumVertices = 3;
+  target->mVertices = new aiVector3D[3]{{0, 0, 2}, {1, 0, 0}, {0, 1, 0}};
+  box_->mAnimMeshes = new aiAnimMesh* [1] { target };
+  box_->mNumAnimMeshes = 1;
+  auto* channel = new aiMeshMorphAnim;
+  channel->mName = "box*0";
+  channel->mKeys = new aiMeshMorphKey[2];
+  channel->mNumKeys = 2;
+  for (unsigned k = 0; k < 2; ++k) {
+    channel->mKeys[k].mTime = 20.0 * k;
+    channel->mKeys[k].mNumValuesAndWeights = 1;
+    channel->mKeys[k].mValues = new unsigned[1]{0};
+    channel->mKeys[k].mWeights = new double[1]{1.0 * k};
+  }
+  clip_->mMorphMeshChannels = new aiMeshMorphAnim* [1] { channel };
+  clip_->mNumMorphMeshChannels = 1;
+  const character::Character body = read().character;
+  std::vector<Vec3> x(body.mesh.positions.size());
+  character::skin(body, character::pose_at(body, body.clips[0], 0.5), x);
+  EXPECT_NE(std::find(x.begin(), x.end(), Vec3(0, 0, 0.5)), x.end()) << "at the root";
+  EXPECT_NE(std::find(x.begin(), x.end(), Vec3(0, 5, 0.5)), x.end()) << "at the crate";
+  channel->mKeys[1].mValues[0] = 1;
+  EXPECT_EQ(refusal(), "clip \"walk\", channel \"box*0\": expected one of 1 morph targets, got number 1");
+}
+
+TEST_F(Scenes, CutShortBetweenProcessesAreRefused) {
+  ReadCharacter got = to_character(scene_);
+  const std::string bytes = to_bytes(got);
+  for (std::size_t length = 0; length < bytes.size(); length += 7)
+    EXPECT_THROW(static_cast<void>(character_from_bytes(std::string_view(bytes).substr(0, length))),
+                 std::runtime_error);
+}
+
+}  // namespace
+}  // namespace weft::assets

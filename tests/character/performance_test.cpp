@@ -1,0 +1,102 @@
+#include "character/performance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace weft::character {
+namespace {
+
+/// One node that slides: in 2 s by (3, 0, 1) along a way that is not even, z up; it holds one vertex at its origin.
+struct Slider {
+  Character body;
+  Clip clip{"slide", 2, {}, {}};
+
+  Slider() {
+    body.nodes = {{"root", -1, Affine::Identity()}};
+    body.bones = {{0, Affine::Identity()}};
+    body.mesh.positions = {Vec3::Zero()};
+    body.first_influence = {0, 1};
+    body.influences = {{0, 1}};
+    Channel channel;
+    channel.position = {{0, 0.5, 2}, {Vec3(5, 0, 0), Vec3(6, 1, 0.2), Vec3(8, 0, 1)}};
+    clip.channels = {channel};
+  }
+
+  Vec3 at(const Playing& playing, double t) const {
+    return Performance(body, clip, playing, Vec3::UnitZ()).at(t).nodes[0].position;
+  }
+};
+
+TEST(ClipTime, StandsThenGetsGoingSmoothlyThenRunsAtItsSpeed) {
+  const Timing timing{1, 0.5, 0.25, 1.5};
+  EXPECT_EQ(clip_time(timing, 0), 0.25);
+  EXPECT_EQ(clip_time(timing, 1), 0.25);
+  EXPECT_NEAR(clip_time(timing, 1.5), 0.25 + 1.5 * 0.25, 1e-15);
+  EXPECT_NEAR(clip_time(timing, 3.5) - clip_time(timing, 1.5), 3, 1e-14);
+  // Central differences of first and second order, across the ends of the blend: no jump of velocity or acceleration.
+  const auto velocity = [&](double t, double h) {
+    return (clip_time(timing, t + h) - clip_time(timing, t - h)) / (2 * h);
+  };
+  for (const double t : {1.0, 1.5}) EXPECT_NEAR(velocity(t + 1e-4, 1e-5), velocity(t - 1e-4, 1e-5), 1e-5) << t;
+  EXPECT_NEAR(velocity(1, 1e-5), 0, 1e-7);
+  EXPECT_NEAR(velocity(1.25, 1e-5), 0.75, 1e-6) << "half of the speed at half of the blend";
+  EXPECT_NEAR(velocity(2, 1e-5), 1.5, 1e-9);
+}
+
+TEST(Performance, WithoutALoopStopsAtTheEndOfTheClip) {
+  const Slider slider;
+  EXPECT_EQ(slider.at({}, 2), Vec3(8, 0, 1));
+  EXPECT_EQ(slider.at({}, 7), Vec3(8, 0, 1));
+}
+
+TEST(Performance, GoesOnWithEachRoundFromWhereTheLastHasComeToButNotUp) {
+  const Slider slider;
+  const Playing playing{.timing = {}, .loop = true};
+  EXPECT_LT((slider.at(playing, 2 - 1e-12) - Vec3(8, 0, 1)).norm(), 1e-10);
+  EXPECT_LT((slider.at(playing, 2) - Vec3(8, 0, 0)).norm(), 1e-12) << "the next round, at the height it began at";
+  EXPECT_LT((slider.at(playing, 2.5) - Vec3(9, 1, 0.2)).norm(), 1e-12);
+  EXPECT_LT((slider.at(playing, 6.5) - Vec3(15, 1, 0.2)).norm(), 1e-12);
+  EXPECT_NEAR(Performance(slider.body, slider.clip, playing, Vec3::UnitZ()).gap(), 1, 1e-12);
+}
+
+TEST(Performance, WithACrossfadeDoesNotJump) {
+  const Slider slider;
+  const Playing playing{.timing = {}, .loop = true, .crossfade = 0.4};
+  const Performance performance(slider.body, slider.clip, playing, Vec3::UnitZ());
+  EXPECT_EQ(performance.gap(), 0);
+  double largest = 0;
+  constexpr double kStep = 1e-3;
+  for (double t = 0; t < 8; t += kStep)
+    largest =
+        std::max(largest, (performance.at(t + kStep).nodes[0].position - performance.at(t).nodes[0].position).norm());
+  // The clip itself moves by 2.9 m/s at most; the fade adds the gap of 1 m in 0.4 s, at most 1.5 times as fast.
+  EXPECT_LT(largest, (2.9 + 1.5 / 0.4) * kStep);
+}
+
+TEST(Performance, FromRestStandsInTheRestPoseAndStartsTheClipThere) {
+  const Slider slider;
+  const Playing playing{.timing = {1, 0.5, 0, 1}, .loop = false, .crossfade = 0, .from_rest = true};
+  EXPECT_EQ(slider.at(playing, 0), Vec3(0, 0, 0));
+  EXPECT_EQ(slider.at(playing, 1), Vec3(0, 0, 0));
+  EXPECT_LT((slider.at(playing, 1 + 1e-6) - Vec3(0, 0, 0)).norm(), 1e-9) << "no jump";
+  EXPECT_LT((slider.at(playing, 1.5 + 0.25) - Vec3(1, 1, 0.2)).norm(), 1e-12)
+      << "the clip, shifted from (5, 0) to the rest";
+}
+
+TEST(Performance, TurnsTheTravelIntoTheDirectionsOfTheRootsParent) {
+  Slider slider;
+  Affine turned = Affine::Identity();
+  turned.linear() = Eigen::AngleAxisd(std::acos(0.0), Vec3::UnitX()).toRotationMatrix();  // y of the clip points up
+  slider.body.nodes = {{"scene", -1, turned}, {"root", 0, Affine::Identity()}};
+  slider.clip.channels[0].node = 1;
+  const Performance performance(slider.body, slider.clip, {.timing = {}, .loop = true}, Vec3::UnitZ());
+  const auto world = [&](double t) -> Vec3 {
+    return global_transforms(slider.body, performance.at(t))[1].translation();
+  };
+  // y of the clip is now the height, which each round begins anew; -z became y.
+  EXPECT_LT((world(2.5) - (world(0.5) + Vec3(3, -1, 0))).norm(), 1e-12);
+}
+
+}  // namespace
+}  // namespace weft::character

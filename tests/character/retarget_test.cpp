@@ -1,0 +1,185 @@
+#include "character/retarget.hpp"
+
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <string>
+
+#include "character/joints.hpp"
+#include "character/pose.hpp"
+
+namespace weft::character {
+namespace {
+
+constexpr double kPi = std::numbers::pi;
+
+// Rotations go through quaternions and back some ten times.
+constexpr double kRounding = 1e-12;
+
+Quat about(const Vec3& axis, double degrees) {
+  return Quat(Eigen::AngleAxisd(degrees * kPi / 180, axis));
+}
+
+/// A body of sticks, z up, facing -y, so that its left is +x. Its joints have frames of their own: each node is turned
+/// by `frame` against the world at rest.
+struct Builder {
+  Character body;
+  Quat frame;
+  std::vector<Vec3> places;  // in the world
+
+  Index add(const std::string& name, Index parent, const Vec3& place) {
+    Affine global = Affine::Identity(), parent_global = Affine::Identity();
+    global.linear() = frame.toRotationMatrix();
+    global.translation() = place;
+    if (parent >= 0) {
+      parent_global.linear() = frame.toRotationMatrix();
+      parent_global.translation() = places[static_cast<std::size_t>(parent)];
+    }
+    body.nodes.push_back({name, parent, parent_global.inverse() * global});
+    places.push_back(place);
+    return static_cast<Index>(places.size() - 1);
+  }
+};
+
+/// `size`: of all lengths. `arm`: angle of the left arm below level at rest [degrees]. Turned about z by `facing`.
+Character sticks(double size, double arm, double facing, const Quat& frame, bool biped = false) {
+  Builder b{{}, frame, {}};
+  const Quat turn = about(Vec3::UnitZ(), facing);
+  const auto at = [&](double x, double y, double z) -> Vec3 { return size * (turn * Vec3(x, y, z)); };
+  const auto name = [&](const char* plain, const char* other) { return std::string(biped ? other : plain); };
+  const Vec3 along = Vec3(std::cos(arm * kPi / 180), 0, -std::sin(arm * kPi / 180));
+  const Vec3 shoulder(0.2, 0, 1.4), elbow = shoulder + 0.3 * along, hand = elbow + 0.3 * along;
+  const Index hips = b.add(name("Hips", "Bip01 Pelvis"), -1, at(0, 0, 1));
+  const Index spine = b.add(name("Spine", "Bip01 Spine"), hips, at(0, 0, 1.2));
+  const Index upper =
+      b.add(name("LeftUpperArm", "Bip01 L UpperArm"), spine, at(shoulder.x(), shoulder.y(), shoulder.z()));
+  const Index lower = b.add(name("LeftLowerArm", "Bip01 L Forearm"), upper, at(elbow.x(), elbow.y(), elbow.z()));
+  b.add(name("LeftHand", "Bip01 L Hand"), lower, at(hand.x(), hand.y(), hand.z()));
+  for (const auto& [side, letter, x] : {std::tuple{"Left", "L", 0.1}, std::tuple{"Right", "R", -0.1}}) {
+    const std::string plain = side, other = std::string("Bip01 ") + letter;
+    const Index thigh = b.add(name((plain + "UpperLeg").c_str(), (other + " Thigh").c_str()), hips, at(x, 0, 0.95));
+    const Index calf = b.add(name((plain + "LowerLeg").c_str(), (other + " Calf").c_str()), thigh, at(x, 0, 0.5));
+    b.add(name((plain + "Foot").c_str(), (other + " Foot").c_str()), calf, at(x, 0, 0.1));
+  }
+  return b.body;
+}
+
+/// The arm bends at the elbow by 90° upward, in world directions of a body that faces -y, while the hips walk `way`.
+Clip waving(const Character& body, const Vec3& way) {
+  const auto joints = find_joints(body.nodes);
+  const auto node = [&](const char* joint) { return joints[static_cast<std::size_t>(joint_number(joint))]; };
+  const auto globals = global_transforms(body, rest_pose(body));
+  const Index elbow = node("LeftLowerArm"), hips = node("Hips");
+  const Quat frame(globals[static_cast<std::size_t>(elbow)].linear());  // all nodes have the same
+  Channel bend;
+  bend.node = elbow;
+  bend.rotation = {{0, 1}, {Quat::Identity(), frame.conjugate() * about(Vec3::UnitY(), -90) * frame}};
+  Channel walk;
+  walk.node = hips;
+  const Vec3 from = globals[static_cast<std::size_t>(hips)].translation();
+  walk.position = {{0, 1}, {from, from + way}};
+  Clip clip{"wave", 1, {bend, walk}, {}};
+  return clip;
+}
+
+struct Result {
+  const Character& body;
+  Clip clip;
+  Vec3 place(const std::string& joint, double t) const {
+    const auto joints = find_joints(body.nodes);
+    const auto globals = global_transforms(body, pose_at(body, clip, t));
+    return globals[static_cast<std::size_t>(joints[static_cast<std::size_t>(joint_number(joint))])].translation();
+  }
+  Vec3 direction(const std::string& from, const std::string& to, double t) const {
+    return (place(to, t) - place(from, t)).normalized();
+  }
+};
+
+Result retargeted(const Character& body, const Character& motion, const Clip& clip) {
+  const auto ours = find_joints(body.nodes), theirs = find_joints(motion.nodes);
+  return {body, retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ())};
+}
+
+const Quat kOwnFrame = about(Vec3(1, 2, -1).normalized(), 77);
+
+TEST(Retarget, OntoTheSameSkeletonIsTheSameMotion) {
+  const Character body = sticks(1, 0, 0, kOwnFrame);
+  const Clip clip = waving(body, {0.1, -0.7, 0});
+  const Result result = retargeted(body, body, clip);
+  for (const double t : {0.0, 0.3, 1.0})
+    for (std::size_t n = 0; n < body.nodes.size(); ++n) {
+      const auto expected = global_transforms(body, pose_at(body, clip, t));
+      const auto got = global_transforms(body, pose_at(body, result.clip, t));
+      EXPECT_LT((got[n].matrix() - expected[n].matrix()).norm(), kRounding) << body.nodes[n].name << t;
+    }
+}
+
+TEST(Retarget, LaysAnArmInAPoseAlongTheMotionInTPose) {
+  const Character motion = sticks(1, 0, 0, Quat::Identity());
+  const Character body = sticks(1, 50, 0, kOwnFrame, true);
+  const Result result = retargeted(body, motion, waving(motion, Vec3::Zero()));
+  EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 0) - Vec3::UnitX()).norm(), kRounding);
+  EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 0) - Vec3::UnitX()).norm(), kRounding);
+  EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 1) - Vec3::UnitX()).norm(), kRounding);
+  EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 1) - Vec3::UnitZ()).norm(), kRounding);
+}
+
+TEST(Retarget, ScalesTheWayByTheLegsAndTurnsItToWhereTheBodyFaces) {
+  const Character motion = sticks(17, 0, 0, Quat::Identity());  // in another unit
+  const Character body = sticks(1.1, 20, 90, kOwnFrame, true);  // faces +x
+  const Result result = retargeted(body, motion, waving(motion, {0, -17, 0}));
+  EXPECT_LT((result.place("Hips", 0) - Vec3(0, 0, 1.1)).norm(), kRounding) << "starts where the body stands";
+  EXPECT_LT((result.place("Hips", 1) - Vec3(1.1, 0, 1.1)).norm(), kRounding);
+  EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 1) - Vec3::UnitZ()).norm(), kRounding);
+  EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 1) - Vec3::UnitY()).norm(), kRounding);
+}
+
+TEST(Retarget, PutsTheLowestFootOfTheClipWhereTheFeetStandAtRest) {
+  // A motion whose ground is 3 m below its origin.
+  Character motion = sticks(1, 0, 0, Quat::Identity());
+  Clip clip = waving(motion, {0, 0, 0.25});
+  for (Vec3& x : clip.channels[1].position.values) x.z() -= 3;
+  const Character body = sticks(2, 0, 0, Quat::Identity());
+  const Result result = retargeted(body, motion, clip);
+  EXPECT_NEAR(result.place("LeftFoot", 0).z(), 0.2, kRounding);
+  EXPECT_NEAR(result.place("LeftFoot", 1).z(), 0.2 + 0.5, kRounding);
+}
+
+TEST(Joints, OfTheUsualRigsAreFoundByName) {
+  const std::vector<std::pair<std::string, std::vector<std::string>>> rigs = {
+      {"plain",
+       {"Hips", "Spine", "Chest", "Neck", "Head", "LeftShoulder", "LeftUpperArm", "LeftLowerArm", "LeftHand",
+        "LeftUpperLeg", "LeftLowerLeg", "LeftFoot", "LeftToes", "RightUpperArm"}},
+      {"Mixamo",
+       {"mixamorig:Hips", "mixamorig:Spine", "mixamorig:Spine2", "mixamorig:Neck", "mixamorig:Head",
+        "mixamorig:LeftShoulder", "mixamorig:LeftArm", "mixamorig:LeftForeArm", "mixamorig:LeftHand",
+        "mixamorig:LeftUpLeg", "mixamorig:LeftLeg", "mixamorig:LeftFoot", "mixamorig:LeftToeBase",
+        "mixamorig:RightArm"}},
+      {"Biped",
+       {"Bip01 Pelvis", "Bip01 Spine", "Bip01 Spine1", "Bip01 Neck", "Bip01 Head", "Bip01 L Clavicle",
+        "Bip01 L UpperArm", "Bip01 L Forearm", "Bip01 L Hand", "Bip01 L Thigh", "Bip01 L Calf", "Bip01 L Foot",
+        "Bip01 L Toe0", "Bip01 R UpperArm"}},
+      {"Poser",
+       {"hip", "abdomen", "chest", "neck", "head", "lCollar", "lShldr", "lForeArm", "lHand", "lThigh", "lShin", "lFoot",
+        "lToe", "rShldr"}},
+      {"Blender",
+       {"hips", "spine", "chest", "neck", "head", "shoulder.L", "upper_arm.L", "forearm.L", "hand.L", "thigh.L",
+        "shin.L", "foot.L", "toe.L", "upper_arm.R"}},
+      {"Unreal",
+       {"pelvis", "spine_01", "spine_03", "neck_01", "head", "clavicle_l", "upperarm_l", "lowerarm_l", "hand_l",
+        "thigh_l", "calf_l", "foot_l", "ball_l", "upperarm_r"}},
+  };
+  const std::vector<std::string>& joints = rigs[0].second;
+  for (const auto& [rig, names] : rigs) {
+    std::vector<Node> nodes{{"Armature", -1, Affine::Identity()}, {"LHipJoint", 0, Affine::Identity()}};
+    for (const std::string& name : names) nodes.push_back({name, 0, Affine::Identity()});
+    const auto found = find_joints(nodes);
+    for (std::size_t k = 0; k < joints.size(); ++k)
+      EXPECT_EQ(found[static_cast<std::size_t>(joint_number(joints[k]))], static_cast<Index>(k + 2))
+          << rig << " " << joints[k];
+    EXPECT_EQ(found[static_cast<std::size_t>(joint_number("RightFoot"))], -1) << rig;
+  }
+}
+
+}  // namespace
+}  // namespace weft::character

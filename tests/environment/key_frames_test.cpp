@@ -1,0 +1,114 @@
+#include "environment/key_frames.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "core/parallel.hpp"
+#include "environment/spline.hpp"
+
+namespace weft::environment {
+namespace {
+
+constexpr double kFirst = 0.7, kInterval = 0.04;  // [s]
+
+/// Keys of some vertices on wild ways [m].
+std::vector<std::vector<Vec3>> wild_keys(std::size_t count, std::size_t vertices) {
+  std::mt19937 random(17);
+  std::uniform_real_distribution<double> number(-1, 1);
+  std::vector<std::vector<Vec3>> keys(count);
+  for (auto& key : keys)
+    for (std::size_t v = 0; v < vertices; ++v) key.emplace_back(number(random), number(random), number(random));
+  return keys;
+}
+
+Motion at(const KeyFrames& keys, std::size_t vertices, double t) {
+  const std::vector<Vec3> zero(vertices, Vec3::Zero());
+  Motion motion{zero, zero, zero};
+  keys.at(t, motion);
+  return motion;
+}
+
+TEST(KeyFrames, AreTheNaturalSplineOfEachVertex) {
+  const auto keys = wild_keys(12, 5);
+  for (const auto interpolation : {scene::Interpolation::linear, scene::Interpolation::cubic}) {
+    const KeyFrames frames(interpolation, kFirst, kInterval, keys, false);
+    for (std::size_t v = 0; v < 5; ++v) {
+      std::vector<double> times;
+      std::vector<Vec3> values;
+      for (std::size_t k = 0; k < keys.size(); ++k) {
+        times.push_back(kFirst + static_cast<double>(k) * kInterval);
+        values.push_back(keys[k][v]);
+      }
+      const Spline<3> spline(interpolation, times, values);
+      for (double t = 0.6; t < 1.3; t += 0.0173) {
+        const Motion motion = at(frames, 5, t);
+        const auto expected = spline.at(t);
+        // Velocities are of size 50 and accelerations of size 5000 here; what is left is rounding of them.
+        EXPECT_LT((motion.positions[v] - expected.value).norm(), 1e-12) << t;
+        EXPECT_LT((motion.velocities[v] - expected.first_derivative).norm(), 1e-10) << t;
+        EXPECT_LT((motion.accelerations[v] - expected.second_derivative).norm(), 1e-8) << t;
+      }
+    }
+  }
+}
+
+TEST(KeyFrames, HaveTheVelocityAndAccelerationOfCentralDifferences) {
+  const auto keys = wild_keys(12, 3);
+  constexpr double kStep = 1e-5;
+  for (const bool from_rest : {false, true}) {
+    const KeyFrames frames(scene::Interpolation::cubic, kFirst, kInterval, keys, from_rest);
+    for (double t = kFirst + 0.003; t < kFirst + 10.9 * kInterval; t += 0.0131) {
+      const Motion now = at(frames, 3, t), before = at(frames, 3, t - kStep), after = at(frames, 3, t + kStep);
+      for (std::size_t v = 0; v < 3; ++v) {
+        // Of a cubic the error is the third derivative, some 1e5 here, by step² / 6.
+        EXPECT_LT((now.velocities[v] - (after.positions[v] - before.positions[v]) / (2 * kStep)).norm(), 1e-4);
+        EXPECT_LT((now.accelerations[v] - (after.velocities[v] - before.velocities[v]) / (2 * kStep)).norm(), 10);
+      }
+    }
+  }
+}
+
+TEST(KeyFrames, FromRestBeginWithoutVelocityAndAreTwiceDifferentiable) {
+  const auto keys = wild_keys(6, 2);
+  const KeyFrames frames(scene::Interpolation::cubic, kFirst, kInterval, keys, true);
+  EXPECT_LT(at(frames, 2, kFirst).velocities[0].norm(), 1e-12);
+  for (int k = 1; k < 5; ++k) {
+    const double t = kFirst + k * kInterval;
+    const Motion before = at(frames, 2, t - 1e-9), after = at(frames, 2, t + 1e-9);
+    EXPECT_LT((after.velocities[1] - before.velocities[1]).norm(), 1e-4);
+    EXPECT_LT((after.accelerations[1] - before.accelerations[1]).norm(), 1e-2);
+  }
+}
+
+TEST(KeyFrames, StandBeforeTheFirstAndAfterTheLast) {
+  const auto keys = wild_keys(4, 2);
+  const KeyFrames frames(scene::Interpolation::cubic, kFirst, kInterval, keys, false);
+  for (const auto& [t, key] : {std::pair{0.0, 0}, {5.0, 3}}) {
+    const Motion motion = at(frames, 2, t);
+    EXPECT_EQ(motion.positions, keys[static_cast<std::size_t>(key)]);
+    EXPECT_EQ(motion.velocities[0], Vec3(0, 0, 0));
+    EXPECT_EQ(motion.accelerations[1], Vec3(0, 0, 0));
+  }
+}
+
+TEST(KeyFrames, HaveTheSameBitsForAnyNumberOfThreads) {
+  const auto keys = wild_keys(5, 9000);
+  const auto run = [&](int threads) {
+    set_thread_count(threads);
+    return at(KeyFrames(scene::Interpolation::cubic, kFirst, kInterval, keys, true), 9000, kFirst + 0.055);
+  };
+  const Motion one = run(1), many = run(0);
+  EXPECT_EQ(one.positions, many.positions);
+  EXPECT_EQ(one.velocities, many.velocities);
+}
+
+TEST(KeyFrames, TakeTwiceTheirPositionsWhereCubic) {
+  EXPECT_EQ(KeyFrames(scene::Interpolation::linear, 0, 1, wild_keys(4, 10), false).bytes(), 4u * 10 * 24);
+  EXPECT_EQ(KeyFrames(scene::Interpolation::cubic, 0, 1, wild_keys(4, 10), false).bytes(), 2u * 4 * 10 * 24);
+  EXPECT_FALSE(KeyFrames(scene::Interpolation::cubic, 0, 1, wild_keys(1, 10), false).moving());
+}
+
+}  // namespace
+}  // namespace weft::environment
