@@ -38,6 +38,35 @@ bool invertible(const Affine& map) {
   return std::abs(map.linear().determinant()) > 1e-9 * size * size * size;
 }
 
+/// A node and the place of its parent in the list that it is in.
+using NodeWithParent = std::pair<const aiNode*, Index>;
+
+/// All nodes, parents first. Assimp 5.2 lists the bones of Half-Life models as children of one node and names their
+/// parents in mParent alone; so that is what counts, unless nodes are lost then.
+std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
+  using Children = std::unordered_map<const aiNode*, std::vector<const aiNode*>>;
+  // The walk keeps its own stack: files can nest nodes deeper than ours is.
+  const auto walk = [&](const auto& children_of) {
+    std::vector<NodeWithParent> nodes;
+    std::vector<NodeWithParent> stack{{&root, -1}};
+    while (!stack.empty()) {
+      const NodeWithParent next = stack.back();
+      stack.pop_back();
+      nodes.push_back(next);
+      const auto children = children_of(*next.first);
+      for (std::size_t c = children.size(); c-- > 0;) stack.emplace_back(children[c], Index(nodes.size()) - 1);
+    }
+    return nodes;
+  };
+  std::vector<NodeWithParent> listed =
+      walk([](const aiNode& node) { return std::span<aiNode* const>(node.mChildren, node.mNumChildren); });
+  Children named;
+  for (const auto& [node, parent] : listed)
+    if (node != &root) named[node->mParent].push_back(node);
+  std::vector<NodeWithParent> by_name = walk([&](const aiNode& node) { return named[&node]; });
+  return by_name.size() == listed.size() ? by_name : listed;
+}
+
 /// The weights of one vertex, by bone.
 using Weights = std::vector<character::Influence>;
 
@@ -65,21 +94,15 @@ class CharacterReader {
 
  private:
   void read_nodes() {
-    // The walk keeps its own stack: files can nest nodes deeper than ours is.
-    std::vector<std::pair<const aiNode*, Index>> stack{{scene_.mRootNode, -1}};
-    while (!stack.empty()) {
-      const auto [node, parent] = stack.back();
-      stack.pop_back();
-      const auto index = static_cast<Index>(nodes_.size());
+    for (const auto& [node, parent] : nodes_with_parents(*scene_.mRootNode)) {
       const std::string name = node->mName.C_Str();
+      targets_.nodes.emplace(name, static_cast<Index>(nodes_.size()));
       nodes_.push_back(node);
       character_.nodes.push_back({name, parent, to_affine(node->mTransformation)});
       const Affine& local = character_.nodes.back().local;
       if (!local.matrix().allFinite())
         throw std::runtime_error(fmt::format("node \"{}\": expected finite numbers, got others", name));
       globals_.push_back(parent < 0 ? local : globals_[static_cast<std::size_t>(parent)] * local);
-      targets_.nodes.emplace(name, index);
-      for (unsigned c = node->mNumChildren; c-- > 0;) stack.emplace_back(node->mChildren[c], index);
     }
   }
 

@@ -97,8 +97,8 @@ TEST_F(Packaged, FilesAreEachLoadedOrRefusedByName) {
   EXPECT_GE(skinned, 10);
 }
 
-/// An evaluation of its own, in assimp's types and single precision where assimp has it: nodes are walked recursively,
-/// every vertex of every mesh separately.
+/// An evaluation of its own, straight from assimp's scene: nodes are walked recursively, every vertex of every mesh by
+/// itself.
 struct Evaluation {
   const aiScene& scene;
   const aiAnimation& clip;
@@ -114,35 +114,56 @@ struct Evaluation {
   static double share(const Key* keys, std::size_t k, double t) {
     return std::clamp((t - keys[k].mTime) / (keys[k + 1].mTime - keys[k].mTime), 0.0, 1.0);
   }
-  aiVector3D vector_at(const aiVectorKey* keys, unsigned count) const {
+  Vec3 vector_at(const aiVectorKey* keys, unsigned count) const {
     const std::size_t k = key_before(keys, count, ticks);
-    if (k + 1 >= count) return keys[k].mValue;
-    return keys[k].mValue + (keys[k + 1].mValue - keys[k].mValue) * static_cast<float>(share(keys, k, ticks));
+    const auto value = [&](std::size_t i) { return Vec3(keys[i].mValue.x, keys[i].mValue.y, keys[i].mValue.z); };
+    if (k + 1 >= count) return value(k);
+    const double f = share(keys, k, ticks);
+    return (1 - f) * value(k) + f * value(k + 1);
   }
-  aiQuaternion rotation_at(const aiQuatKey* keys, unsigned count) const {
+  /// As a matrix, by the sines of the parts of the angle between two keys.
+  Mat3 rotation_at(const aiQuatKey* keys, unsigned count) const {
     const std::size_t k = key_before(keys, count, ticks);
-    aiQuaternion q = keys[k].mValue;
-    if (k + 1 < count)
-      aiQuaternion::Interpolate(q, keys[k].mValue, keys[k + 1].mValue, static_cast<float>(share(keys, k, ticks)));
-    return q.Normalize();
-  }
-  aiMatrix4x4 local(const aiNode& node) const {
-    for (unsigned c = 0; c < clip.mNumChannels; ++c) {
-      const aiNodeAnim& channel = *clip.mChannels[c];
-      if (channel.mNodeName != node.mName) continue;
-      return aiMatrix4x4(vector_at(channel.mScalingKeys, channel.mNumScalingKeys),
-                         rotation_at(channel.mRotationKeys, channel.mNumRotationKeys),
-                         vector_at(channel.mPositionKeys, channel.mNumPositionKeys));
+    const auto value = [&](std::size_t i) {
+      const aiQuaternion& q = keys[i].mValue;
+      return Eigen::Vector4d(q.w, q.x, q.y, q.z).normalized();
+    };
+    Eigen::Vector4d q = value(k);
+    if (k + 1 < count) {
+      Eigen::Vector4d next = value(k + 1);
+      if (q.dot(next) < 0) next = -next;
+      const double f = share(keys, k, ticks), angle = std::atan2((next - q).norm(), (next + q).norm()) * 2;
+      q = angle < 1e-9
+              ? q
+              : Eigen::Vector4d((std::sin((1 - f) * angle) * q + std::sin(f * angle) * next) / std::sin(angle));
     }
-    return node.mTransformation;
+    const double w = q[0], x = q[1], y = q[2], z = q[3];
+    Mat3 m;
+    m << 1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y), 2 * (x * y + w * z),
+        1 - 2 * (x * x + z * z), 2 * (y * z - w * x), 2 * (x * z - w * y), 2 * (y * z + w * x), 1 - 2 * (x * x + y * y);
+    return m;
   }
-  /// Of the world, and from there in double precision, so that long chains do not lose digits twice.
-  Eigen::Matrix4d global(const aiNode& node) const {
-    const aiMatrix4x4 m = local(node);
+  static Eigen::Matrix4d to_matrix(const aiMatrix4x4& m) {
     Eigen::Matrix4d result;
     for (unsigned r = 0; r < 4; ++r)
       for (unsigned c = 0; c < 4; ++c) result(r, c) = static_cast<double>(m[r][c]);
-    return node.mParent == nullptr ? result : Eigen::Matrix4d(global(*node.mParent) * result);
+    return result;
+  }
+  Eigen::Matrix4d local(const aiNode& node) const {
+    for (unsigned c = 0; c < clip.mNumChannels; ++c) {
+      const aiNodeAnim& channel = *clip.mChannels[c];
+      // Of several nodes of one name a channel moves the first.
+      if (scene.mRootNode->FindNode(channel.mNodeName) != &node) continue;
+      Eigen::Matrix4d m = Eigen::Matrix4d::Identity();
+      m.topLeftCorner<3, 3>() = rotation_at(channel.mRotationKeys, channel.mNumRotationKeys) *
+                                vector_at(channel.mScalingKeys, channel.mNumScalingKeys).asDiagonal();
+      m.topRightCorner<3, 1>() = vector_at(channel.mPositionKeys, channel.mNumPositionKeys);
+      return m;
+    }
+    return to_matrix(node.mTransformation);
+  }
+  Eigen::Matrix4d global(const aiNode& node) const {
+    return node.mParent == nullptr ? local(node) : Eigen::Matrix4d(global(*node.mParent) * local(node));
   }
 
   /// Positions of all vertices that faces name, mesh by mesh.
@@ -172,10 +193,7 @@ struct Evaluation {
       const aiBone& bone = *mesh.mBones[b];
       const aiNode* held_by = scene.mRootNode->FindNode(bone.mName);
       if (held_by == nullptr) continue;
-      Eigen::Matrix4d offset;
-      for (unsigned r = 0; r < 4; ++r)
-        for (unsigned c = 0; c < 4; ++c) offset(r, c) = static_cast<double>(bone.mOffsetMatrix[r][c]);
-      const Eigen::Matrix4d m = global(*held_by) * offset;
+      const Eigen::Matrix4d m = global(*held_by) * to_matrix(bone.mOffsetMatrix);
       for (unsigned w = 0; w < bone.mNumWeights; ++w) add(bone.mWeights[w].mVertexId, bone.mWeights[w].mWeight, m);
     }
     std::set<unsigned> named;
@@ -246,8 +264,8 @@ TEST_P(Skinned, FollowsAnEvaluationOfItsOwnOverTheWholeClip) {
 INSTANTIATE_TEST_SUITE_P(Packaged, Skinned,
                          testing::Values("X/BCN_Epileptic.X", "X/Testwuson.X", "FBX/animation_with_skeleton.fbx",
                                          "FBX/huesitos.fbx", "glTF2/simple_skin/simple_skin.gltf", "BVH/01_01.bvh",
-                                         "ASE/MotionCaptureROM.ase", "MDL/MDL (HL1)/man.mdl", "B3D/dwarf2.b3d",
-                                         "Collada/earthCylindrical.DAE"),
+                                         "ASE/MotionCaptureROM.ase", "MDL/MDL (HL1)/man.mdl", "SMD/WusonSMD.smd",
+                                         "CSM/ThomasFechten.csm", "Collada/box_nested_animation.dae"),
                          [](const auto& file) {
                            std::string name = file.param;
                            for (char& c : name)
