@@ -15,17 +15,17 @@ struct Part {
 
 const std::vector<Part> kMiddle = {
     {"Hips", {"hips", "pelvis", "hip"}},
-    {"Spine", {"spine", "abdomen", "lowerback", "spine01", "waist"}},
-    {"Chest", {"chest", "spine03", "spine2", "spine1", "torso", "thorax"}},
+    {"Spine", {"spine", "abdomen", "lowerback", "spine01", "waist", "ab", "spine1"}},
+    {"Chest", {"chest", "spine03", "spine3", "spine2", "spine1", "thorax"}},
     {"Neck", {"neck", "neck01", "neck1"}},
     {"Head", {"head"}},
 };
 const std::vector<Part> kSides = {
-    {"Shoulder", {"shoulder", "clavicle", "collar"}},
-    {"UpperArm", {"upperarm", "arm", "shldr", "uparm"}},
+    {"Shoulder", {"clavicle", "collar", "shoulder"}},
+    {"UpperArm", {"upperarm", "arm", "shldr", "uparm", "shoulder"}},
     {"LowerArm", {"lowerarm", "forearm", "elbow"}},
     {"Hand", {"hand", "wrist"}},
-    {"UpperLeg", {"upperleg", "upleg", "thigh"}},
+    {"UpperLeg", {"upperleg", "upleg", "thigh", "hip"}},
     {"LowerLeg", {"lowerleg", "leg", "calf", "shin", "knee"}},
     {"Foot", {"foot", "ankle"}},
     {"Toes", {"toes", "toe", "toebase", "toe0", "ball"}},
@@ -61,7 +61,7 @@ std::pair<std::string, std::string> side_and_part(const std::string& name) {
       side = "Left";
     } else if (word == "r" || word == "right") {
       side = "Right";
-    } else if (!word.starts_with("bip0") && word != "mixamorig") {
+    } else if (!word.starts_with("bip0") && word != "b" && word != "def") {
       part += word;
     }
   }
@@ -97,8 +97,12 @@ std::vector<Index> find_joints(std::span<const Node> nodes) {
     return Index{-1};
   };
   for (const Part& part : kMiddle) joints.push_back(find("", part));
-  for (const char* side : {"Left", "Right"})
+  for (const char* side : {"Left", "Right"}) {
+    const std::size_t shoulder = joints.size();
     for (const Part& part : kSides) joints.push_back(find(side, part));
+    // What some call the shoulder is the upper arm where there is no other.
+    if (joints[shoulder] == joints[shoulder + 1]) joints[shoulder] = -1;
+  }
   return joints;
 }
 

@@ -168,6 +168,9 @@ TEST(Joints, OfTheUsualRigsAreFoundByName) {
       {"Unreal",
        {"pelvis", "spine_01", "spine_03", "neck_01", "head", "clavicle_l", "upperarm_l", "lowerarm_l", "hand_l",
         "thigh_l", "calf_l", "foot_l", "ball_l", "upperarm_r"}},
+      {"by joints",
+       {"Hips", "Ab", "Chest", "Neck", "Head", "LeftCollar", "LeftShoulder", "LeftElbow", "LeftWrist", "LeftHip",
+        "LeftKnee", "LeftAnkle", "LeftToe", "RightShoulder"}},
   };
   const std::vector<std::string>& joints = rigs[0].second;
   for (const auto& [rig, names] : rigs) {
@@ -178,6 +181,7 @@ TEST(Joints, OfTheUsualRigsAreFoundByName) {
       EXPECT_EQ(found[static_cast<std::size_t>(joint_number(joints[k]))], static_cast<Index>(k + 2))
           << rig << " " << joints[k];
     EXPECT_EQ(found[static_cast<std::size_t>(joint_number("RightFoot"))], -1) << rig;
+    EXPECT_EQ(found[static_cast<std::size_t>(joint_number("RightShoulder"))], -1) << rig;
   }
 }
 

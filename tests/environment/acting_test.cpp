@@ -1,0 +1,229 @@
+// Characters of a scene, from small files made here.
+#include "environment/acting.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "environment/environment.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::environment {
+namespace {
+
+// Files hold single precision; figures here are of some metres.
+constexpr double kSingle = 1e-6;
+
+/// A rod along y that a joint at its middle bends, as ASCII X: no other text format with a skin is as short. (Numbers
+/// have decimals because assimp takes "1,0" for 1.0.)
+std::string rod_file() {
+  return R"(xof 0303txt 0032
+Frame Root { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }
+ Frame Hips { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }
+  Frame Spine { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,1.0,0.0,1.0;; } } }
+ Mesh Rod { 5; -0.1;0.0;0.0;, 0.1;0.0;0.0;, 0.0;1.0;0.0;, -0.1;2.0;0.0;, 0.1;2.0;0.0;;
+  3; 3;0,1,2;, 3;2,4,3;, 3;0,2,3;;
+  XSkinMeshHeader { 1; 1; 2; }
+  SkinWeights { "Hips"; 2; 0,1; 1.0,1.0; 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }
+  SkinWeights { "Spine"; 3; 2,3,4; 1.0,1.0,1.0; 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,-1.0,0.0,1.0;; } } }
+AnimTicksPerSecond { 10; }
+AnimationSet Walk { Animation { { Hips } AnimationKey { 2; 3; 0;3;0.0,0.0,0.0;;, 10;3;0.0,0.0,2.0;;, 20;3;0.0,0.0,4.0;;; } } }
+AnimationSet Wave { Animation { { Spine } AnimationKey { 2; 2; 0;3;0.0,1.0,0.0;;, 10;3;1.0,1.0,0.0;;; } } }
+)";
+}
+
+/// Its ends at x = -0.1. The reader turns faces round and with them the order of vertices.
+constexpr std::size_t kLow = 2, kHigh = 3;
+
+class Acting : public support::TestFolder {
+ protected:
+  void SetUp() override {
+    TestFolder::SetUp();
+    support::write_bytes(folder_ / "rod.x", rod_file());
+    scene_.file = "scenes/a.toml";
+    scene_.time.duration = 2;
+    scene_.characters.emplace_back();
+    character_.name = "rod";
+    character_.line = 7;
+    character_.column = 1;
+    file_.path = folder_ / "rod.x";
+  }
+
+  Actor make() {
+    character_.source = file_;
+    scene_.characters[0] = character_;
+    return make_actor(scene_, character_);
+  }
+  static std::vector<Vec3> at(const Actor& actor, double t) {
+    const std::vector<Vec3> zero(actor.mesh.positions.size(), Vec3::Zero());
+    Motion motion{zero, zero, zero};
+    actor.keys.at(t, motion);
+    return motion.positions;
+  }
+  void expect_refused(ExitCode code, const std::string& words) {
+    support::expect_error(code, words, [&] { make(); });
+  }
+
+  scene::Scene scene_;
+  scene::Character character_;
+  scene::CharacterFile file_;
+};
+
+TEST_F(Acting, TurnsTheFileUpScalesItAndPutsItInItsPlace) {
+  character_.scale = 0.5;
+  character_.pose.position = {10, 0, 0};
+  character_.pose.rotation = Eigen::AngleAxisd(std::acos(0.0), Vec3::UnitZ());
+  const Actor actor = make();
+  EXPECT_TRUE(actor.warnings.empty());
+  // y of the file is up; x of the file, turned by 90° about z, is y.
+  EXPECT_LT((at(actor, 0)[kLow] - Vec3(10, -0.05, 0)).norm(), kSingle);
+  EXPECT_LT((at(actor, 0)[kHigh] - Vec3(10, -0.05, 1)).norm(), kSingle);
+  EXPECT_EQ(actor.mesh.positions, at(actor, 0));
+  scene_.up = scene::UpAxis::y;
+  EXPECT_LT((at(make(), 0)[kLow] - Vec3(10, -0.05, 0)).norm(), kSingle);
+  EXPECT_LT((at(make(), 0)[kHigh] - Vec3(9, -0.05, 0)).norm(), kSingle);
+}
+
+TEST_F(Acting, PlaysTheClipThatItsSceneNamesAfterDressing) {
+  character_.dressing = 0.5;
+  // The reader turns left-handed X files by mirroring z; with y up, what was z is now -y, mirrored +y.
+  const Actor walking = make();
+  EXPECT_LT((at(walking, 0.4)[0] - at(walking, 0)[0]).norm(), kSingle);
+  EXPECT_NEAR((at(walking, 1.5)[0] - at(walking, 0)[0]).norm(), 2, 1e-5);
+  file_.clip = "Wave";
+  const Actor waving = make();
+  EXPECT_LT((at(waving, 1.5)[kLow] - at(waving, 0)[kLow]).norm(), kSingle);
+  EXPECT_NEAR((at(waving, 1.5)[kHigh] - at(waving, 0)[kHigh]).norm(), 1, 1e-5);
+}
+
+TEST_F(Acting, LoopsAClipWithItsWay) {
+  file_.loop = true;
+  scene_.time.duration = 6;
+  const Actor actor = make();
+  EXPECT_TRUE(actor.warnings.empty());
+  EXPECT_NEAR((at(actor, 5.5)[0] - at(actor, 0)[0]).norm(), 11, 1e-5);
+}
+
+TEST_F(Acting, WarnsOfALoopThatDoesNotClose) {
+  file_.loop = true;
+  file_.clip = "Wave";
+  const Actor actor = make();
+  ASSERT_EQ(actor.warnings.size(), 0u) << "moving along is the clip's way";
+  support::write_bytes(folder_ / "rod.x", [] {
+    std::string text = rod_file();
+    const std::string level = "10;3;1.0,1.0,0.0";
+    return text.replace(text.find(level), level.size(), "10;3;0.0,1.5,0.0");  // up
+  }());
+  ASSERT_EQ(make().warnings.size(), 1u);
+  EXPECT_NE(make().warnings[0].find("clip \"Wave\" does not close: its end and its beginning are 0.5 m apart"),
+            std::string::npos);
+}
+
+TEST_F(Acting, StoresAsManyKeysAsThePlanSays) {
+  character_.source = file_;
+  character_.keys_per_second = 30;
+  // 0, 1/30, ..., 2 s, and one more.
+  const KeyFrameCount count = count_key_frames(scene_, (make(), character_));
+  EXPECT_EQ(count.keys, 62u);
+  EXPECT_EQ(count.vertices, 5u);
+  EXPECT_EQ(count.bytes, make().keys.bytes());
+  character_.dressing = 1.5;
+  EXPECT_EQ(count_key_frames(scene_, (make(), character_)).bytes, make().keys.bytes());
+  character_.dressing = 3;
+  EXPECT_EQ(count_key_frames(scene_, (make(), character_)).keys, 1u) << "it never moves";
+  EXPECT_FALSE(make().keys.moving());
+}
+
+TEST_F(Acting, RefusesWhatItCannotPlayByItsName) {
+  file_.clip = "Wavy";
+  expect_refused(ExitCode::scene_invalid, "scenes/a.toml:7:1: character.rod.clip: expected one of the 2 clips of " +
+                                              file_.path.string() +
+                                              ", \"Walk\", \"Wave\", got \"Wavy\"; did you mean \"Wave\"?");
+  file_.clip.reset();
+  character_.start = 2.5;
+  expect_refused(ExitCode::scene_invalid,
+                 "character.rod.start: expected a time of clip \"Walk\", at most 2 s, got 2.5");
+  character_.start = 0;
+  character_.scale = 1e6;
+  expect_refused(ExitCode::asset_unreadable, "expected coordinates below 1e+06 m, got (");
+  character_.scale.reset();
+  file_.path = folder_ / "none.obj";
+  support::write_bytes(file_.path, "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+  file_.clip = "Walk";
+  expect_refused(ExitCode::scene_invalid, "character.rod.clip: expected an animation in " + file_.path.string());
+}
+
+std::string bvh() {
+  return "HIERARCHY\nROOT Hips\n{\nOFFSET 0 0 0\nCHANNELS 6 Xposition Yposition Zposition Zrotation Yrotation "
+         "Xrotation\nJOINT Back\n{\nOFFSET 0 5 0\nCHANNELS 3 Zrotation Yrotation Xrotation\nEnd Site\n{\nOFFSET 0 5 "
+         "0\n}\n}\n}\nMOTION\nFrames: 2\nFrame Time: 1\n0 0 0 0 0 0 0 0 0\n0 0 3 0 0 0 90 0 0\n";
+}
+
+TEST_F(Acting, TakesOverTheMotionOfAnotherFileByTheNamesThatTheSceneGives) {
+  support::write_bytes(folder_ / "walk.bvh", bvh());
+  file_.motion = folder_ / "walk.bvh";
+  file_.joints = {{"Spine", std::nullopt, "Back"}};
+  const Actor actor = make();
+  EXPECT_TRUE(actor.warnings.empty());
+  EXPECT_LT((at(actor, 0)[4] - Vec3(0.1, 0, 2)).norm(), kSingle);
+  // 3 forward, which is -y where z is up; the rod above its middle bends by 90° about that way.
+  const auto x = at(actor, 1);
+  EXPECT_LT((x[1] - Vec3(0.1, -3, 0)).norm(), kSingle);
+  EXPECT_LT((x[4] - Vec3(-1, -3, 1.1)).norm(), kSingle);
+
+  file_.joints[0].motion = "Bak";
+  expect_refused(ExitCode::scene_invalid, "character.rod.joint.Spine: expected the name of a node of " +
+                                              file_.motion->string() + ", got \"Bak\"; did you mean \"Back\"?");
+  file_.joints[0] = {"Spin", std::nullopt, "Back"};
+  expect_refused(ExitCode::scene_invalid, "expected a joint of the body, got \"Spin\"; did you mean \"Spine\"?");
+  file_.joints.clear();
+  ASSERT_EQ(make().warnings.size(), 1u);
+  EXPECT_NE(make().warnings[0].find("nothing that moves Spine"), std::string::npos);
+}
+
+std::string triangle(double height, const std::string& face = "1 2 3") {
+  return fmt::format("v 0 {0} 0\nv 1 {0} 0\nv 0 {0} 1\nf {1}\n", height, face);
+}
+
+TEST_F(Acting, PlaysMeshFilesOneAfterTheOther) {
+  for (int k = 0; k < 11; ++k) support::write_bytes(folder_ / fmt::format("f{}.obj", k), triangle(k * k / 100.0));
+  character_.source = scene::MeshSequence{(folder_ / "f*.obj").string(), 10};
+  scene_.time.duration = 1;
+  for (const auto interpolation : {scene::Interpolation::linear, scene::Interpolation::cubic}) {
+    character_.interpolation = interpolation;
+    const Actor actor = make_actor(scene_, character_);
+    for (int k = 0; k < 11; ++k) EXPECT_NEAR(at(actor, k / 10.0)[0].z(), k * k / 100.0, kSingle) << k;
+  }
+  support::write_bytes(folder_ / "f4.obj", triangle(0.16, "1 3 2"));
+  support::expect_error(ExitCode::asset_unreadable,
+                        (folder_ / "f4.obj").string() +
+                            ": expected faces over the same vertices as in the first file of the sequence, got others",
+                        [&] { make_actor(scene_, character_); });
+  support::write_bytes(folder_ / "f4.obj", triangle(0.16) + "f 1 2 3\n");
+  support::expect_error(ExitCode::asset_unreadable, "f4.obj: expected 3 vertices, as in the first file",
+                        [&] { make_actor(scene_, character_); });
+}
+
+TEST_F(Acting, CharactersOfASceneMoveAsBodiesAfterItsObstacles) {
+  scene_.obstacles.emplace_back();
+  scene_.obstacles[0].name = "ball";
+  character_.friction = 0.9;
+  character_.source = file_;
+  scene_.characters[0] = character_;
+  Environment environment(scene_);
+  ASSERT_EQ(environment.bodies.size(), 2u);
+  const BodyObject& body = environment.bodies[1];
+  EXPECT_EQ(body.name, "rod");
+  EXPECT_TRUE(body.character && body.moving && body.collide);
+  EXPECT_EQ(body.friction, 0.9);
+  const auto start = body.motion.positions;
+  environment.move_to(1);
+  EXPECT_NEAR((body.motion.positions[0] - start[0]).norm(), 2, 1e-5);
+  EXPECT_NEAR(body.motion.velocities[0].norm(), 2, 1e-4);
+  environment.move_to(0);
+  EXPECT_EQ(body.motion.positions, start);
+}
+
+}  // namespace
+}  // namespace weft::environment
