@@ -1,0 +1,155 @@
+#include "character/mannequin.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "character/mannequin_shape.hpp"
+#include "character/mannequin_skin.hpp"
+#include "mesh/isosurface.hpp"
+
+namespace weft::character {
+namespace {
+
+constexpr int kRounds = 8;  ///< of remeshing; more change the smallest angle by less than a degree
+
+constexpr std::size_t kFirstLeft = 5, kFirstRight = kFirstLeft + kSideJointCount;
+
+std::size_t z(Joint joint) {
+  return static_cast<std::size_t>(joint);
+}
+
+constexpr double kRim = 0.012;  ///< rounding between sole and side of a foot [m], for a height of 1.75 m
+
+/// The body with flat soles: what is below the floor is cut off.
+mesh::Field standing_on_floor(const BlendedBody& body, double height) {
+  const double rim = kRim * height / 1.75;
+  return [&body, rim](const Vec3& p) {
+    const double f = body(p), floor = -p.z();
+    const double h = std::max(rim - std::abs(f - floor), 0.0) / rim;
+    return std::max(f, floor) + h * h * h * rim / 6;
+  };
+}
+
+/// Shorter where the body is thinner or more curved: arms, hands, shins, feet, neck, head, between the legs and under
+/// the arms.
+mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJointCount>& joints) {
+  const double unit = build.height / 1.75;
+  const double wrist = joints[z(Joint::left_hand)].x(), shoulder = joints[z(Joint::left_upper_arm)].x();
+  const Vec3 crotch(0, 0, 0.78 * unit), armpit(0.82 * shoulder, 0, 1.31 * unit);
+  return [=](const Vec3& p) {
+    const double arm = smooth_ramp(p.x(), shoulder, wrist), leg = 1 - smooth_ramp(p.z(), 0, 0.4 * unit);
+    const double head = smooth_ramp(p.z(), 1.38 * unit, 1.52 * unit);
+    const double fold = std::min((p - crotch).norm(), (p - armpit).norm());
+    const double folds = 1 - smooth_ramp(fold, 0.02 * unit, 0.11 * unit);
+    return build.edge_length * (1 - std::max({0.5 * arm, 0.5 * leg, 0.3 * head, 0.4 * folds}));
+  };
+}
+
+mesh::MirroredMesh make_skin(const MannequinBuild& build, const std::array<Vec3, kJointCount>& joints) {
+  const BlendedBody body = mannequin_body(build);
+  const mesh::Field field = standing_on_floor(body, build.height);
+  const Box3 bounds = body.bounds();
+  const Vec3 spare = Vec3::Constant(kRim * build.height);
+  // Fine enough for fingers and for the room between the thighs.
+  const double cell = std::min(0.7 * build.edge_length, 0.012 * build.height / 1.75);
+  mesh::Mesh half = mesh::march_half_space(field, Box3(bounds.min() - spare, bounds.max() + spare), cell);
+  mesh::remesh(half, field, edge_lengths(build, joints), kRounds);
+  return mesh::join_mirror_image(half);
+}
+
+/// The same joint of the other side.
+std::size_t mirrored(std::size_t joint) {
+  if (joint < kFirstLeft) return joint;
+  return joint < kFirstRight ? joint + kSideJointCount : joint - kSideJointCount;
+}
+
+void bind_skin(Character& character, const mesh::MirroredMesh& skin, const std::array<Vec3, kJointCount>& joints,
+               double height) {
+  for (const Vec3& p : skin.mesh.positions) {
+    character.first_influence.push_back(static_cast<Index>(character.influences.size()));
+    const bool right = p.x() < 0;
+    const auto weights = mannequin_weights(joints, height, Vec3(std::abs(p.x()), p.y(), p.z()));
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const double w = weights[right ? mirrored(j) : j];
+      if (w > 0) character.influences.push_back({static_cast<Index>(j), w});
+    }
+  }
+  character.first_influence.push_back(static_cast<Index>(character.influences.size()));
+}
+
+}  // namespace
+
+std::string_view name(Joint joint) {
+  constexpr std::array<std::string_view, kJointCount> names{
+      "Hips",          "Spine",         "Chest",         "Neck",          "Head",         "LeftShoulder",
+      "LeftUpperArm",  "LeftLowerArm",  "LeftHand",      "LeftUpperLeg",  "LeftLowerLeg", "LeftFoot",
+      "LeftToes",      "RightShoulder", "RightUpperArm", "RightLowerArm", "RightHand",    "RightUpperLeg",
+      "RightLowerLeg", "RightFoot",     "RightToes"};
+  return names[z(joint)];
+}
+
+Joint parent(Joint joint) {
+  switch (joint) {
+    case Joint::hips:
+    case Joint::spine:
+    case Joint::left_upper_leg:
+    case Joint::right_upper_leg:
+      return Joint::hips;
+    case Joint::chest:
+      return Joint::spine;
+    case Joint::neck:
+    case Joint::left_shoulder:
+    case Joint::right_shoulder:
+      return Joint::chest;
+    case Joint::head:
+      return Joint::neck;
+    default:
+      return static_cast<Joint>(z(joint) - 1);
+  }
+}
+
+std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
+  // Fractions of the height: Drillis & Contini (1966): ankle 0.039, knee 0.285, hip 0.530, shoulder 0.818 less half
+  // of a shoulder's thickness, upper arm 0.186, forearm 0.146.
+  const double h = build.height, cm = h / 175;
+  const double wide = 1 + 0.16 * build.masculinity;
+  std::array<Vec3, kJointCount> at{};
+  const auto set = [&](Joint joint, double x, double forward, double up) { at[z(joint)] = Vec3(x, -forward, up); };
+  set(Joint::hips, 0, 0, 0.545 * h);
+  set(Joint::spine, 0, -1.5 * cm, 106 * cm);
+  set(Joint::chest, 0, -2.0 * cm, 119 * cm);
+  set(Joint::neck, 0, -3.0 * cm, 146 * cm);
+  set(Joint::head, 0, -0.2 * cm, 155.5 * cm);
+  set(Joint::left_shoulder, 3 * cm, -1.5 * cm, 141 * cm);
+  set(Joint::left_upper_arm, 16.4 * wide * cm, -1.4 * cm, 139 * cm);
+  const Vec3 down(std::sqrt(0.5), 0, -std::sqrt(0.5));
+  at[z(Joint::left_lower_arm)] = at[z(Joint::left_upper_arm)] + 0.186 * h * down;
+  at[z(Joint::left_hand)] = at[z(Joint::left_lower_arm)] + 0.146 * h * down;
+  set(Joint::left_upper_leg, 8.7 * cm, 0, 0.530 * h);
+  set(Joint::left_lower_leg, 10.2 * cm, 0.1 * cm, 0.285 * h);
+  set(Joint::left_foot, 11.0 * cm, -1.3 * cm, 0.039 * h);
+  set(Joint::left_toes, 12.2 * cm, 11.2 * cm, 2.0 * cm);
+  for (std::size_t j = 0; j < kSideJointCount; ++j) {
+    at[kFirstRight + j] = at[kFirstLeft + j].cwiseProduct(Vec3(-1, 1, 1));
+  }
+  return at;
+}
+
+Character make_mannequin(const MannequinBuild& build) {
+  const auto joints = mannequin_joints(build);
+  Character character;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto joint = static_cast<Joint>(j);
+    Node node{std::string(name(joint)), joint == Joint::hips ? -1 : static_cast<Index>(z(parent(joint)))};
+    node.local = Eigen::Translation3d(joint == Joint::hips ? joints[j] : Vec3(joints[j] - joints[z(parent(joint))]));
+    character.nodes.push_back(node);
+    character.bones.push_back({static_cast<Index>(j), Affine(Eigen::Translation3d(-joints[j]))});
+  }
+  mesh::MirroredMesh skin = make_skin(build, joints);
+  bind_skin(character, skin, joints, build.height);
+  character.mesh = std::move(skin.mesh);
+  return character;
+}
+
+}  // namespace weft::character

@@ -1,0 +1,18 @@
+// Which joint moves which part of the mannequin.
+#pragma once
+
+#include <array>
+
+#include "character/mannequin.hpp"
+
+namespace weft::character {
+
+/// Weight of each joint at a place of the left half, x >= 0; they add up to 1 and change smoothly. No more than four
+/// are above 0.
+std::array<double, kJointCount> mannequin_weights(const std::array<Vec3, kJointCount>& joints, double height,
+                                                  const Vec3& p);
+
+/// From 0 at `low` to 1 at `high`, twice continuously differentiable.
+double smooth_ramp(double x, double low, double high);
+
+}  // namespace weft::character

@@ -1,0 +1,249 @@
+#include "character/mannequin.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <numbers>
+
+#include "character/mannequin_shape.hpp"
+#include "mesh/geometry.hpp"
+#include "mesh/topology.hpp"
+#include "posed_mannequin.hpp"
+#include "support/intersections.hpp"
+
+namespace weft::character {
+namespace {
+
+const Character& standard() {
+  static const Character body = make_mannequin({});
+  return body;
+}
+
+/// Length of the section of the mesh with a plane, of the part where `take` holds [m].
+double girth(const Character& body, const Vec3& at, const Vec3& normal, const std::function<bool(const Vec3&)>& take) {
+  double length = 0;
+  for (const auto& t : body.mesh.topology.triangles) {
+    std::vector<Vec3> cut;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& p = body.mesh.positions[static_cast<std::size_t>(t[k])];
+      const Vec3& q = body.mesh.positions[static_cast<std::size_t>(t[(k + 1) % 3])];
+      const double a = (p - at).dot(normal), b = (q - at).dot(normal);
+      if ((a < 0) != (b < 0)) cut.push_back(p + a / (a - b) * (q - p));
+    }
+    if (cut.size() == 2 && take(cut[0])) length += (cut[1] - cut[0]).norm();
+  }
+  return length;
+}
+
+double smallest_angle(const mesh::Mesh& mesh) {
+  double least = std::numbers::pi;
+  for (const auto& t : mesh.topology.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto corner = [&](std::size_t c) { return mesh.positions[static_cast<std::size_t>(t[(k + c) % 3])]; };
+      const Vec3 a = corner(1) - corner(0), b = corner(2) - corner(0);
+      least = std::min(least, std::atan2(a.cross(b).norm(), a.dot(b)));
+    }
+  }
+  return least * 180 / std::numbers::pi;
+}
+
+double mean_edge(const mesh::Mesh& mesh) {
+  double sum = 0;
+  const auto edges = mesh::collect_edges(mesh.topology.triangles).edges;
+  for (const auto& e : edges) {
+    sum += (mesh.positions[static_cast<std::size_t>(e.vertices[0])] -
+            mesh.positions[static_cast<std::size_t>(e.vertices[1])])
+               .norm();
+  }
+  return sum / static_cast<double>(edges.size());
+}
+
+void expect_whole(const Character& body) {
+  const auto& triangles = body.mesh.topology.triangles;
+  EXPECT_TRUE(mesh::inspect(triangles, body.mesh.positions.size()).watertight());
+  const auto edges = mesh::collect_edges(triangles).edges.size();
+  EXPECT_EQ(body.mesh.positions.size() + triangles.size() - edges, 2U) << "not a sphere with limbs";
+  const double height = mesh::bounding_box(body.mesh.positions).max().z();
+  EXPECT_GT(mesh::enclosed_volume(triangles, body.mesh.positions), 0.007 * std::pow(height, 3)) << "inside out";
+  const support::JudgedObject judged{"body", true, body.mesh.positions, triangles};
+  const auto judgement = support::judge(std::span(&judged, 1));
+  EXPECT_TRUE(judgement.pairs.empty()) << judgement.pairs.size();
+  EXPECT_TRUE(judgement.degenerate.empty());
+}
+
+// Drillis & Contini (1966), in Winter, Fig. 4.1, as fractions of the height.
+TEST(Mannequin, HasPublishedProportionsAtAnyHeight) {
+  for (const double h : {1.5, 1.75, 1.95}) {
+    MannequinBuild build;
+    build.height = h;
+    build.edge_length = 0.03;
+    const Character body = make_mannequin(build);
+    const auto at = mannequin_joints(build);
+    const auto apart = [&](Joint a, Joint b) { return (at[index_of(a)] - at[index_of(b)]).norm() / h; };
+    EXPECT_NEAR(at[index_of(Joint::left_foot)].z() / h, 0.039, 1e-12);
+    EXPECT_NEAR(at[index_of(Joint::left_lower_leg)].z() / h, 0.285, 1e-12);
+    EXPECT_NEAR(at[index_of(Joint::left_upper_leg)].z() / h, 0.530, 1e-12);
+    EXPECT_NEAR(apart(Joint::left_upper_arm, Joint::left_lower_arm), 0.186, 1e-12);
+    EXPECT_NEAR(apart(Joint::left_lower_arm, Joint::left_hand), 0.146, 1e-12);
+    // Legs lean outward, by less than two degrees.
+    EXPECT_NEAR(apart(Joint::left_upper_leg, Joint::left_lower_leg), 0.245, 0.001);
+    EXPECT_NEAR(apart(Joint::left_lower_leg, Joint::left_foot), 0.246, 0.001);
+
+    // The skin: between inscribed triangles and the table within a hundredth of the height, the foot's length too.
+    const Box3 box = mesh::bounding_box(body.mesh.positions);
+    EXPECT_NEAR(box.min().z() / h, 0, 0.001);
+    EXPECT_NEAR(box.max().z() / h, 1, 0.003);
+    const Vec3 along = (at[index_of(Joint::left_hand)] - at[index_of(Joint::left_lower_arm)]).normalized();
+    double finger = 0, heel = -1, toe = 1, shoulder = 0, ball = 0;
+    for (const Vec3& p : body.mesh.positions) {
+      if (p.x() > 0.3 * h) finger = std::max(finger, (p - at[index_of(Joint::left_hand)]).dot(along));
+      if (p.z() < 0.06 * h) heel = std::max(heel, p.y()), toe = std::min(toe, p.y());
+      if (std::abs(p.x() - at[index_of(Joint::left_upper_arm)].x()) < 0.01 * h) shoulder = std::max(shoulder, p.z());
+    }
+    for (const Vec3& p : body.mesh.positions) {
+      if (p.z() < 0.03 * h && p.x() > 0) ball = std::max(ball, 2 * (p.x() - at[index_of(Joint::left_toes)].x()));
+    }
+    EXPECT_NEAR(finger / h, 0.108, 0.01);
+    EXPECT_NEAR((heel - toe) / h, 0.152, 0.01);
+    EXPECT_NEAR(ball / h, 0.055, 0.01);
+    EXPECT_NEAR(shoulder / h, 0.818, 0.01);
+  }
+}
+
+TEST(Mannequin, GirthsAreThoseOfASlenderWomanAndGrowWithTheBuild) {
+  const auto middle = [](const Vec3& p) { return std::abs(p.x()) < 0.19; };
+  const auto left = [](const Vec3& p) { return p.x() > 0 && p.x() < 0.3; };
+  const auto all = [](const Vec3&) { return true; };
+  struct Place {
+    const char* what;
+    double height, least, most;
+    std::function<bool(const Vec3&)> take;
+  };
+  const std::vector<Place> places{
+      {"bust", 1.262, 0.80, 0.95, middle}, {"waist", 1.11, 0.60, 0.70, middle}, {"hips", 0.89, 0.86, 0.98, middle},
+      {"thigh", 0.76, 0.48, 0.58, left},   {"calf", 0.34, 0.31, 0.37, left},    {"ankle", 0.12, 0.17, 0.22, left},
+      {"neck", 1.51, 0.28, 0.35, all},
+  };
+  MannequinBuild heavy;
+  heavy.girth = 1.15;
+  const Character heavier = make_mannequin(heavy);
+  for (const Place& place : places) {
+    const double length = girth(standard(), Vec3(0, 0, place.height), Vec3::UnitZ(), place.take);
+    EXPECT_GT(length, place.least) << place.what;
+    EXPECT_LT(length, place.most) << place.what;
+    EXPECT_GT(girth(heavier, Vec3(0, 0, place.height), Vec3::UnitZ(), place.take), 1.05 * length) << place.what;
+  }
+}
+
+TEST(Mannequin, IsClosedAndFreeOfSelfIntersections) {
+  expect_whole(standard());
+  for (const double edge : {0.03, 0.04}) {
+    MannequinBuild build;
+    build.edge_length = edge;
+    expect_whole(make_mannequin(build));
+  }
+}
+
+TEST(Mannequin, IsWholeInEveryBuild) {
+  for (const double girth_of : {0.9, 1.3}) {
+    for (const double masculinity : {0.0, 1.0}) {
+      for (const double height : {1.2, 1.95}) {
+        MannequinBuild build{height, girth_of, masculinity, 0.025};
+        SCOPED_TRACE(testing::Message() << height << ' ' << girth_of << ' ' << masculinity);
+        expect_whole(make_mannequin(build));
+      }
+    }
+  }
+}
+
+TEST(Mannequin, HasTrianglesOfTheLengthAskedForAndOfGoodShape) {
+  // Head, hands and feet have shorter edges: 0.76 of the length on average, measured.
+  for (const double edge : {0.015, 0.02, 0.04}) {
+    MannequinBuild build;
+    build.edge_length = edge;
+    const Character body = make_mannequin(build);
+    EXPECT_NEAR(mean_edge(body.mesh) / edge, 0.76, 0.06) << edge;
+    EXPECT_GT(smallest_angle(body.mesh), 20) << edge;
+  }
+}
+
+TEST(Mannequin, VerticesLieOnTheSurface) {
+  const BlendedBody surface = mannequin_body({});
+  for (const Vec3& p : standard().mesh.positions) {
+    if (p.z() < 0.02) continue;  // soles are cut flat
+    const double h = 1e-6;
+    Vec3 slope;
+    for (int k = 0; k < 3; ++k) slope[k] = (surface(p + h * Vec3::Unit(k)) - surface(p - h * Vec3::Unit(k))) / (2 * h);
+    // Two Newton steps a round: 1e-5 m, ten times what is measured.
+    EXPECT_LT(std::abs(surface(p)) / slope.norm(), 1e-5) << p.transpose();
+  }
+}
+
+TEST(Mannequin, IsItsOwnMirrorImageToTheBit) {
+  const Character& body = standard();
+  const auto less = [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.begin(), a.end(), b.begin(), b.end());
+  };
+  std::vector<Vec3> here = body.mesh.positions, there;
+  for (const Vec3& p : here) there.emplace_back(0.0 - p.x(), p.y(), p.z());
+  std::sort(here.begin(), here.end(), less);
+  std::sort(there.begin(), there.end(), less);
+  EXPECT_EQ(here, there);
+}
+
+TEST(Mannequin, SkinWeightsAddUpAndAreSmoothAndMirrored) {
+  const Character& body = standard();
+  ASSERT_EQ(body.first_influence.size(), body.mesh.positions.size() + 1);
+  std::vector<double> largest(kJointCount, 0);
+  for (std::size_t v = 0; v < body.mesh.positions.size(); ++v) {
+    const auto count = body.first_influence[v + 1] - body.first_influence[v];
+    EXPECT_GE(count, 1);
+    EXPECT_LE(count, 4);
+    double sum = 0;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const double w = weight_of(body, v, static_cast<Joint>(j));
+      EXPECT_GE(w, 0);
+      sum += w;
+      largest[j] = std::max(largest[j], w);
+    }
+    EXPECT_NEAR(sum, 1, 1e-12);
+  }
+  for (std::size_t j = 0; j < kJointCount; ++j) EXPECT_GT(largest[j], 0.9) << name(static_cast<Joint>(j));
+  for (std::size_t j = 5; j < 13; ++j) EXPECT_EQ(largest[j], largest[j + kSideJointCount]);
+  // The shortest way over which a weight goes from 0 to 1 is 4 cm, at the toes: 1.875 / 0.04 m at the steepest; between
+  // the thighs it is a quarter of that.
+  for (const auto& e : mesh::collect_edges(body.mesh.topology.triangles).edges) {
+    const auto [a, b] = std::pair(static_cast<std::size_t>(e.vertices[0]), static_cast<std::size_t>(e.vertices[1]));
+    const double length = (body.mesh.positions[a] - body.mesh.positions[b]).norm();
+    const bool between_thighs = std::abs(body.mesh.positions[a].x()) < 0.04 && body.mesh.positions[a].z() < 0.84;
+    if (between_thighs) continue;
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const auto joint = static_cast<Joint>(j);
+      EXPECT_LT(std::abs(weight_of(body, a, joint) - weight_of(body, b, joint)), 55 * length)
+          << name(joint) << ' ' << body.mesh.positions[a].transpose();
+    }
+  }
+}
+
+TEST(Mannequin, LooksTheSameInTheClipThatKeepsItAtRest) {
+  const Character& body = standard();
+  Clip rest;
+  rest.channels.resize(kJointCount);
+  for (Channel& channel : rest.channels) channel.rotation.values = {Quat::Identity()};
+  rest.channels[0].position.values = {Vec3(body.nodes[0].local.translation())};
+  const auto posed = skinned(body, joints_at_key(body, rest, 0));
+  for (std::size_t v = 0; v < posed.size(); ++v) EXPECT_LT((posed[v] - body.mesh.positions[v]).norm(), 1e-14);
+}
+
+TEST(Mannequin, IsTheSameEveryTime) {
+  const Character again = make_mannequin({});
+  const auto& a = standard().mesh.positions;
+  ASSERT_EQ(again.mesh.positions.size(), a.size());
+  EXPECT_EQ(std::memcmp(again.mesh.positions.data(), a.data(), a.size() * sizeof(Vec3)), 0);
+  EXPECT_EQ(again.mesh.topology.triangles, standard().mesh.topology.triangles);
+}
+
+}  // namespace
+}  // namespace weft::character

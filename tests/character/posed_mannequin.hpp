@@ -1,0 +1,49 @@
+// A mannequin in a pose: hierarchy and linear blend skinning in their plainest form.
+#pragma once
+
+#include <algorithm>
+#include <vector>
+
+#include "character/mannequin.hpp"
+
+namespace weft::character {
+
+inline std::size_t index_of(Joint joint) {
+  return static_cast<std::size_t>(joint);
+}
+
+/// Node to world at a key of a clip that has a rotation for every joint, and a place for the hips.
+inline std::vector<Affine> joints_at_key(const Character& body, const Clip& clip, std::size_t key) {
+  std::vector<Affine> global(body.nodes.size());
+  for (std::size_t n = 0; n < global.size(); ++n) {
+    const Node& node = body.nodes[n];
+    const Vec3 place = n == 0 ? clip.channels[0].position.values[key] : Vec3(node.local.translation());
+    const Affine local = Eigen::Translation3d(place) * clip.channels[n].rotation.values[key];
+    global[n] = node.parent < 0 ? local : global[static_cast<std::size_t>(node.parent)] * local;
+  }
+  return global;
+}
+
+inline std::vector<Vec3> skinned(const Character& body, const std::vector<Affine>& global) {
+  std::vector<Vec3> out;
+  for (std::size_t v = 0; v < body.mesh.positions.size(); ++v) {
+    Vec3 sum = Vec3::Zero();
+    for (Index k = body.first_influence[v]; k < body.first_influence[v + 1]; ++k) {
+      const Influence& i = body.influences[static_cast<std::size_t>(k)];
+      const Bone& bone = body.bones[static_cast<std::size_t>(i.bone)];
+      sum += i.weight * (global[static_cast<std::size_t>(bone.node)] * (bone.offset * body.mesh.positions[v]));
+    }
+    out.push_back(sum);
+  }
+  return out;
+}
+
+inline double weight_of(const Character& body, std::size_t vertex, Joint joint) {
+  for (Index k = body.first_influence[vertex]; k < body.first_influence[vertex + 1]; ++k) {
+    const Influence& i = body.influences[static_cast<std::size_t>(k)];
+    if (i.bone == static_cast<Index>(joint)) return i.weight;
+  }
+  return 0;
+}
+
+}  // namespace weft::character
