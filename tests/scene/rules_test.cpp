@@ -127,7 +127,7 @@ TEST(Rules, EachKeyOfAVariantChangesTheSceneAndItsHash) {
   for (const std::string list : {"obstacle", "cloth", "light"}) {
     const Table& table = *scene_rules().find(list)->table;
     for (const Variant& variant : table.variants) {
-      const std::string file = variant.name == "mesh" ? ", file = 'triangle.obj'" : "";
+      const std::string file = variant.name == "mesh" || variant.name == "pattern" ? ", file = 'triangle.obj'" : "";
       std::string text = list + " = [{ name = 'x', " + table.selector + " = '" + variant.name + "'" + file + " }]\n";
       if (list == "light") text += "cloth = [{ name = 'c' }]\n";
       const auto defaults = table.make();
