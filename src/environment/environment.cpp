@@ -13,6 +13,7 @@
 #include "core/log.hpp"
 #include "core/parallel.hpp"
 #include "environment/acting.hpp"
+#include "garment/garment.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/quads.hpp"
 #include "mesh/shapes.hpp"
@@ -71,17 +72,10 @@ void use_triangles(mesh::Mesh mesh, ClothObject& object) {
   object.mesh = std::move(mesh);
 }
 
-/// The triangles of a cloth's file. Throws Error(asset_unreadable) where they are no sheet.
-mesh::Mesh load_sheet(const scene::Cloth& cloth, const std::string& where) {
-  mesh::Mesh mesh = assets::load_mesh(cloth.file, cloth.scale, where).mesh;
-  mesh.topology.quads.clear();
-  const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
-  if (!report.manifold())
-    throw Error(
-        ExitCode::asset_unreadable,
-        "{}: mesh file {}: expected edges of one or two triangles that face the same way, got {} of more and {} "
-        "that face both ways",
-        where, cloth.file.string(), report.non_manifold.size(), report.misoriented.size());
+/// Shapes are made with their axis along z. Where y is up they are turned by -90° about x: z becomes y, x stays.
+mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
+  if (up == scene::UpAxis::y)
+    for (Vec3& x : mesh.positions) x = Vec3(x.x(), x.z(), -x.y());
   return mesh;
 }
 
@@ -94,6 +88,37 @@ void check_parts(const scene::Cloth& cloth, const ClothObject& object, const std
   };
   for (const scene::Pin& pin : cloth.pins) check(pin, "pin");
   for (const scene::Weight& weight : cloth.weights) check(weight, "weight");
+}
+
+/// Garments stand upright along z, like shapes. Parts of them are in fractions across and up.
+void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, ClothObject& object) {
+  garment::Garment garment = garment::sew(garment::load_pattern(cloth.file, where), cloth.edge_length, where);
+  const Box3 box = mesh::bounding_box(garment.sheet.rest);
+  for (const Vec3& x : garment.sheet.rest) {
+    const Vec3 share = (x - box.min()).cwiseQuotient(box.sizes());
+    object.fractions.emplace_back(share.x(), share.z());
+  }
+  object.mesh.topology.triangles = garment.sheet.triangles;
+  object.mesh.positions = garment.sheet.rest;
+  object.mesh.uv = std::move(garment.uv);
+  object.mesh = turned_up(std::move(object.mesh), scene.up);
+  object.sheet = std::move(garment.sheet);
+  object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
+  check_parts(cloth, object, where);
+}
+
+/// The triangles of a cloth's file. Throws Error(asset_unreadable) where they are no sheet.
+mesh::Mesh load_sheet(const scene::Cloth& cloth, const std::string& where) {
+  mesh::Mesh mesh = assets::load_mesh(cloth.file, cloth.scale, where).mesh;
+  mesh.topology.quads.clear();
+  const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
+  if (!report.manifold())
+    throw Error(
+        ExitCode::asset_unreadable,
+        "{}: mesh file {}: expected edges of one or two triangles that face the same way, got {} of more and {} "
+        "that face both ways",
+        where, cloth.file.string(), report.non_manifold.size(), report.misoriented.size());
+  return mesh;
 }
 
 ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth) {
@@ -119,19 +144,15 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth) {
       use_triangles(load_sheet(cloth, where), object);
       check_parts(cloth, object, where);
       break;
+    case scene::ClothShape::pattern:
+      use_pattern(scene, cloth, where, object);
+      break;
   }
   for (Vec3& x : object.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
   const std::size_t n = object.mesh.positions.size();
   object.motion = {start_positions(cloth, object.mesh), std::vector<Vec3>(n, cloth.velocity),
                    std::vector<Vec3>(n, Vec3::Zero())};
   return object;
-}
-
-/// Shapes are made with their axis along z. Where y is up they are turned by -90° about x: z becomes y, x stays.
-mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
-  if (up == scene::UpAxis::y)
-    for (Vec3& x : mesh.positions) x = Vec3(x.x(), x.z(), -x.y());
-  return mesh;
 }
 
 /// Makes the mesh of any shape in the body's own coordinates. A box has its sizes along the scene's axes and a file its

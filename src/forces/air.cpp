@@ -37,10 +37,10 @@ Air::Air(const mesh::Grid& grid, Index first, const AirParameters& parameters) :
 
 Air::Air(const mesh::Sheet& sheet, Index first, double cloth_density, const AirParameters& parameters)
     : parameters_(parameters) {
-  for (mesh::Triangle t : sheet.triangles) {
-    const double mass = cloth_density * mesh::area_vector(t, sheet.rest).norm();
-    for (Index& corner : t) corner += first;
-    triangles_.push_back({t, mass});
+  for (std::size_t i = 0; i < sheet.triangles.size(); ++i) {
+    mesh::Triangle corners = sheet.triangles[i];
+    for (Index& corner : corners) corner += first;
+    triangles_.push_back({corners, cloth_density * mesh::rest_area(sheet, i)});
   }
 }
 

@@ -1,7 +1,5 @@
 #include "forces/force.hpp"
 
-#include "mesh/geometry.hpp"
-
 namespace weft::forces {
 
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density) {
@@ -15,10 +13,12 @@ std::vector<double> lumped_masses(const mesh::Grid& grid, double density) {
 
 std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density) {
   std::vector<double> masses(sheet.rest.size());
-  for (const mesh::Triangle& t : sheet.triangles) {
-    const double third = density * mesh::area_vector(t, sheet.rest).norm() / 3;
-    for (Index i : t) masses[static_cast<std::size_t>(i)] += third;
-  }
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t)
+    for (Index i : sheet.triangles[t]) masses[static_cast<std::size_t>(i)] += density * mesh::rest_area(sheet, t) / 3;
+  for (const mesh::Band& band : sheet.bands)
+    for (std::size_t k = 0; k < band.lengths.size(); ++k)
+      for (Index i : {band.vertices[k], band.vertices[k + 1]})
+        masses[static_cast<std::size_t>(i)] += 0.5 * band.mass * band.lengths[k];
   return masses;
 }
 

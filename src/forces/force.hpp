@@ -63,7 +63,7 @@ inline double line_width(int i, int count, double l) {
 
 /// Lumped masses of a grid [kg], ρ times the area of each particle (ρ in kg/m²).
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
-/// And of triangles, a third of each to each of its corners.
+/// And of triangles, a third of each to each of its corners, with those of bands.
 std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density);
 
 }  // namespace weft::forces

@@ -4,8 +4,6 @@
 #include <array>
 #include <cmath>
 
-#include "mesh/geometry.hpp"
-
 namespace weft::forces {
 namespace {
 
@@ -37,12 +35,8 @@ TriangleBend::TriangleBend(const mesh::Sheet& sheet, Index first, const BendPara
     : rigidity_(parameters.rigidity), damping_(parameters) {
   const std::vector<CurvatureStencil> stencils = curvature_stencils(sheet);
   for (std::size_t t = 0; t < stencils.size(); ++t) {
-    Element element{stencils[t].vertices,
-                    stencils[t].weights,
-                    mesh::area_vector(sheet.triangles[t], sheet.rest).norm(),
-                    Vec3::Zero(),
-                    {}};
-    find_rest(element, sheet.material[t], sheet.rest);
+    Element element{stencils[t].vertices, stencils[t].weights, mesh::rest_area(sheet, t), Vec3::Zero(), {}};
+    if (!sheet.sewn) find_rest(element, sheet.material[t], sheet.rest);
     for (Index& particle : element.particles) particle += first;
     elements_.push_back(std::move(element));
   }

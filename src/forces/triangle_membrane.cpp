@@ -1,5 +1,6 @@
 #include "forces/triangle_membrane.hpp"
 
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 
@@ -33,10 +34,39 @@ TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const 
     sides << m[1] - m[0], m[2] - m[0];
     element.area = 0.5 * sides.determinant();
     const Eigen::Matrix2d inverse = sides.inverse();
-    element.gradients[1] = inverse.row(0);
-    element.gradients[2] = inverse.row(1);
-    element.gradients[0] = -(element.gradients[1] + element.gradients[2]);
+    use_rest(inverse, element);
     elements_.push_back(element);
+    if (!sheet.sewn) continue;
+    Gradient s{Vec3::Zero(), Vec3::Zero()};
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3& x = sheet.rest[static_cast<std::size_t>(sheet.triangles[t][k])];
+      s.u += element.gradients[k].x() * x;
+      s.v += element.gradients[k].y() * x;
+    }
+    starts_.push_back({inverse, stretch_of(s) - Eigen::Matrix2d::Identity()});
+  }
+}
+
+// U of the polar decomposition: the square root of the metric, in closed form for 2 × 2.
+Eigen::Matrix2d TriangleMembrane::stretch_of(const Gradient& s) {
+  Eigen::Matrix2d metric;
+  metric << s.u.dot(s.u), s.u.dot(s.v), s.u.dot(s.v), s.v.dot(s.v);
+  const double area = s.u.cross(s.v).norm();
+  return (metric + area * Eigen::Matrix2d::Identity()) / std::sqrt(metric.trace() + 2 * area);
+}
+
+// From the inverse of the matrix with two sides as columns.
+void TriangleMembrane::use_rest(const Eigen::Matrix2d& inverse, Element& element) {
+  element.gradients[1] = inverse.row(0);
+  element.gradients[2] = inverse.row(1);
+  element.gradients[0] = -(element.gradients[1] + element.gradients[2]);
+}
+
+void TriangleMembrane::rest_between_start_and_pattern(double share) {
+  for (std::size_t e = 0; e < starts_.size(); ++e) {
+    const auto& [inverse, excess] = starts_[e];
+    const Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity() + (1 - share) * excess;
+    use_rest(share == 1 ? inverse : Eigen::Matrix2d(inverse * stretch.inverse()), elements_[e]);
   }
 }
 

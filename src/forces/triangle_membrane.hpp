@@ -26,6 +26,9 @@ class TriangleMembrane final : public Membrane {
   void attach(const solver::BlockMatrix& matrix) override;
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> x) const override;
+  /// Of a sewn sheet: the rest shape of each triangle, at share 0 that of its start, which then has no stress, at 1
+  /// that of the pattern. Between, the stretch U of the start, in weft and warp, shrinks to (1 − share) U + share 1.
+  void rest_between_start_and_pattern(double share);
   double max_strain(std::span<const Vec3> x) const override;
   void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
 
@@ -43,6 +46,8 @@ class TriangleMembrane final : public Membrane {
   struct Hessian {
     Mat3 uu = Mat3::Zero(), uv = Mat3::Zero(), vu = Mat3::Zero(), vv = Mat3::Zero();
   };
+  static void use_rest(const Eigen::Matrix2d& inverse, Element& element);
+  static Eigen::Matrix2d stretch_of(const Gradient& s);
   static Gradient gradient(const Element& element, std::span<const Vec3> x);
   double strain(const Element& element, std::span<const Vec3> x) const;
   Mat3 stretch_hessian(double k, const Vec3& s, const Vec3& rate, const Evaluation& at) const;
@@ -52,6 +57,11 @@ class TriangleMembrane final : public Membrane {
   StretchParameters stretch_;
   ShearParameters shear_;
   std::vector<Element> elements_;
+  /// Of a sewn sheet: the inverse sides of each triangle in the pattern, and the stretch of its start less 1.
+  struct Start {
+    Eigen::Matrix2d inverse, excess;
+  };
+  std::vector<Start> starts_;
   std::vector<std::array<solver::Slot, 9>> slots_;  // row-major over pairs of corners
 };
 

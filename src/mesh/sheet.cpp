@@ -25,7 +25,9 @@ std::array<Vec3, 2> axes(const Vec3& normal) {
 }  // namespace
 
 Sheet make_sheet_of(const Mesh& mesh) {
-  Sheet sheet{mesh.topology.triangles, mesh.positions, {}};
+  Sheet sheet;
+  sheet.triangles = mesh.topology.triangles;
+  sheet.rest = mesh.positions;
   for (const Triangle& t : sheet.triangles) {
     const auto [weft, warp] = axes(area_vector(t, sheet.rest));
     auto& corners = sheet.material.emplace_back();
@@ -37,13 +39,18 @@ Sheet make_sheet_of(const Mesh& mesh) {
   return sheet;
 }
 
+double rest_area(const Sheet& sheet, std::size_t triangle) {
+  const auto& m = sheet.material[triangle];
+  const Vec2 a = m[1] - m[0], b = m[2] - m[0];
+  return 0.5 * (a.x() * b.y() - a.y() * b.x());
+}
+
 double least_height(const Sheet& sheet) {
   double least = std::numeric_limits<double>::infinity();
-  for (const Triangle& t : sheet.triangles) {
-    const auto corner = [&](std::size_t k) -> const Vec3& { return sheet.rest[static_cast<std::size_t>(t[k])]; };
-    const double longest =
-        std::max({(corner(1) - corner(0)).norm(), (corner(2) - corner(1)).norm(), (corner(0) - corner(2)).norm()});
-    least = std::min(least, 2 * area_vector(t, sheet.rest).norm() / longest);
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
+    const auto& m = sheet.material[t];
+    const double longest = std::max({(m[1] - m[0]).norm(), (m[2] - m[1]).norm(), (m[0] - m[2]).norm()});
+    least = std::min(least, 2 * rest_area(sheet, t) / longest);
   }
   return least;
 }

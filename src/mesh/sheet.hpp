@@ -9,19 +9,34 @@
 
 namespace weft::mesh {
 
+/// A band along a chain of edges: elastic, or a hem.
+struct Band {
+  std::vector<Index> vertices;
+  std::vector<double> lengths;  ///< of the cloth's edges between them [m]
+  double ratio = 1;             ///< rest length of the band by that of the cloth
+  double stiffness = 0;         ///< force per strain [N]
+  double mass = 0;              ///< per length of the cloth [kg/m]
+  double bend = 0;              ///< bending stiffness [N·m²]
+};
+
 /// Rest shape of cloth made of triangles, flat or not.
 struct Sheet {
   std::vector<Triangle> triangles;            ///< manifold and equally oriented
   std::vector<Vec3> rest;                     ///< per vertex [m]
   std::vector<std::array<Vec2, 3>> material;  ///< (weft, warp) of each triangle's corners, counter-clockwise [m]
+  bool sewn = false;  ///< of flat panels: their shape at rest is `material` alone, and `rest` is where they start
+  std::vector<Band> bands;
 };
+
+/// Area of a triangle at rest [m²].
+double rest_area(const Sheet& sheet, std::size_t triangle);
 
 /// A sheet whose rest shape is the mesh. In each triangle the weft runs along x projected into it, in triangles across
 /// x it runs along −z; for a flat mesh in the x-y plane weft and warp are x and y. Each triangle has coordinates of its
 /// own: those of its neighbours differ from them by a rigid motion.
 Sheet make_sheet_of(const Mesh& mesh);
 
-/// Shortest height of a triangle [m].
+/// Shortest height of a triangle at rest [m].
 double least_height(const Sheet& sheet);
 
 /// Ways to cut each cell of a grid.

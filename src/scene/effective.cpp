@@ -130,7 +130,7 @@ std::uint64_t hash_of(const Scene& scene) {
   for (Obstacle& obstacle : copy.obstacles)
     if (auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) add_file(mesh->path);
   for (Cloth& cloth : copy.cloths)
-    if (cloth.shape == ClothShape::mesh) add_file(cloth.file);
+    if (!cloth.file.empty()) add_file(cloth.file);
   for (Character& character : copy.characters) {
     if (auto* file = std::get_if<CharacterFile>(&character.source)) {
       add_file(file->path);

@@ -159,20 +159,29 @@ void cloth_shape_rows(TableBuilder<Cloth>& rows) {
                                   "start at the scene's folder")
                            .need(Need::required)
                            .number("scale", &Cloth::scale, above(0, 1e6), "", "factor on all lengths of the file"));
+  rows.variant("pattern", Rows()
+                              .plain(Type::file, "file", &Cloth::file,
+                                     "sewing pattern (TOML); relative paths start at the scene's folder")
+                              .need(Need::required)
+                              .number("edge_length", &Cloth::edge_length, within(1e-4, 10), "m", "of the mesh")
+                              .number("sewing", &Cloth::sewing, within(0, 1000), "s",
+                                      "time in which the panels, without weight, go to their own measures"));
 }
 
 const Table& cloth_rules() {
   static const Table kTable =
-      TableBuilder<Cloth>("A sheet of cloth: a rectangle, or the shape of a mesh file.")
+      TableBuilder<Cloth>("A sheet of cloth: a rectangle, the shape of a mesh file, or sewn from a pattern.")
           .plain(Type::name, "name", &Cloth::name, "unlike that of any other object")
           .need(Need::required)
-          .choice("shape", &Cloth::shape, {"quads", "aligned_triangles", "crossed_triangles", "mesh"},
-                  "what it is made of: a rectangle of quads or of triangles, or the triangles of a mesh file")
+          .choice("shape", &Cloth::shape, {"quads", "aligned_triangles", "crossed_triangles", "mesh", "pattern"},
+                  "a rectangle of quads or of triangles, the triangles of a mesh file, or a sewing pattern")
           .selects()
           .with(cloth_shape_rows)
           .with([](auto& rows) {
-            pose_rows(rows, &Cloth::pose,
-                      "of the middle of the sheet, or the origin of the mesh; weft lies along its x, warp along its y");
+            pose_rows(
+                rows, &Cloth::pose,
+                "of the middle of the sheet, whose weft lies along its x and warp along its y, or of the origin of "
+                "the mesh or pattern");
           })
           .vector("velocity", &Cloth::velocity, kXyz, within(-1e4, 1e4), "m/s", "at the start")
           .vector("start_scale", &Cloth::start_scale, kWeftWarp, above(0, 1000), "",

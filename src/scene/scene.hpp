@@ -140,30 +140,32 @@ struct Weight : ClothPart {
   double mass = 0.1;  ///< [kg]
 };
 
-enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh };
+enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern };
 
 struct Cloth {
   std::string name;
   ClothShape shape = ClothShape::quads;
-  Vec2 size{1, 1};                               ///< weft, warp [m]; not of a mesh
+  Vec2 size{1, 1};                               ///< weft, warp [m]; not of a file
   int particles_weft = 41, particles_warp = 41;  ///< likewise; crossed triangles have one more in each cell
-  std::filesystem::path file;                    ///< of a mesh; absolute after checking
+  std::filesystem::path file;                    ///< of a mesh or sewing pattern; absolute after checking
   double scale = 1;                              ///< of a mesh: metres per unit of the file
-  int line = 0, column = 0;                      ///< where the scene names it, for errors of its file
-  Pose pose;               ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
-  Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
-  Vec2 start_scale{1, 1};  ///< lengths along weft and warp at the start, times those at rest
-  double start_noise = 0;  ///< most that a particle is off its place at the start, along each axis [m]
+  double edge_length = 0.02;                     ///< of the mesh of a pattern [m]
+  double sewing = 1;         ///< time in which a pattern goes from its start to its own measures [s]
+  int line = 0, column = 0;  ///< where the scene names it, for errors of its file
+  Pose pose;                 ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
+  Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
+  Vec2 start_scale{1, 1};    ///< lengths along weft and warp at the start, times those at rest
+  double start_noise = 0;    ///< most that a particle is off its place at the start, along each axis [m]
   Material material;
   Look look;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
 };
 
-/// Particles of a rectangle of cloth; of a mesh its file tells, and this is 0.
+/// Particles of a rectangle of cloth; of the others their file tells, and this is 0.
 inline long rectangle_particles(const Cloth& cloth) {
   const long u = cloth.particles_weft, v = cloth.particles_warp;
-  if (cloth.shape == ClothShape::mesh) return 0;
+  if (cloth.shape == ClothShape::mesh || cloth.shape == ClothShape::pattern) return 0;
   return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
 }
 

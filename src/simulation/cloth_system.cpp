@@ -8,7 +8,6 @@
 #include "forces/shear.hpp"
 #include "forces/stretch.hpp"
 #include "forces/triangle_bend.hpp"
-#include "forces/triangle_membrane.hpp"
 #include "mesh/geometry.hpp"
 #include "simulation/pins.hpp"
 
@@ -61,9 +60,16 @@ std::vector<Box> boxes_of(const environment::ClothObject& cloth) {
   return boxes;
 }
 
+// Share of the way to the pattern after a share of the time: begins and ends without a jerk.
+double ease(double s) {
+  s = std::clamp(s, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
 }  // namespace
 
-ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environment& environment) {
+ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environment& environment)
+    : gravity_(scene.physics.gravity) {
   Index first = 0;
   forces_.resize(scene.cloths.size());
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
@@ -81,7 +87,7 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     if (cloth.sheet.triangles.empty())
       add_quad_forces(c, cloth.grid, material, scene.physics);
     else
-      add_triangle_forces(c, cloth.sheet, material, scene.physics);
+      add_triangle_forces(c, cloth.sheet, scene.cloths[c], scene.physics);
     spacing_ = std::min(spacing_, cloth.spacing);
     first += static_cast<Index>(masses.size());
   }
@@ -94,6 +100,7 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   base_ = solver::BlockMatrix(first, std::move(couplings));
   for (const auto& of_cloth : forces_)
     for (const auto& force : of_cloth) force->attach(base_);
+  sew(0);
 }
 
 void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, const scene::Material& material,
@@ -108,12 +115,19 @@ void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, con
   if (meets_air(material, physics)) air_.emplace_back(grid, first, air_of(material, physics));
 }
 
-void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Material& material,
+void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of,
                                       const scene::Physics& physics) {
+  const scene::Material& material = of.material;
   const Index first = first_[cloth];
   auto membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
   membranes_.push_back(membrane.get());
+  if (sheet.sewn) sewing_.push_back({cloth, of.sewing, -1, membrane.get(), nullptr});
   forces_[cloth].push_back(std::move(membrane));
+  if (!sheet.bands.empty()) {
+    auto bands = std::make_unique<forces::Bands>(sheet, first);
+    if (sheet.sewn) sewing_.back().bands = bands.get();
+    forces_[cloth].push_back(std::move(bands));
+  }
   if (bends(material))
     forces_[cloth].push_back(std::make_unique<forces::TriangleBend>(sheet, first, bend_of(material)));
   if (meets_air(material, physics)) air_.emplace_back(sheet, first, material.density, air_of(material, physics));
@@ -141,7 +155,28 @@ void ClothSystem::cut_groups(const environment::Environment& environment) {
   } while (groupings_.back().count > std::max(kPatches, static_cast<Index>(boxes.size())));
 }
 
+void ClothSystem::sew(double t) {
+  for (Sewing& sewing : sewing_) {
+    const double share = sewing.duration > 0 ? ease(t / sewing.duration) : 1;
+    if (share == sewing.share) continue;
+    sewing.share = share;
+    sewing.membrane->rest_between_start_and_pattern(share);
+    if (sewing.bands != nullptr) sewing.bands->rest_between_start_and_pattern(share);
+    forget();
+  }
+}
+
+// What is being sewn has no weight: it would fall before it fits.
+void ClothSystem::take_weight_off(std::span<Vec3> force) const {
+  for (const Sewing& sewing : sewing_) {
+    if (sewing.share == 1) continue;
+    const auto end = static_cast<std::size_t>(first_[sewing.cloth + 1]);
+    for (auto i = static_cast<std::size_t>(first_[sewing.cloth]); i < end; ++i) force[i] -= masses_[i] * gravity_;
+  }
+}
+
 void ClothSystem::explicit_forces(const integrator::State& at, double h, std::span<Vec3> force) const {
+  take_weight_off(force);
   for (const forces::Air& air : air_) air.add(at.x, at.v, masses_, h, force);
 }
 

@@ -10,7 +10,9 @@
 #include "collision/response/velocity_constraints.hpp"
 #include "environment/environment.hpp"
 #include "forces/air.hpp"
+#include "forces/bands.hpp"
 #include "forces/force.hpp"
+#include "forces/triangle_membrane.hpp"
 #include "integrator/system.hpp"
 #include "scene/scene.hpp"
 
@@ -30,6 +32,9 @@ class ClothSystem final : public integrator::System {
   void use_contacts(collision::ContactSet* contacts) { contacts_ = contacts; }
   /// Constraints whose sliding friction acts; likewise.
   void use_constraints(const collision::VelocityConstraints* constraints) { constraints_ = constraints; }
+
+  /// Gives cloths that are being sewn the rest shape that they have at time t [s].
+  void sew(double t);
 
   /// Makes the next linearisation put the matrix together anew: what is computed from here on depends on positions and
   /// velocities alone.
@@ -57,8 +62,9 @@ class ClothSystem final : public integrator::System {
                         solver::BlockMatrix* matrix) const;
   void add_quad_forces(std::size_t cloth, const mesh::Grid& grid, const scene::Material& material,
                        const scene::Physics& physics);
-  void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Material& material,
+  void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of,
                            const scene::Physics& physics);
+  void take_weight_off(std::span<Vec3> force) const;
   void cut_groups(const environment::Environment& environment);
 
   std::vector<Index> first_;  // per cloth, and the total at the end
@@ -66,6 +72,16 @@ class ClothSystem final : public integrator::System {
   std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;  // per cloth, all of the stiff ones
   std::vector<const forces::Membrane*> membranes_;                   // of them, one per cloth
   std::vector<forces::Air> air_;
+  /// A cloth while it is sewn.
+  struct Sewing {
+    std::size_t cloth;
+    double duration;    // [s]
+    double share = -1;  // of the way to the pattern
+    forces::TriangleMembrane* membrane;
+    forces::Bands* bands;  // nullptr where it has none
+  };
+  std::vector<Sewing> sewing_;
+  Vec3 gravity_;
   collision::ContactSet* contacts_ = nullptr;
   const collision::VelocityConstraints* constraints_ = nullptr;
   std::vector<solver::Grouping> groupings_;  // of the preconditioner

@@ -17,9 +17,11 @@ constexpr double kNothing = 1e-9;
 bool is_alone(const scene::Scene& scene) {
   if (CollisionStage::needed(scene)) return false;
   const auto moves = [](const scene::PoseTrack& track) { return track.keys.size() > 1; };
-  for (const scene::Cloth& cloth : scene.cloths)
+  for (const scene::Cloth& cloth : scene.cloths) {
+    if (cloth.shape == scene::ClothShape::pattern) return false;  // sewing drives it
     for (const scene::Pin& pin : cloth.pins)
       if (moves(pin.motion) || !pin.follow.empty()) return false;
+  }
   return scene.physics.air_density == 0 || scene.physics.wind == Vec3::Zero();
 }
 

@@ -164,6 +164,7 @@ Simulation::Impl::Rejection Simulation::Impl::solve(double h, integrator::Steppe
 // One step from `now` at time t [s] over h [s] into `next`.
 Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, bool may_pinch, FrameReport& report) {
   pins.held_at(t + h, environment, held);
+  system.sew(t + h);
   using Start = integrator::Stepper::Start;
   if (!collisions) return solve(h, Start::unchanged_velocity, report);
   {

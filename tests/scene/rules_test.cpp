@@ -135,7 +135,7 @@ TEST(Rules, EachKeyOfAVariantChangesTheSceneAndItsHash) {
   for (const std::string list : {"obstacle", "cloth", "character", "light"}) {
     const Table& table = *scene_rules().find(list)->table;
     for (const Variant& variant : table.variants) {
-      const std::string file = variant.name == "mesh"       ? ", file = 'triangle.obj'"
+      const std::string file = variant.name == "mesh" || variant.name == "pattern" ? ", file = 'triangle.obj'"
                                : variant.name == "file"     ? ", file = 'triangle.obj', blend = 1"
                                : variant.name == "sequence" ? ", files = 'frames'"
                                                             : "";

@@ -18,6 +18,10 @@ scene::Scene checked(scene::LoadResult loaded) {
 }
 
 void measure_stretch(MeasuredFrame& frame, const scene::Cloth& cloth, const std::vector<Vec3>& x) {
+  if (rectangle_particles(cloth) == 0) {  // no lattice: what the simulation says
+    frame.max_stretch = std::max(frame.max_stretch, 1 + frame.report.max_strain);
+    return;
+  }
   const int nu = cloth.particles_weft, nv = cloth.particles_warp;
   const double weft = cloth.size.x() / (nu - 1), warp = cloth.size.y() / (nv - 1);
   const auto at = [&](int i, int j) -> const Vec3& { return x[static_cast<std::size_t>(i + nu * j)]; };

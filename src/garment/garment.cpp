@@ -1,0 +1,268 @@
+#include "garment/garment.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "core/error.hpp"
+#include "garment/start_shape.hpp"
+
+namespace weft::garment {
+namespace {
+
+// Particles of one garment at most.
+constexpr double kMaxParticles = 1e6;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+/// Sets of vertices that become one; the least index stands for each set.
+class Unions {
+ public:
+  explicit Unions(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
+  Index root(Index v) {
+    while (parents_[at(v)] != v) v = parents_[at(v)] = parents_[at(parents_[at(v)])];
+    return v;
+  }
+  void join(Index a, Index b) {
+    const Index p = root(a), q = root(b);
+    parents_[at(std::max(p, q))] = std::min(p, q);
+  }
+
+ private:
+  std::vector<Index> parents_;
+};
+
+class Sewing {
+ public:
+  Sewing(const Pattern& pattern, double spacing, const std::string& where)
+      : pattern_(pattern), spacing_(spacing), where_(where) {}
+
+  Garment sew() {
+    count_segments();
+    mesh_panels();
+    join_seams();
+    number_vertices();
+    place();
+    add_bands();
+    check();
+    return std::move(garment_);
+  }
+
+ private:
+  [[noreturn]] void refuse(const std::string& text) const {
+    throw Error(ExitCode::scene_invalid, "{}: pattern {}: {}", where_, pattern_.file.string(), text);
+  }
+  double length(std::size_t panel, std::size_t edge) const {
+    return Arclength(pattern_.panels[panel].edges[edge].curves).length();
+  }
+  int segments_for(double length) const { return std::max(1, static_cast<int>(std::lround(length / spacing_))); }
+
+  // As many segments on both sides of a seam.
+  void count_segments() {
+    double area = 0;
+    for (std::size_t p = 0; p < pattern_.panels.size(); ++p) {
+      std::vector<Vec2> corners;
+      auto& counts = segments_.emplace_back();
+      for (std::size_t e = 0; e < pattern_.panels[p].edges.size(); ++e) {
+        counts.push_back(segments_for(length(p, e)));
+        for (const Curve& curve : pattern_.panels[p].edges[e].curves) corners.push_back(curve.start());
+      }
+      area += std::abs(polygon_area(corners));
+    }
+    if (area > kMaxParticles * spacing_ * spacing_)
+      refuse(fmt::format("expected an edge_length of at least {:.2g} m, which {:g} particles need, got {} m",
+                         std::sqrt(area / kMaxParticles), kMaxParticles, spacing_));
+    for (const Seam& seam : pattern_.seams) {
+      const auto [p, e] = pattern_.find(seam.a);
+      const auto [q, f] = pattern_.find(seam.b);
+      segments_[p][e] = segments_[q][f] = segments_for(0.5 * (length(p, e) + length(q, f)));
+    }
+  }
+
+  void mesh_panels() {
+    for (std::size_t p = 0; p < pattern_.panels.size(); ++p) {
+      const Panel& panel = pattern_.panels[p];
+      const int count = std::accumulate(segments_[p].begin(), segments_[p].end(), 0);
+      if (count < 3)
+        refuse(fmt::format("panel {}: expected an edge_length that leaves it three sides, got {} m", panel.name,
+                           spacing_));
+      first_.push_back(total_);
+      meshes_.push_back(mesh_of(panel, segments_[p], spacing_));
+      if (meshes_.back().triangles.size() < 1) refuse(fmt::format("panel {}: expected an area, got none", panel.name));
+      total_ += static_cast<Index>(meshes_.back().points.size());
+    }
+  }
+
+  // Points of an edge from its start, numbered through all panels.
+  std::vector<Index> chain(std::size_t panel, std::size_t edge) const {
+    const auto& counts = segments_[panel];
+    const Index begin = std::accumulate(counts.begin(), counts.begin() + static_cast<std::ptrdiff_t>(edge), 0);
+    const Index around = std::accumulate(counts.begin(), counts.end(), 0);
+    std::vector<Index> points;
+    for (Index k = 0; k <= counts[edge]; ++k) points.push_back(first_[panel] + (begin + k) % around);
+    return points;
+  }
+  // Where a point of a panel starts if nothing is sewn.
+  Vec2 placed(std::size_t panel, const Vec2& p) const {
+    const Panel& of = pattern_.panels[panel];
+    const Eigen::Rotation2Dd turn(of.rotation * std::numbers::pi / 180);
+    return of.position + turn * Vec2(of.scale.cwiseProduct(p));
+  }
+  Vec2 placed_point(std::size_t panel, Index point) const {
+    return placed(panel, meshes_[panel].points[at(point - first_[panel])]);
+  }
+
+  // Which ends meet shows in where the panels lie.
+  void join_seams() {
+    unions_ = Unions(at(total_));
+    for (const Seam& seam : pattern_.seams) {
+      const auto [p, e] = pattern_.find(seam.a);
+      const auto [q, f] = pattern_.find(seam.b);
+      const std::vector<Index> a = chain(p, e);
+      std::vector<Index> b = chain(q, f);
+      const auto apart = [&] {
+        return (placed_point(p, a.front()) - placed_point(q, b.front())).norm() +
+               (placed_point(p, a.back()) - placed_point(q, b.back())).norm();
+      };
+      const double straight = apart();
+      std::ranges::reverse(b);
+      if (straight < apart()) std::ranges::reverse(b);
+      for (std::size_t k = 0; k < a.size(); ++k) unions_.join(a[k], b[k]);
+      garment_.seams.push_back({a, length(p, e), length(q, f)});
+    }
+  }
+
+  void number_vertices() {
+    number_.assign(at(total_), -1);
+    for (Index v = 0; v < total_; ++v) {
+      const Index root = unions_.root(v);
+      number_[at(v)] = root == v ? vertices_++ : number_[at(root)];
+    }
+    for (SewnSeam& seam : garment_.seams)
+      for (Index& v : seam.vertices) v = number_[at(v)];
+  }
+
+  void place() {
+    std::vector<LaidPanel> laid;
+    for (std::size_t p = 0; p < meshes_.size(); ++p) {
+      const Panel& panel = pattern_.panels[p];
+      const bool back = panel.side == Side::back;
+      laid.push_back({back, {}, {}});
+      for (const mesh::Triangle& t : meshes_[p].triangles) {
+        mesh::Triangle joined{};
+        std::array<Vec2, 3> corners, material;
+        for (std::size_t k = 0; k < 3; ++k) {
+          const Vec2& point = meshes_[p].points[at(t[k])];
+          joined[k] = number_[at(first_[p] + t[k])];
+          corners[k] = placed(p, point);
+          material[k] = along_grain(panel, point);
+        }
+        laid.back().triangles.push_back(joined);
+        laid.back().corners.push_back(corners);
+        // Seen from behind, where the front of a back panel is, left and right change places.
+        if (back) {
+          std::swap(joined[1], joined[2]);
+          std::swap(material[1], material[2]);
+          for (Vec2& m : material) m.x() = -m.x();
+        }
+        garment_.sheet.triangles.push_back(joined);
+        garment_.sheet.material.push_back(material);
+        garment_.panel_of.push_back(static_cast<Index>(p));
+      }
+    }
+    check_surface();
+    garment_.uv = lay_together(laid, at(vertices_));
+    check_plane(laid);
+    garment_.sheet.rest = puff_up(laid, garment_.uv, pattern_.depth);
+    garment_.sheet.sewn = true;
+  }
+  static Vec2 along_grain(const Panel& panel, const Vec2& p) {
+    return Eigen::Rotation2Dd(-panel.grain * std::numbers::pi / 180) * p;
+  }
+
+  void check_surface() const {
+    const mesh::TopologyReport report = mesh::inspect(garment_.sheet.triangles, at(vertices_));
+    if (!report.manifold())
+      refuse(
+          fmt::format("expected seams that make a surface, got {} edges of more than two triangles, {} whose "
+                      "triangles face both ways and {} triangles that a seam folds; a smaller edge_length may help",
+                      report.non_manifold.size(), report.misoriented.size(), report.degenerate.size()));
+  }
+  void check_plane(const std::vector<LaidPanel>& laid) const {
+    for (std::size_t p = 0; p < laid.size(); ++p)
+      for (const mesh::Triangle& t : laid[p].triangles) {
+        const std::array<Vec2, 3> c{garment_.uv[at(t[0])], garment_.uv[at(t[1])], garment_.uv[at(t[2])]};
+        if (polygon_area(c) > 0) continue;
+        refuse(
+            fmt::format("panel {}: expected a position, rotation and scale at which its seams close without folding "
+                        "it, got a fold near ({:.3f}, {:.3f}) m, across and up",
+                        pattern_.panels[p].name, c[0].x(), c[0].y()));
+      }
+  }
+
+  void add_bands() {
+    const auto band_along = [&](const std::string& edge) {
+      const auto [p, e] = pattern_.find(edge);
+      const std::vector<Index> points = chain(p, e);
+      mesh::Band band;
+      for (std::size_t k = 0; k < points.size(); ++k) {
+        band.vertices.push_back(number_[at(points[k])]);
+        if (k == 0) continue;
+        const auto& of = meshes_[p].points;
+        band.lengths.push_back((of[at(points[k] - first_[p])] - of[at(points[k - 1] - first_[p])]).norm());
+      }
+      return band;
+    };
+    for (const Elastic& elastic : pattern_.elastics) {
+      garment_.sheet.bands.push_back(band_along(elastic.edge));
+      garment_.sheet.bands.back().ratio = elastic.ratio;
+      garment_.sheet.bands.back().stiffness = elastic.stiffness;
+    }
+    for (const Hem& hem : pattern_.hems) {
+      garment_.sheet.bands.push_back(band_along(hem.edge));
+      garment_.sheet.bands.back().mass = hem.mass;
+      garment_.sheet.bands.back().bend = hem.bend;
+    }
+  }
+
+  void check() const {
+    for (std::size_t t = 0; t < garment_.sheet.triangles.size(); ++t)
+      if (!(mesh::rest_area(garment_.sheet, t) > 1e-6 * spacing_ * spacing_))
+        refuse(fmt::format("panel {}: expected an outline that {} m long edges follow, got a triangle without area",
+                           pattern_.panels[at(garment_.panel_of[t])].name, spacing_));
+  }
+
+  const Pattern& pattern_;
+  double spacing_;
+  const std::string& where_;
+  std::vector<std::vector<int>> segments_;  // per panel and edge
+  std::vector<FlatMesh> meshes_;            // per panel
+  std::vector<Index> first_;                // point of each panel, numbered through all
+  Index total_ = 0, vertices_ = 0;
+  Unions unions_{0};
+  std::vector<Index> number_;  // of the vertex that each point is part of
+  Garment garment_;
+};
+
+}  // namespace
+
+FlatMesh mesh_of(const Panel& panel, const std::vector<int>& segments, double spacing) {
+  std::vector<Vec2> outline;
+  for (std::size_t e = 0; e < panel.edges.size(); ++e) {
+    const Arclength along(panel.edges[e].curves);
+    for (int k = 0; k < segments[e]; ++k) outline.push_back(along.at(double(k) / segments[e]));
+  }
+  const double grain = panel.grain * std::numbers::pi / 180;
+  return mesh_panel(outline, {-std::sin(grain), std::cos(grain)}, spacing);
+}
+
+Garment sew(const Pattern& pattern, double spacing, const std::string& where) {
+  return Sewing(pattern, spacing, where).sew();
+}
+
+}  // namespace weft::garment

@@ -1,0 +1,239 @@
+#include "garment/pattern.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+#include <sstream>
+
+#include "core/error.hpp"
+#include "garment/svg.hpp"
+#include "garment/triangulation.hpp"
+#include "scene/document.hpp"
+#include "scene/reader.hpp"
+#include "scene/table_builder.hpp"
+
+namespace weft::garment {
+namespace {
+
+using scene::Findings;
+using scene::Need;
+using scene::Table;
+using scene::TableBuilder;
+using scene::Type;
+using scene::within;
+
+// Points per curve by which crossings of an outline with itself are looked for.
+constexpr int kPointsPerCurve = 16;
+// Largest panel [m].
+constexpr double kMaxSize = 100;
+
+const Table& panel_rules() {
+  static const Table kTable =
+      TableBuilder<Panel>("A flat piece of cloth, drawn as seen from before the wearer.")
+          .plain(Type::name, "name", &Panel::name, "unlike that of any other panel")
+          .need(Need::required)
+          .choice("side", &Panel::side, {"front", "back"}, "of the wearer that it covers")
+          .plain(Type::text, "path", &Panel::path, "closed outline as SVG path data, in metres, y upward")
+          .excludes("file")
+          .plain(Type::file, "file", &Panel::file, "SVG drawing with the outline; relative to the pattern's folder")
+          .excludes("path")
+          .plain(Type::text, "id", &Panel::id, "of the element in the drawing")
+          .plain(Type::text, "edges", &Panel::edge_names,
+                 "names of the curves of the outline, in their order; neighbours of one name are one edge")
+          .by_default("1 2 3 and so on")
+          .number("grain", &Panel::grain, within(-360, 360), "degrees",
+                  "direction of the warp, counter-clockwise from the panel's y axis")
+          .vector("position", &Panel::position, {"across", "up"}, within(-100, 100), "m",
+                  "of the panel's origin at the start")
+          .number("rotation", &Panel::rotation, within(-360, 360), "degrees",
+                  "at the start, counter-clockwise seen from before")
+          .vector("scale", &Panel::scale, {"across", "up"}, scene::above(0, 10), "", "of lengths at the start")
+          .single_fills_all()
+          .build();
+  return kTable;
+}
+
+const Table& pattern_rules() {
+  static const Table kSeams = TableBuilder<Seam>("Two edges sewn together.")
+                                  .plain(Type::text, "a", &Seam::a, "an edge, as panel.edge")
+                                  .need(Need::required)
+                                  .plain(Type::text, "b", &Seam::b, "the other, of any panel")
+                                  .need(Need::required)
+                                  .build();
+  static const Table kElastics =
+      TableBuilder<Elastic>("An elastic band along an edge.")
+          .plain(Type::text, "edge", &Elastic::edge, "as panel.edge")
+          .need(Need::required)
+          .number("ratio", &Elastic::ratio, within(0.1, 1), "", "rest length of the band by that of the edge")
+          .number("stiffness", &Elastic::stiffness, within(0, 1e6), "N", "force per strain of the band")
+          .build();
+  static const Table kHems = TableBuilder<Hem>("A hem along an edge: heavier and stiffer than the cloth.")
+                                 .plain(Type::text, "edge", &Hem::edge, "as panel.edge")
+                                 .need(Need::required)
+                                 .number("mass", &Hem::mass, within(0, 100), "kg/m", "beside that of the cloth")
+                                 .number("bend", &Hem::bend, within(0, 1), "N·m²", "against bending of the edge")
+                                 .build();
+  static const Table kTable = TableBuilder<Pattern>("A sewing pattern.")
+                                  .number("depth", &Pattern::depth, scene::above(0, 10), "m",
+                                          "of the panels before and behind the wearer's coronal plane at the start")
+                                  .list(Type::list, "panel", &Pattern::panels, panel_rules())
+                                  .list(Type::list, "seam", &Pattern::seams, kSeams)
+                                  .list(Type::list, "elastic", &Pattern::elastics, kElastics)
+                                  .list(Type::list, "hem", &Pattern::hems, kHems)
+                                  .build();
+  return kTable;
+}
+
+std::vector<Vec2> sampled(const Outline& outline) {
+  std::vector<Vec2> points;
+  for (const Curve& curve : outline)
+    for (int i = 0; i < kPointsPerCurve; ++i) points.push_back(curve.at(double(i) / kPointsPerCurve));
+  return points;
+}
+
+// Names curve by curve, the pieces of an arc alike, or what is wrong with them.
+std::string name_curves(const std::string& text, const Outline& outline, std::vector<std::string>& names) {
+  std::istringstream stream(text);
+  std::vector<std::string> words;
+  for (std::string word; stream >> word;) words.push_back(word);
+  const auto curves = static_cast<std::size_t>(std::ranges::count(outline, false, &Curve::goes_on));
+  if (words.empty())
+    for (std::size_t i = 1; i <= curves; ++i) words.push_back(std::to_string(i));
+  if (words.size() != curves) return fmt::format("expected {} names, one for each curve, got {}", curves, words.size());
+  std::size_t word = 0;
+  for (const Curve& curve : outline) names.push_back(words[curve.goes_on ? word - 1 : word++]);
+  return {};
+}
+
+// Joins neighbouring curves of one name; the first edge starts where the name changes.
+std::vector<PanelEdge> joined(const Outline& outline, const std::vector<std::string>& names) {
+  const std::size_t n = outline.size();
+  std::size_t first = 0;
+  while (first < n && names[first] == names[(first + n - 1) % n]) ++first;
+  std::vector<PanelEdge> edges;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = (first + i) % n;
+    if (i == 0 || edges.back().name != names[k]) edges.push_back({names[k], {}});
+    edges.back().curves.push_back(outline[k]);
+  }
+  return edges;
+}
+
+/// Finds the edges of a panel from its outline, and what is wrong with it.
+void draw_panel(Panel& panel, const std::string& path, const std::string& where, Findings& findings) {
+  if (panel.path.empty() == panel.file.empty()) {
+    if (!findings.faulty(path + ".path") && !findings.faulty(path + ".file"))
+      findings.report(path, "expected an outline, as path or as file and id, got none");
+    return;
+  }
+  const std::string key = panel.path.empty() ? path + ".file" : path + ".path";
+  Outline outline;
+  if (panel.path.empty()) {
+    outline = load_svg_outline(panel.file, panel.id, fmt::format("{}: {}", where, path));
+  } else {
+    ParsedPath parsed = parse_path(panel.path);
+    if (!parsed.mistake.empty()) return findings.report(key, parsed.mistake);
+    outline = std::move(parsed.outline);
+  }
+  std::vector<std::string> names;
+  if (const std::string mistake = name_curves(panel.edge_names, outline, names); !mistake.empty())
+    return findings.report(path + ".edges", mistake);
+  const std::vector<Vec2> points = sampled(outline);
+  Vec2 low = points[0], high = points[0];
+  for (const Vec2& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);
+  if ((high - low).maxCoeff() > kMaxSize)
+    return findings.report(
+        key, fmt::format("expected a panel of at most {} m, got one of {:.4g} m", kMaxSize, (high - low).maxCoeff()));
+  if (const auto crossing = self_crossing(points))
+    return findings.report(key,
+                           fmt::format("expected an outline that does not cross itself, got a crossing near "
+                                       "({:.4g}, {:.4g}) m, of curves {} and {}",
+                                       points[crossing->first].x(), points[crossing->first].y(),
+                                       crossing->first / kPointsPerCurve + 1, crossing->second / kPointsPerCurve + 1));
+  if (polygon_area(points) < 0) {
+    std::ranges::reverse(outline);
+    std::ranges::reverse(names);
+    for (Curve& curve : outline) curve = curve.reversed();
+  }
+  panel.edges = joined(outline, names);
+  std::set<std::string> seen;
+  for (const PanelEdge& edge : panel.edges)
+    if (!seen.insert(edge.name).second)
+      findings.report(path + ".edges", fmt::format("expected curves of one name side by side, got {} apart",
+                                                   scene::in_quotes(edge.name)));
+}
+
+/// Holds names of edges against those of the panels.
+class EdgeNames {
+ public:
+  EdgeNames(const Pattern& pattern, Findings& findings) : findings_(findings) {
+    for (const Panel& panel : pattern.panels) {
+      undrawn_ |= panel.edges.empty();
+      for (const PanelEdge& edge : panel.edges) known_.push_back(panel.name + "." + edge.name);
+    }
+  }
+  void check(const std::string& name, const std::string& key) {
+    // Panels that could not be drawn have no edges; their own mistake is enough.
+    if (undrawn_ || findings_.faulty(key) || std::ranges::find(known_, name) != known_.end()) return;
+    findings_.report(key, fmt::format("expected an edge such as {}, got {}{}", known_.empty() ? "front.hem" : known_[0],
+                                      scene::in_quotes(name), scene::suggestion(name, known_)));
+  }
+  void check_sewn_once(const std::string& name, const std::string& key) {
+    check(name, key);
+    if (!sewn_.insert(name).second && !findings_.faulty(key))
+      findings_.report(key, fmt::format("expected each edge in one seam, got {} again", scene::in_quotes(name)));
+  }
+
+ private:
+  Findings& findings_;
+  std::vector<std::string> known_;
+  std::set<std::string> sewn_;
+  bool undrawn_ = false;
+};
+
+void check(Pattern& pattern, const std::string& where, Findings& findings) {
+  if (pattern.panels.empty() && !findings.has("panel"))
+    findings.report("", "expected at least one [[panel]], got none");
+  for (std::size_t i = 0; i < pattern.panels.size(); ++i)
+    draw_panel(pattern.panels[i], findings.entry("panel", i), where, findings);
+  EdgeNames names(pattern, findings);
+  for (std::size_t i = 0; i < pattern.seams.size(); ++i) {
+    names.check_sewn_once(pattern.seams[i].a, findings.entry("seam", i) + ".a");
+    names.check_sewn_once(pattern.seams[i].b, findings.entry("seam", i) + ".b");
+  }
+  for (std::size_t i = 0; i < pattern.elastics.size(); ++i)
+    names.check(pattern.elastics[i].edge, findings.entry("elastic", i) + ".edge");
+  for (std::size_t i = 0; i < pattern.hems.size(); ++i)
+    names.check(pattern.hems[i].edge, findings.entry("hem", i) + ".edge");
+}
+
+}  // namespace
+
+std::pair<std::size_t, std::size_t> Pattern::find(const std::string& name) const {
+  for (std::size_t p = 0; p < panels.size(); ++p)
+    for (std::size_t e = 0; e < panels[p].edges.size(); ++e)
+      if (panels[p].name + "." + panels[p].edges[e].name == name) return {p, e};
+  throw Error(ExitCode::internal, "pattern {}: no edge {}", file.string(), name);
+}
+
+Pattern load_pattern(const std::filesystem::path& file, const std::string& where) {
+  Findings findings;
+  Pattern pattern;
+  pattern.file = file;
+  if (const auto text = scene::read_file(file, findings))
+    if (const auto document = scene::parse(*text, findings)) {
+      scene::Reader(findings, file.parent_path()).read(*document, pattern_rules(), &pattern, "");
+      check(pattern, where, findings);
+    }
+  scene::LoadResult result;
+  result.file = file;
+  result.mistakes = findings.take_mistakes();
+  if (result.ok()) return pattern;
+  std::string text = result.describe();
+  text.pop_back();
+  throw Error(ExitCode::scene_invalid, "{}: its pattern has mistakes:\n{}", where, text);
+}
+
+}  // namespace weft::garment

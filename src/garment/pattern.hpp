@@ -1,0 +1,75 @@
+// Sewing patterns: what a pattern file says, checked.
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/types.hpp"
+#include "garment/outline.hpp"
+
+namespace weft::garment {
+
+enum class Side { front, back };
+
+/// Consecutive curves of an outline with one name.
+struct PanelEdge {
+  std::string name;
+  std::vector<Curve> curves;  ///< counter-clockwise around the panel [m]
+};
+
+/// A flat piece of cloth. All panels are drawn as seen from before the wearer.
+struct Panel {
+  std::string name;
+  Side side = Side::front;
+  std::string path;            ///< SVG path data in metres, y upward; or
+  std::filesystem::path file;  ///< a drawing, and in it
+  std::string id;              ///< the element with this id
+  std::string edge_names;      ///< one for each curve, apart by spaces, in the order they are written; empty: 1 2 3 ...
+  double grain = 0;            ///< of the warp, counter-clockwise from the panel's y axis [degrees]
+  Vec2 position{0, 0};         ///< where the panel's origin starts: across and up the wearer [m]
+  double rotation = 0;         ///< at the start, counter-clockwise seen from before [degrees]
+  Vec2 scale{1, 1};            ///< at the start, across and up, before the rotation
+
+  std::vector<PanelEdge> edges;  ///< around the outline, counter-clockwise
+};
+
+/// Sews two edges together, named "panel.edge". Both get the same points, at the same shares of their lengths: the
+/// longer one is eased in.
+struct Seam {
+  std::string a, b;
+};
+
+/// A band that pulls an edge together.
+struct Elastic {
+  std::string edge;
+  double ratio = 0.9;     ///< of its rest length to that of the edge
+  double stiffness = 50;  ///< force per strain [N]
+};
+
+/// An edge turned up: heavier and stiffer than the cloth.
+struct Hem {
+  std::string edge;
+  double mass = 0.01;  ///< beside the cloth's own [kg/m]
+  double bend = 2e-6;  ///< against bending of the edge in any direction [N·m²]
+};
+
+struct Pattern {
+  std::filesystem::path file;
+  double depth = 0.16;  ///< of the front panels before the wearer's coronal plane at the start, and of the back panels
+                        ///< behind it, far from the seams that join both [m]
+  std::vector<Panel> panels;
+  std::vector<Seam> seams;
+  std::vector<Elastic> elastics;
+  std::vector<Hem> hems;
+
+  /// The edge named "panel.edge": indices of panel and edge. The name exists in a checked pattern.
+  std::pair<std::size_t, std::size_t> find(const std::string& name) const;
+};
+
+/// Reads and checks a pattern file (TOML). Throws Error(scene_invalid) with one line for each mistake, as those of
+/// scenes, after `where`, which names what refers to the file; Error(asset_unreadable) for drawings.
+Pattern load_pattern(const std::filesystem::path& file, const std::string& where);
+
+}  // namespace weft::garment

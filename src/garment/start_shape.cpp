@@ -1,0 +1,115 @@
+#include "garment/start_shape.hpp"
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <set>
+
+namespace weft::garment {
+namespace {
+
+// Pull of each vertex to where its panels put it, by that of an edge: it decides where panels lie that no seam ties to
+// others, and hardly anything else.
+constexpr double kAnchor = 1e-4;
+// Rounds in which vertices move between their neighbours, after the depth is found.
+constexpr int kSmoothingRounds = 10;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
+  const Vec2 side = b - a;
+  const double share = std::clamp((p - a).dot(side) / std::max(side.squaredNorm(), 1e-30), 0.0, 1.0);
+  return (a + share * side - p).norm();
+}
+
+using Side = std::array<Index, 2>;
+
+// Sides of triangles as pairs of vertices, those of front and back apart.
+std::array<std::set<Side>, 2> sides_of(std::span<const LaidPanel> panels) {
+  std::array<std::set<Side>, 2> sides;
+  for (const LaidPanel& panel : panels)
+    for (const mesh::Triangle& t : panel.triangles)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
+        sides[panel.back].insert({low, high});
+      }
+  return sides;
+}
+
+// Moves the vertices that `free` allows to the middle of their neighbours, halfway, all at once.
+void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector<char>& free, std::vector<Vec3>& x) {
+  for (int round = 0; round < kSmoothingRounds; ++round) {
+    const std::vector<Vec3> before = x;
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      if (!free[v]) continue;
+      Vec3 sum = Vec3::Zero();
+      for (Index n : neighbours[v]) sum += before[at(n)];
+      x[v] = 0.5 * (before[v] + sum / static_cast<double>(neighbours[v].size()));
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t vertices) {
+  // Minimise Σ ‖(x_i − x_j) − (p_i − p_j)‖² over the sides of all triangles, and kAnchor Σ ‖x_i − p_i‖² over their
+  // corners.
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(static_cast<Eigen::Index>(vertices), 2);
+  for (const LaidPanel& panel : panels)
+    for (std::size_t t = 0; t < panel.triangles.size(); ++t)
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Index i = panel.triangles[t][k], j = panel.triangles[t][(k + 1) % 3];
+        const Vec2 &p = panel.corners[t][k], &q = panel.corners[t][(k + 1) % 3];
+        entries.emplace_back(i, i, 1 + kAnchor);
+        entries.emplace_back(j, j, 1);
+        entries.emplace_back(i, j, -1);
+        entries.emplace_back(j, i, -1);
+        right.row(i) += (p - q + kAnchor * p).transpose();
+        right.row(j) -= (p - q).transpose();
+      }
+  Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(vertices), static_cast<Eigen::Index>(vertices));
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+  const Eigen::MatrixX2d x = solver.solve(right);
+  std::vector<Vec2> plane(vertices);
+  for (std::size_t v = 0; v < vertices; ++v) plane[v] = x.row(static_cast<Eigen::Index>(v)).transpose();
+  return plane;
+}
+
+std::vector<Vec3> puff_up(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth) {
+  const auto sides = sides_of(panels);
+  std::vector<Side> shared;
+  std::ranges::set_intersection(sides[0], sides[1], std::back_inserter(shared));
+  std::vector<std::vector<Index>> neighbours(plane.size());
+  std::vector<char> free(plane.size(), 1);
+  std::vector<double> way(plane.size());  // which side of the plane: −1 front, 1 back
+  for (std::size_t half = 0; half < 2; ++half)
+    for (const auto& [a, b] : sides[half]) {
+      neighbours[at(a)].push_back(b);
+      neighbours[at(b)].push_back(a);
+      way[at(a)] = way[at(b)] = half == 0 ? -1 : 1;
+    }
+  for (const auto& [a, b] : shared) free[at(a)] = free[at(b)] = 0;
+
+  std::vector<Vec3> x(plane.size());
+  for (std::size_t v = 0; v < plane.size(); ++v) {
+    double d = shared.empty() ? depth : std::numeric_limits<double>::infinity();
+    for (const auto& [a, b] : shared) d = std::min(d, distance(plane[v], plane[at(a)], plane[at(b)]));
+    d = free[v] ? std::min(d, depth) : 0;
+    x[v] = {plane[v].x(), way[v] * std::sqrt(d * (2 * depth - d)), plane[v].y()};
+  }
+  // The rim of openings stays where it is.
+  std::vector<mesh::Triangle> all;
+  for (const LaidPanel& panel : panels) all.insert(all.end(), panel.triangles.begin(), panel.triangles.end());
+  for (const mesh::Edge& edge : mesh::collect_edges(all).edges)
+    if (edge.triangles[1] < 0) free[at(edge.vertices[0])] = free[at(edge.vertices[1])] = 0;
+  smooth(neighbours, free, x);
+  return x;
+}
+
+}  // namespace weft::garment

@@ -1,0 +1,195 @@
+#include "garment/svg.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <fstream>
+#include <numbers>
+#include <optional>
+#include <pugixml.hpp>
+#include <string_view>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace weft::garment {
+namespace {
+
+constexpr double kMetresPerPixel = 0.0254 / 96;
+// Numbers read from one attribute at most.
+constexpr std::size_t kMaxNumbers = 20000;
+using Affine = Eigen::Affine2d;
+
+/// A drawing, and what its errors say.
+class Drawing {
+ public:
+  Drawing(const std::filesystem::path& file, const std::string& where) : file_(file), where_(where) {
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(file, error);
+    if (error || !std::filesystem::is_regular_file(file)) refuse(0, "expected a file, got none that can be read");
+    if (size > kMaxSvgBytes) refuse(0, fmt::format("expected at most {} MB, got more", kMaxSvgBytes >> 20));
+    std::ifstream stream(file, std::ios::binary);
+    text_.assign(std::istreambuf_iterator<char>(stream), {});
+    const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
+    if (!result) refuse(result.offset, fmt::format("expected XML, got what is none: {}", result.description()));
+  }
+
+  [[noreturn]] void refuse(std::ptrdiff_t offset, const std::string& text) const {
+    const auto end = text_.begin() + std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text_.size()));
+    throw Error(ExitCode::asset_unreadable, "{}: {}:{}: {}", where_, file_.string(),
+                1 + std::count(text_.begin(), end, '\n'), text);
+  }
+  [[noreturn]] void refuse(const pugi::xml_node& node, const std::string& text) const {
+    refuse(node.offset_debug(), fmt::format("{}{}: {}", node.name(), id_of(node), text));
+  }
+
+  pugi::xml_node root() const { return document_.document_element(); }
+  pugi::xml_node find(const std::string& id) const {
+    const pugi::xml_node found =
+        document_.find_node([&](const pugi::xml_node& n) { return id == n.attribute("id").value(); });
+    if (!found) refuse(0, fmt::format("expected an element with the id \"{}\", got none", id));
+    return found;
+  }
+
+ private:
+  static std::string id_of(const pugi::xml_node& node) {
+    const std::string id = node.attribute("id").value();
+    return id.empty() ? "" : fmt::format(" \"{}\"", id.substr(0, 40));
+  }
+
+  std::filesystem::path file_;
+  std::string where_, text_;
+  pugi::xml_document document_;
+};
+
+// The numbers of a text, apart by white space or commas; nothing where there is anything else.
+std::optional<std::vector<double>> numbers_of(std::string_view text) {
+  std::vector<double> numbers;
+  for (;;) {
+    const std::size_t start = text.find_first_not_of(" \t\r\n,");
+    if (start == std::string_view::npos) return numbers;
+    text.remove_prefix(text[start] == '+' ? start + 1 : start);
+    double value = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+    if (error != std::errc() || !std::isfinite(value) || numbers.size() == kMaxNumbers) return std::nullopt;
+    numbers.push_back(value);
+    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+  }
+}
+
+// A length such as "210mm" [m]; nothing for percentages and what is none.
+std::optional<double> length_of(std::string_view text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || !(value > 0) || !std::isfinite(value)) return std::nullopt;
+  const std::string_view unit(end, static_cast<std::size_t>(text.data() + text.size() - end));
+  if (unit.empty() || unit == "px") return value * kMetresPerPixel;
+  if (unit == "mm") return value * 1e-3;
+  if (unit == "cm") return value * 1e-2;
+  if (unit == "in") return value * 0.0254;
+  if (unit == "pt") return value * 0.0254 / 72;
+  if (unit == "pc") return value * 0.0254 / 6;
+  return std::nullopt;
+}
+
+// Metres per unit of the drawing.
+double unit_of(const Drawing& drawing) {
+  const pugi::xml_node root = drawing.root();
+  const auto width = length_of(root.attribute("width").value());
+  const auto box = numbers_of(root.attribute("viewBox").value());
+  if (!root.attribute("viewBox")) return kMetresPerPixel;
+  if (!box || box->size() != 4 || !((*box)[2] > 0) || !((*box)[3] > 0))
+    drawing.refuse(root, "viewBox: expected x, y, width > 0 and height > 0, got something else");
+  if (!width) return kMetresPerPixel;
+  double unit = *width / (*box)[2];
+  // With both the drawing fits into the smaller, as browsers show it.
+  if (const auto height = length_of(root.attribute("height").value())) unit = std::min(unit, *height / (*box)[3]);
+  return unit;
+}
+
+// One of the transforms of SVG 1.1, section 7.6; nothing where it is none.
+std::optional<Affine> transform_of(std::string_view kind, const std::vector<double>& p) {
+  const auto radians = [](double degrees) { return degrees * std::numbers::pi / 180; };
+  Affine t = Affine::Identity();
+  const std::size_t n = p.size();
+  if (kind == "matrix" && n == 6) {
+    t.matrix().topRows<2>() << p[0], p[2], p[4], p[1], p[3], p[5];
+  } else if (kind == "translate" && (n == 1 || n == 2)) {
+    t.translate(Vec2(p[0], n == 2 ? p[1] : 0));
+  } else if (kind == "scale" && (n == 1 || n == 2)) {
+    t.scale(Vec2(p[0], n == 2 ? p[1] : p[0]));
+  } else if (kind == "rotate" && (n == 1 || n == 3)) {
+    const Vec2 about = n == 3 ? Vec2(p[1], p[2]) : Vec2(0, 0);
+    t.translate(about).rotate(radians(p[0])).translate(-about);
+  } else if (kind == "skewX" && n == 1) {
+    t.matrix()(0, 1) = std::tan(radians(p[0]));
+  } else if (kind == "skewY" && n == 1) {
+    t.matrix()(1, 0) = std::tan(radians(p[0]));
+  } else {
+    return std::nullopt;
+  }
+  return t;
+}
+
+Affine own_transform(const Drawing& drawing, const pugi::xml_node& node) {
+  std::string_view text = node.attribute("transform").value();
+  Affine all = Affine::Identity();
+  for (;;) {
+    const std::size_t start = text.find_first_not_of(" \t\r\n,");
+    if (start == std::string_view::npos) return all;
+    const std::size_t open = text.find('(', start), close = text.find(')', start);
+    std::optional<Affine> one;
+    if (open < close && close != std::string_view::npos) {
+      std::string_view kind = text.substr(start, open - start);
+      kind = kind.substr(0, kind.find_last_not_of(" \t\r\n") + 1);
+      if (const auto numbers = numbers_of(text.substr(open + 1, close - open - 1))) one = transform_of(kind, *numbers);
+    }
+    if (!one) drawing.refuse(node, "transform: expected such as translate(1 2) or rotate(30), got something else");
+    all = all * *one;
+    text.remove_prefix(close + 1);
+  }
+}
+
+// The outline in the element's own coordinates.
+Outline outline_of(const Drawing& drawing, const pugi::xml_node& node) {
+  const std::string_view kind = node.name();
+  std::string data = node.attribute("d").value();
+  if (kind == "polygon") {
+    data = fmt::format("M {} Z", node.attribute("points").value());
+  } else if (kind == "rect") {
+    const auto number = [&](const char* key) { return numbers_of(node.attribute(key).value()); };
+    const auto x = number("x"), y = number("y"), width = number("width"), height = number("height");
+    if (!x || !y || x->size() > 1 || y->size() > 1 || !width || width->size() != 1 || !height || height->size() != 1)
+      drawing.refuse(node, "expected x, y, width and height as numbers, got something else");
+    data = fmt::format("M {} {} h {} v {} h {} Z", x->empty() ? 0 : (*x)[0], y->empty() ? 0 : (*y)[0], (*width)[0],
+                       (*height)[0], -(*width)[0]);
+  } else if (kind != "path") {
+    drawing.refuse(node, "expected a path, polygon or rect, got another element");
+  }
+  ParsedPath parsed = parse_path(data);
+  if (!parsed.mistake.empty()) drawing.refuse(node, parsed.mistake);
+  return std::move(parsed.outline);
+}
+
+}  // namespace
+
+Outline load_svg_outline(const std::filesystem::path& file, const std::string& id, const std::string& where) {
+  const Drawing drawing(file, where);
+  const pugi::xml_node element = drawing.find(id);
+  Outline outline = outline_of(drawing, element);
+  Affine transform = Affine::Identity();
+  for (pugi::xml_node node = element; node && node != drawing.root(); node = node.parent())
+    transform = own_transform(drawing, node) * transform;
+  const double unit = unit_of(drawing);
+  for (Curve& curve : outline)
+    for (Vec2& p : curve.control) {
+      p = transform * p;
+      p = unit * Vec2(p.x(), -p.y());
+      if (!p.allFinite()) drawing.refuse(element, "expected finite coordinates, got others");
+    }
+  return outline;
+}
+
+}  // namespace weft::garment

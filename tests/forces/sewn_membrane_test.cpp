@@ -1,0 +1,116 @@
+// Rest shapes of sewn sheets between start and pattern, and bands along their edges.
+#include <gtest/gtest.h>
+
+#include <numeric>
+
+#include "forces/bands.hpp"
+#include "forces/sheets.hpp"
+
+namespace weft::forces {
+namespace {
+
+using testing::kGrid;
+using testing::Positions;
+
+mesh::Sheet flat_sheet() {
+  return mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
+}
+
+TEST(SewnMembranes, HaveNoStressAtTheStartAndThatOfThePatternAtTheEnd) {
+  mesh::Sheet sheet = flat_sheet();
+  const TriangleMembrane pattern(sheet, 0, {1000, 700, 0}, {100, 0});
+  sheet.sewn = true;
+  sheet.rest = testing::crumpled(kGrid, 0.008, 3);
+  TriangleMembrane sewn(sheet, 0, {1000, 700, 0}, {100, 0});
+
+  const double full = pattern.energy(sheet.rest);
+  sewn.rest_between_start_and_pattern(0);
+  // Rounding of strains of 1e-16.
+  EXPECT_LT(sewn.energy(sheet.rest), 1e-25 * full);
+  EXPECT_LT(testing::largest(testing::force_of(sewn, sheet.rest, testing::zeros(sheet.rest))), 1e-9);
+  EXPECT_LT(sewn.max_strain(sheet.rest), 1e-12);
+
+  double before = 0;
+  for (double share : {0.2, 0.4, 0.6, 0.8, 1.0}) {
+    sewn.rest_between_start_and_pattern(share);
+    EXPECT_GT(sewn.energy(sheet.rest), before);
+    before = sewn.energy(sheet.rest);
+  }
+  const Positions x = testing::crumpled(kGrid, 0.004, 8);
+  EXPECT_EQ(sewn.energy(x), pattern.energy(x));
+  EXPECT_EQ(testing::force_of(sewn, x, testing::zeros(x)), testing::force_of(pattern, x, testing::zeros(x)));
+}
+
+// A start twice as long along weft and half as long along warp is, at a share s, strained as 2 / (2 − s) and
+// 0.5 / (0.5 + s / 2).
+TEST(SewnMembranes, AreStrainedByTheShareOfTheWay) {
+  mesh::Sheet sheet = flat_sheet();
+  sheet.sewn = true;
+  for (Vec3& x : sheet.rest) x = {2 * x.x(), 0.5 * x.y(), 0};
+  TriangleMembrane sewn(sheet, 0, {1000, 700, 0}, {100, 0});
+  const double area = 4 * 0.02 * 3 * 0.03;
+  for (double share : {0.25, 0.5, 1.0}) {
+    sewn.rest_between_start_and_pattern(share);
+    const double weft = 2 / (2 - share) - 1, warp = 0.5 / (0.5 + 0.5 * share) - 1;
+    const double energy = area * (500 * weft * weft + 350 * warp * warp);
+    EXPECT_NEAR(sewn.energy(sheet.rest), energy, 1e-12 * energy);
+  }
+}
+
+TEST(ElasticBands, PullWithTheirStiffnessTimesStrain) {
+  mesh::Sheet sheet = flat_sheet();
+  sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 0.8, 50, 0, 0});
+  const Bands bands(sheet, 0);
+  const Positions f = testing::force_of(bands, sheet.rest, testing::zeros(sheet.rest));
+  // 20 mm where 16 would be at rest: 50 N · 0.25.
+  EXPECT_NEAR(f[0].x(), 12.5, 1e-12);
+  EXPECT_NEAR(f[1].norm(), 0, 1e-12);
+  EXPECT_NEAR(f[2].x(), -12.5, 1e-12);
+}
+
+TEST(ElasticBands, OfSewnSheetsPullNothingAtTheStart) {
+  mesh::Sheet sheet = flat_sheet();
+  sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 0.8, 50, 0, 0});
+  sheet.sewn = true;
+  for (Vec3& x : sheet.rest) x *= 1.7;
+  Bands bands(sheet, 0);
+  bands.rest_between_start_and_pattern(0);
+  EXPECT_EQ(bands.energy(sheet.rest), 0);
+  bands.rest_between_start_and_pattern(1);
+  const double strain = 1.7 / 0.8 - 1;
+  EXPECT_NEAR(bands.energy(sheet.rest), 2 * 0.5 * 50 * 0.016 * strain * strain, 1e-12);
+}
+
+// A hem bent to a circle of radius R has the energy ½ E length / R².
+TEST(Hems, ResistBendingAsRods) {
+  mesh::Sheet sheet = flat_sheet();
+  const int pieces = 40;
+  const double length = 0.4, radius = 0.3, stiffness = 1e-3;
+  mesh::Band band;
+  Positions x;
+  for (Index k = 0; k <= pieces; ++k) {
+    band.vertices.push_back(k);
+    if (k > 0) band.lengths.push_back(length / pieces);
+    const double angle = k * length / pieces / radius;
+    x.emplace_back(radius * std::sin(angle), 0, radius * (1 - std::cos(angle)));
+  }
+  band.bend = stiffness;
+  sheet.bands.push_back(band);
+  const Bands bands(sheet, 0);
+  const double inner = length * (pieces - 1) / pieces;  // a hinge at each inner particle
+  EXPECT_NEAR(bands.energy(x), 0.5 * stiffness * inner / (radius * radius), 1e-3 * bands.energy(x));
+}
+
+TEST(Hems, AddTheirMass) {
+  mesh::Sheet sheet = flat_sheet();
+  const auto plain = lumped_masses(sheet, 0.2);
+  sheet.bands.push_back({{0, 1, 2, 3, 4}, {0.02, 0.02, 0.02, 0.02}, 1, 0, 0.05, 0});
+  const auto hemmed = lumped_masses(sheet, 0.2);
+  EXPECT_NEAR(hemmed[0] - plain[0], 0.05 * 0.01, 1e-15);
+  EXPECT_NEAR(hemmed[2] - plain[2], 0.05 * 0.02, 1e-15);
+  EXPECT_EQ(hemmed[7], plain[7]);
+  EXPECT_NEAR(std::accumulate(plain.begin(), plain.end(), 0.0), 0.2 * 0.08 * 0.09, 1e-15);
+}
+
+}  // namespace
+}  // namespace weft::forces

@@ -1,0 +1,131 @@
+// Flat meshes of panels: exact outlines, good angles, Delaunay.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+
+#include "garment/garment.hpp"
+#include "garment/pattern.hpp"
+#include "garment/triangulation.hpp"
+#include "mesh/topology.hpp"
+
+namespace weft::garment {
+namespace {
+
+// A polygon with sides cut into pieces of about `spacing`.
+std::vector<Vec2> cut(const std::vector<Vec2>& corners, double spacing) {
+  std::vector<Vec2> points;
+  for (std::size_t k = 0; k < corners.size(); ++k) {
+    const Vec2 &a = corners[k], &b = corners[(k + 1) % corners.size()];
+    const int pieces = std::max(1, static_cast<int>(std::lround((b - a).norm() / spacing)));
+    for (int i = 0; i < pieces; ++i) points.push_back(a + double(i) / pieces * (b - a));
+  }
+  return points;
+}
+
+const std::vector<Vec2> kL{{0, 0}, {1, 0}, {1, 0.4}, {0.4, 0.4}, {0.4, 1}, {0, 1}};
+const std::vector<Vec2> kNotched{{0, 0}, {0.4, 0}, {0.5, 0.4}, {0.6, 0}, {1, 0}, {0.9, 0.8}, {0.1, 0.8}};
+
+double area_of(const FlatMesh& mesh) {
+  double sum = 0;
+  for (const mesh::Triangle& t : mesh.triangles) {
+    const auto p = [&](std::size_t k) { return mesh.points[static_cast<std::size_t>(t[k])]; };
+    sum += polygon_area(std::vector<Vec2>{p(0), p(1), p(2)});
+  }
+  return sum;
+}
+
+TEST(PanelMeshes, FillTheirOutlineExactly) {
+  for (const auto& corners : {kL, kNotched})
+    for (double spacing : {0.1, 0.03, 0.011})
+      for (double grain : {0.0, 0.4}) {
+        const std::vector<Vec2> outline = cut(corners, spacing);
+        const FlatMesh mesh = mesh_panel(outline, {-std::sin(grain), std::cos(grain)}, spacing);
+        // Sums of some thousand areas, rounded to 1e-16 each.
+        EXPECT_NEAR(area_of(mesh), polygon_area(corners), 1e-12);
+        const auto report = mesh::inspect(mesh.triangles, mesh.points.size());
+        EXPECT_TRUE(report.manifold());
+        ASSERT_EQ(report.border.size(), outline.size());
+        for (std::size_t k = 0; k < outline.size(); ++k) EXPECT_EQ(mesh.points[k], outline[k]);
+        for (const auto& [a, b] : report.border)
+          EXPECT_TRUE(b - a == 1 || (a == 0 && b + 1 == static_cast<Index>(outline.size()))) << a << " " << b;
+        const auto edges = mesh::collect_edges(mesh.triangles).edges.size();
+        EXPECT_EQ(
+            static_cast<long>(mesh.points.size()) - static_cast<long>(edges) + static_cast<long>(mesh.triangles.size()),
+            1);  // a disc
+      }
+}
+
+// The circle around each triangle holds no other point that can be seen from it: for a convex outline, none at all.
+TEST(PanelMeshes, AreDelaunay) {
+  const std::vector<Vec2> outline = cut({{0, 0}, {1, 0.1}, {0.9, 0.7}, {0.2, 0.8}}, 0.05);
+  const FlatMesh mesh = mesh_panel(outline, {0, 1}, 0.05);
+  for (const mesh::Triangle& t : mesh.triangles) {
+    const Vec2 &a = mesh.points[static_cast<std::size_t>(t[0])], &b = mesh.points[static_cast<std::size_t>(t[1])],
+               &c = mesh.points[static_cast<std::size_t>(t[2])];
+    Eigen::Matrix2d sides;
+    sides << 2 * (b - a).transpose(), 2 * (c - a).transpose();
+    const Vec2 centre = sides.inverse() * Vec2(b.squaredNorm() - a.squaredNorm(), c.squaredNorm() - a.squaredNorm());
+    // Rows are shifted by 1e-4 spacings where diagonals are chosen.
+    const double radius = (a - centre).norm() - 1e-4 * 0.05;
+    for (const Vec2& p : mesh.points) EXPECT_GT((p - centre).norm(), radius - 1e-9);
+  }
+}
+
+TEST(PanelMeshes, InnerLatticePointsHaveSixNeighbours) {
+  const FlatMesh mesh = mesh_panel(cut({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05), {0, 1}, 0.05);
+  std::map<Index, int> degree;
+  for (const mesh::Edge& edge : mesh::collect_edges(mesh.triangles).edges)
+    for (Index v : edge.vertices) ++degree[v];
+  int inner = 0;
+  for (std::size_t v = 0; v < mesh.points.size(); ++v) {
+    const Vec2& p = mesh.points[v];
+    if ((p - Vec2(0.5, 0.5)).cwiseAbs().maxCoeff() > 0.35) continue;
+    ++inner;
+    EXPECT_EQ(degree[static_cast<Index>(v)], 6) << p.transpose();
+  }
+  EXPECT_GT(inner, 150);
+}
+
+// Sharp corners of the outline keep their own angles; all others are as good as the strip along the outline allows.
+TEST(PanelMeshes, AnglesOfThePatternsThatShipAreAtLeast23Degrees) {
+  for (const char* name : {"dress", "skirt", "tshirt"}) {
+    const Pattern pattern = load_pattern(std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/" + name + ".toml", "a test");
+    for (double spacing : {0.03, 0.02, 0.0128}) {
+      double least = 180, mean = 0;
+      std::size_t count = 0;
+      for (const Panel& panel : pattern.panels) {
+        std::vector<int> segments;
+        for (const PanelEdge& edge : panel.edges)
+          segments.push_back(std::max(1, static_cast<int>(std::lround(Arclength(edge.curves).length() / spacing))));
+        const FlatMesh mesh = mesh_of(panel, segments, spacing);
+        std::vector<Index> corners;
+        Index at = 0;
+        for (int n : segments) corners.push_back(at), at += n;
+        for (const mesh::Triangle& t : mesh.triangles) {
+          const double angle = smallest_angle(t, mesh.points);
+          mean += angle, ++count;
+          const bool at_corner =
+              std::ranges::any_of(t, [&](Index v) { return std::ranges::find(corners, v) != corners.end(); });
+          if (!at_corner) least = std::min(least, angle);
+          EXPECT_GT(angle, 14) << name << ", " << panel.name << ", " << spacing;
+        }
+      }
+      EXPECT_GT(least, 23) << name << " at " << spacing;
+      std::printf("%s at %g m: %zu triangles, least angle %.1f away from corners, mean of the least %.1f degrees\n",
+                  name, spacing, count, least, mean / static_cast<double>(count));
+    }
+  }
+}
+
+TEST(PanelMeshes, OutlinesThatCrossThemselvesAreFound) {
+  EXPECT_FALSE(self_crossing(kL));
+  EXPECT_FALSE(self_crossing(cut(kNotched, 0.01)));
+  EXPECT_TRUE(self_crossing(std::vector<Vec2>{{0, 0}, {1, 1}, {1, 0}, {0, 1}}));
+  EXPECT_TRUE(self_crossing(std::vector<Vec2>{{0, 0}, {1, 0}, {1, 1}, {0.5, 0}, {0, 1}}));  // touches
+}
+
+}  // namespace
+}  // namespace weft::garment

@@ -1,0 +1,209 @@
+// Patterns sewn into one mesh around the wearer: topology, measures, start shape.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <set>
+
+#include "garment/garment.hpp"
+#include "support/intersections.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::garment {
+namespace {
+
+std::filesystem::path shipped(const std::string& name) {
+  return std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/" + name + ".toml";
+}
+
+Garment sewn(const std::string& name, double spacing) {
+  return sew(load_pattern(shipped(name), "a test"), spacing, "a test");
+}
+
+long euler_characteristic(const mesh::Sheet& sheet) {
+  return static_cast<long>(sheet.rest.size()) - static_cast<long>(mesh::collect_edges(sheet.triangles).edges.size()) +
+         static_cast<long>(sheet.triangles.size());
+}
+
+// Rims of openings: closed chains of border edges.
+std::size_t openings(const mesh::Sheet& sheet) {
+  const auto border = mesh::inspect(sheet.triangles, sheet.rest.size()).border;
+  std::vector<Index> group(sheet.rest.size());
+  for (std::size_t v = 0; v < group.size(); ++v) group[v] = static_cast<Index>(v);
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (const auto& [a, b] : border) {
+      Index &p = group[static_cast<std::size_t>(a)], &q = group[static_cast<std::size_t>(b)];
+      changed |= p != q;
+      p = q = std::min(p, q);
+    }
+  }
+  std::set<Index> rims;
+  for (const auto& [a, b] : border) rims.insert(group[static_cast<std::size_t>(a)]);
+  return rims.size();
+}
+
+// A sphere with k holes has the characteristic 2 − k.
+TEST(Garments, AreSurfacesWithTheOpeningsOfWhatTheyAre) {
+  for (double spacing : {0.03, 0.02}) {
+    for (const auto& [name, count] : {std::pair("dress", 4L), {"tshirt", 4L}, {"skirt", 2L}}) {
+      const Garment garment = sewn(name, spacing);
+      EXPECT_TRUE(mesh::inspect(garment.sheet.triangles, garment.sheet.rest.size()).manifold()) << name;
+      EXPECT_EQ(static_cast<long>(openings(garment.sheet)), count) << name;
+      EXPECT_EQ(euler_characteristic(garment.sheet), 2 - count) << name;
+    }
+  }
+}
+
+TEST(Garments, KeepAreaAndMeasuresOfTheirPanels) {
+  const Pattern pattern = load_pattern(shipped("skirt"), "a test");
+  const Garment garment = sew(pattern, 0.01, "a test");
+  double area = 0;
+  for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
+    EXPECT_GT(mesh::rest_area(garment.sheet, t), 0);
+    area += mesh::rest_area(garment.sheet, t);
+  }
+  // Two quarter rings. Chords of 10 mm cut (10 mm)² / (8 R) off an arc of radius R at the hem and as much on at the
+  // waist, relative to 0.45 m: below 1e-4. The curves are off
+  // their arcs by 2.7e-4 of a radius at most.
+  const double inner = 0.72 / std::numbers::pi, outer = inner + 0.45;
+  EXPECT_NEAR(area, 0.5 * std::numbers::pi * (outer * outer - inner * inner), 3e-4 * area);
+  ASSERT_EQ(garment.seams.size(), 2U);
+  for (const SewnSeam& seam : garment.seams) {
+    EXPECT_NEAR(seam.length_a, 0.45, 1e-4);
+    EXPECT_NEAR(seam.length_b, 0.45, 1e-4);
+    EXPECT_EQ(seam.vertices.size(), 46U);
+  }
+}
+
+TEST(Garments, StartWithoutIntersectionsWithFrontsOutside) {
+  for (const char* name : {"dress", "tshirt", "skirt"})
+    for (double spacing : {0.04, 0.025, 0.0128}) {
+      const Garment garment = sewn(name, spacing);
+      const support::JudgedObject object{name, true, garment.sheet.rest, garment.sheet.triangles};
+      const support::Judgement judgement = support::judge(std::span(&object, 1));
+      EXPECT_TRUE(judgement.pairs.empty()) << name << " at " << spacing << ": " << judgement.pairs.size();
+      EXPECT_TRUE(judgement.degenerate.empty()) << name;
+      // Each triangle faces away from the coronal plane.
+      std::size_t outside = 0;
+      for (const mesh::Triangle& t : garment.sheet.triangles) {
+        const auto x = [&](std::size_t k) -> const Vec3& { return garment.sheet.rest[static_cast<std::size_t>(t[k])]; };
+        const Vec3 normal = (x(1) - x(0)).cross(x(2) - x(0));
+        outside += normal.y() * (x(0) + x(1) + x(2)).y() > 0;
+      }
+      EXPECT_EQ(outside, garment.sheet.triangles.size()) << name;
+    }
+}
+
+TEST(Garments, AreTheSameInEveryRun) {
+  const Garment a = sewn("dress", 0.02), b = sewn("dress", 0.02);
+  EXPECT_EQ(a.sheet.triangles, b.sheet.triangles);
+  EXPECT_EQ(a.sheet.rest, b.sheet.rest);
+}
+
+// Written by hand: a panel with a dart, and a longer edge eased into a shorter one.
+const std::string kDart = R"(
+[[panel]]
+name = "front"
+path = "M -0.2 0 L -0.02 0 L 0 0.15 L 0.02 0 L 0.2 0 L 0.2 0.3 L -0.2 0.3 Z"
+edges = "low_l leg_l leg_r low_r right top left"
+[[panel]]
+name = "back"
+side = "back"
+path = "M -0.2 0 L 0.2 0 L 0.2 0.38 L -0.2 0.3 Z"
+edges = "low right top left"
+grain = 90
+)";
+const std::string kDartSeams = R"(
+[[seam]]
+a = "front.leg_l"
+b = "front.leg_r"
+[[seam]]
+a = "front.left"
+b = "back.left"
+[[seam]]
+a = "back.right"
+b = "front.right"
+)";
+
+class SewingText : public support::TestFolder {
+ protected:
+  Garment sew_text(const std::string& text, double spacing = 0.02) {
+    support::write_bytes(folder_ / "p.toml", text);
+    return sew(load_pattern(folder_ / "p.toml", "scene:1:1: cloth.c"), spacing, "scene:1:1: cloth.c");
+  }
+  void expect_mistake(const std::string& text, const std::string& words) {
+    support::expect_error(ExitCode::scene_invalid, words, [&] { sew_text(text); });
+  }
+};
+
+TEST_F(SewingText, ADartClosesAndALongerSideIsEasedIn) {
+  const Garment garment = sew_text(kDart + kDartSeams);
+  EXPECT_EQ(euler_characteristic(garment.sheet), 0);  // a tube
+  EXPECT_EQ(openings(garment.sheet), 2U);
+  EXPECT_EQ(garment.seams[0].vertices.size(), 9U);  // 0.1513 / 0.02 = 7.6 segments, rounded
+  EXPECT_NEAR(garment.seams[0].length_a, std::hypot(0.02, 0.15), 1e-9);
+  EXPECT_NEAR(garment.seams[2].length_a, 0.38, 1e-9);
+  EXPECT_NEAR(garment.seams[2].length_b, 0.30, 1e-9);
+  EXPECT_EQ(garment.seams[2].vertices.size(), 18U);  // (0.38 + 0.30) / 2 / 0.02 = 17 segments
+  double area = 0;
+  for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) area += mesh::rest_area(garment.sheet, t);
+  EXPECT_NEAR(area, 0.4 * 0.3 - 0.02 * 0.15 + 0.4 * 0.34, 1e-12);
+}
+
+// The back's warp runs across it.
+TEST_F(SewingText, TheGrainTurnsTheWarp) {
+  const Garment garment = sew_text(kDart + kDartSeams);
+  for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
+    const auto& m = garment.sheet.material[t];
+    const double high = std::max({m[0].y(), m[1].y(), m[2].y()}), low = std::min({m[0].y(), m[1].y(), m[2].y()});
+    EXPECT_LE(high, garment.panel_of[t] == 0 ? 0.3 + 1e-12 : 0.2 + 1e-12);
+    EXPECT_GE(low, garment.panel_of[t] == 0 ? -1e-12 : -0.2 - 1e-12);
+  }
+}
+
+TEST_F(SewingText, BandsFollowTheirEdges) {
+  const Garment garment =
+      sew_text(kDart + kDartSeams + "[[elastic]]\nedge = 'front.top'\nratio = 0.8\n[[hem]]\nedge = 'back.low'\n");
+  ASSERT_EQ(garment.sheet.bands.size(), 2U);
+  const mesh::Band& band = garment.sheet.bands[0];
+  EXPECT_EQ(band.vertices.size(), 21U);
+  double length = 0;
+  for (double l : band.lengths) length += l;
+  EXPECT_NEAR(length, 0.4, 1e-12);
+  EXPECT_EQ(band.ratio, 0.8);
+  EXPECT_GT(garment.sheet.bands[1].mass, 0);
+}
+
+TEST_F(SewingText, MistakesAreAllNamedWithTheirPlaces) {
+  expect_mistake(kDart + "[[seam]]\na = 'front.lft'\nb = 'back.left'\n",
+                 "p.toml:13:5: seam.0.a: expected an edge such as "
+                 "front.low_l, got \"front.lft\"; did you mean front.left?");
+  expect_mistake(kDart + kDartSeams + "[[seam]]\na = 'front.left'\nb = 'back.top'\n", "in one seam");
+  expect_mistake("depth = 0.1\n", "at least one [[panel]]");
+  expect_mistake("[[panel]]\nname = 'a'\n", "panel.a: expected an outline");
+  expect_mistake("[[panel]]\nname = 'a'\npath = 'M0 0L1 0L0 1Z'\nedges = 'x y'\n", "expected 3 names");
+  expect_mistake("[[panel]]\nname = 'a'\npath = 'M0 0L1 0L0 1L 1 1Z'\n", "does not cross itself");
+  expect_mistake("[[panel]]\nname = 'a'\npath = 'M0 0L1 0L1 1L0.5 1.2L0 1Z'\nedges = 'a b a b c'\n", "side by side");
+  expect_mistake("[[panel]]\nname = 'a'\npath = 'M0 0 L 900 0 L 0 900 Z'\n", "at most 100 m");
+  expect_mistake("[[panel]]\nname = 'a'\npth = 'M0 0'\n", "did you mean path?");
+  expect_mistake("[[panel]\n", "not TOML");
+}
+
+TEST_F(SewingText, WhatCannotBeSewnIsRefused) {
+  // Three panels at one edge.
+  std::string three = kDart + kDartSeams;
+  three += "[[panel]]\nname = 'third'\npath = 'M0 0L0.4 0L0.4 0.3L0 0.3Z'\n";
+  three += "[[seam]]\na = 'third.2'\nb = 'third.3'\n[[seam]]\na = 'third.1'\nb = 'third.4'\n";
+  EXPECT_ANY_THROW(sew_text(three));
+  // A panel upside down: its seams would join front to back of the cloth.
+  std::string turned = kDart + kDartSeams;
+  turned.replace(turned.find("grain = 90"), 10, "rotation = 180");
+  expect_mistake(turned, "whose triangles face both ways");
+  support::expect_error(ExitCode::scene_invalid, "expected an edge_length of at least",
+                        [&] { sew_text(kDart + kDartSeams, 1e-4); });
+}
+
+}  // namespace
+}  // namespace weft::garment

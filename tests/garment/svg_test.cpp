@@ -1,0 +1,95 @@
+// Outlines from drawings: units, transforms, and files that are damaged.
+#include "garment/svg.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "garment/triangulation.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::garment {
+namespace {
+
+class Drawings : public support::TestFolder {
+ protected:
+  Outline load(const std::string& svg, const std::string& id = "p") {
+    support::write_bytes(folder_ / "d.svg", svg);
+    return load_svg_outline(folder_ / "d.svg", id, "a.toml:3:1: panel.front");
+  }
+  void expect_corners(const std::string& svg, const std::vector<Vec2>& corners) {
+    const Outline outline = load(svg);
+    ASSERT_EQ(outline.size(), corners.size()) << svg;
+    for (std::size_t k = 0; k < corners.size(); ++k)
+      EXPECT_LT((outline[k].start() - corners[k]).norm(), 1e-12) << svg << ": " << outline[k].start().transpose();
+  }
+  void expect_refused(const std::string& svg, const std::string& words) {
+    support::expect_error(ExitCode::asset_unreadable, words, [&] { load(svg); });
+  }
+};
+
+TEST_F(Drawings, LengthsAreThoseOfTheSheet) {
+  const std::string path = "<path id='p' d='M10 20h100v50z'/></svg>";
+  // One unit is a millimetre, a tenth of an inch, a pixel; y points down in the file.
+  expect_corners("<svg width='210mm' height='297mm' viewBox='0 0 210 297'>" + path,
+                 {{0.01, -0.02}, {0.11, -0.02}, {0.11, -0.07}});
+  expect_corners("<svg width='20in' viewBox='0 0 200 300'>" + path,
+                 {{0.0254, -0.0508}, {0.2794, -0.0508}, {0.2794, -0.1778}});
+  const double px = 0.0254 / 96;
+  expect_corners("<svg>" + path, {{10 * px, -20 * px}, {110 * px, -20 * px}, {110 * px, -70 * px}});
+  // Fits into the smaller.
+  expect_corners("<svg width='420mm' height='297mm' viewBox='0 0 210 297'>" + path,
+                 {{0.01, -0.02}, {0.11, -0.02}, {0.11, -0.07}});
+}
+
+TEST_F(Drawings, TransformsOfElementAndGroupsApply) {
+  const std::string head = "<svg width='1000mm' viewBox='0 0 1000 1000'>";
+  expect_corners(head +
+                     "<g transform='translate(100 0) scale(2)'><polygon id='p' transform='rotate(90)' "
+                     "points='0,0 10,0 10,5'/></g></svg>",
+                 {{0.1, 0}, {0.1, -0.02}, {0.09, -0.02}});
+  expect_corners(
+      head + "<rect id='p' x='1' y='2' width='30' height='40' transform='matrix(1 0 0 1 4,5) skewX(45)'/></svg>",
+      {{0.007, -0.007}, {0.037, -0.007}, {0.077, -0.047}, {0.047, -0.047}});
+}
+
+TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineAndElement) {
+  expect_refused("<svg>\n<path id='p' d='M0 0L1 x'/></svg>", "d.svg:2: path \"p\": expected a number, got \"x\"");
+  expect_refused("<svg>\n\n<path id='q' d='M0 0L1 1L0 1Z'/></svg>", "the id \"p\"");
+  expect_refused("<svg><circle id='p' r='1'/></svg>", "path, polygon or rect");
+  expect_refused("<svg viewBox='0 0 0 1' width='1mm'><path id='p' d='M0 0L1 1L0 1Z'/></svg>", "viewBox");
+  expect_refused("<svg>\n<path id='p' transform='spin(3)' d='M0 0L1 1L0 1Z'/></svg>", "transform");
+  expect_refused("<svg><path id='p' d='M0 0", "expected XML");
+  expect_refused("", "expected XML");
+  expect_refused("<svg><rect id='p' width='a' height='1'/></svg>", "numbers");
+  support::expect_error(ExitCode::asset_unreadable, "none that can be read",
+                        [&] { load_svg_outline(folder_ / "absent.svg", "p", "here"); });
+}
+
+TEST_F(Drawings, DamagedFilesAreRefusedOrRead) {
+  const std::string good =
+      "<?xml version='1.0'?><svg width='210mm' height='297mm' viewBox='0 0 210 297'><g transform='rotate(3 1 2)'><path "
+      "id='p' d='M10 20C1 2 3 4 5 60A3 3 0 0 1 70 80z'/></g></svg>";
+  std::mt19937 engine(3);
+  int read = 0;
+  for (int round = 0; round < 500; ++round) {
+    std::string damaged = good;
+    for (int k = 0; k < 1 + round % 4; ++k) {
+      const std::size_t at = engine() % damaged.size();
+      if (engine() % 3 == 0)
+        damaged.resize(std::max<std::size_t>(at, 1));
+      else
+        damaged[at] = static_cast<char>(engine() % 256);
+    }
+    try {
+      for (const Curve& curve : load(damaged)) ASSERT_TRUE(curve.at(0.5).allFinite());
+      ++read;
+    } catch (const Error& error) {
+      ASSERT_EQ(error.code(), ExitCode::asset_unreadable);
+    }
+  }
+  EXPECT_GT(read, 20);
+}
+
+}  // namespace
+}  // namespace weft::garment
