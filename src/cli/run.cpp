@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <utility>
 
@@ -28,9 +29,13 @@ namespace fs = std::filesystem;
 
 class SimulationSource : public FrameSource {
  public:
-  explicit SimulationSource(const scene::Scene& scene) : simulation_(scene) {}
+  /// `proceed` is asked before each frame of the preroll.
+  SimulationSource(const scene::Scene& scene, std::function<bool()> proceed)
+      : simulation_(scene), proceed_(std::move(proceed)) {}
 
   SimulatedFrame next() override {
+    if (first_ && !simulation_.run_preroll(proceed_))
+      throw Error(ExitCode::interrupted, "interrupted before frame 0; no output");
     const simulation::FrameReport report = first_ ? simulation_.initial_report() : simulation_.advance();
     first_ = false;
     for (const std::string& pinch : report.pinches) log::warn(pinch);
@@ -41,6 +46,7 @@ class SimulationSource : public FrameSource {
 
  private:
   simulation::Simulation simulation_;
+  std::function<bool()> proceed_;
   bool first_ = true;
 };
 
@@ -81,6 +87,7 @@ class Run {
     };
     for (const scene::Cloth& cloth : scene_.cloths) check_object(cloth.name);
     for (const scene::Obstacle& obstacle : scene_.obstacles) check_object(obstacle.name);
+    for (const scene::Character& character : scene_.characters) check_object(character.name);
     check_writable(options_.meshes / "probe.ply");
   }
 
@@ -102,8 +109,9 @@ class Run {
   }
 
   PipelineResult run_stages() {
-    Progress progress(options_.common.progress, {wanted_.last() + 1, wanted_.count(), wanted_.count()});
-    const PipelineParts parts{[this] { return make_source(); }, [this] { return make_gl_painter(settings_); },
+    const int simulated = scene_.preroll_frames() + wanted_.last() + 1;
+    Progress progress(options_.common.progress, {simulated, wanted_.count(), wanted_.count()});
+    const PipelineParts parts{[&] { return make_source(progress); }, [this] { return make_gl_painter(settings_); },
                               [this](const std::string& gl) { return make_output_writer(gl); }};
     const PipelineObserver observer{
         [&](Stage stage) { progress.advance(stage); },
@@ -111,10 +119,13 @@ class Run {
     return run_pipeline(parts, wanted_, signals_.requested(), observer);
   }
 
-  std::unique_ptr<FrameSource> make_source() {
+  std::unique_ptr<FrameSource> make_source(Progress& progress) {
     const WallTimer wall;
     const double cpu = thread_cpu_seconds();
-    auto source = std::make_unique<SimulationSource>(scene_);
+    auto source = std::make_unique<SimulationSource>(scene_, [this, &progress] {
+      progress.advance(Stage::simulate);
+      return !signals_.requested();
+    });
     report_.objects = source->simulation().objects();
     report_.particles = source->simulation().particles();
     report_.setup += {wall.seconds(), thread_cpu_seconds() - cpu};

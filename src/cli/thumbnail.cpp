@@ -32,6 +32,11 @@ int chosen_frame(const ThumbnailOptions& options, const scene::Scene& scene) {
 frame::SnapshotPtr simulate_to(const scene::Scene& scene, int frame, Progress& progress) {
   const StopSignals signals;
   simulation::Simulation simulation(scene);
+  const auto proceed = [&] {
+    progress.advance(Stage::simulate);
+    return !signals.requested();
+  };
+  if (!simulation.run_preroll(proceed)) throw Error(ExitCode::interrupted, "interrupted before frame 0; no picture");
   progress.advance(Stage::simulate);
   for (int k = 1; k <= frame; ++k) {
     if (signals.requested()) throw Error(ExitCode::interrupted, "interrupted before frame {}; no picture", k);
@@ -51,7 +56,7 @@ ExitCode thumbnail(const ThumbnailOptions& options) {
   check_absent(file, options.common.overwrite);
   check_writable(file);
   {
-    Progress progress(options.common.progress, {frame + 1, 1, 1});
+    Progress progress(options.common.progress, {scene.preroll_frames() + frame + 1, 1, 1});
     const frame::SnapshotPtr snapshot = simulate_to(scene, frame, progress);
     const render::Settings settings = render_settings(scene, options.common);
     const std::unique_ptr<FramePainter> painter = make_gl_painter(settings);

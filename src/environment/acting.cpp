@@ -10,7 +10,9 @@
 #include "assets/character_file.hpp"
 #include "assets/sequence_file.hpp"
 #include "assets/source.hpp"
+#include "character/gait.hpp"
 #include "character/joints.hpp"
+#include "character/mannequin.hpp"
 #include "character/performance.hpp"
 #include "character/retarget.hpp"
 #include "core/error.hpp"
@@ -29,11 +31,18 @@ constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
 /// Ends of a clip that are further apart do not close to the eye [m].
 constexpr double kGap = 1e-3;
 
+/// Makes the mannequin's z the y of the scene.
+const Mat3 kZToY = Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY()).toRotationMatrix();
+
 /// What there is to be sampled.
 struct Body {
   character::Character character;
   std::optional<character::Clip> clip;
   std::vector<std::string> warnings;
+  scene::UpAxis up;  ///< of the character, before it is turned to the scene's
+  std::string name;  ///< of where the joints are from, for messages
+
+  Vec3 up_axis() const { return up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY(); }
 };
 
 /// A character of the scene, and how messages name it.
@@ -42,7 +51,6 @@ struct Cast {
   const scene::Character& settings;
   std::string where;
 
-  Vec3 up() const { return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY(); }
   assets::FileAxes axes() const { return {settings.scale, settings.up, scene.up}; }
   character::Timing timing() const { return {settings.dressing, settings.blend, settings.start, settings.speed}; }
 
@@ -78,23 +86,22 @@ const character::Clip& choose_clip(const Cast& cast, const std::optional<std::st
 
 /// The node of a file that a [[character.joint]] names.
 Index named_node(const Cast& cast, const std::string& key, const std::string& name,
-                 const std::vector<character::Node>& nodes, const std::filesystem::path& file) {
+                 const std::vector<character::Node>& nodes, const std::string& file) {
   std::vector<std::string> names;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     if (nodes[n].name == name) return static_cast<Index>(n);
     names.push_back(nodes[n].name);
   }
-  cast.fail(key, fmt::format("expected the name of a node of {}, got \"{}\"{}", file.string(), name,
-                             did_you_mean(name, names)));
+  cast.fail(key, fmt::format("expected the name of a node of {}, got \"{}\"{}", file, name, did_you_mean(name, names)));
 }
 
 /// The clip of another skeleton, on this one.
-character::Clip take_over(const Cast& cast, const scene::CharacterFile& source, Body& body) {
+character::Clip take_over(const Cast& cast, const scene::Acting& source, Body& body) {
   using Member = std::optional<std::string> scene::JointNames::*;
   assets::LoadedCharacter motion =
-      assets::load_motion(*source.motion, {{}, scene::FileUp::as_file, cast.scene.up}, cast.where);
+      assets::load_motion(*source.motion, {{}, scene::FileUp::as_file, body.up}, cast.where);
   body.warnings.insert(body.warnings.end(), motion.warnings.begin(), motion.warnings.end());
-  const auto joints_of = [&](const character::Character& character, Member given, const std::filesystem::path& file) {
+  const auto joints_of = [&](const character::Character& character, Member given, const std::string& file) {
     std::vector<Index> joints = character::find_joints(character.nodes);
     for (const scene::JointNames& joint : source.joints) {
       const Index number = character::joint_number(joint.name);
@@ -108,11 +115,11 @@ character::Clip take_over(const Cast& cast, const scene::CharacterFile& source, 
     if (joints[static_cast<std::size_t>(character::joint_number("Hips"))] < 0)
       cast.fail("joint", fmt::format("expected a node of {} that is known as the hips, got none; name it in a "
                                      "[[character.joint]] with name = \"Hips\"",
-                                     file.string()));
+                                     file));
     return joints;
   };
-  const std::vector<Index> ours = joints_of(body.character, &scene::JointNames::body, source.path);
-  const std::vector<Index> theirs = joints_of(motion.character, &scene::JointNames::motion, *source.motion);
+  const std::vector<Index> ours = joints_of(body.character, &scene::JointNames::body, body.name);
+  const std::vector<Index> theirs = joints_of(motion.character, &scene::JointNames::motion, source.motion->string());
   std::vector<std::string> still;
   for (std::size_t j = 0; j < ours.size(); ++j)
     if (ours[j] >= 0 && theirs[j] < 0) still.push_back(character::joint_names()[j]);
@@ -120,12 +127,12 @@ character::Clip take_over(const Cast& cast, const scene::CharacterFile& source, 
     body.warnings.push_back(fmt::format("{}: motion file {}: nothing that moves {}", cast.where,
                                         source.motion->string(), fmt::join(still, ", ")));
   const character::Clip& clip = choose_clip(cast, source.clip, motion.character.clips, *source.motion);
-  return character::retarget({body.character, ours}, {motion.character, theirs}, clip, cast.up());
+  return character::retarget({body.character, ours}, {motion.character, theirs}, clip, body.up_axis());
 }
 
 Body load_body(const Cast& cast, const scene::CharacterFile& source) {
   assets::LoadedCharacter loaded = assets::load_character(source.path, cast.axes(), cast.where);
-  Body body{std::move(loaded.character), {}, std::move(loaded.warnings)};
+  Body body{std::move(loaded.character), {}, std::move(loaded.warnings), cast.scene.up, source.path.string()};
   if (source.motion) {
     body.clip = take_over(cast, source, body);
   } else if (source.clip || !body.character.clips.empty()) {
@@ -134,6 +141,20 @@ Body load_body(const Cast& cast, const scene::CharacterFile& source) {
   if (body.clip && !source.loop && cast.settings.start > body.clip->duration)
     cast.fail("start", fmt::format("expected a time of clip \"{}\", at most {:g} s, got {:g}", body.clip->name,
                                    body.clip->duration, cast.settings.start));
+  return body;
+}
+
+Body load_body(const Cast& cast, const scene::Mannequin& source) {
+  Body body{character::make_mannequin({source.height, source.girth, source.masculinity, source.edge_length}),
+            {},
+            {},
+            scene::UpAxis::z,
+            "the mannequin"};
+  if (source.motion) body.clip = take_over(cast, source, body);
+  if (source.walk > 0)
+    body.clip = character::make_walk(
+        body.character,
+        {.speed = source.pace, .distance = source.walk, .turn_back = source.turn_back, .arms_out = source.arms_out});
   return body;
 }
 
@@ -199,21 +220,26 @@ mesh::Mesh at_start(mesh::Mesh mesh, const KeyFrames& keys) {
   return mesh;
 }
 
-Actor act(const Cast& cast, const scene::CharacterFile& source) {
+template <class Source>  // with joints
+Actor act(const Cast& cast, const Source& source) {
   Body body = load_body(cast, source);
   const character::Clip still;
   const character::Clip& clip = body.clip ? *body.clip : still;
   const character::Performance performance(
       body.character, clip,
-      {cast.timing(), source.loop, source.crossfade, source.stance == scene::Stance::rest && body.clip}, cast.up());
+      {cast.timing(), source.loop, source.crossfade, source.stance == scene::Stance::rest && body.clip},
+      body.up_axis());
   if (const double gap = performance.gap(); gap > kGap)
     body.warnings.push_back(
         fmt::format("{}: clip \"{}\" does not close: its end and its beginning are {:.3g} m apart; "
                     "a crossfade would join them",
                     cast.where, clip.name, gap));
-  KeyFrames keys =
-      sample(cast, key_times(cast, character::key_rate(clip)), body.character.mesh.positions.size(),
-             [&](double t, std::vector<Vec3>& x) { character::skin(body.character, performance.at(t), x); });
+  KeyFrames keys = sample(cast, key_times(cast, character::key_rate(clip)), body.character.mesh.positions.size(),
+                          [&](double t, std::vector<Vec3>& x) {
+                            character::skin(body.character, performance.at(t), x);
+                            if (body.up != cast.scene.up)
+                              for (Vec3& vertex : x) vertex = kZToY * vertex;
+                          });
   mesh::Mesh mesh = at_start(std::move(body.character.mesh), keys);
   return {std::move(mesh), std::move(keys), std::move(body.warnings)};
 }
@@ -243,15 +269,16 @@ KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character
   const Cast cast = make_cast(scene, character);
   KeyTimes times;
   std::size_t vertices = 0;
-  if (const auto* file = std::get_if<scene::CharacterFile>(&character.source)) {
-    const Body body = load_body(cast, *file);
+  if (const auto* sequence = std::get_if<scene::MeshSequence>(&character.source)) {
+    const std::vector<std::filesystem::path> files = scene::sequence_files(sequence->files);
+    times = key_times(cast, sequence->fps);
+    vertices = assets::load_sequence(std::span(files).first(1), cast.axes(), cast.where).mesh.positions.size();
+  } else {
+    const auto* file = std::get_if<scene::CharacterFile>(&character.source);
+    const Body body =
+        file != nullptr ? load_body(cast, *file) : load_body(cast, std::get<scene::Mannequin>(character.source));
     times = key_times(cast, body.clip ? character::key_rate(*body.clip) : 0);
     vertices = body.character.mesh.positions.size();
-  } else {
-    const auto& sequence = std::get<scene::MeshSequence>(character.source);
-    const std::vector<std::filesystem::path> files = scene::sequence_files(sequence.files);
-    times = key_times(cast, sequence.fps);
-    vertices = assets::load_sequence(std::span(files).first(1), cast.axes(), cast.where).mesh.positions.size();
   }
   return {times.count, vertices, times.bytes(vertices, character.interpolation)};
 }

@@ -24,53 +24,74 @@ const Table& joint_rules() {
 }
 
 /// Access to a member of the source that a character has.
-template <class Kind, class Field>
-auto of_source(Field Kind::*field) {
+template <class Kind, class Field, class Owner>
+auto of_source(Field Owner::*field) {
   return [field](Character& c) -> Field& { return std::get<Kind>(c.source).*field; };
+}
+
+/// The keys of what has joints.
+template <class Kind>
+void acting_rows(TableBuilder<Character>& rows) {
+  rows.plain(Type::file, "motion", of_source<Kind>(&Kind::motion),
+             "file, such as BVH, of a skeleton whose motion it takes over")
+      .by_default("none")
+      .list(Type::list, "joint", of_source<Kind>(&Kind::joints), joint_rules())
+      .plain(Type::text, "clip", of_source<Kind>(&Kind::clip), "animation of the motion, else of the file itself")
+      .by_default("the first")
+      .choice("stance", of_source<Kind>(&Kind::stance), {"first", "rest"},
+              "pose that it stands in before: the one at start, or that without any animation")
+      .plain(Type::boolean, "loop", of_source<Kind>(&Kind::loop),
+             "again and again, each round from where the last one has come to")
+      .number("crossfade", of_source<Kind>(&Kind::crossfade), within(0, 60), "s",
+              "time of the clip at the end of a round that passes over into the next; 0 for clips that close");
 }
 
 /// The keys of each source, in the order of CharacterSource.
 void source_rows(TableBuilder<Character>& rows) {
   using Rows = TableBuilder<Character>;
-  rows.variant(
-      "file",
-      Rows()
-          .plain(Type::file, "file", of_source(&CharacterFile::path),
-                 "with skeleton, skin and animations; relative paths start at the scene's folder")
-          .need(Need::required)
-          .plain(Type::file, "motion", of_source(&CharacterFile::motion),
-                 "file, such as BVH, of a skeleton whose motion it takes over")
-          .by_default("none")
-          .list(Type::list, "joint", of_source(&CharacterFile::joints), joint_rules())
-          .plain(Type::text, "clip", of_source(&CharacterFile::clip),
-                 "animation of the motion, else of the file itself")
-          .by_default("the first")
-          .choice("stance", of_source(&CharacterFile::stance), {"first", "rest"},
-                  "pose that it stands in before: the one at start, or that without any animation")
-          .plain(Type::boolean, "loop", of_source(&CharacterFile::loop),
-                 "again and again, each round from where the last one has come to")
-          .number("crossfade", of_source(&CharacterFile::crossfade), within(0, 60), "s",
-                  "time of the clip at the end of a round that passes over into the next; 0 for clips that close"));
+  rows.variant("file", Rows()
+                           .plain(Type::file, "file", of_source<CharacterFile>(&CharacterFile::path),
+                                  "with skeleton, skin and animations; relative paths start at the scene's folder")
+                           .need(Need::required)
+                           .with(acting_rows<CharacterFile>));
+  rows.variant("mannequin",
+               Rows()
+                   .number("height", of_source<Mannequin>(&Mannequin::height), within(0.5, 3), "m",
+                           "from the floor to the top of the head")
+                   .number("girth", of_source<Mannequin>(&Mannequin::girth), within(0.8, 1.5), "",
+                           "widths against those of the slender default")
+                   .number("masculinity", of_source<Mannequin>(&Mannequin::masculinity), within(0, 1), "",
+                           "0 for the shape of a woman, 1 for that of a man")
+                   .number("edge_length", of_source<Mannequin>(&Mannequin::edge_length), within(0.005, 0.1), "m",
+                           "of its triangles; shorter at head, hands and feet")
+                   .number("walk", of_source<Mannequin>(&Mannequin::walk), within(0, 1000), "m",
+                           "how far it walks, from standing to standing; 0 leaves it where it is")
+                   .number("pace", of_source<Mannequin>(&Mannequin::pace), within(0.6, 1.6), "m/s", "of even walking")
+                   .plain(Type::boolean, "turn_back", of_source<Mannequin>(&Mannequin::turn_back),
+                          "at the end of its way it turns round and walks back")
+                   .number("arms_out", of_source<Mannequin>(&Mannequin::arms_out), within(0, 60), "degrees",
+                           "of the upper arms from the vertical while it walks: room for clothes")
+                   .with(acting_rows<Mannequin>));
   rows.variant(
       "sequence",
       Rows()
-          .plain(Type::text, "files", of_source(&MeshSequence::files),
+          .plain(Type::text, "files", of_source<MeshSequence>(&MeshSequence::files),
                  "folder of mesh files, or a file name with one *, in the order of the numbers in their names; "
                  "relative paths start at the scene's folder")
           .need(Need::required)
-          .number("fps", of_source(&MeshSequence::fps), above(0, 1000), "Hz", "files a second"));
+          .number("fps", of_source<MeshSequence>(&MeshSequence::fps), above(0, 1000), "Hz", "files a second"));
 }
 
 }  // namespace
 
 const Table& character_rules() {
-  static const std::array<CharacterSource, 2> kSources = {CharacterFile{}, MeshSequence{}};
+  static const std::array<CharacterSource, 3> kSources = {CharacterFile{}, Mannequin{}, MeshSequence{}};
   static const Table kTable =
       TableBuilder<Character>("A body that moves by itself.")
           .plain(Type::name, "name", &Character::name, "unlike that of any other object")
           .need(Need::required)
           .choice_by(
-              "source", {"file", "sequence"}, "where it comes from; decides which further keys it has",
+              "source", {"file", "mannequin", "sequence"}, "where it comes from; decides which further keys it has",
               [](Character& c) { return c.source.index(); },
               [](Character& c, std::size_t index) { c.source = kSources[index]; })
           .selects()
@@ -79,7 +100,9 @@ const Table& character_rules() {
           .by_default("what the file says, else 1")
           .choice("up", &Character::up, {"as_file", "x", "y", "z"},
                   "axis of the file that points up; usually the file says")
-          .with([](auto& rows) { pose_rows(rows, &Character::pose, "of the file's origin"); })
+          .with([](auto& rows) {
+            pose_rows(rows, &Character::pose, "of the file's origin, or of the floor below the mannequin");
+          })
           .number("dressing", &Character::dressing, within(0, 3600), "s", "how long it stands still before it moves")
           .number("blend", &Character::blend, within(0, 60), "s", "in which it then gets going")
           .number("start", &Character::start, within(0, 86400), "s", "time of the clip that it gets going from")

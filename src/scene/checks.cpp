@@ -141,10 +141,13 @@ void check_characters(const Scene& scene, Findings& findings) {
     if (!character.name.empty() && std::find(others.begin(), others.end(), character.name) != others.end())
       findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth or obstacle has",
                                                   in_quotes(character.name)));
-    const auto* file = std::get_if<CharacterFile>(&character.source);
-    if (file != nullptr && file->stance == Stance::rest && character.blend <= 0)
+    if (const Acting* acting = acting_of(character);
+        acting != nullptr && acting->stance == Stance::rest && character.blend <= 0)
       findings.report(path + ".blend",
                       fmt::format("expected > 0 s to get from the rest pose to the clip, got {}", character.blend));
+    if (const auto* mannequin = std::get_if<Mannequin>(&character.source);
+        mannequin != nullptr && mannequin->motion && mannequin->walk > 0)
+      findings.report(path + ".walk", fmt::format("expected 0 beside a motion, got {}", mannequin->walk));
     const auto* sequence = std::get_if<MeshSequence>(&character.source);
     if (sequence == nullptr || sequence->files.empty()) continue;
     if (const std::size_t count = sequence_files(sequence->files).size(); count < 2)

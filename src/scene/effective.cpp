@@ -135,6 +135,8 @@ std::uint64_t hash_of(const Scene& scene) {
     if (auto* file = std::get_if<CharacterFile>(&character.source)) {
       add_file(file->path);
       if (file->motion) add_file(*file->motion);
+    } else if (auto* mannequin = std::get_if<Mannequin>(&character.source)) {
+      if (mannequin->motion) add_file(*mannequin->motion);
     } else if (auto* sequence = std::get_if<MeshSequence>(&character.source)) {
       for (std::filesystem::path path : sequence_files(sequence->files)) add_file(path);
       sequence->files = std::filesystem::path(sequence->files).filename().string();

@@ -36,6 +36,8 @@ const Table& time_rules() {
       TableBuilder<Time>("Length, frames and time steps.")
           .number("duration", &Time::duration, within(0, 3600), "s", "length of the film; 0 shows the start alone")
           .number("fps", &Time::fps, above(0, 1000), "Hz", "frames a second; frame k is the state at k / fps")
+          .number("preroll", &Time::preroll, within(0, 3600), "s",
+                  "simulated before frame 0 and not shown, as for dressing; what moves by keys stands before time 0")
           .number("step", &Time::step, within(1e-7, 1), "s",
                   "largest time step; a frame is cut into equal steps no longer than this")
           .excludes("tolerance")

@@ -1,6 +1,7 @@
 // A scene after checking: plain values in SI units, every default filled in, every name resolved.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
@@ -21,6 +22,7 @@ enum class Response { springs, velocity_constraints };
 struct Time {
   double duration = 5;  ///< [s]; the scene has round(duration * fps) + 1 frames
   double fps = 25;      ///< frames a second
+  double preroll = 0;   ///< simulated before frame 0 and not shown [s]
   double step = 0.01;   ///< largest time step [s]; a frame is cut into equal steps no longer than this
   std::optional<double> tolerance =
       std::nullopt;  ///< instead of `step`: local error of the positions of a cloth in one step [m]
@@ -221,15 +223,31 @@ struct JointNames {
   std::optional<std::string> motion;  ///< in the file of the motion
 };
 
-/// A skinned and animated character from a file.
-struct CharacterFile {
-  std::filesystem::path path;                   ///< absolute after checking
+/// Which clip a character of joints plays, and how.
+struct Acting {
   std::optional<std::filesystem::path> motion;  ///< file whose motion it takes over; absolute after checking
   std::vector<JointNames> joints;
-  std::optional<std::string> clip;  ///< of `motion`, else of the file itself; absent: the first
+  std::optional<std::string> clip;  ///< of `motion`, else of the character's own file; absent: the first
   bool loop = false;                ///< again and again, each round from where the last one has come to
   double crossfade = 0;             ///< [s] of clip time at the end of a round that pass over into the next
   Stance stance = Stance::first;    ///< pose that is held while dressing
+};
+
+/// A skinned and animated character from a file.
+struct CharacterFile : Acting {
+  std::filesystem::path path;  ///< absolute after checking
+};
+
+/// Our own mannequin, see character::MannequinBuild. It looks along −y, where y is up along z, and walks there.
+struct Mannequin : Acting {
+  double height = 1.75;       ///< [m]
+  double girth = 1;           ///< widths against those of the slender default
+  double masculinity = 0;     ///< 0 a woman, 1 a man
+  double edge_length = 0.02;  ///< of its triangles [m]
+  double walk = 0;            ///< [m]; 0: it stands
+  double pace = 1.2;          ///< of even walking [m/s]
+  bool turn_back = false;     ///< at the end it turns and walks back
+  double arms_out = 13;       ///< of the upper arms from the vertical while it walks [degrees]
 };
 
 /// Key frames as mesh files, one after the other.
@@ -238,7 +256,7 @@ struct MeshSequence {
   double fps = 25;    ///< [1/s]
 };
 
-using CharacterSource = std::variant<CharacterFile, MeshSequence>;
+using CharacterSource = std::variant<CharacterFile, Mannequin, MeshSequence>;
 
 /// A body that moves by itself, stored as key frames of its vertices.
 struct Character {
@@ -246,7 +264,7 @@ struct Character {
   CharacterSource source;
   std::optional<double> scale;  ///< metres per unit of the file; absent: what the file says, else 1
   FileUp up = FileUp::as_file;
-  Pose pose;                              ///< of the file's origin
+  Pose pose;                              ///< of the file's origin, or of the floor below the mannequin
   double dressing = 0;                    ///< [s] it stands still
   double blend = 0;                       ///< [s] in which it then gets going
   double start = 0;                       ///< time of the clip that it gets going from [s]
@@ -258,6 +276,12 @@ struct Character {
   Look look;
   int line = 0, column = 0;  ///< where the scene names it, for errors of its file
 };
+
+/// Of a character with joints; else nullptr.
+inline const Acting* acting_of(const Character& character) {
+  if (const auto* file = std::get_if<CharacterFile>(&character.source)) return file;
+  return std::get_if<Mannequin>(&character.source);
+}
 
 struct CameraKey {
   double time = 0;
@@ -314,6 +338,8 @@ struct Scene {
   Render render;
 
   int frame_count() const { return static_cast<int>(time.duration * time.fps + 0.5) + 1; }
+  /// Of the preroll; frame 0 comes after them.
+  int preroll_frames() const { return static_cast<int>(std::ceil(time.preroll * time.fps - 1e-9)); }
 };
 
 }  // namespace weft::scene

@@ -112,7 +112,8 @@ struct Simulation::Impl {
   solver::LinearSystem linear_system;
   std::optional<CollisionStage> collisions;
 
-  int frame = 0;
+  int frame;          // negative in the preroll
+  double start_time;  // of the simulation, 0 without preroll [s]
   integrator::State now, next;
   double local_error = 0;          // of the step in `next`, estimated [m]
   std::vector<Vec3> acceleration;  // mean over the last step [m/s²]
@@ -130,13 +131,16 @@ Simulation::Impl::Impl(const scene::Scene& s)
       snapshots(scene, environment),
       stepper(method_of(scene.time.integrator), newton_of(scene)),
       control(step_control_of(scene)),
-      linear_system(system.make_linear_system()) {
+      linear_system(system.make_linear_system()),
+      frame(-scene.preroll_frames()),
+      start_time(frame / scene.time.fps) {
+  environment.move_to(start_time);
   for (const environment::ClothObject& cloth : environment.cloths) {
     now.x.insert(now.x.end(), cloth.motion.positions.begin(), cloth.motion.positions.end());
     now.v.insert(now.v.end(), cloth.motion.velocities.begin(), cloth.motion.velocities.end());
   }
   acceleration.assign(now.x.size(), Vec3::Zero());
-  pins.held_at(0, environment, held);
+  pins.held_at(start_time, environment, held);
   for (const integrator::HeldParticle& particle : held)
     now.v[static_cast<std::size_t>(particle.constraint.particle)] = particle.v_end;
   if (CollisionStage::needed(scene)) {
@@ -164,7 +168,7 @@ Simulation::Impl::Rejection Simulation::Impl::solve(double h, integrator::Steppe
 // One step from `now` at time t [s] over h [s] into `next`.
 Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, bool may_pinch, FrameReport& report) {
   pins.held_at(t + h, environment, held);
-  system.sew(t + h);
+  system.sew(t + h - start_time);
   using Start = integrator::Stepper::Start;
   if (!collisions) return solve(h, Start::unchanged_velocity, report);
   {
@@ -359,6 +363,17 @@ FrameReport Simulation::advance() {
 }
 std::size_t Simulation::particles() const {
   return impl_->now.x.size();
+}
+
+bool Simulation::run_preroll(const std::function<bool()>& proceed) {
+  std::vector<std::string> pinches;
+  while (impl_->frame < 0) {
+    if (!proceed()) return false;
+    impl_->start_report = impl_->advance();
+    pinches.insert(pinches.end(), impl_->start_report.pinches.begin(), impl_->start_report.pinches.end());
+  }
+  impl_->start_report.pinches = std::move(pinches);
+  return true;
 }
 
 FrameReport Simulation::initial_report() const {

@@ -1,6 +1,7 @@
 // The step loop: joins environment, forces, integrator and collision; emits snapshots.
 #pragma once
 
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -66,6 +67,10 @@ class Simulation {
 
   /// The report of frame 0: energies and distances of the start.
   FrameReport initial_report() const;
+
+  /// Simulates time.preroll up to frame 0; without it advance() begins there. `proceed` is asked before each frame of
+  /// it. Returns false where it said no: then there is no frame yet. Throws as advance() does.
+  bool run_preroll(const std::function<bool()>& proceed = [] { return true; });
   std::vector<ObjectInfo> objects() const;
   std::size_t particles() const;
 

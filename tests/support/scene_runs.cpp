@@ -71,6 +71,7 @@ void judge_frame(MeasuredFrame& frame, const frame::FrameSnapshot& snapshot) {
 
 std::vector<MeasuredFrame> run_scene(const scene::Scene& scene, const RunPlan& plan, const EachFrame& each) {
   simulation::Simulation simulation(scene);
+  simulation.run_preroll();
   std::vector<MeasuredFrame> frames;
   const int end = plan.end < 0 ? scene.frame_count() : plan.end;
   for (int k = 0; k < end; ++k) {
