@@ -163,19 +163,18 @@ class ClothModel {
 
   const environment::ClothObject& cloth() const { return environment_.cloths[0]; }
 
-  double energy() const {
-    double sum = 0;
-    for (const auto& force : forces_) sum += force->energy(x);
-    for (std::size_t i = 0; i < x.size(); ++i) sum -= masses[i] * gravity_.dot(x[i]);
-    return sum;
-  }
-
  private:
   static double coordinate(const std::vector<Vec3>& x, Eigen::Index dof) {
     return x[static_cast<std::size_t>(dof / 3)][dof % 3];
   }
   static double& coordinate(std::vector<Vec3>& x, Eigen::Index dof) {
     return x[static_cast<std::size_t>(dof / 3)][dof % 3];
+  }
+  double energy() const {
+    double sum = 0;
+    for (const auto& force : forces_) sum += force->energy(x);
+    for (std::size_t i = 0; i < x.size(); ++i) sum -= masses[i] * gravity_.dot(x[i]);
+    return sum;
   }
   Eigen::VectorXd force(const std::vector<Eigen::Index>& dofs) const {
     std::vector<Vec3> f(x.size());
