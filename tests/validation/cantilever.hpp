@@ -1,0 +1,96 @@
+// A strip that overhangs its clamp under its own weight: the heavy elastica.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "simulation/scenes.hpp"
+
+namespace weft::simulation::testing {
+
+/// Drop over reach of the tip, H/W, against Γ = ρ g L³ / B: the planar inextensible elastica under its own weight,
+/// clamped level, solved by shooting. Limits: Γ/8 and √(Γ/2).
+struct ElasticaPoint {
+  double gamma, drop_over_reach;
+};
+inline constexpr ElasticaPoint kHeavyElastica[] = {{0.1, 0.012500}, {1, 0.124562},  {2, 0.246673},  {5, 0.585721},
+                                                   {10, 1.066802},  {20, 1.863930}, {50, 3.705561}, {100, 5.888105}};
+
+inline const char* name_of(scene::ClothShape shape) {
+  if (shape == scene::ClothShape::quads) return "quads";
+  return shape == scene::ClothShape::aligned_triangles ? "aligned" : "crossed";
+}
+
+/// What makes a strip as heavy as Γ says.
+enum class Route { length, rigidity, density };
+inline constexpr Route kRoutes[] = {Route::length, Route::rigidity, Route::density};
+
+struct Overhang {
+  double length = 0.1;     ///< L [m]
+  double rigidity = 1e-4;  ///< B [N·m]
+  double density = 0.3;    ///< ρ [kg/m²]
+
+  double gamma() const { return density * 9.81 * std::pow(length, 3) / rigidity; }
+};
+
+/// The strip above, Γ = 29, changed in one way.
+inline Overhang overhang(double gamma, Route route) {
+  Overhang strip;
+  const double change = gamma / strip.gamma();
+  if (route == Route::length) strip.length *= std::cbrt(change);
+  if (route == Route::rigidity) strip.rigidity /= change;
+  if (route == Route::density) strip.density *= change;
+  return strip;
+}
+
+/// How far behind the last held column the clamp acts, in cells. Bending of quads and of aligned triangles is lumped at
+/// the columns: that of the last held one stands for half a cell to either side. Crossed triangles bend between the
+/// columns too, so that a beam of them would give a quarter; two cells across it is 0.21, the same at all resolutions
+/// (Cantilever.ApproachesTheElasticaInSecondOrder).
+inline double clamp_share(scene::ClothShape shape) {
+  return shape == scene::ClothShape::crossed_triangles ? 0.28 : 0.5;
+}
+
+/// `cells` from the last held column to the tip, two across.
+inline scene::Scene cantilever(scene::ClothShape shape, const Overhang& strip, int cells) {
+  scene::Scene scene = sheet_alone(1, 3, 0);
+  const double l = strip.length / (cells + clamp_share(shape));
+  scene::Cloth& cloth = scene.cloths[0];
+  cloth.shape = shape;
+  cloth.size = {(cells + 1) * l, 2 * l};
+  cloth.particles_weft = cells + 2;
+  cloth.particles_warp = 3;
+  cloth.pose.position = {0.5 * cloth.size.x() - (1 - clamp_share(shape)) * l, 0, 0};  // the clamp acts at x = 0
+  cloth.material.density = strip.density;
+  // At Γ = 100 the weight of 1 N/m at most stretches the strip by 0.05 % on average, at less Γ by less.
+  cloth.material.stretch_weft = cloth.material.stretch_warp = cloth.material.shear = 1000;
+  cloth.material.bend = strip.rigidity;
+  cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
+  scene::Pin clamp;
+  clamp.high = {1.1 / (cells + 1), 1};
+  cloth.pins = {clamp};
+  return scene;
+}
+
+/// H/W of the tip's middle.
+inline double drop_over_reach(const std::vector<Vec3>& x, int cells) {
+  const Vec3& tip = x[static_cast<std::size_t>(2 * (cells + 2) - 1)];
+  return -tip.z() / tip.x();
+}
+
+/// H/W when the strip has come to rest in a run. Implicit Euler with steps longer than the strip's swings takes their
+/// energy out.
+inline double drop_over_reach_of_run(scene::Scene scene, int cells) {
+  scene.time = {.duration = 20, .fps = 5, .step = 0.2};
+  scene.solver.newton_tolerance = 1e-5;
+  scene.solver.linear_tolerance = 1e-3;
+  Simulation simulation(scene);
+  FrameReport report;
+  for (int k = 0; k < scene.frame_count(); ++k) report = simulation.advance();
+  EXPECT_LT(report.kinetic_energy, 1e-10 * std::abs(report.potential_energy));
+  return drop_over_reach(sheet_of(simulation.snapshot()), cells);
+}
+
+}  // namespace weft::simulation::testing

@@ -1,0 +1,61 @@
+// A strip that overhangs its clamp against the heavy elastica: all of the curve, by three routes, for every mesh.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "validation/cantilever.hpp"
+#include "validation/cloth_model.hpp"
+
+namespace weft::simulation {
+namespace {
+
+using scene::ClothShape;
+
+class Cantilever : public ::testing::TestWithParam<ClothShape> {};
+
+TEST_P(Cantilever, FollowsTheElasticaHoweverItBecomesHeavy) {
+  constexpr int kCells = 40;
+  std::printf("%s, %d cells: deviation of H/W by length, rigidity, density\n", testing::name_of(GetParam()), kCells);
+  for (const testing::ElasticaPoint& point : testing::kHeavyElastica) {
+    std::printf("  gamma %5g:", point.gamma);
+    for (testing::Route route : testing::kRoutes) {
+      const scene::Scene scene = testing::cantilever(GetParam(), testing::overhang(point.gamma, route), kCells);
+      const double error = testing::drop_over_reach_of_run(scene, kCells) / point.drop_over_reach - 1;
+      std::printf(" %7.3f %%", 100 * error);
+      EXPECT_LT(std::abs(error), 0.01) << "gamma " << point.gamma;
+    }
+    std::printf("\n");
+  }
+}
+
+TEST_P(Cantilever, ApproachesTheElasticaInSecondOrder) {
+  std::printf("%s: deviation of H/W with 20, 40 and 80 cells, extrapolated, order\n", testing::name_of(GetParam()));
+  for (const testing::ElasticaPoint& point : testing::kHeavyElastica) {
+    std::vector<double> errors;
+    for (int cells : {20, 40, 80}) {
+      testing::ClothModel model(
+          testing::cantilever(GetParam(), testing::overhang(point.gamma, testing::Route::rigidity), cells));
+      model.find_rest(model.free_along({0, 1, 2}));
+      errors.push_back(testing::drop_over_reach(model.x, cells) / point.drop_over_reach - 1);
+    }
+    // From differences, so that what stretch does to the limit does not count.
+    const double coarse = errors[0] - errors[1], fine = errors[1] - errors[2];
+    const double limit = errors[2] - fine / 3, order = std::log2(std::abs(coarse / fine));
+    std::printf("  gamma %5g: %7.3f %% %7.3f %% %7.3f %% -> %7.3f %%  %.2f\n", point.gamma, 100 * errors[0],
+                100 * errors[1], 100 * errors[2], 100 * limit, order);
+    // 0.05 % of stretch on average at gamma = 100, and what higher orders leave in the extrapolation.
+    EXPECT_LT(std::abs(limit), 2e-3) << "gamma " << point.gamma;
+    // Where the errors are within the stretch there is nothing to take an order from.
+    if (std::abs(coarse) > 7e-4) {
+      EXPECT_GT(order, 1.7) << "gamma " << point.gamma;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, Cantilever,
+                         ::testing::Values(ClothShape::quads, ClothShape::aligned_triangles,
+                                           ClothShape::crossed_triangles),
+                         [](const auto& instance) { return testing::name_of(instance.param); });
+
+}  // namespace
+}  // namespace weft::simulation

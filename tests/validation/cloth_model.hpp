@@ -1,0 +1,201 @@
+// The cloth of a scene as its forces and masses alone: rest found by Newton's method with the exact Jacobian, stability
+// by its inertia, and free vibrations. For what a run cannot be asked: an unstable equilibrium, a spectrum.
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <Eigen/Sparse>
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <vector>
+
+#include "environment/environment.hpp"
+#include "forces/bend.hpp"
+#include "forces/shear.hpp"
+#include "forces/stretch.hpp"
+#include "forces/triangle_bend.hpp"
+#include "forces/triangle_membrane.hpp"
+#include "simulation/pins.hpp"
+
+namespace weft::simulation::testing {
+
+/// The first cloth of a scene, elastic only.
+class ClothModel {
+ public:
+  explicit ClothModel(const scene::Scene& scene)
+      : gravity_(scene.physics.gravity), environment_(scene), x(environment_.cloths[0].motion.positions) {
+    const scene::Material& m = scene.cloths[0].material;
+    const environment::ClothObject& cloth = environment_.cloths[0];
+    const forces::StretchParameters stretch{m.stretch_weft, m.stretch_warp, 0};
+    if (cloth.sheet.triangles.empty()) {
+      masses = forces::lumped_masses(cloth.grid, m.density);
+      forces_.push_back(std::make_unique<forces::Stretch>(cloth.grid, 0, stretch));
+      forces_.push_back(std::make_unique<forces::Shear>(cloth.grid, 0, forces::ShearParameters{m.shear, 0}));
+      forces_.push_back(std::make_unique<forces::Bend>(cloth.grid, 0, forces::BendParameters{m.bend, 0, 0}));
+    } else {
+      masses = forces::lumped_masses(cloth.sheet, m.density);
+      forces_.push_back(
+          std::make_unique<forces::TriangleMembrane>(cloth.sheet, 0, stretch, forces::ShearParameters{m.shear, 0}));
+      forces_.push_back(std::make_unique<forces::TriangleBend>(cloth.sheet, 0, forces::BendParameters{m.bend, 0, 0}));
+    }
+    std::vector<std::pair<Index, Index>> pairs;
+    for (const auto& force : forces_) force->couple(pairs);
+    matrix_ = solver::BlockMatrix(static_cast<Index>(x.size()), pairs);
+    for (const auto& force : forces_) force->attach(matrix_);
+    held_.resize(x.size());
+    for (const scene::Pin& pin : scene.cloths[0].pins)
+      for (Index i : particles_of(pin, cloth, 0)) held_[static_cast<std::size_t>(i)] = 1;
+  }
+
+  /// Coordinates of the particles that no pin holds, along these axes: 3 i + axis.
+  std::vector<Eigen::Index> free_along(const std::vector<int>& axes) const {
+    std::vector<Eigen::Index> dofs;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      for (int axis : axes)
+        if (!held_[i]) dofs.push_back(3 * static_cast<Eigen::Index>(i) + axis);
+    return dofs;
+  }
+
+  /// −∂f/∂x of these coordinates, exact.
+  Eigen::SparseMatrix<double> stiffness(const std::vector<Eigen::Index>& dofs) {
+    matrix_.set_zero();
+    std::vector<Vec3> zero(x.size(), Vec3::Zero()), f = zero;
+    for (const auto& force : forces_) {
+      force->add({x, zero, f, &matrix_, 0, forces::Linearisation::exact});
+      force->add_constant_stiffness(matrix_);
+    }
+    std::vector<Eigen::Index> row(3 * x.size(), -1);
+    for (std::size_t k = 0; k < dofs.size(); ++k) row[static_cast<std::size_t>(dofs[k])] = static_cast<Eigen::Index>(k);
+    std::vector<Eigen::Triplet<double>> entries;
+    matrix_.for_each_block(0, matrix_.rows(), [&](Index i, Index j, const auto& block) {
+      for (int a = 0; a < 3; ++a)
+        for (int b = 0; b < 3; ++b) {
+          const auto r = row[static_cast<std::size_t>(3 * i + a)], c = row[static_cast<std::size_t>(3 * j + b)];
+          if (r >= 0 && c >= 0) entries.emplace_back(r, c, block(a, b));
+        }
+    });
+    const auto n = static_cast<Eigen::Index>(dofs.size());
+    Eigen::SparseMatrix<double> stiffness(n, n);
+    stiffness.setFromTriplets(entries.begin(), entries.end());
+    return stiffness;
+  }
+
+  /// Whether every small displacement along these coordinates costs energy: Sylvester's law of inertia.
+  bool stable(const std::vector<Eigen::Index>& dofs) {
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(stiffness(dofs));
+    return factors.info() == Eigen::Success && factors.vectorD().minCoeff() > 0;
+  }
+
+  /// Brings these coordinates to rest under gravity: Newton's method with the exact Jacobian, shifted where that is
+  /// indefinite, each step cut until the energy falls.
+  void find_rest(const std::vector<Eigen::Index>& dofs) {
+    const double weight = std::accumulate(masses.begin(), masses.end(), 0.0) * gravity_.norm();
+    double shift = 0;
+    for (int iteration = 0; iteration < 500; ++iteration) {
+      const Eigen::VectorXd f = force(dofs);
+      if (f.norm() < 1e-6 * weight) return;
+      Eigen::SparseMatrix<double> k = stiffness(dofs);
+      const double least_shift = 1e-6 * k.diagonal().maxCoeff();
+      for (Eigen::Index d = 0; d < k.rows(); ++d) k.coeffRef(d, d) += shift;
+      Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(k);
+      while (factors.vectorD().minCoeff() <= 0) {
+        const double more = std::max(2 * shift, least_shift) - shift;
+        for (Eigen::Index d = 0; d < k.rows(); ++d) k.coeffRef(d, d) += more;
+        shift += more;
+        factors.compute(k);
+      }
+      const Eigen::VectorXd step = factors.solve(f);
+      const std::vector<Vec3> start = x;
+      const double before = energy(), slope = f.dot(step);
+      double share = 1;
+      for (;; share *= 0.5) {
+        for (std::size_t d = 0; d < dofs.size(); ++d)
+          coordinate(x, dofs[d]) = coordinate(start, dofs[d]) + share * step[static_cast<Eigen::Index>(d)];
+        // Near the rest the energy is the same up to rounding: the whole step is then right.
+        if (slope < 1e-12 * std::abs(before) || energy() < before - 1e-4 * share * slope || share < 1e-6) break;
+      }
+      shift = share == 1 ? 0.1 * shift : shift;
+      if (shift < least_shift) shift = 0;
+    }
+    ADD_FAILURE() << "no rest: a force of " << force(dofs).norm() << " N is left of a weight of " << weight << " N";
+  }
+
+  struct Mode {
+    double frequency;  ///< ω [rad/s]
+    double share;      ///< of the mass that a push of all of it would set in motion in this mode [1]
+  };
+
+  /// The slowest small vibrations, slowest first: K φ = ω² M φ by subspace iteration (Bathe, "Finite Element
+  /// Procedures", 1996, 11.6).
+  std::vector<Mode> modes(const std::vector<Eigen::Index>& dofs, int count) {
+    const Eigen::SparseMatrix<double> k = stiffness(dofs);
+    const auto n = static_cast<Eigen::Index>(dofs.size());
+    Eigen::VectorXd m(n);
+    for (Eigen::Index d = 0; d < n; ++d) m[d] = masses[static_cast<std::size_t>(dofs[static_cast<std::size_t>(d)] / 3)];
+    const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(k);
+    const Eigen::Index size = std::min<Eigen::Index>(n, 2 * count + 4);
+    Eigen::MatrixXd basis(n, size);
+    for (Eigen::Index c = 0; c < size; ++c)
+      for (Eigen::Index d = 0; d < n; ++d) basis(d, c) = std::cos(0.7 * double(c + 1) * double(d) + double(c));
+    Eigen::VectorXd values = Eigen::VectorXd::Zero(size);
+    for (int iteration = 0; iteration < 200; ++iteration) {
+      const Eigen::MatrixXd load = m.asDiagonal() * basis;
+      basis = factors.solve(load);
+      const Eigen::MatrixXd small_k = basis.transpose() * load, small_m = basis.transpose() * m.asDiagonal() * basis;
+      const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(small_k, small_m);
+      basis = basis * ritz.eigenvectors();
+      const double change =
+          ((ritz.eigenvalues() - values).array() / ritz.eigenvalues().array()).head(count).abs().maxCoeff();
+      values = ritz.eigenvalues();
+      if (change < 1e-10) break;
+    }
+    std::vector<Mode> found;
+    for (int c = 0; c < count; ++c) {
+      const double norm_sq = basis.col(c).dot(m.asDiagonal() * basis.col(c));
+      found.push_back({std::sqrt(values[c]), std::pow(m.dot(basis.col(c)), 2) / (norm_sq * m.sum())});
+    }
+    return found;
+  }
+
+  const environment::ClothObject& cloth() const { return environment_.cloths[0]; }
+
+ private:
+  static double coordinate(const std::vector<Vec3>& x, Eigen::Index dof) {
+    return x[static_cast<std::size_t>(dof / 3)][dof % 3];
+  }
+  static double& coordinate(std::vector<Vec3>& x, Eigen::Index dof) {
+    return x[static_cast<std::size_t>(dof / 3)][dof % 3];
+  }
+  double energy() const {
+    double sum = 0;
+    for (const auto& force : forces_) sum += force->energy(x);
+    for (std::size_t i = 0; i < x.size(); ++i) sum -= masses[i] * gravity_.dot(x[i]);
+    return sum;
+  }
+  Eigen::VectorXd force(const std::vector<Eigen::Index>& dofs) const {
+    std::vector<Vec3> f(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) f[i] = masses[i] * gravity_;
+    const std::vector<Vec3> v(x.size(), Vec3::Zero());
+    // Without a matrix Bend and TriangleBend give all of their force.
+    for (const auto& force : forces_) force->add({x, v, f});
+    Eigen::VectorXd of(static_cast<Eigen::Index>(dofs.size()));
+    for (std::size_t d = 0; d < dofs.size(); ++d) of[static_cast<Eigen::Index>(d)] = coordinate(f, dofs[d]);
+    return of;
+  }
+
+  Vec3 gravity_;
+  environment::Environment environment_;
+  std::vector<std::unique_ptr<forces::Force>> forces_;
+  solver::BlockMatrix matrix_;
+  std::vector<char> held_;
+
+ public:
+  std::vector<Vec3> x;         ///< positions [m]; at the start those of the scene
+  std::vector<double> masses;  ///< [kg]
+};
+
+}  // namespace weft::simulation::testing

@@ -1,0 +1,62 @@
+// A strip bent in its own plane against beam theory: elements that lock would be too stiff.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+
+#include "validation/cantilever.hpp"
+#include "validation/cloth_model.hpp"
+
+namespace weft::simulation {
+namespace {
+
+using scene::ClothShape;
+
+constexpr double kLength = 0.1, kWidth = 0.01;    // from the held column to the tip [m]
+constexpr double kStretch = 1000, kShear = 1000;  // [N/m]
+
+/// How far the tip of a strip sags in its plane under gravity across, over what a beam does: ν = 0, EI = k w³ / 12, and
+/// a shear stiffness of 5/6 · (μ / 2) w (Timoshenko). The particles of the first column are held, and nothing bends out
+/// of the plane.
+double sag_over_beam(ClothShape shape, int across) {
+  scene::Scene scene = testing::sheet_alone(1, 3, 0);
+  scene.physics.gravity = {0, -9.81e-3, 0};  // small displacements
+  scene::Cloth& cloth = scene.cloths[0];
+  cloth.shape = shape;
+  cloth.size = {kLength, kWidth};
+  cloth.particles_weft = 10 * across + 1;
+  cloth.particles_warp = across + 1;
+  cloth.material.stretch_weft = cloth.material.stretch_warp = kStretch;
+  cloth.material.shear = kShear;
+  cloth.material.bend = 0;
+  scene::Pin clamp;
+  clamp.high = {0, 1};
+  cloth.pins = {clamp};
+  testing::ClothModel model(scene);
+  model.find_rest(model.free_along({0, 1}));
+  const auto tip = static_cast<std::size_t>((10 * across + 1) * (across / 2 + 1) - 1);
+  const double sag = -(model.x[tip].y() - model.cloth().mesh.positions[tip].y());
+  const double q = cloth.material.density * 9.81e-3 * kWidth;
+  const double beam = q * std::pow(kLength, 4) / (8 * kStretch * std::pow(kWidth, 3) / 12) +
+                      q * kLength * kLength / (2 * (5.0 / 6) * 0.5 * kShear * kWidth);
+  return sag / beam;
+}
+
+// Constant strain makes triangles too stiff here, on coarse meshes by half; with n cells across the sag is short by
+// 1 / (1 + c / n²), which is no locking: c = 2 for quads, the trapezoidal rule's error of the second moment of area
+// Σ y² (measured: 3.5 for aligned, 1 for crossed triangles).
+TEST(InPlaneBending, ApproachesBeamTheoryInSecondOrder) {
+  for (const auto& [shape, c] : {std::pair(ClothShape::quads, 2.0), std::pair(ClothShape::aligned_triangles, 3.5),
+                                 std::pair(ClothShape::crossed_triangles, 1.0)}) {
+    std::printf("%s: sag over beam theory with 2, 4, 8, 16 cells across:", testing::name_of(shape));
+    for (int across : {2, 4, 8, 16}) {
+      const double found = sag_over_beam(shape, across);
+      std::printf(" %.4f", found);
+      EXPECT_NEAR(found, 1 / (1 + c / (across * across)), 5e-3) << testing::name_of(shape) << ' ' << across;
+    }
+    std::printf("\n");
+  }
+}
+
+}  // namespace
+}  // namespace weft::simulation
