@@ -141,8 +141,10 @@ void ClothSystem::cut_groups(const environment::Environment& environment) {
   } while (groupings_.back().count > std::max(kPatches, static_cast<Index>(boxes.size())));
 }
 
-void ClothSystem::explicit_forces(const integrator::State& at, double h, std::span<Vec3> force) const {
-  for (const forces::Air& air : air_) air.add(at.x, at.v, masses_, h, force);
+void ClothSystem::explicit_forces(const integrator::State& at, double h, bool extrapolated,
+                                  std::span<Vec3> force) const {
+  const auto taken = extrapolated ? forces::Air::Taken::at_that_moment : forces::Air::Taken::over_the_step;
+  for (const forces::Air& air : air_) air.add(at.x, at.v, masses_, h, taken, force);
 }
 
 void ClothSystem::forces(const integrator::StagePoint& at, std::span<Vec3> force) const {
