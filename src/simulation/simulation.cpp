@@ -360,6 +360,10 @@ std::size_t Simulation::particles() const {
   return impl_->now.x.size();
 }
 
+ParticleState Simulation::state() const {
+  return {impl_->now.x, impl_->now.v, impl_->system.masses()};
+}
+
 FrameReport Simulation::initial_report() const {
   return impl_->start_report;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,6 +41,12 @@ struct ObjectInfo {
   std::size_t vertices = 0, faces = 0;
 };
 
+/// All particles, cloth by cloth in the order of the scene.
+struct ParticleState {
+  std::span<const Vec3> positions, velocities;  ///< [m], [m/s]
+  std::span<const double> masses;               ///< [kg]
+};
+
 /// One line of `weft check --plan`: a part and whether this scene needs it.
 struct PlanItem {
   std::string part;
@@ -67,6 +74,8 @@ class Simulation {
   FrameReport initial_report() const;
   std::vector<ObjectInfo> objects() const;
   std::size_t particles() const;
+  /// Of the current frame; valid until the next advance().
+  ParticleState state() const;
 
  private:
   struct Impl;
