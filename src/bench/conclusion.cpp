@@ -43,14 +43,18 @@ const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target) 
 }
 
 std::string which_setting(const Accuracy& accuracy, Quantity quantity) {
+  const double uncertainty = accuracy.uncertainty[static_cast<std::size_t>(quantity)];
   std::string text;
   for (double target : kTargets) {
     std::string choice = "no run is as exact";
     if (const Run* best = cheapest(accuracy, quantity, target)) choice = setting_text(*best);
-    if (accuracy.uncertainty[static_cast<std::size_t>(quantity)] > 0.3 * target)
-      choice = "the reference is not known so exactly";
+    if (uncertainty > 0.3 * target) choice = "the reference is not known so exactly";
     text += fmt::format("{}{} m: {}", text.empty() ? "" : "; ", target, choice);
   }
+  // What a run can be told to be right to at all: with contact, what a micrometre at the start decides.
+  const Run* best = cheapest(accuracy, quantity, uncertainty);
+  if (uncertainty > 0.3 * kTargets[2] && best != nullptr)
+    text += fmt::format("; as exact as the scene itself, {:.1e} m: {}", uncertainty, setting_text(*best));
   return fmt::format("Cheapest for an error of the {} of {}.", name_of(quantity), text);
 }
 
@@ -65,8 +69,8 @@ class Line {
   // Factor in CPU time for a tenth of the error.
   std::string cost_of_a_digit() const {
     const double spread = n_ * xx_ - x_ * x_, slope = (n_ * xy_ - x_ * y_) / spread;
-    if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "not to be told";
-    return slope < -1.5 ? std::string("above 30 times") : fmt::format("{:.1f} times", std::pow(10, -slope));
+    if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "an unknown factor of";
+    return slope < -1.5 ? std::string("more than 30 times") : fmt::format("{:.1f} times", std::pow(10, -slope));
   }
 
  private:

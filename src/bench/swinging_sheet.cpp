@@ -3,7 +3,8 @@
 namespace weft::bench {
 
 // scenes/swinging_sheet.toml, word for word: a test holds them against each other.
-const char* const kSwingingSheet = R"(# A soft sheet, held at both ends of its upper edge, swings down from a slant, and nothing can touch: how exact the run is depends on
+const char* const kSwingingSheet =
+    R"(# A soft sheet, held at both ends of its upper edge, swings down from a slant, and nothing can touch: how exact the run is depends on
 # the time integration alone.
 title = "Swinging sheet"
 
