@@ -22,18 +22,6 @@ std::string escaped(const std::string& field) {
   return text;
 }
 
-std::string name_of(scene::Integrator integrator) {
-  switch (integrator) {
-    case scene::Integrator::implicit_euler:
-      return "implicit_euler";
-    case scene::Integrator::implicit_midpoint:
-      return "implicit_midpoint";
-    case scene::Integrator::bdf2:
-      return "bdf2";
-  }
-  return "unknown";
-}
-
 const char* color_of(Verdict verdict) {
   switch (verdict) {
     case Verdict::solved:
@@ -60,6 +48,18 @@ std::size_t place_of(const std::vector<double>& values, double value) {
 }
 
 }  // namespace
+
+std::string_view name_of(scene::Integrator integrator) {
+  switch (integrator) {
+    case scene::Integrator::implicit_euler:
+      return "implicit_euler";
+    case scene::Integrator::implicit_midpoint:
+      return "implicit_midpoint";
+    case scene::Integrator::bdf2:
+      return "bdf2";
+  }
+  return "unknown";
+}
 
 std::string csv(const Table& table) {
   std::string text;
@@ -89,8 +89,9 @@ Table map_table(const std::vector<MapCell>& cells) {
                "energy_gain", "max_strain", "reason"}};
   for (const MapCell& cell : cells) {
     const Outcome& o = cell.outcome;
-    table.push_back({name_of(cell.integrator), fmt::format("{:g}", cell.stiffness), fmt::format("{:g}", cell.step),
-                     std::string(describe(o.verdict)), std::to_string(o.steps), std::to_string(o.rejected_steps),
+    table.push_back({std::string(name_of(cell.integrator)), fmt::format("{:g}", cell.stiffness),
+                     fmt::format("{:g}", cell.step), std::string(describe(o.verdict)), std::to_string(o.steps),
+                     std::to_string(o.rejected_steps),
                      fmt::format("{:.2f}", static_cast<double>(o.newton_iterations) / std::max(1, o.steps)),
                      fmt::format("{:.3g}", o.energy_gain), fmt::format("{:.3g}", o.max_strain), o.reason});
   }

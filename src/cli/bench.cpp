@@ -3,12 +3,17 @@
 #include <array>
 #include <cstdio>
 
+#include "bench/accuracy_report.hpp"
 #include "bench/report.hpp"
 #include "bench/stability.hpp"
 #include "cli/commands.hpp"
 #include "cli/output_target.hpp"
+#include "cli/scene_input.hpp"
 #include "core/log.hpp"
+#include "core/parallel.hpp"
+#include "core/progress.hpp"
 #include "core/temporary_file.hpp"
+#include "core/timer.hpp"
 #include "scene/loader.hpp"
 
 namespace weft::cli {
@@ -70,10 +75,55 @@ ExitCode bench_stability(const std::filesystem::path& folder) {
   return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;
 }
 
+scene::Scene scene_of(const BenchOptions& options) {
+  scene::LoadResult loaded = options.scene.empty()
+                                 ? scene::load_text(bench::kSwingingSheet, "swinging_sheet.toml", options.overrides)
+                                 : scene::load(options.scene, options.overrides);
+  if (!loaded.ok()) throw Error(ExitCode::scene_invalid, mistakes_text(loaded));
+  return std::move(loaded.scene);
+}
+
+// Tells of each run, and how long the others will take.
+class AccuracyProgress {
+ public:
+  void operator()(const bench::Run& run, double done) {
+    remaining_.sample(timer_.seconds(), {static_cast<int>(done * kUnits), 0, 0});
+    const auto left = remaining_.seconds();
+    log::info(fmt::format(
+        "accuracy: {:3.0f} %, {}, {:.3g} {}: {}{}", 100 * done, bench::name_of(run.setting.integrator),
+        run.setting.tolerance ? 1e3 * *run.setting.tolerance : 1e3 * run.setting.step,
+        run.setting.tolerance ? "mm" : "ms", run.failed() ? run.failure : fmt::format("{:.2f} CPU s", run.cpu_s),
+        left ? fmt::format(", about {} left", format_duration(*left)) : ""));
+  }
+
+ private:
+  static constexpr int kUnits = 100'000;
+  WallTimer timer_;
+  RemainingTime remaining_{{kUnits, 0, 0}};
+};
+
+ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path& folder) {
+  const scene::Scene scene = scene_of(options);
+  const std::string name = "accuracy_" + scene.name, title = scene.title.empty() ? scene.name : scene.title;
+  check_writable(folder / (name + ".md"));
+  // So that CPU seconds mean the same everywhere.
+  set_thread_count(1);
+  AccuracyProgress progress;
+  const bench::Accuracy accuracy = bench::measure_accuracy(scene, std::ref(progress));
+  const std::string work = name + ".svg", settings = name + "_settings.svg";
+  write_file(folder / (name + ".csv"), bench::csv(bench::accuracy_table(accuracy)));
+  write_file(folder / work, bench::work_svg(title, accuracy));
+  write_file(folder / settings, bench::settings_svg(title, accuracy));
+  write_file(folder / (name + ".md"), bench::accuracy_markdown(title, accuracy, work, settings));
+  fmt::print("{}written to {}\n", bench::conclusion(accuracy), (folder / (name + ".md")).string());
+  return ExitCode::ok;
+}
+
 }  // namespace
 
 ExitCode bench(const BenchOptions& options) {
-  return bench_stability(options.output.empty() ? "output/bench" : options.output);
+  const std::filesystem::path folder = options.output.empty() ? "output/bench" : options.output;
+  return options.kind == BenchOptions::Kind::accuracy ? bench_accuracy(options, folder) : bench_stability(folder);
 }
 
 }  // namespace weft::cli

@@ -21,7 +21,8 @@ constexpr double kMaxFps = 1000;
 template <class Value>
 using Choice = std::pair<const char*, Value>;
 
-constexpr std::array kBenches{Choice<BenchOptions::Kind>{"stability", BenchOptions::Kind::stability}};
+constexpr std::array kBenches{Choice<BenchOptions::Kind>{"stability", BenchOptions::Kind::stability},
+                              Choice<BenchOptions::Kind>{"accuracy", BenchOptions::Kind::accuracy}};
 constexpr std::array kQualities{Choice<render::Quality>{"draft", render::Quality::draft},
                                 Choice<render::Quality>{"preview", render::Quality::preview},
                                 Choice<render::Quality>{"final", render::Quality::final}};
@@ -199,16 +200,21 @@ struct Parser {
   }
 
   void add_bench() {
-    CLI::App& command = *app.add_subcommand("bench", "Measure: stability of stiff and extreme scenes");
+    CLI::App& command = *app.add_subcommand("bench", "Measure: stability, or error against run time");
     command
         .add_option_function<std::string>(
             "WHAT", [this](const std::string& text) { bench.kind = parse_choice("WHAT", text, kBenches); },
-            "stability: what comes of stiff and extreme scenes")
+            "stability: what comes of stiff and extreme scenes; accuracy: error against run time of a scene")
         ->required()
         ->type_name("");
+    command.add_option("SCENE", bench.scene, "For accuracy: the scene, a TOML file [a swinging sheet]")->type_name("");
+    add_overrides(command, bench.overrides);
     add_value(command, "-o,--output", "DIR", "Folder for tables and plots [output/bench]",
               [this](const std::string& text) { bench.output = text; });
-    command.footer("\nExample:\n  weft bench stability -o stability");
+    command.footer(
+        "\nExamples:\n"
+        "  weft bench stability -o stability\n"
+        "  weft bench accuracy scenes/falling_band.toml --set time.duration=0.8 -o accuracy");
   }
 
   std::vector<std::string> command_names() const {
@@ -301,6 +307,9 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     throw Error(ExitCode::usage, "{}: {}; see {} --help", prefix, error.what(), prefix);
   }
   const std::string name = parser.selected()->get_name();
+  const bool has_scene = !parser.bench.scene.empty() || !parser.bench.overrides.empty();
+  if (name == "bench" && parser.bench.kind == BenchOptions::Kind::stability && has_scene)
+    throw Error(ExitCode::usage, "weft bench stability: expected no SCENE and no --set, its scenes are its own");
   if (name == "run") return parser.run;
   if (name == "check") return parser.check;
   if (name == "thumbnail") return parser.thumbnail;

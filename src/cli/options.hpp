@@ -59,9 +59,11 @@ struct DoctorOptions {
 };
 
 struct BenchOptions {
-  enum class Kind { stability };
+  enum class Kind { stability, accuracy };
   Kind kind = Kind::stability;
-  std::filesystem::path output;  ///< folder; empty: output/bench
+  std::filesystem::path scene;         ///< of accuracy; empty: a sheet that swings
+  std::vector<std::string> overrides;  ///< of --set
+  std::filesystem::path output;        ///< folder; empty: output/bench
 };
 
 /// Help or version: to be printed on standard output, and that was all.

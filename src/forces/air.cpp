@@ -10,6 +10,7 @@ namespace {
 struct Flow {
   const AirParameters& parameters;
   double h;  // [s]
+  Air::Taken taken;
   std::span<Vec3> force;
 };
 
@@ -22,7 +23,9 @@ void push(const std::array<Index, Corners>& face, const Vec3& area, const Vec3& 
   const Vec3 n = area / size;
   const double speed = n.dot(velocity - flow.parameters.wind);
   const double coefficient = 0.5 * flow.parameters.density * flow.parameters.drag * size;  // c [kg/m]
-  const double drag = coefficient * std::abs(speed) * speed / (1 + flow.h * coefficient * std::abs(speed) / mass);
+  const double z = flow.h * coefficient * std::abs(speed) / mass;
+  const double limit = flow.taken == Air::Taken::over_the_step ? 1 + z : std::sqrt(1 + z * z);
+  const double drag = coefficient * std::abs(speed) * speed / limit;
   for (Index p : face) flow.force[static_cast<std::size_t>(p)] -= 1.0 / Corners * drag * n;
 }
 
@@ -44,9 +47,9 @@ Air::Air(const mesh::Sheet& sheet, Index first, double cloth_density, const AirP
   }
 }
 
-void Air::add(std::span<const Vec3> x, std::span<const Vec3> v, std::span<const double> masses, double h,
+void Air::add(std::span<const Vec3> x, std::span<const Vec3> v, std::span<const double> masses, double h, Taken taken,
               std::span<Vec3> force) const {
-  const Flow flow{parameters_, h, force};
+  const Flow flow{parameters_, h, taken, force};
   for (const auto& cell : cells_) {
     const auto [a, b, c, d] =
         std::array<std::size_t, 4>{static_cast<std::size_t>(cell[0]), static_cast<std::size_t>(cell[1]),

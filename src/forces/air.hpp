@@ -25,10 +25,15 @@ class Air {
   /// `cloth_density` [kg/m²].
   Air(const mesh::Sheet& sheet, Index first, double cloth_density, const AirParameters& parameters);
 
-  /// force += the drag at (x, v) [N]. Over a step h drag alone would take an inner particle of mass m from v to
-  /// v / (1 + h c ‖v‖ / m), the exact solution of m v' = −c ‖v‖ v; the force returned gives just that, so it never
-  /// turns a motion round, however long the step and light the cloth.
-  void add(std::span<const Vec3> x, std::span<const Vec3> v, std::span<const double> masses, double h,
+  /// What the state stands for at which drag is taken.
+  enum class Taken { over_the_step, at_that_moment };
+
+  /// force += the drag of a step over h at (x, v) [N]. Over the step from v on, drag alone would take an inner particle
+  /// of mass m to v / (1 + z), z = h c ‖v‖ / m, the exact solution of m v' = −c ‖v‖ v; the force returned gives just
+  /// that. Taken at the moment of v it is the law itself but for z² / 2, by which it is divided by √(1 + z²): a mean
+  /// over the step would be off by z, and cost methods of second order an order. Neither turns a motion round, however
+  /// long the step and light the cloth.
+  void add(std::span<const Vec3> x, std::span<const Vec3> v, std::span<const double> masses, double h, Taken taken,
            std::span<Vec3> force) const;
 
  private:

@@ -29,6 +29,9 @@ class StepControl {
   /// Steps are not cut below this for their error [s]. Where only an impact's jump of velocity counts, the error is
   /// about h Δv, and 1e-4 m with 10 m/s is just met by it; smooth motion meets 1e-9 m with it.
   static constexpr double kLeastStep = 1e-5;
+  /// What cannot be solved in steps of this length [s] is not solved in shorter ones either: where contacts keep
+  /// Newton's method from its end, lengths would go down for ever, with an accepted step now and then.
+  static constexpr double kShortestStep = 1e-7;
 
  private:
   double aim_over(double error) const;

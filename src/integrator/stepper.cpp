@@ -182,7 +182,7 @@ void Stepper::prepare_guess(const System& system, const State& now, const Stage&
     guess_.v[i] = trend > 0 ? Vec3(now.v[i] + trend * (now.v[i] - previous_.v[i])) : now.v[i];
     constant_force_[i] = masses[i] * gravity;
   }
-  system.explicit_forces(guess_, h, constant_force_);
+  system.explicit_forces(guess_, h, trend > 0, constant_force_);
 }
 
 // Held directions start at their target and stay there.

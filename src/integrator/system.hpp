@@ -29,8 +29,10 @@ class System {
 
   virtual std::span<const double> masses() const = 0;
 
-  /// Non-stiff forces of the step [N]: taken once, at the given extrapolated state, outside of the implicit solve.
-  virtual void explicit_forces(const State& at, double h, std::span<Vec3> force) const = 0;
+  /// Non-stiff forces of a step over h [N], taken once, outside of the implicit solve: where the state is
+  /// `extrapolated` to the stage those at that moment, right in second order; else the state is that at the start, and
+  /// they are means over the step.
+  virtual void explicit_forces(const State& at, double h, bool extrapolated, std::span<Vec3> force) const = 0;
 
   /// Stiff forces at a stage [N].
   virtual void forces(const StagePoint& at, std::span<Vec3> force) const = 0;

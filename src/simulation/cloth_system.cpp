@@ -175,9 +175,11 @@ void ClothSystem::take_weight_off(std::span<Vec3> force) const {
   }
 }
 
-void ClothSystem::explicit_forces(const integrator::State& at, double h, std::span<Vec3> force) const {
+void ClothSystem::explicit_forces(const integrator::State& at, double h, bool extrapolated,
+                                  std::span<Vec3> force) const {
   take_weight_off(force);
-  for (const forces::Air& air : air_) air.add(at.x, at.v, masses_, h, force);
+  const auto taken = extrapolated ? forces::Air::Taken::at_that_moment : forces::Air::Taken::over_the_step;
+  for (const forces::Air& air : air_) air.add(at.x, at.v, masses_, h, taken, force);
 }
 
 void ClothSystem::forces(const integrator::StagePoint& at, std::span<Vec3> force) const {

@@ -24,7 +24,7 @@ class ClothSystem final : public integrator::System {
   ClothSystem(const scene::Scene& scene, const environment::Environment& environment);
 
   std::span<const double> masses() const override { return masses_; }
-  void explicit_forces(const integrator::State& at, double h, std::span<Vec3> force) const override;
+  void explicit_forces(const integrator::State& at, double h, bool extrapolated, std::span<Vec3> force) const override;
   void forces(const integrator::StagePoint& at, std::span<Vec3> force) const override;
   void linearise(const integrator::StagePoint& at, std::span<Vec3> force, solver::LinearSystem& system) const override;
 

@@ -253,7 +253,7 @@ void Simulation::Impl::advance_controlled(double t_t0, double t_t1, FrameReport&
       left = needed;
       h = (t_t1 - t) / left;
     }
-    const bool last_try = retries == scene.solver.halvings;
+    const bool last_try = retries == scene.solver.halvings || h < integrator::StepControl::kShortestStep;
     const Rejection rejection = attempt(t, h, last_try || retries >= kHalvingsBeforePinch, report);
     if (rejection && last_try) give_up(t, h, *rejection);
     // An impact may ask for steps without end: after as many tries its error is taken as it is.
@@ -363,6 +363,10 @@ FrameReport Simulation::advance() {
 }
 std::size_t Simulation::particles() const {
   return impl_->now.x.size();
+}
+
+ParticleState Simulation::state() const {
+  return {impl_->now.x, impl_->now.v, impl_->system.masses()};
 }
 
 bool Simulation::run_preroll(const std::function<bool()>& proceed) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,12 @@ struct ObjectInfo {
   std::size_t vertices = 0, faces = 0;
 };
 
+/// All particles, cloth by cloth in the order of the scene.
+struct ParticleState {
+  std::span<const Vec3> positions, velocities;  ///< [m], [m/s]
+  std::span<const double> masses;               ///< [kg]
+};
+
 /// One line of `weft check --plan`: a part and whether this scene needs it.
 struct PlanItem {
   std::string part;
@@ -73,6 +80,8 @@ class Simulation {
   bool run_preroll(const std::function<bool()>& proceed = [] { return true; });
   std::vector<ObjectInfo> objects() const;
   std::size_t particles() const;
+  /// Of the current frame; valid until the next advance().
+  ParticleState state() const;
 
  private:
   struct Impl;

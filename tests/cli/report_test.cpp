@@ -46,8 +46,11 @@ TEST(FrameJson, GivesMillisecondsAndNoInfinity) {
 TEST(StatsJson, SumsUpSteps) {
   RunReport report;
   report.frames = two_frames();
+  report.frames.back().report.inexact_steps = 3;
   report.frames.push_back(report.frames.back());
+  EXPECT_EQ(frame_json(report.frames.back()).at("inexact_steps"), 3);
   const auto totals = stats_json(report).at("totals");
+  EXPECT_EQ(totals.at("inexact_steps"), 6);
   EXPECT_EQ(totals.at("steps"), 8);
   EXPECT_EQ(totals.at("rejected_steps"), 2);
   EXPECT_DOUBLE_EQ(totals.at("error_estimate_m"), 0.00246);

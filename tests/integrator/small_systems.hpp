@@ -21,7 +21,7 @@ class Particles : public System {
   explicit Particles(std::vector<double> masses) : masses_(std::move(masses)) {}
 
   std::span<const double> masses() const override { return masses_; }
-  void explicit_forces(const State&, double, std::span<Vec3>) const override {}
+  void explicit_forces(const State&, double, bool, std::span<Vec3>) const override {}
   void forces(const StagePoint& at, std::span<Vec3> force) const override {
     for (std::size_t i = 0; i < masses_.size(); ++i) force[i] += force_on(at.x[i]);
   }
@@ -82,7 +82,7 @@ class Saddle final : public System {
  public:
   explicit Saddle(double s) : s_(s) {}
   std::span<const double> masses() const override { return masses_; }
-  void explicit_forces(const State&, double, std::span<Vec3>) const override {}
+  void explicit_forces(const State&, double, bool, std::span<Vec3>) const override {}
   void forces(const StagePoint& at, std::span<Vec3> force) const override {
     force[0] -= s_ * at.x[1];
     force[1] -= s_ * at.x[0];
@@ -106,7 +106,9 @@ class DraggedSpring : public HardeningSpring {
  public:
   static constexpr double kDrag = 0.4;
   static Vec3 drag_at(const Vec3& v) { return -kDrag * v.norm() * v; }
-  void explicit_forces(const State& at, double, std::span<Vec3> force) const override { force[0] += drag_at(at.v[0]); }
+  void explicit_forces(const State& at, double, bool, std::span<Vec3> force) const override {
+    force[0] += drag_at(at.v[0]);
+  }
 };
 
 }  // namespace weft::integrator::testing

@@ -1,5 +1,9 @@
 // time.tolerance: steps of their own choice, which end on frames.
+#include "integrator/step_control.hpp"
+
 #include <gtest/gtest.h>
+
+#include <cstdio>
 
 #include "simulation/scenes.hpp"
 
@@ -131,6 +135,30 @@ TEST(StepTolerance, StepThatCannotBeSolvedEndsTheRunWithTheStateBefore) {
   }
   // Tried again from there, it fails in the same way.
   EXPECT_EQ(said[0], said[1]);
+}
+
+TEST(StepTolerance, RunThatIsStuckIsRefusedInsteadOfShorteningStepsForEver) {
+  // One iteration solves a step only where the forces hardly change in it: the faster the sheet, the shorter.
+  scene::Scene scene = falling_sheet(scene::Integrator::bdf2, 1e-3);
+  scene.solver.newton_iterations = 1;
+  scene.solver.newton_tolerance = 1e-6;
+  scene::Pin edge;
+  edge.low = {0, 1};
+  scene.cloths[0].pins.push_back(edge);
+  Simulation simulation(scene);
+  std::string text;
+  try {
+    for (int k = 0; k < 25; ++k) simulation.advance();
+  } catch (const std::exception& error) {
+    text = error.what();
+  }
+  double h = 0;
+  const auto at = text.find("down to h = ");
+  ASSERT_NE(at, std::string::npos) << text;
+  ASSERT_EQ(std::sscanf(text.c_str() + at, "down to h = %lf", &h), 1);
+  EXPECT_LT(h, integrator::StepControl::kShortestStep);
+  // Lengths go down by a fifth at most at once.
+  EXPECT_GE(h, 0.2 * integrator::StepControl::kShortestStep);
 }
 
 }  // namespace

@@ -80,6 +80,25 @@ TEST_F(SwingingSheet, ConvergesWithTheOrderOfEachMethodWhereStepsAreFixed) {
   }
 }
 
+TEST_F(SwingingSheet, KeepsTheSecondOrderInAir) {
+  const auto end = [](scene::Integrator integrator, int rate) {
+    scene::Scene scene = sheet(integrator);
+    scene.physics.air_density = 1.2;
+    scene.time.step = 1.0 / rate;
+    scene.solver.newton_tolerance = 1e-7;
+    scene.solver.linear_tolerance = 1e-3;
+    return testing::swing(scene, kFrames).x;
+  };
+  const auto exact = end(scene::Integrator::implicit_midpoint, 6400);
+  for (scene::Integrator integrator : {scene::Integrator::implicit_midpoint, scene::Integrator::bdf2}) {
+    const double coarse = rms_distance(end(integrator, 400), exact), fine = rms_distance(end(integrator, 800), exact);
+    std::printf("%-18s in air, step 1/800: error %.2e m, order %.2f\n", name_of(integrator), fine,
+                std::log2(coarse / fine));
+    // Measured 2.01 and 2.00; 1.1 with drag as a mean over the step, and 9 to 34 times the error.
+    EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << name_of(integrator);
+  }
+}
+
 TEST_F(SwingingSheet, ErrorFollowsTheToleranceWithTheExponentOfEachMethod) {
   const SwingEnd& exact = reference();
   std::printf("%-18s %11s %6s %8s %10s %8s %10s\n", "", "tolerance m", "steps", "rejected", "error m", "exponent",

@@ -37,7 +37,7 @@ double friction_over_slip(const Contact& contact, double slip) {
 
 void ContactSet::set_step(double h) {
   stick_slip_ = kStickSpeed * h;
-  first_ = true;
+  linearised_ = 0;
 }
 
 void ContactSet::add(const Contact& contact) {
@@ -80,7 +80,7 @@ void ContactSet::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) 
 void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
                            solver::LinearSystem& system) {
   for (Contact& contact : contacts_) {
-    if (!first_) contact.load = respond(contact, x_end).load;
+    if (linearised_ > 0 && linearised_ < kLoadUpdates) contact.load = respond(contact, x_end).load;
     const Response response = respond(contact, x_end);
     if (!response.active) continue;
     int involved = 0, last = 0;
@@ -98,7 +98,7 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, std::sp
       system.terms.push_back({contact.particles, contact.weights, stiffness});
     }
   }
-  first_ = false;
+  ++linearised_;
 }
 
 int ContactSet::active(std::span<const Vec3> x_end) const {

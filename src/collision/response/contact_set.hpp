@@ -35,6 +35,10 @@ class ContactSet {
   /// Slip speed below which friction is viscous and a contact counts as sticking [m/s]. Smaller creeps less and makes
   /// the system stiffer: 2 μ λ / (h · stick_speed) per contact of load λ.
   static constexpr double kStickSpeed = 2e-4;
+  /// Linearisations of a step for which friction follows the loads of its contacts. From then on it keeps those it has:
+  /// that the load changes with the positions is not in the matrix, and where folds press on each other in steps below
+  /// a millisecond the two would go on chasing each other, however short the step.
+  static constexpr int kLoadUpdates = 20;
 
   static constexpr double kStiffening = 10;
   /// Slip speed, in stick speeds, from which friction is that of sliding; between, it falls from the static one.
@@ -70,7 +74,7 @@ class ContactSet {
 
   std::vector<Contact> contacts_;
   double stick_slip_ = 1e-6;  // ε of the friction [m]
-  bool first_ = true;         // no linearisation of this step yet
+  int linearised_ = 0;        // times since the step began
 };
 
 }  // namespace weft::collision
