@@ -55,12 +55,6 @@ class Membrane : public Force {
   virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const = 0;
 };
 
-/// Share of the sheet's area that belongs to grid line `i` of `count` with spacing `l`: half a spacing at the border
-/// [m].
-inline double line_width(int i, int count, double l) {
-  return (i == 0 || i == count - 1) ? 0.5 * l : l;
-}
-
 /// Lumped masses of a grid [kg], ρ times the area of each particle (ρ in kg/m²).
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density);
 /// And of triangles, a third of each to each of its corners.

@@ -13,9 +13,9 @@ Stretch::Stretch(const mesh::Grid& grid, Index first, const StretchParameters& p
   for (int j = 0; j < grid.nv; ++j) {
     for (int i = 0; i < grid.nu; ++i) {
       if (i + 1 < grid.nu)
-        add_edge(grid.index(i, j), grid.index(i + 1, j), grid.lu, line_width(j, grid.nv, grid.lv), parameters.weft);
+        add_edge(grid.index(i, j), grid.index(i + 1, j), grid.du(i), grid.width_v(j), parameters.weft);
       if (j + 1 < grid.nv)
-        add_edge(grid.index(i, j), grid.index(i, j + 1), grid.lv, line_width(i, grid.nu, grid.lu), parameters.warp);
+        add_edge(grid.index(i, j), grid.index(i, j + 1), grid.dv(j), grid.width_u(i), parameters.warp);
     }
   }
 }

@@ -147,6 +147,7 @@ struct Cloth {
   ClothShape shape = ClothShape::quads;
   Vec2 size{1, 1};                               ///< weft, warp [m]; not of a mesh
   int particles_weft = 41, particles_warp = 41;  ///< likewise; crossed triangles have one more in each cell
+  Vec2 grading{1, 1};                            ///< likewise: last spacing of particles over the first
   std::filesystem::path file;                    ///< of a mesh; absolute after checking
   double scale = 1;                              ///< of a mesh: metres per unit of the file
   int line = 0, column = 0;                      ///< where the scene names it, for errors of its file
