@@ -15,7 +15,7 @@ namespace weft::forces {
 /// Which derivative goes into the matrix.
 enum class Linearisation {
   exact,     ///< the Jacobian itself, indefinite under compression and unsymmetric with viscosity
-  definite,  ///< its symmetric positive semidefinite part term by term: what conjugate gradients and descent need
+  definite,  ///< made symmetric and positive semidefinite term by term: what conjugate gradients and descent need
 };
 
 /// One evaluation of the forces at (x, v).
