@@ -10,6 +10,7 @@
 
 #include "assets/mesh_file.hpp"
 #include "core/error.hpp"
+#include "core/grading.hpp"
 #include "core/log.hpp"
 #include "core/parallel.hpp"
 #include "environment/acting.hpp"
@@ -51,10 +52,11 @@ std::vector<Vec3> start_positions(const scene::Cloth& cloth, const mesh::Mesh& r
 void use_quads(const mesh::Grid& grid, ClothObject& object) {
   object.grid = grid;
   object.mesh = mesh::make_sheet(grid);
-  object.spacing = std::min(grid.lu, grid.lv);
+  object.spacing = grid.least_spacing();
   for (int j = 0; j < grid.nv; ++j)
     for (int i = 0; i < grid.nu; ++i)
-      object.fractions.emplace_back(double(i) / (grid.nu - 1), double(j) / (grid.nv - 1));
+      object.fractions.emplace_back(graded_fraction(i, grid.nu, grid.weft_grading),
+                                    graded_fraction(j, grid.nv, grid.warp_grading));
 }
 
 void use_triangles(mesh::Mesh mesh, ClothObject& object) {
@@ -126,10 +128,7 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth) {
   object.name = cloth.name;
   const std::string where =
       fmt::format("{}:{}:{}: cloth.{}", scene.file.string(), cloth.line, cloth.column, cloth.name);
-  const mesh::Grid grid{.nu = cloth.particles_weft,
-                        .nv = cloth.particles_warp,
-                        .lu = cloth.size.x() / (cloth.particles_weft - 1),
-                        .lv = cloth.size.y() / (cloth.particles_warp - 1)};
+  const mesh::Grid grid = grid_of(cloth);
   switch (cloth.shape) {
     case scene::ClothShape::quads:
       use_quads(grid, object);
@@ -239,6 +238,15 @@ BodyObject make_character(const scene::Character& character, const Actor& actor)
 }
 
 }  // namespace
+
+mesh::Grid grid_of(const scene::Cloth& cloth) {
+  return {.nu = cloth.particles_weft,
+          .nv = cloth.particles_warp,
+          .lu = cloth.size.x() / (cloth.particles_weft - 1),
+          .lv = cloth.size.y() / (cloth.particles_warp - 1),
+          .weft_grading = cloth.grading.x(),
+          .warp_grading = cloth.grading.y()};
+}
 
 Environment::Environment(const scene::Scene& scene) {
   for (const scene::Cloth& cloth : scene.cloths) cloths.push_back(make_cloth(scene, cloth));

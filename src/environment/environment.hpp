@@ -41,6 +41,9 @@ struct BodyObject {
   Motion motion;
 };
 
+/// Rest places of the particles of a rectangle of cloth.
+mesh::Grid grid_of(const scene::Cloth& cloth);
+
 class Environment {
  public:
   /// Makes meshes and the state at time 0. Throws Error(asset_unreadable) naming file and scene line.

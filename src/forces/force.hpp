@@ -15,7 +15,7 @@ namespace weft::forces {
 /// Which derivative goes into the matrix.
 enum class Linearisation {
   exact,     ///< the Jacobian itself, indefinite under compression and unsymmetric with viscosity
-  definite,  ///< its symmetric positive semidefinite part term by term: what conjugate gradients and descent need
+  definite,  ///< made symmetric and positive semidefinite term by term: what conjugate gradients and descent need
 };
 
 /// One evaluation of the forces at (x, v).
@@ -54,12 +54,6 @@ class Membrane : public Force {
   /// Raises heat[particle − first] to the largest strain next to it.
   virtual void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const = 0;
 };
-
-/// Share of the sheet's area that belongs to grid line `i` of `count` with spacing `l`: half a spacing at the border
-/// [m].
-inline double line_width(int i, int count, double l) {
-  return (i == 0 || i == count - 1) ? 0.5 * l : l;
-}
 
 /// Lumped masses of a grid [kg], ρ times the area of each particle (ρ in kg/m²).
 std::vector<double> lumped_masses(const mesh::Grid& grid, double density);

@@ -29,21 +29,22 @@ class Shear final : public Force {
   double energy(std::span<const Vec3> x) const override;
 
  private:
-  /// Corners in the order (0,0), (1,0), (0,1), (1,1) of (weft, warp).
-  using Cell = std::array<Index, 4>;
+  struct Cell {
+    std::array<Index, 4> corners;  // in the order (0,0), (1,0), (0,1), (1,1) of (weft, warp)
+    double lu, lv;                 // rest size [m]
+    double elasticity;             // ½ μ A [N·m]
+    double viscosity;              // ½ η A [N·m·s]
+  };
 
   struct Strain {
     Vec3 su, sv;
     double c;  // ⟨s_u, s_v⟩
   };
   Strain strain(const Cell& cell, std::span<const Vec3> x) const;
-  void add_stiffness(std::size_t cell, const Strain& s, const Strain& rate, const Evaluation& at) const;
-  void add_exact_stiffness(std::size_t cell, const Strain& s, const Strain& rate, const Evaluation& at) const;
-  void add_definite_stiffness(std::size_t cell, const Strain& s, const Evaluation& at) const;
+  void add_stiffness(std::size_t index, const Strain& s, const Strain& rate, const Evaluation& at) const;
+  void add_exact_stiffness(std::size_t index, const Strain& s, const Strain& rate, const Evaluation& at) const;
+  void add_definite_stiffness(std::size_t index, const Strain& s, const Evaluation& at) const;
 
-  double lu_, lv_;     // rest size of a cell [m]
-  double elasticity_;  // ½ μ A [N·m]
-  double viscosity_;   // ½ η A [N·m·s]
   std::vector<Cell> cells_;
   std::vector<std::array<solver::Slot, 16>> slots_;  // row-major over corner pairs
 };

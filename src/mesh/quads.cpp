@@ -38,8 +38,8 @@ Mesh make_sheet(const Grid& grid) {
   sheet.topology.triangles.reserve(2 * quads);
   for (int j = 0; j < grid.nv; ++j) {
     for (int i = 0; i < grid.nu; ++i) {
-      sheet.uv.emplace_back(i * grid.lu, j * grid.lv);
-      sheet.positions.emplace_back((i - 0.5 * (grid.nu - 1)) * grid.lu, (j - 0.5 * (grid.nv - 1)) * grid.lv, 0);
+      sheet.uv.emplace_back(grid.u(i), grid.v(j));
+      sheet.positions.emplace_back(grid.x(i), grid.y(j), 0);
     }
   }
   for (int j = 0; j + 1 < grid.nv; ++j) {

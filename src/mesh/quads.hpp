@@ -21,7 +21,8 @@ inline std::array<Triangle, 2> split_quad(const Quad& q, bool first_diagonal) {
 std::vector<Triangle> split_quads(std::span<const Quad> quads, std::span<const Vec3> positions);
 
 /// Sheet of nu × nv particles in the x-y plane, centred on the origin: weft along x, warp along y, front toward +z,
-/// uv = (i lu, j lv) [m]. The diagonal alternates from quad to quad, so that the split prefers no direction of bias.
+/// uv = rest coordinates of column and row [m]. The diagonal alternates from quad to quad, so that the split prefers no
+/// direction of bias.
 Mesh make_sheet(const Grid& grid);
 
 }  // namespace weft::mesh

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/grading.hpp"
 #include "scene/reader.hpp"
 #include "scene/sequence_files.hpp"
 
@@ -52,16 +53,16 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
   }
   if (rectangle_particles(cloth) == 0) return;  // what it holds shows when the file is read
   // A part between two rows of particles would hold nothing, silently.
-  const auto holds_some = [](double low, double high, int count) {
+  const auto holds_some = [](double low, double high, int count, double grading) {
     for (int i = 0; i < count; ++i) {
-      const double at = static_cast<double>(i) / (count - 1);
+      const double at = graded_fraction(i, count, grading);
       const ClothPart along{.low = {low, 0}, .high = {high, 1}};
       if (along.holds(at, 0)) return true;
     }
     return false;
   };
-  if (!holds_some(part.low.x(), part.high.x(), cloth.particles_weft) ||
-      !holds_some(part.low.y(), part.high.y(), cloth.particles_warp)) {
+  if (!holds_some(part.low.x(), part.high.x(), cloth.particles_weft, cloth.grading.x()) ||
+      !holds_some(part.low.y(), part.high.y(), cloth.particles_warp, cloth.grading.y())) {
     findings.report(path, "expected a part that holds at least one particle, got one between two rows");
   }
 }

@@ -154,7 +154,11 @@ void cloth_shape_rows(TableBuilder<Cloth>& rows) {
                            .single_fills_all()
                            .pair("particles", &Cloth::particles_weft, &Cloth::particles_warp, within(2, 2000), "",
                                  "number along weft and warp")
-                           .whole());
+                           .whole()
+                           .vector("grading", &Cloth::grading, kWeftWarp, within(1e-4, 1e4), "",
+                                   "of the particles' spacing along weft and warp: the last one, times the first; each "
+                                   "is the same multiple of the one before")
+                           .single_fills_all());
   rows.variant("mesh", Rows()
                            .plain(Type::file, "file", &Cloth::file,
                                   "mesh file of the rest shape, flat or not, with its weft along x; relative paths "

@@ -149,6 +149,7 @@ struct Cloth {
   ClothShape shape = ClothShape::quads;
   Vec2 size{1, 1};                               ///< weft, warp [m]; not of a file
   int particles_weft = 41, particles_warp = 41;  ///< likewise; crossed triangles have one more in each cell
+  Vec2 grading{1, 1};                            ///< likewise: last spacing of particles over the first
   std::filesystem::path file;                    ///< of a mesh or sewing pattern; absolute after checking
   double scale = 1;                              ///< of a mesh: metres per unit of the file
   double edge_length = 0.02;                     ///< of the mesh of a pattern [m]

@@ -13,17 +13,25 @@ namespace {
 // of 3,000 particles.
 constexpr std::size_t kChunk = 4096;
 
-// A target below this share of the right hand side takes the factor at once, any other from this many iterations on: to
-// make it costs as much as some 35 iterations without it. Scenes ask for 0.1 and need ten. CPU time to 1e-6 without the
-// factor over that with it (bench_solver, 10³ to 1.6·10⁴ particles): hanging in plain folds 1.7 to 3.6 with soft, 2
-// with cotton, 40 with threads of 1e6 N/m; lying crumpled 0.6 to 1.2, and 0.55 with 62,500 particles: a loss that buys
-// the worst case.
+// To make the factor costs as much as some 35 iterations without it, and an iteration with it as much as 2.2 to 2.6.
+// What it gains, iterations by 1.4 (crumpled cloth of 6·10⁴ particles) to over 100 (taut threads of 1e6 N/m), shows
+// only after long: threads seem to converge at first. So a target below this share of the right hand side takes it at
+// once;
 constexpr double kTight = 1e-3;
+// any other when, at the pace of the last kPatience iterations, more than kLong are still to come. Scenes ask for 0.1
+// and need ten in all.
 constexpr int kPatience = 40;
+constexpr double kLong = 100;
 // Weight of the factor beside the levels: both are right about long waves, and with equal weights these count twice,
 // which took twice the iterations of the factor alone on plain folds; with 16 as many. On crumpled stiff sheets both
 // together need about half of what the factor needs alone.
 constexpr double kFactorWeight = 16;
+
+// Whether a residual that fell from `before` to `now` in kPatience iterations needs more than kLong to reach the
+// target.
+bool is_long(double before, double now, double target) {
+  return !(std::log(now / target) * kPatience < kLong * std::log(before / now));
+}
 
 // Calls body(begin, end) for chunks of the rows of a part.
 template <class Body>
@@ -131,6 +139,7 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, double target, in
   select_terms(parts);
   double rz = preconditioner_.apply(r_, p_, parts);
   report.first_residual = report.last_residual = std::sqrt(rz);
+  double paced_from = report.first_residual;
   bool with_factor = target < kTight * report.first_residual && make_factor();
   if (with_factor) rz += add_factor(p_, parts);
 
@@ -153,8 +162,11 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, double target, in
     report.last_residual = std::sqrt(rz_next);
     ++report.iterations;
     // Directions made without the factor say nothing about those with it.
-    const bool restart = !with_factor && report.iterations == kPatience && make_factor();
-    with_factor |= restart;
+    bool restart = false;
+    if (!with_factor && report.iterations % kPatience == 0) {
+      restart = with_factor = is_long(paced_from, report.last_residual, target) && make_factor();
+      paced_from = report.last_residual;
+    }
     if (with_factor) rz_next += add_factor(z_, parts);
     const double beta = restart ? 0 : rz_next / rz;
     for (std::size_t part : parts) {

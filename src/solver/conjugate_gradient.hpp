@@ -18,8 +18,8 @@ struct LinearReport {
 };
 
 /// Solves A x = b on the free directions. The preconditioner P is cheap and goes far where a tenth of the residual may
-/// stay; where more is asked for, or where it takes long, a factor L is made and P⁻¹ + 16 (L Lᵀ)⁻¹ takes its place.
-/// Norms remain those of P.
+/// stay; where more is asked for, or where it would take long, a factor L is made and P⁻¹ + 16 (L Lᵀ)⁻¹ takes its
+/// place. Norms remain those of P.
 class ConjugateGradient {
  public:
   /// Prepares the preconditioner for this system, which must outlive the calls that follow.

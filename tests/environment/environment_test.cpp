@@ -41,6 +41,25 @@ Box3 bounds_of(const BodyObject& object) {
   return mesh::bounding_box(object.motion.positions);
 }
 
+TEST(Cloth, IsGradedAsTheSceneSaysWithFractionsToMatch) {
+  scene::Scene scene;
+  scene.cloths.emplace_back();
+  scene::Cloth& cloth = scene.cloths[0];
+  cloth.name = "sheet";
+  cloth.size = {3, 2};
+  cloth.particles_weft = cloth.particles_warp = 3;
+  cloth.grading = {2, 0.25};  // 1 and 2 m, 1.6 and 0.4 m
+  for (const auto shape : {scene::ClothShape::quads, scene::ClothShape::aligned_triangles}) {
+    cloth.shape = shape;
+    const Environment environment(scene);
+    const ClothObject& object = environment.cloths[0];
+    EXPECT_LT((object.mesh.positions[4] - Vec3(-0.5, 0.6, 0)).norm(), kRounding);
+    EXPECT_LT((object.fractions[4] - Vec2(1.0 / 3, 0.8)).norm(), kRounding);
+    const bool quads = shape == scene::ClothShape::quads;
+    EXPECT_NEAR(object.spacing, quads ? 0.4 : std::sqrt(2) * 0.4 / std::hypot(1, 0.4), kRounding);
+  }
+}
+
 TEST(Cloth, LiesInThePlaneOfItsPoseWithWeftAlongXAndWarpAlongY) {
   scene::Scene scene;
   scene.cloths.emplace_back();

@@ -64,6 +64,22 @@ TEST(Bend, CylinderHasTheEnergyOfThePlateToSecondOrder) {
   }
 }
 
+TEST(Bend, ParabolaHasTheEnergyOfThePlateOnAGradedGridToRounding) {
+  // Second differences of parabolas are exact, however their places are spaced: all of the plate but half a spacing at
+  // either end bends with the one curvature, in the cells all of it twists.
+  mesh::Grid grid = grid_of(2);
+  grid.weft_grading = 5, grid.warp_grading = 0.5;
+  const double width = grid.u(grid.nu - 1), height = grid.v(grid.nv - 1);
+  const double inner_u = width - grid.width_u(0) - grid.width_u(grid.nu - 1);
+  const double inner_v = height - grid.width_v(0) - grid.width_v(grid.nv - 1);
+  const double uu = 3, uv = 2, vv = -4;
+  const Positions x = testing::shaped(
+      grid, [&](double u, double v) { return Vec3(u, v, 0.5 * uu * u * u + uv * u * v + 0.5 * vv * v * v); });
+  const double expected =
+      0.5 * kRigidity * (uu * uu * inner_u * height + 2 * uv * uv * width * height + vv * vv * width * inner_v);
+  EXPECT_NEAR(Bend(grid, 0, {kRigidity, 0}).energy(x), expected, 1e-12 * expected);
+}
+
 TEST(Bend, CylinderApproachesHalfBAOverRSquaredAsTheGridIsRefined) {
   const auto error_at = [](int cells) {
     const mesh::Grid grid = grid_of(cells);

@@ -18,9 +18,13 @@ using testing::Positions;
 constexpr double kStiffness = 1000;  // [N/m]
 constexpr double kRate = 150;        // dv/dx of a scheme [1/s]
 
+/// As kGrid, with spacings from 10 to 29 mm along weft and from 42 to 19 mm along warp.
+const mesh::Grid kGraded{5, 4, 0.02, 0.03, 3, 0.45};
+
 struct Case {
   std::string name;
   std::function<std::unique_ptr<Force>(double elastic, double viscous)> make;
+  mesh::Grid grid = kGrid;  // that it is made on
   friend void PrintTo(const Case& c, std::ostream* out) { *out << c.name; }
 };
 
@@ -42,6 +46,21 @@ const Case kCases[] = {
      [](double elastic, double viscous) {
        return std::make_unique<Bend>(kGrid, 0, BendParameters{elastic, viscous, 1000 * viscous});
      }},
+    {"stretch_of_a_graded_grid",
+     [](double elastic, double viscous) {
+       return std::make_unique<Stretch>(kGraded, 0, StretchParameters{elastic, 0.7 * elastic, viscous});
+     },
+     kGraded},
+    {"shear_of_a_graded_grid",
+     [](double elastic, double viscous) {
+       return std::make_unique<Shear>(kGraded, 0, ShearParameters{elastic, viscous});
+     },
+     kGraded},
+    {"bend_of_a_graded_grid",
+     [](double elastic, double viscous) {
+       return std::make_unique<Bend>(kGraded, 0, BendParameters{elastic, viscous, 1000 * viscous});
+     },
+     kGraded},
     {"membrane_of_triangles",
      [](double elastic, double viscous) {
        const mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
@@ -81,7 +100,7 @@ constexpr double kRelative = 5e-8;
 TEST_P(Derivatives, ForceIsMinusTheGradientOfTheEnergy) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const auto force = GetParam().make(kStiffness, 0);
-    Positions x = testing::crumpled(kGrid, 0.003, seed);
+    Positions x = testing::crumpled(GetParam().grid, 0.003, seed);
     const Positions f = testing::force_of(*force, x, testing::zeros(x));
     for (std::size_t i = 0; i < x.size(); ++i)
       for (int axis = 0; axis < 3; ++axis) {
@@ -107,7 +126,7 @@ void expect_exact_jacobian(Force& force, const Positions& x, const Positions& v)
 TEST_P(Derivatives, ExactJacobianOfElasticityIsThatOfCentralDifferences) {
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const auto force = GetParam().make(kStiffness, 0);
-    const Positions x = testing::crumpled(kGrid, 0.003, seed);
+    const Positions x = testing::crumpled(GetParam().grid, 0.003, seed);
     expect_exact_jacobian(*force, x, testing::random_vectors(x.size(), 1, seed + 10));
   }
 }
@@ -116,7 +135,7 @@ TEST_P(Derivatives, ExactJacobianOfViscosityIsThatOfCentralDifferences) {
   if (GetParam().name == "elastic_band_and_hem") GTEST_SKIP() << "has no viscosity";
   for (unsigned seed = 1; seed <= 3; ++seed) {
     const auto force = GetParam().make(0, 5);
-    const Positions x = testing::crumpled(kGrid, 0.003, seed);
+    const Positions x = testing::crumpled(GetParam().grid, 0.003, seed);
     expect_exact_jacobian(*force, x, testing::random_vectors(x.size(), 1, seed + 10));
   }
 }
@@ -124,7 +143,7 @@ TEST_P(Derivatives, ExactJacobianOfViscosityIsThatOfCentralDifferences) {
 TEST_P(Derivatives, DefiniteJacobianIsSymmetricAndPositiveSemidefinite) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     const auto force = GetParam().make(kStiffness, 5);
-    const Positions x = testing::crumpled(kGrid, 0.006, seed);
+    const Positions x = testing::crumpled(GetParam().grid, 0.006, seed);
     const Positions v = testing::random_vectors(x.size(), 1, seed + 10);
     const Eigen::MatrixXd k = testing::stiffness_of(*force, x, v, kRate, Linearisation::definite);
     const double scale = k.cwiseAbs().maxCoeff();
@@ -138,7 +157,7 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
   if (GetParam().name == "membrane_of_triangles_while_sewn") GTEST_SKIP() << "its threads are not those of the grid";
   // A cylinder: weft and warp stay at right angles, and both are longer than at rest.
   const double radius = 0.05;
-  const Positions x = testing::moved_rigidly(testing::shaped(kGrid, [&](double u, double v) {
+  const Positions x = testing::moved_rigidly(testing::shaped(GetParam().grid, [&](double u, double v) {
     const double angle = 1.2 * u / radius;
     return Vec3(radius * std::sin(angle), 1.1 * v, radius * (1 - std::cos(angle)));
   }));
@@ -151,7 +170,7 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
 
 TEST_P(Derivatives, DefiniteJacobianLeavesOutNothingButNegativeParts) {
   const auto force = GetParam().make(kStiffness, 0);
-  const Positions x = testing::crumpled(kGrid, 0.006, 4), still = testing::zeros(x);
+  const Positions x = testing::crumpled(GetParam().grid, 0.006, 4), still = testing::zeros(x);
   const Eigen::MatrixXd added = testing::stiffness_of(*force, x, still, kRate, Linearisation::definite) -
                                 testing::stiffness_of(*force, x, still, kRate, Linearisation::exact);
   const double scale = testing::stiffness_of(*force, x, still, kRate, Linearisation::exact).cwiseAbs().maxCoeff();
@@ -161,7 +180,7 @@ TEST_P(Derivatives, DefiniteJacobianLeavesOutNothingButNegativeParts) {
 TEST_P(Derivatives, ExactJacobianOfCompressedOrShearedClothIsIndefinite) {
   // Why there is a definite form at all; bending alone needs none.
   const auto force = GetParam().make(kStiffness, 0);
-  const Positions x = testing::crumpled(kGrid, 0.006, 3);
+  const Positions x = testing::crumpled(GetParam().grid, 0.006, 3);
   const Eigen::MatrixXd k = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::exact);
   const double least = k.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() / k.cwiseAbs().maxCoeff();
   if (GetParam().name.starts_with("bend"))
@@ -172,10 +191,10 @@ TEST_P(Derivatives, ExactJacobianOfCompressedOrShearedClothIsIndefinite) {
 
 TEST_P(Derivatives, ForceWithoutMatrixIsTheForceWithIt) {
   const auto force = GetParam().make(kStiffness, 5);
-  const Positions x = testing::crumpled(kGrid, 0.006, 1), v = testing::random_vectors(x.size(), 1, 2);
+  const Positions x = testing::crumpled(GetParam().grid, 0.006, 1), v = testing::random_vectors(x.size(), 1, 2);
   std::vector<std::pair<Index, Index>> pairs;
   force->couple(pairs);
-  solver::BlockMatrix matrix(kGrid.size(), pairs);
+  solver::BlockMatrix matrix(GetParam().grid.size(), pairs);
   force->attach(matrix);
   Positions f = testing::zeros(x);
   force->add({x, v, f, &matrix, kRate, Linearisation::definite});

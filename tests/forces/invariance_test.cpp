@@ -37,6 +37,19 @@ TEST(Invariance, NoForceAtRestAndAfterRigidMotion) {
   }
 }
 
+TEST(Invariance, NoForceAtRestOfAGradedGridAndAfterRigidMotion) {
+  const mesh::Grid grid{5, 4, 0.02, 0.03, 10, 0.2};
+  const Stretch stretch(grid, 0, {1000, 700, 5});
+  const Shear shear(grid, 0, {100, 5});
+  const Bend bend(grid, 0, {1e-3, 1e-4});
+  for (const Force* force : std::initializer_list<const Force*>{&stretch, &shear, &bend})
+    for (const Positions& x : {testing::flat(grid), testing::moved_rigidly(testing::flat(grid))}) {
+      // As above; edges that are six times shorter for their width are six times as stiff.
+      EXPECT_LT(testing::largest(testing::force_of(*force, x, testing::zeros(x))), 3e-11);
+      EXPECT_LT(force->energy(x), 1e-23);
+    }
+}
+
 TEST(Invariance, EnergyIsTheSameAfterARigidMotionAndForcesTurnWithIt) {
   const AllForces all;
   const Positions x = testing::crumpled(kGrid, 0.004, 1), moved = testing::moved_rigidly(x);

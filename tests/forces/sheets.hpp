@@ -25,7 +25,7 @@ inline const mesh::Grid kGrid{5, 4, 0.02, 0.03};
 inline Positions shaped(const mesh::Grid& grid, const std::function<Vec3(double, double)>& surface) {
   Positions x;
   for (int j = 0; j < grid.nv; ++j)
-    for (int i = 0; i < grid.nu; ++i) x.push_back(surface(i * grid.lu, j * grid.lv));
+    for (int i = 0; i < grid.nu; ++i) x.push_back(surface(grid.u(i), grid.v(j)));
   return x;
 }
 

@@ -83,5 +83,18 @@ TEST(Stretch, StrainOfAParticleIsTheLargestOfItsOwnEdges) {
   EXPECT_NEAR(heat[static_cast<std::size_t>(kGrid.index(1, 1))], 0, 1e-6);
 }
 
+TEST(Stretch, DefiniteFormStiffensAShortEdgeByWhatCompressionSoftens) {
+  Stretch stretch(mesh::Grid{2, 2, 0.1, 0.1}, 0, {1000, 0, 0});
+  const auto across = [&](double length, Linearisation linearisation) {
+    const Positions x{{0, 0, 0}, {length, 0, 0}, {0, 0.1, 0}, {length, 0.1, 0}};
+    return testing::stiffness_of(stretch, x, testing::zeros(x), 0, linearisation)(2, 2);
+  };
+  const double along = 500;  // k A / l², half a spacing wide [N/m]
+  EXPECT_NEAR(across(0.08, Linearisation::exact), -0.25 * along, 1e-9);
+  EXPECT_NEAR(across(0.08, Linearisation::definite), 0.25 * along, 1e-9);
+  EXPECT_NEAR(across(0.01, Linearisation::exact), -9 * along, 1e-9);
+  EXPECT_NEAR(across(0.01, Linearisation::definite), along, 1e-9);
+}
+
 }  // namespace
 }  // namespace weft::forces

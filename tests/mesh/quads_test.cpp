@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "mesh/geometry.hpp"
 
 namespace weft::mesh {
@@ -46,6 +48,30 @@ TEST(Sheet, IsCentredWithWeftAlongXAndWarpAlongY) {
       EXPECT_EQ(sheet.uv[k], Vec2(0.5 * i, 0.25 * j));
     }
   }
+}
+
+TEST(Sheet, OfAGradedGridHasSpacingsThatGrowByOneFactor) {
+  const Grid grid{.nu = 5, .nv = 4, .lu = 0.75, .lv = 0.5, .weft_grading = 8, .warp_grading = 0.25};
+  const Mesh sheet = make_sheet(grid);
+  // 0.2 m · (1 + 2 + 4 + 8) = 4 · 0.75 m, and 2/7 of 1.5 m · (2 + 1 + 1/2).
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(sheet.uv[static_cast<std::size_t>(i)].x(), 0.2 * ((1 << i) - 1), 1e-15);
+  for (int j = 0; j < 4; ++j)
+    EXPECT_NEAR(sheet.uv[static_cast<std::size_t>(5 * j)].y(), 12.0 / 7 * (1 - std::pow(0.5, j)), 1e-15);
+  for (std::size_t k = 0; k < sheet.uv.size(); ++k)
+    EXPECT_LT((sheet.positions[k] - Vec3(sheet.uv[k].x() - 1.5, sheet.uv[k].y() - 0.75, 0)).norm(), 1e-15);
+  EXPECT_NEAR(grid.least_spacing(), 0.2, 1e-15);
+}
+
+TEST(Grid, WidthsAreThoseOfTheNeighbouringHalvesAndAddUpToTheSheet) {
+  const Grid grid{.nu = 5, .nv = 4, .lu = 0.75, .lv = 0.5, .weft_grading = 8, .warp_grading = 0.25};
+  double weft = 0, warp = 0;
+  for (int i = 0; i < 5; ++i) weft += grid.width_u(i);
+  for (int j = 0; j < 4; ++j) warp += grid.width_v(j);
+  EXPECT_NEAR(weft, 3, 1e-15);
+  EXPECT_NEAR(warp, 1.5, 1e-15);
+  EXPECT_NEAR(grid.width_u(0), 0.1, 1e-15);
+  EXPECT_NEAR(grid.width_u(1), 0.3, 1e-15);
+  EXPECT_NEAR(grid.width_u(4), 0.8, 1e-15);
 }
 
 TEST(Sheet, AlternatesItsDiagonalsAndFacesUp) {

@@ -148,6 +148,9 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:3:33: cloth.band.pin.0.high: expected >= 0.5, the low end, got 0.2\n"},
     {"PinBetweenParticles", "[[cloth]]\nname = 'band'\nparticles = 3\npin = [{ low = [0.6, 0], high = [0.9, 1] }]\n",
      "s.toml:4:8: cloth.band.pin.0: expected a part that holds at least one particle, got one between two rows\n"},
+    {"PinBetweenGradedParticles",
+     "[[cloth]]\nname = 'band'\nparticles = 3\ngrading = 4\npin = [{ low = [0.4, 0], high = [0.6, 1] }]\n",
+     "s.toml:5:8: cloth.band.pin.0: expected a part that holds at least one particle, got one between two rows\n"},
     {"CameraLooksAtItself", kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [1, 2, 3]\n",
      "s.toml:5:10: camera.c.target: expected a point away from position, got the same\n"},
 

@@ -89,6 +89,7 @@ TEST_F(EveryKey, OfAClothFillsItsMember) {
   EXPECT_EQ(cloth.size, Vec2(1.5, 2.5));
   EXPECT_EQ(cloth.particles_weft, 31);
   EXPECT_EQ(cloth.particles_warp, 51);
+  EXPECT_EQ(cloth.grading, Vec2(2, 0.4));
   EXPECT_EQ(cloth.pose.position, Vec3(0.1, 0.2, 0.3));
   EXPECT_EQ(cloth.velocity, Vec3(4, 5, 6));
   const Material& m = cloth.material;
@@ -200,7 +201,7 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
   EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
   EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
-  EXPECT_EQ(scene_.obstacles[7].line, 145) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].line, 146) << "where the scene names its file";
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 

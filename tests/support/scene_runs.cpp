@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "environment/environment.hpp"
 #include "scene/loader.hpp"
 #include "support/intersections.hpp"
 
@@ -22,19 +23,18 @@ void measure_stretch(MeasuredFrame& frame, const scene::Cloth& cloth, const std:
     frame.max_stretch = std::max(frame.max_stretch, 1 + frame.report.max_strain);
     return;
   }
-  const int nu = cloth.particles_weft, nv = cloth.particles_warp;
-  const double weft = cloth.size.x() / (nu - 1), warp = cloth.size.y() / (nv - 1);
-  const auto at = [&](int i, int j) -> const Vec3& { return x[static_cast<std::size_t>(i + nu * j)]; };
+  const mesh::Grid grid = environment::grid_of(cloth);
+  const auto at = [&](int i, int j) -> const Vec3& { return x[static_cast<std::size_t>(grid.index(i, j))]; };
   const auto measure = [&](const Vec3& a, const Vec3& b, double rest) {
     const double stretch = (b - a).norm() / rest;
     if (stretch <= frame.max_stretch) return;
     frame.max_stretch = stretch;
     frame.stretched_at = fmt::format("{} ({:.3f}, {:.3f}, {:.3f})", cloth.name, a.x(), a.y(), a.z());
   };
-  for (int j = 0; j < nv; ++j) {
-    for (int i = 0; i < nu; ++i) {
-      if (i + 1 < nu) measure(at(i, j), at(i + 1, j), weft);
-      if (j + 1 < nv) measure(at(i, j), at(i, j + 1), warp);
+  for (int j = 0; j < grid.nv; ++j) {
+    for (int i = 0; i < grid.nu; ++i) {
+      if (i + 1 < grid.nu) measure(at(i, j), at(i + 1, j), grid.du(i));
+      if (j + 1 < grid.nv) measure(at(i, j), at(i, j + 1), grid.dv(j));
     }
   }
 }

@@ -11,9 +11,9 @@ namespace {
 
 class Cholmod final : public Inverse {
  public:
-  explicit Cholmod(bool supernodal) {
+  Cholmod() {
     cholmod_start(&common_);
-    common_.supernodal = supernodal ? CHOLMOD_SUPERNODAL : CHOLMOD_SIMPLICIAL;
+    common_.supernodal = CHOLMOD_SUPERNODAL;
     common_.final_ll = 1;
   }
   ~Cholmod() override {
@@ -99,8 +99,8 @@ class Cholmod final : public Inverse {
 
 }  // namespace
 
-std::unique_ptr<Inverse> cholmod(bool supernodal) {
-  return std::make_unique<Cholmod>(supernodal);
+std::unique_ptr<Inverse> cholmod() {
+  return std::make_unique<Cholmod>();
 }
 
 }  // namespace weft::bench

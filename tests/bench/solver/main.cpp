@@ -1,11 +1,15 @@
 // Linear solvers on systems of 10³ to 2·10⁵ particles, one thread, as CSV and Markdown tables:
 //   bench_solver FILE.csv [MOST_PARTICLES [SOLVER]]
+// CHOLMOD is as fast as its BLAS, which is named below the tables: with the Debian package libopenblas0-serial five
+// times as fast as with the reference. Solutions that take more than 120 s, or would by the smaller system, are
+// missing.
 #include <fmt/core.h>
 #include <malloc.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <string>
@@ -13,12 +17,13 @@
 #include "bench/solver/solvers.hpp"
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
+#include "solver/conjugate_gradient.hpp"
 
 namespace weft::bench {
 namespace {
 
-constexpr double kMostSeconds = 8;  // of one solution
-constexpr int kMostDirect = 20000;  // particles
+constexpr double kMostSeconds = 120;  // of one solution
+constexpr double kGrowth = 1.7;       // assumed exponent of the time over particles, where a larger system is foreseen
 
 double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   double sum = 0;
@@ -76,6 +81,10 @@ std::vector<Solution> solve(const SheetSystem& sheet, Inverse& inverse, std::spa
   return solutions;
 }
 
+// ConjugateGradient itself, which chooses between the two lines before it.
+constexpr const char* kProgram = "the program";
+constexpr const char* kDirect = "CHOLMOD, supernodal";
+
 struct Entry {
   std::string name;
   std::function<std::unique_ptr<Inverse>()> make;
@@ -88,30 +97,74 @@ struct Row {
   int particles;
   double megabytes, analysis, setup;
   Solution loose, tight;
-  double total(const Solution& s) const { return setup + s.seconds; }
+  // Contacts change the pattern: only where there are none the analysis is that of the step before.
+  double total(const Solution& s) const {
+    return setup + (pose == Pose::lying && solver == kDirect ? analysis : 0) + s.seconds;
+  }
 };
 
 constexpr double kTolerances[] = {0.1, 1e-6};
+constexpr int kMostIterations = 20000;
 constexpr int kSides[] = {32, 63, 127, 250, 447};
+
+// Whether the system before, of the same kind and fewer particles, lets a solution in kMostSeconds be expected.
+bool promising(std::span<const Row> rows, const Entry& entry, Pose pose, double stiffness, int particles) {
+  const auto before = std::find_if(rows.rbegin(), rows.rend(), [&](const Row& r) {
+    return r.solver == entry.name && r.pose == pose && r.stiffness == stiffness;
+  });
+  if (particles == kSides[0] * kSides[0]) return true;
+  if (before == rows.rend() || !before->tight.reached) return false;
+  return before->total(before->tight) * std::pow(static_cast<double>(particles) / before->particles, kGrowth) <
+         kMostSeconds;
+}
 
 const std::vector<Entry>& entries() {
   static const std::vector<Entry> kEntries{
       {"block Jacobi", block_jacobi},
       {"additive levels", additive_multilevel},
       {"levels + IC(0)", levels_and_factor},
+      {kProgram, {}},
       {"IC(0)", incomplete_cholesky},
       {"V-cycle, bilinear", geometric_multigrid},
       {"V-cycle, aggregates, 3", [] { return aggregation_multigrid(3); }},
       {"V-cycle, aggregates, 6", [] { return aggregation_multigrid(6); }},
-      {"CHOLMOD simplicial", [] { return cholmod(false); }},
-      {"CHOLMOD supernodal", [] { return cholmod(true); }},
+      {kDirect, cholmod},
   };
   return kEntries;
+}
+
+Row measure_program(const SheetSystem& sheet, Pose pose, double stiffness) {
+  Row row{kProgram, pose, stiffness, sheet.side * sheet.side, 0, 0, 0, {}, {}};
+  const double before = bytes_in_use();
+  std::vector<Vec3> x(sheet.b.size()), q(sheet.b.size());
+  solver::ConjugateGradient solver;
+  for (Solution* solution : {&row.loose, &row.tight}) {
+    const double tolerance = solution == &row.loose ? kTolerances[0] : kTolerances[1];
+    // Its norm is another one: the target in it that leaves the share asked for in ours is found first.
+    double share = tolerance;
+    do {
+      const double start = thread_cpu_seconds();
+      solver.prepare(sheet.system);
+      row.setup = thread_cpu_seconds() - start;
+      const double target = share * solver.norm(sheet.b);
+      const solver::LinearReport report = solver.solve(sheet.b, target, kMostIterations, x);
+      solution->seconds = thread_cpu_seconds() - start - row.setup;
+      solution->iterations = report.iterations;
+      multiply(sheet.system, x, q);
+      for (std::size_t i = 0; i < q.size(); ++i) q[i] = sheet.b[i] - q[i];
+      solution->residual = std::sqrt(dot(q, q) / dot(sheet.b, sheet.b));
+      solution->reached = solution->residual <= tolerance;
+      share *= 0.7 * std::min(1.0, tolerance / solution->residual);
+    } while (!solution->reached && solution->seconds < kMostSeconds);
+  }
+  row.megabytes = (bytes_in_use() - before) / 1e6;
+  return row;
 }
 
 // One solver on one system; memory is what it holds beside the matrix while it solves.
 Row measure(const Entry& entry, const SheetSystem& sheet, Pose pose, double stiffness) {
   Row row{entry.name, pose, stiffness, sheet.side * sheet.side, 0, 0, 0, {}, {}};
+  if (!entry.make) return measure_program(sheet, pose, stiffness);
   const double before = bytes_in_use();
   const auto inverse = entry.make();
   const double start = thread_cpu_seconds();
@@ -167,6 +220,17 @@ void print_tables(std::span<const Row> rows) {
     }
 }
 
+// The library that BLAS comes from, as the loader has it.
+void print_blas() {
+  std::ifstream maps("/proc/self/maps");
+  for (std::string line; std::getline(maps, line);)
+    if (const auto path = line.find('/');
+        path != std::string::npos && line.find("libblas", path) != std::string::npos) {
+      fmt::print("\nBLAS: {}\n", std::filesystem::canonical(line.substr(path)).string());
+      return;
+    }
+}
+
 void write_csv(std::span<const Row> rows, const std::string& file) {
   std::ofstream out(file);
   out << "pose,stiffness,particles,solver,megabytes,analysis_s,setup_s,iterations_0.1,solve_s_0.1,reached_0.1,"
@@ -190,15 +254,14 @@ void run(int most, const std::string& only, const std::string& csv) {
         if (side * side > most) continue;
         const SheetSystem sheet = sheet_system(side, k, pose);
         for (const Entry& entry : entries()) {
-          const bool direct = entry.name.starts_with("CHOLMOD");
-          // Its cost does not depend on stiffness or pose, and at 2·10⁵ particles a factorisation takes minutes.
-          if (direct && side * side > kMostDirect && (k != 1e3 || pose != Pose::hanging)) continue;
           if (entry.name.find(only) == std::string::npos) continue;
+          if (!promising(rows, entry, pose, k, side * side)) continue;
           rows.push_back(measure(entry, sheet, pose, k));
           write_csv(rows, csv);
         }
       }
   print_tables(rows);
+  print_blas();
 }
 
 }  // namespace weft::bench

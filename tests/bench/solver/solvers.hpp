@@ -30,6 +30,6 @@ std::unique_ptr<Inverse> levels_and_factor();
 std::unique_ptr<Inverse> geometric_multigrid();
 /// One V-cycle of smoothed aggregation; 3: aggregates are translated, 6: they also turn.
 std::unique_ptr<Inverse> aggregation_multigrid(int functions);
-std::unique_ptr<Inverse> cholmod(bool supernodal);
+std::unique_ptr<Inverse> cholmod();
 
 }  // namespace weft::bench

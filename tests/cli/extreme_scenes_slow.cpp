@@ -1,0 +1,110 @@
+// The program on the scenes of `weft bench stability`: it ends as the verdict says, and leaves whole files only.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <set>
+#include <sstream>
+
+#include "bench/stability.hpp"
+#include "cli/subprocess.hpp"
+#include "cli/video_probe.hpp"
+#include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Trial {
+  std::string name, text;
+  int frames = 0;                      // at most, the start among them
+  std::vector<std::string> overrides;  // KEY=VALUE
+  bench::EnergyLimit limit;
+  friend void PrintTo(const Trial& trial, std::ostream* out) { *out << trial.name; }
+};
+
+// The list as it is, but for its length; and ways to ask for too much.
+std::vector<Trial> trials() {
+  std::vector<Trial> trials;
+  std::string hanging;
+  for (const bench::ExtremeCase& extreme : bench::extreme_cases()) {
+    const int most = extreme.name == "many" ? 2 : extreme.name == "resting" ? 4 : 9;
+    trials.push_back({extreme.name, extreme.text, std::min(most, extreme.frames), {}, extreme.limit});
+    if (extreme.name == "ratio_1e8") hanging = extreme.text;
+  }
+  trials.push_back({"no_iterations", hanging, 5, {"solver.newton_iterations=1", "solver.halvings=0"}, {}});
+  trials.push_back({"stiff_midpoint",
+                    hanging,
+                    5,
+                    {"time.integrator=implicit_midpoint", "cloth.sheet.material.stretch=1e8", "time.fps=5",
+                     "time.step=0.2", "solver.halvings=2"},
+                    {}});
+  return trials;
+}
+
+class ExtremeScene : public ::testing::TestWithParam<Trial> {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) / fmt::format("weft_extreme_{}_{}", GetParam().name, ::getpid());
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  Outcome run() const {
+    const Trial& trial = GetParam();
+    support::write_bytes(folder_ / "s.toml", trial.text);
+    std::vector<std::string> arguments{"run",     "s.toml",     "--size", "64x36",    "--quality",
+                                       "draft",   "--progress", "none",   "--frames", fmt::format("0:{}", trial.frames),
+                                       "--stats", "stats.json"};
+    for (const std::string& change : trial.overrides) arguments.insert(arguments.end(), {"--set", change});
+    return run_weft(arguments, folder_);
+  }
+
+  std::set<std::string> tree() const {
+    std::set<std::string> names;
+    for (const auto& entry : fs::recursive_directory_iterator(folder_))
+      if (entry.is_regular_file()) names.insert(fs::relative(entry.path(), folder_).string());
+    return names;
+  }
+
+  fs::path folder_;
+};
+
+TEST_P(ExtremeScene, EndsWithTheExitCodeOfItsVerdictAndWholeFiles) {
+  const Trial& trial = GetParam();
+  const bench::Outcome expected =
+      bench::try_scene(support::scene_of_text(trial.text, trial.overrides), trial.frames - 1, trial.limit);
+  ASSERT_TRUE(expected.verdict == bench::Verdict::solved || expected.verdict == bench::Verdict::refused);
+  const bool refused = expected.verdict == bench::Verdict::refused;
+  const Outcome outcome = run();
+  EXPECT_EQ(outcome.exit_code, refused ? 5 : 0) << outcome.err;
+  EXPECT_EQ(outcome.out, "");
+  // No temporary name is left, and the video holds every frame that was finished.
+  EXPECT_EQ(tree(), (std::set<std::string>{"output/s.effective.toml", "output/s.mp4", "s.toml", "stats.json"}));
+  EXPECT_EQ(probe_video(folder_ / "output/s.mp4").frames, expected.frames + 1);
+
+  std::istringstream lines(outcome.err);
+  int errors = 0;
+  for (std::string line; std::getline(lines, line);) {
+    if (!line.starts_with("weft:")) continue;
+    ++errors;
+    EXPECT_NE(line.find(expected.reason), std::string::npos) << line;
+    EXPECT_NE(line.find("rejected down to h ="), std::string::npos) << line;
+  }
+  EXPECT_EQ(errors, refused ? 1 : 0) << outcome.err;
+}
+
+TEST(ExtremeScenes, AskForTooMuchWhereTheyShould) {
+  for (const Trial& trial : trials()) {
+    if (trial.overrides.empty()) continue;
+    const scene::Scene scene = support::scene_of_text(trial.text, trial.overrides);
+    EXPECT_EQ(bench::try_scene(scene, trial.frames - 1).verdict, bench::Verdict::refused) << trial.name;
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Of, ExtremeScene, ::testing::ValuesIn(trials()),
+                         [](const auto& instance) { return instance.param.name; });
+
+}  // namespace
+}  // namespace weft::cli
