@@ -56,6 +56,9 @@ class FootPath {
 /// Share of a stride for which a foot stands.
 inline constexpr double kStance = 0.60;
 
+/// Share of a stride from the first rise of a heel until the toes leave.
+inline constexpr double kRise = 0.34;
+
 /// Where and when both feet go.
 struct StepPlan {
   std::array<std::vector<Plant>, 2> plants;  ///< of the left and the right foot
