@@ -17,6 +17,7 @@ namespace {
 constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kStraightest = 10;  ///< least bend of a knee [degrees]; legs that snap straight look stiff
 constexpr double kLead = 0.5;        ///< share of the recorded lead of the hips; both legs then reach alike
+constexpr double kDetour = 0.06;     ///< of a foot that turns with the body, outward [m]
 constexpr double kHipSwing = 1.6;    ///< share of the recorded turn of the pelvis: longer legs, and a catwalk
 constexpr double kKeysPerSecond = 60;
 constexpr double kHalfTrack = 0.048;  ///< ankle from the middle line, of the height; the recording has 0.038, which
@@ -76,6 +77,8 @@ class Planner {
     Plant plant = plant_of(side);
     plant.strike = next_strike_;
     plant.step_size = size;
+    const double halfway = yaw_ - 0.5 * turn;
+    if (turn != 0) plant.detour = (side == 0 ? kDetour : -kDetour) * Vec2(std::cos(halfway), std::sin(halfway));
     plants.back().off = next_strike_ - (1 - kStance) * plan.period;
     plants.push_back(plant);
     if (side == 0) plan.first_strike = next_strike_;
@@ -387,7 +390,8 @@ Clip make_walk(const Character& mannequin, const Walk& walk) {
   if (walk.turn_back) {
     planner.wait(0.5 * walk.stand);
     side = 0;
-    constexpr std::array<double, 5> turns{50, 50, 50, 30, 0};  // degrees, to the left
+    // Degrees to the left: the inner foot opens, the outer one follows, so that toes do not meet.
+    constexpr std::array<double, 6> turns{60, 10, 60, 10, 40, 0};
     for (const double turn : turns) {
       planner.step(side, 0, turn * kDegree, 0.4);
       side = 1 - side;

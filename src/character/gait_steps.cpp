@@ -108,8 +108,10 @@ Vec3 FootPath::swinging_ankle(double t, std::size_t plant) const {
   const double lift = recorded_lift(s) + kMoreLift * bump;
   // Late in the air the quintic is ahead of where a leg can be, and skims the floor.
   const double lag = kLag / 8.9e-4 * std::pow(s, 10) * (1 - s) * (1 - s) * (1 - s);
-  return quintic(off, strike, span, s) + to.step_size * shape_.leg_length / walking::kLegLength *
-                                             ((lift + 0.2 * lag) * Vec3::UnitZ() - lag * forward_of(to.yaw));
+  const Vec3 detour(to.detour.x(), to.detour.y(), 0);
+  return quintic(off, strike, span, s) + bump * detour +
+         to.step_size * shape_.leg_length / walking::kLegLength *
+             ((lift + 0.2 * lag) * Vec3::UnitZ() - lag * forward_of(to.yaw));
 }
 
 FootState FootPath::at(double t) const {

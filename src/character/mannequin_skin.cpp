@@ -89,7 +89,9 @@ class Skin {
     hand_on(Joint::left_lower_leg, Joint::left_foot, smooth_ramp(-foot, -12.5, -4.5));
     const Vec3 axis = (at(Joint::left_toes) - at(Joint::left_foot)).cwiseProduct(Vec3(1, 1, 0));
     const double t = (p_ - at(Joint::left_foot)).dot(axis.normalized()) / cm_, ball = axis.norm() / cm_;
-    hand_on(Joint::left_foot, Joint::left_toes, smooth_ramp(t, ball - 2.6, ball + 2.6));
+    // Wider above, where the skin is farther from the joint and would fold.
+    const double half_bend = 1.8 + 0.9 * up_;
+    hand_on(Joint::left_foot, Joint::left_toes, smooth_ramp(t, ball - half_bend, ball + half_bend));
   }
 
   void keep_four() {
