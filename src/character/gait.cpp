@@ -15,9 +15,10 @@ namespace weft::character {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
-constexpr double kStraightest = 3;  ///< least bend of a knee [degrees]; legs that snap straight look stiff
-constexpr double kLead = 0.5;       ///< share of the recorded lead of the hips; both legs then reach alike
-constexpr double kHipSwing = 1.6;   ///< share of the recorded turn of the pelvis: longer legs, and a catwalk
+constexpr double kStraightest = 10;  ///< least bend of a knee [degrees]; legs that snap straight look stiff
+constexpr double kLead = 0.5;        ///< share of the recorded lead of the hips; both legs then reach alike
+constexpr double kDetour = 0.06;     ///< of a foot that turns with the body, outward [m]
+constexpr double kHipSwing = 1.6;    ///< share of the recorded turn of the pelvis: longer legs, and a catwalk
 constexpr double kKeysPerSecond = 60;
 constexpr double kHalfTrack = 0.048;  ///< ankle from the middle line, of the height; the recording has 0.038, which
                                       ///< would have the thighs touch
@@ -51,8 +52,8 @@ Physique physique_of(const Character& mannequin) {
   body.foot.ankle_height = ankle.z();
   body.foot.ball_forward = std::hypot(ball.x(), ball.y());
   body.foot.ball_height = ankle.z() + ball.z();
-  body.foot.heel_back = 2.9 * cm;
-  body.foot.heel_radius = 2.6 * cm;
+  body.foot.heel_back = 3.35 * cm;
+  body.foot.heel_radius = 2.4 * cm;
   body.foot.leg_length = (knee - hip).norm() + (ankle - knee).norm();
   return body;
 }
@@ -61,7 +62,9 @@ Physique physique_of(const Character& mannequin) {
 class Planner {
  public:
   Planner(const Physique& body, const Pace& pace, double start)
-      : body_(body), pace_(pace), next_strike_(start + (1 - kStance) * 2 * pace.step_time) {
+      : body_(body),
+        pace_(pace),
+        next_strike_(start + kRise * 2 * pace.step_time + (1 - kStance) * 2 * pace.step_time) {
     plan.period = 2 * pace.step_time;
     for (int side = 0; side < 2; ++side) plan.plants[static_cast<std::size_t>(side)].push_back(plant_of(side));
   }
@@ -74,6 +77,8 @@ class Planner {
     Plant plant = plant_of(side);
     plant.strike = next_strike_;
     plant.step_size = size;
+    const double halfway = yaw_ - 0.5 * turn;
+    if (turn != 0) plant.detour = (side == 0 ? kDetour : -kDetour) * Vec2(std::cos(halfway), std::sin(halfway));
     plants.back().off = next_strike_ - (1 - kStance) * plan.period;
     plants.push_back(plant);
     if (side == 0) plan.first_strike = next_strike_;
@@ -101,6 +106,11 @@ class Planner {
   double yaw_ = 0, next_strike_;
 };
 
+/// An even number.
+int keys_of_step(const Pace& pace) {
+  return 2 * static_cast<int>(std::round(kKeysPerSecond / 2 * pace.step_time));
+}
+
 /// The body in even walking at a moment, as the curves have it; sizes against those of the recording.
 struct Sway {
   double phase = 0;
@@ -116,7 +126,7 @@ class Walker {
         pace_(pace),
         arms_out_(arms_out),
         begin_(begin),
-        step_keys_(static_cast<int>(std::round(kKeysPerSecond * pace.step_time))),
+        step_keys_(keys_of_step(pace)),
         keys_(keys),
         paths_{FootPath(body.foot, plan.plants[0], plan.period), FootPath(body.foot, plan.plants[1], plan.period)} {
     // Filters look beyond both ends.
@@ -144,22 +154,20 @@ class Walker {
   double time(int k) const { return begin_ + k * key_time(); }
   std::size_t index(int k) const { return static_cast<std::size_t>(k + spare_); }
 
-  /// Mean over one step, centred; twice, so that it is smooth: takes every ripple of even walking out.
+  /// Mean over `width` keys around each, an even number; half a share at both ends keeps it centred.
   template <class Value>
-  void smooth(std::vector<Value>& values, int width) const {
-    for (int pass = 0; pass < 3; ++pass) {
-      const std::vector<Value> old = values;
-      const int n = static_cast<int>(old.size());
-      for (int k = 0; k < n; ++k) {
-        // Half a sample at both ends keeps it centred.
-        Value sum = old[0] * 0;
-        for (int d = -width / 2; d <= width - width / 2; ++d) {
-          const double share = d == -width / 2 || d == width - width / 2 ? 0.5 : 1;
-          sum += share / width * old[static_cast<std::size_t>(std::clamp(k + d, 0, n - 1))];
-        }
-        values[static_cast<std::size_t>(k)] = sum;
+  static std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
+    std::vector<Value> means;
+    const int n = static_cast<int>(values.size());
+    for (int k = 0; k < n; ++k) {
+      Value sum = values[0] * 0;
+      for (int d = -width / 2; d <= width / 2; ++d) {
+        const double share = std::abs(d) == width / 2 ? 0.5 : 1;
+        sum += share / width * values[static_cast<std::size_t>(std::clamp(k + d, 0, n - 1))];
       }
+      means.push_back(sum);
     }
+    return means;
   }
 
   /// The middle between the feet, smoothed over a step: even walking gives an even way, start and end are eased.
@@ -169,11 +177,12 @@ class Walker {
       const Vec3 middle = 0.5 * (feet[0].ankle + feet[1].ankle);
       track.emplace_back(middle.x(), middle.y(), 0.5 * (feet[0].yaw + feet[1].yaw));
     }
-    smooth(track, step_keys_);
-    track_ = track;
-    speeds_.assign(track.size(), 0);
-    for (std::size_t k = 1; k + 1 < track.size(); ++k) {
-      speeds_[k] = (track[k + 1] - track[k - 1]).head<2>().norm() / (2 * key_time());
+    // Over one step, which takes every ripple of even walking out; then shortly, for smooth velocities.
+    const int shortly = step_keys_ / 6 * 2;
+    track_ = mean_around(mean_around(mean_around(track, step_keys_), shortly), shortly);
+    speeds_.assign(track_.size(), 0);
+    for (std::size_t k = 1; k + 1 < track_.size(); ++k) {
+      speeds_[k] = (track_[k + 1] - track_[k - 1]).head<2>().norm() / (2 * key_time());
     }
   }
 
@@ -245,7 +254,7 @@ class Walker {
       }
       heights_[static_cast<std::size_t>(i)] = least;
     }
-    smooth(heights_, width);
+    for (int pass = 0; pass < 3; ++pass) heights_ = mean_around(heights_, width);
   }
 
   /// Rotations of all joints against the world.
@@ -381,7 +390,8 @@ Clip make_walk(const Character& mannequin, const Walk& walk) {
   if (walk.turn_back) {
     planner.wait(0.5 * walk.stand);
     side = 0;
-    constexpr std::array<double, 5> turns{50, 50, 50, 30, 0};  // degrees, to the left
+    // Degrees to the left: the inner foot opens, the outer one follows, so that toes do not meet.
+    constexpr std::array<double, 6> turns{60, 10, 60, 10, 40, 0};
     for (const double turn : turns) {
       planner.step(side, 0, turn * kDegree, 0.4);
       side = 1 - side;
@@ -389,7 +399,7 @@ Clip make_walk(const Character& mannequin, const Walk& walk) {
     walk_ahead(planner, body, pace, steps, side);
   }
   const double end = planner.plan.end + 0.5 * planner.plan.period + walk.stand;
-  const double key_time = pace.step_time / std::round(kKeysPerSecond * pace.step_time);
+  const double key_time = pace.step_time / keys_of_step(pace);
   return Walker(body, planner.plan, pace, walk.arms_out, 0, static_cast<int>(end / key_time) + 1).clip("walk");
 }
 
@@ -400,7 +410,7 @@ Clip make_stride(const Character& mannequin, const Walk& walk) {
   constexpr int before = 11;  // steps until nothing of the start is left
   for (int k = 0; k < 2 * before + 2; ++k) planner.step(k % 2, pace.step_length, 0, step_size(body, pace));
   const Plant& first = planner.plan.plants[0][before / 2 + 1];
-  const int keys = 2 * static_cast<int>(std::round(kKeysPerSecond * pace.step_time)) + 1;
+  const int keys = 2 * keys_of_step(pace) + 1;
   return Walker(body, planner.plan, pace, walk.arms_out, first.strike, keys).clip("stride");
 }
 

@@ -12,9 +12,9 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-constexpr double kPitchShare = 0.85;  ///< the recorded walker lifts the heels more than a mannequin should
-constexpr double kMoreLift = 0.055;   ///< so that toes clear the floor though legs are straighter than the recorded [m]
-constexpr double kLag = 0.08;         ///< [m]
+constexpr double kPitchShare = 0.79;  ///< the recorded walker lifts the heels more than a mannequin should
+constexpr double kMoreLift = 0.07;    ///< so that toes clear the floor though legs are straighter than the recorded [m]
+constexpr double kLag = 0.06;         ///< [m]
 
 constexpr double kRecordedStance = 0.67;  ///< until the toes leave; the recorded walk is slow and stands longer
 
@@ -82,8 +82,8 @@ double FootPath::pitch(double t, std::size_t plant) const {
     return kPitchShare * kDegree * (walking::foot_pitch.at(phase) - walking::kFlatPitch);
   };
   if (since_strike < 0.16) return here.step_size * recorded(since_strike) * (1 - smooth_ramp(since_strike, 0.08, 0.16));
-  if (until_off > 0.34 || plant + 1 == plants_.size()) return 0;
-  return plants_[plant + 1].step_size * recorded(recorded_phase(-until_off)) * smooth_ramp(-until_off, -0.34, -0.16);
+  if (until_off > kRise || plant + 1 == plants_.size()) return 0;
+  return plants_[plant + 1].step_size * recorded(recorded_phase(-until_off)) * smooth_ramp(-until_off, -kRise, -0.16);
 }
 
 Vec3 FootPath::rolling_ankle(double t, std::size_t plant) const {
@@ -107,9 +107,11 @@ Vec3 FootPath::swinging_ankle(double t, std::size_t plant) const {
   const double bump = 64 * s * s * s * (1 - s) * (1 - s) * (1 - s);
   const double lift = recorded_lift(s) + kMoreLift * bump;
   // Late in the air the quintic is ahead of where a leg can be, and skims the floor.
-  const double lag = kLag / 5.5e-4 * std::pow(s, 12) * (1 - s) * (1 - s) * (1 - s);
-  return quintic(off, strike, span, s) + to.step_size * shape_.leg_length / walking::kLegLength *
-                                             ((lift + 0.25 * lag) * Vec3::UnitZ() - lag * forward_of(to.yaw));
+  const double lag = kLag / 8.9e-4 * std::pow(s, 10) * (1 - s) * (1 - s) * (1 - s);
+  const Vec3 detour(to.detour.x(), to.detour.y(), 0);
+  return quintic(off, strike, span, s) + bump * detour +
+         to.step_size * shape_.leg_length / walking::kLegLength *
+             ((lift + 0.2 * lag) * Vec3::UnitZ() - lag * forward_of(to.yaw));
 }
 
 FootState FootPath::at(double t) const {

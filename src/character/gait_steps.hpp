@@ -18,11 +18,12 @@ struct FootShape {
 
 /// A place where a foot stands for a while.
 struct Plant {
-  Vec2 at = Vec2::Zero();  ///< below the ankle while the sole is flat [m]
-  double yaw = 0;          ///< of the foot, 0 toward -y, + to the left [rad]
-  double strike = -1e9;    ///< when the heel touches [s]; the first one has always stood
-  double off = 1e9;        ///< when the toes leave; the last one stands forever
-  double step_size = 1;    ///< of the step that brought it here, against one of the recording; smaller ones lift less
+  Vec2 at = Vec2::Zero();      ///< below the ankle while the sole is flat [m]
+  double yaw = 0;              ///< of the foot, 0 toward -y, + to the left [rad]
+  double strike = -1e9;        ///< when the heel touches [s]; the first one has always stood
+  double off = 1e9;            ///< when the toes leave; the last one stands forever
+  Vec2 detour = Vec2::Zero();  ///< of the step that brought it here, halfway: around the other foot [m]
+  double step_size = 1;  ///< of the step that brought it here, against one of the recording; smaller ones lift less
 };
 
 struct FootState {
@@ -55,6 +56,9 @@ class FootPath {
 
 /// Share of a stride for which a foot stands.
 inline constexpr double kStance = 0.60;
+
+/// Share of a stride from the first rise of a heel until the toes leave.
+inline constexpr double kRise = 0.34;
 
 /// Where and when both feet go.
 struct StepPlan {

@@ -129,7 +129,7 @@ std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
   set(Joint::left_upper_leg, 8.7 * cm, 0, 0.530 * h);
   set(Joint::left_lower_leg, 10.2 * cm, 0.1 * cm, 0.285 * h);
   set(Joint::left_foot, 11.0 * cm, -1.3 * cm, 0.039 * h);
-  set(Joint::left_toes, 12.2 * cm, 11.2 * cm, 2.0 * cm);
+  set(Joint::left_toes, 12.2 * cm, 11.2 * cm, 0.8 * cm);
   for (std::size_t j = 0; j < kSideJointCount; ++j) {
     at[kFirstRight + j] = at[kFirstLeft + j].cwiseProduct(Vec3(-1, 1, 1));
   }

@@ -1,0 +1,228 @@
+#include "character/gait.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <numeric>
+
+#include "character/gait_curves.hpp"
+#include "character/gait_steps.hpp"
+#include "posed_mannequin.hpp"
+#include "support/intersections.hpp"
+
+namespace weft::character {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+const Character& mannequin() {
+  static const Character body = make_mannequin({1.75, 1, 0, 0.03});
+  return body;
+}
+
+Walk at_speed(double speed) {
+  Walk walk;
+  walk.speed = speed;
+  return walk;
+}
+
+std::size_t keys(const Clip& clip) {
+  return clip.channels[0].rotation.times.size();
+}
+
+Vec3 mirrored(const Vec3& p) {
+  return p.cwiseProduct(Vec3(-1, 1, 1));
+}
+
+/// Places of all joints at a key.
+std::vector<Vec3> places(const Clip& clip, std::size_t key) {
+  std::vector<Vec3> out;
+  for (const Affine& joint : joints_at_key(mannequin(), clip, key)) out.emplace_back(joint.translation());
+  return out;
+}
+
+const double kSpeeds[] = {0.7, 1.2, 1.5};
+
+TEST(Gait, StrideIsPeriodicWithItsVelocity) {
+  for (const double speed : kSpeeds) {
+    const Clip clip = make_stride(mannequin(), at_speed(speed));
+    const std::size_t last = keys(clip) - 1;
+    const Vec3 stride(0, -speed * clip.duration, 0);
+    double jump = 0, usual = 0;
+    const auto p = [&](std::size_t k) { return places(clip, k); };
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      EXPECT_LT((p(last)[j] - p(0)[j] - stride).norm(), 1e-9) << name(static_cast<Joint>(j));
+      // Second differences: at the seam as inside.
+      jump = std::max(jump, (p(1)[j] - p(0)[j] - (p(last)[j] - p(last - 1)[j])).norm());
+    }
+    for (std::size_t k = 1; k < last; ++k) {
+      const auto before = p(k - 1), here = p(k), after = p(k + 1);
+      for (std::size_t j = 0; j < kJointCount; ++j) {
+        usual = std::max(usual, (after[j] - 2 * here[j] + before[j]).norm());
+      }
+    }
+    EXPECT_LT(jump, 1.01 * usual) << speed;
+  }
+}
+
+TEST(Gait, RightSideDoesHalfAStrideLaterWhatTheLeftDid) {
+  const Clip clip = make_stride(mannequin(), at_speed(1.2));
+  const std::size_t half = (keys(clip) - 1) / 2;
+  const Vec3 step(0, -1.2 * clip.duration / 2, 0);
+  for (std::size_t k = 0; k <= half; k += 3) {
+    const auto now = places(clip, k), later = places(clip, k + half);
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const std::size_t other = j < 5 ? j : j < 13 ? j + kSideJointCount : j - kSideJointCount;
+      EXPECT_LT((later[other] - mirrored(now[j]) - step).norm(), 1e-9) << name(static_cast<Joint>(j)) << ' ' << k;
+    }
+  }
+}
+
+TEST(Gait, HasTheSpeedAskedForAndStepsOfConstantWalkRatio) {
+  double first_ratio = 0;
+  for (const double speed : kSpeeds) {
+    const Clip clip = make_stride(mannequin(), at_speed(speed));
+    const double way = places(clip, 0)[0].y() - places(clip, keys(clip) - 1)[0].y();
+    EXPECT_NEAR(way / clip.duration, speed, 1e-9);
+    const double ratio = (way / 2) / (120 / clip.duration);  // m/(steps/min)
+    EXPECT_NEAR(ratio, 0.0065, 0.0005);
+    if (first_ratio == 0) first_ratio = ratio;
+    EXPECT_NEAR(ratio, first_ratio, 1e-12);
+  }
+}
+
+/// How far a point of a sole slides while it stands, the worst over all of them; lowest: the deepest point below the
+/// floor. Soles are the undersides of `Foot` and `Toes`, in contact below a millimetre.
+struct Contact {
+  double slip = 0, lowest = 1;
+};
+Contact contact_of(const Clip& clip, double period) {
+  const Character& body = mannequin();
+  Contact worst;
+  std::vector<Vec3> before;
+  std::vector<double> slip(body.mesh.positions.size(), 0);
+  for (std::size_t k = 0; k < keys(clip); ++k) {
+    const auto now = skinned(body, joints_at_key(body, clip, k));
+    const double phase = clip.channels[0].rotation.times[k] / period;
+    for (std::size_t v = 0; v < now.size(); ++v) {
+      worst.lowest = std::min(worst.lowest, now[v].z());
+      const double since_strike =
+          now[v].x() == 0 ? 0 : std::fmod(phase + (body.mesh.positions[v].x() > 0 ? 0 : 0.5), 1);
+      const bool stands = since_strike <= kStance;
+      if (!before.empty() && stands && now[v].z() < 1e-3 && before[v].z() < 1e-3) {
+        slip[v] += (now[v] - before[v]).head<2>().norm();
+        worst.slip = std::max(worst.slip, slip[v]);
+      } else {
+        slip[v] = 0;
+      }
+    }
+    before = now;
+  }
+  return worst;
+}
+
+TEST(Gait, FeetNeitherSlideNorSink) {
+  for (const double speed : kSpeeds) {
+    const Clip clip = make_stride(mannequin(), at_speed(speed));
+    const Contact worst = contact_of(clip, clip.duration);
+    EXPECT_LT(worst.slip, 0.005) << speed;
+    EXPECT_GT(worst.lowest, -0.003) << speed;
+  }
+}
+
+TEST(Gait, KneesBendForwardOnlyAndNeverSnapStraight) {
+  for (const double speed : kSpeeds) {
+    const Clip clip = make_stride(mannequin(), at_speed(speed));
+    for (std::size_t k = 0; k < keys(clip); ++k) {
+      const auto joints = joints_at_key(mannequin(), clip, k);
+      for (const Joint hip : {Joint::left_upper_leg, Joint::right_upper_leg}) {
+        const auto at = [&](std::size_t next) { return Vec3(joints[index_of(hip) + next].translation()); };
+        const Vec3 thigh = at(1) - at(0), shin = at(2) - at(1);
+        // Seen from the left (+x), a shin that is bent back is turned counter-clockwise against the thigh.
+        const double bend = std::atan2(thigh.cross(shin).x(), thigh.dot(shin)) / kDegree;
+        EXPECT_GT(bend, 2) << speed << ' ' << k;
+        EXPECT_LT(bend, 75) << speed << ' ' << k;
+      }
+    }
+  }
+}
+
+TEST(Gait, ArmsAndLegsLeaveRoomForCloth) {
+  const Clip clip = make_stride(mannequin(), at_speed(1.2));
+  const Character& body = mannequin();
+  double arm = 1, legs = 1;
+  for (std::size_t k = 0; k < keys(clip); k += 4) {
+    const auto posed = skinned(body, joints_at_key(body, clip, k));
+    std::vector<Vec3> lower_arm, trunk, left, right;
+    for (std::size_t v = 0; v < posed.size(); ++v) {
+      const Vec3& rest = body.mesh.positions[v];
+      const auto weight = [&](Joint joint) { return weight_of(body, v, joint); };
+      if (weight(Joint::left_lower_arm) + weight(Joint::left_hand) > 0.5) lower_arm.push_back(posed[v]);
+      if (std::abs(rest.x()) < 0.19 && rest.z() < 1.2) trunk.push_back(posed[v]);
+      if (rest.z() < 0.7 && rest.x() != 0) (rest.x() > 0 ? left : right).push_back(posed[v]);
+    }
+    for (const Vec3& p : lower_arm) {
+      for (const Vec3& q : trunk) arm = std::min(arm, (p - q).norm());
+    }
+    for (const Vec3& p : left) {
+      for (const Vec3& q : right) legs = std::min(legs, (p - q).norm());
+    }
+  }
+  EXPECT_GT(arm, 0.05);
+  EXPECT_GT(legs, 0.01);
+}
+
+TEST(Gait, BodyDoesNotCutItselfWhileItWalks) {
+  const Clip clip = make_stride(mannequin(), at_speed(1.2));
+  for (std::size_t k = 0; k < keys(clip); k += 6) {
+    const auto posed = skinned(mannequin(), joints_at_key(mannequin(), clip, k));
+    const support::JudgedObject judged{"body", true, posed, mannequin().mesh.topology.triangles};
+    const auto found = support::judge(std::span(&judged, 1));
+    EXPECT_TRUE(found.pairs.empty()) << k << ": " << found.pairs.size();
+  }
+}
+
+TEST(Gait, WalkStartsAndEndsStillAndTurnsRound) {
+  Walk walk;
+  walk.distance = 3;
+  walk.turn_back = true;
+  const Clip clip = make_walk(mannequin(), walk);
+  const std::size_t last = keys(clip) - 1;
+  const auto start = places(clip, 0), second = places(clip, 1), end = places(clip, last);
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    EXPECT_LT((second[j] - start[j]).norm(), 1e-4);
+    EXPECT_LT((end[j] - places(clip, last - 1)[j]).norm(), 1e-4);
+    // There and back, and half a turn.
+    const Vec3 turned(-start[j].x(), -start[j].y(), start[j].z());
+    EXPECT_LT((end[j] - turned).norm(), 1e-3) << name(static_cast<Joint>(j));
+  }
+  double farthest = 0, lowest = 1, bend = 0;
+  for (std::size_t k = 1; k < last; ++k) {
+    const auto before = places(clip, k - 1), here = places(clip, k), after = places(clip, k + 1);
+    farthest = std::max(farthest, -here[0].y());
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      bend = std::max(bend, (after[j] - 2 * here[j] + before[j]).norm());
+    }
+    if (k % 5 == 0) {
+      for (const Vec3& p : skinned(mannequin(), joints_at_key(mannequin(), clip, k))) lowest = std::min(lowest, p.z());
+    }
+  }
+  EXPECT_NEAR(farthest, 3, 0.05);
+  EXPECT_GT(lowest, -0.003);
+  // No jump anywhere: a knee at its straightest has 0.025 m, a foot that touches down 0.015.
+  EXPECT_LT(bend, 0.04);
+}
+
+TEST(Gait, IsTheSameEveryTime) {
+  const Clip a = make_walk(mannequin(), {}), b = make_walk(mannequin(), {});
+  ASSERT_EQ(keys(a), keys(b));
+  for (std::size_t c = 0; c < a.channels.size(); ++c) {
+    for (std::size_t k = 0; k < keys(a); ++k) {
+      EXPECT_EQ(a.channels[c].rotation.values[k].coeffs(), b.channels[c].rotation.values[k].coeffs());
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft::character
