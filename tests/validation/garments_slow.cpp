@@ -72,7 +72,7 @@ class Worn : public support::TestFolder {
       const Vec3 along(side * std::numbers::sqrt2 / 2, 0, -std::numbers::sqrt2 / 2);
       const Vec3 up(side * std::numbers::sqrt2 / 2, 0, std::numbers::sqrt2 / 2), shoulder(side * 0.15, 0, 1.392);
       std::vector<Ring> arm, leg;
-      for (const auto& [way, r] : {std::pair(-0.03, 0.04), {0.0, 0.05}, {0.3, 0.037}, {0.55, 0.027}, {0.7, 0.03}})
+      for (const auto& [way, r] : {std::pair(-0.03, 0.036), {0.0, 0.044}, {0.3, 0.036}, {0.55, 0.027}, {0.7, 0.03}})
         arm.push_back({shoulder + way * along, side * r * Vec3::UnitY(), r * up});
       for (const auto& [z, r] : {std::pair(0.08, 0.036), {0.33, 0.052}, {0.46, 0.052}, {0.6, 0.068}, {0.86, 0.078}})
         leg.push_back({{side * 0.092, 0, z}, {r, 0, 0}, {0, r, 0}});
