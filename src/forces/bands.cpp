@@ -16,13 +16,14 @@ Vec3 curvature(const std::array<Index, 3>& p, const Vec3& weights, std::span<con
 
 }  // namespace
 
-Bands::Bands(const mesh::Sheet& sheet, Index first) {
+Bands::Bands(const mesh::Sheet& sheet, Index first, double stretch) {
   for (const mesh::Band& band : sheet.bands) {
-    for (std::size_t k = 0; band.stiffness > 0 && k < band.lengths.size(); ++k) {
+    const double stiffness = band.stiffness + stretch * band.allowance;
+    for (std::size_t k = 0; stiffness > 0 && k < band.lengths.size(); ++k) {
       const Index a = band.vertices[k], b = band.vertices[k + 1];
       const double start = (sheet.rest[at_index(a)] - sheet.rest[at_index(b)]).norm();
       const double own = band.ratio * band.lengths[k];
-      pieces_.push_back({{first + a, first + b}, band.stiffness, sheet.sewn ? start : own, own, own});
+      pieces_.push_back({{first + a, first + b}, stiffness, sheet.sewn ? start : own, own, own});
     }
     for (std::size_t k = 1; band.bend > 0 && k < band.lengths.size(); ++k) {
       const double before = band.lengths[k - 1], after = band.lengths[k], length = 0.5 * (before + after);

@@ -12,9 +12,11 @@ namespace weft::forces {
 /// [N] has the energy ½ k r (l / r − 1)². A hem has the bending energy ½ E l ‖s''‖² at each particle between two
 /// pieces, with s'' the change of the unit tangent at rest by length, and is straight at rest: a hem that is curved in
 /// its panel with a radius R is pulled by E / R² [N], which is nothing beside the cloth's own stiffness.
+/// The allowance of a seam is an elastic band as stiff as a strip of the cloth of that width.
 class Bands final : public Force {
  public:
-  Bands(const mesh::Sheet& sheet, Index first);
+  /// `stretch` [N/m]: stiffness of the cloth.
+  Bands(const mesh::Sheet& sheet, Index first, double stretch);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::BlockMatrix& matrix) override;

@@ -17,7 +17,7 @@ std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density) {
   for (const mesh::Band& band : sheet.bands)
     for (std::size_t k = 0; k < band.lengths.size(); ++k)
       for (Index i : {band.vertices[k], band.vertices[k + 1]})
-        masses[static_cast<std::size_t>(i)] += 0.5 * band.mass * band.lengths[k];
+        masses[static_cast<std::size_t>(i)] += 0.5 * (band.mass + density * band.allowance) * band.lengths[k];
   return masses;
 }
 

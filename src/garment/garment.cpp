@@ -218,6 +218,14 @@ class Sewing {
       }
       return band;
     };
+    for (std::size_t s = 0; s < pattern_.seams.size(); ++s) {
+      if (pattern_.seams[s].allowance == 0) continue;
+      // Between the two sides, where one is eased in.
+      const double mean = 0.5 * (garment_.seams[s].length_a + garment_.seams[s].length_b);
+      mesh::Band band{.vertices = garment_.seams[s].vertices, .lengths = {}, .allowance = pattern_.seams[s].allowance};
+      band.lengths.assign(band.vertices.size() - 1, mean / static_cast<double>(band.vertices.size() - 1));
+      garment_.sheet.bands.push_back(std::move(band));
+    }
     for (const Elastic& elastic : pattern_.elastics) {
       garment_.sheet.bands.push_back(band_along(elastic.edge));
       garment_.sheet.bands.back().ratio = elastic.ratio;

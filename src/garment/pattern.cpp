@@ -61,6 +61,9 @@ const Table& pattern_rules() {
                                   .need(Need::required)
                                   .plain(Type::text, "b", &Seam::b, "the other, of any panel")
                                   .need(Need::required)
+                                  .number("allowance", &Seam::allowance, within(0, 1), "m",
+                                          "width of the cloth turned in along the seam, of both sides together; it "
+                                          "weighs and resists stretching like any other")
                                   .build();
   static const Table kElastics =
       TableBuilder<Elastic>("An elastic band along an edge.")

@@ -39,6 +39,7 @@ struct Panel {
 /// longer one is eased in.
 struct Seam {
   std::string a, b;
+  double allowance = 0.02;  ///< width of the cloth turned in along it, of both sides together [m]
 };
 
 /// A band that pulls an edge together.

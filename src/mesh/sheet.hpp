@@ -9,7 +9,7 @@
 
 namespace weft::mesh {
 
-/// A band along a chain of edges: elastic, or a hem.
+/// A band along a chain of edges: elastic, a hem, or the allowance of a seam.
 struct Band {
   std::vector<Index> vertices;
   std::vector<double> lengths;  ///< of the cloth's edges between them [m]
@@ -17,6 +17,7 @@ struct Band {
   double stiffness = 0;         ///< force per strain [N]
   double mass = 0;              ///< per length of the cloth [kg/m]
   double bend = 0;              ///< bending stiffness [N·m²]
+  double allowance = 0;         ///< width of cloth that lies along it beside what the triangles are [m]
 };
 
 /// Rest shape of cloth made of triangles, flat or not.

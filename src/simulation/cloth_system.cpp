@@ -124,7 +124,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
   if (sheet.sewn) sewing_.push_back({cloth, of.sewing, -1, membrane.get(), nullptr});
   forces_[cloth].push_back(std::move(membrane));
   if (!sheet.bands.empty()) {
-    auto bands = std::make_unique<forces::Bands>(sheet, first);
+    auto bands = std::make_unique<forces::Bands>(sheet, first, 0.5 * (material.stretch_weft + material.stretch_warp));
     if (sheet.sewn) sewing_.back().bands = bands.get();
     forces_[cloth].push_back(std::move(bands));
   }

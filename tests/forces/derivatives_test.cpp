@@ -85,8 +85,8 @@ const Case kCases[] = {
     {"elastic_band_and_hem",
      [](double elastic, double) {
        mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
-       sheet.bands.push_back({{0, 1, 2, 3, 4}, {0.02, 0.02, 0.02, 0.02}, 0.8, elastic, 0, 1e-6 * elastic});
-       return std::make_unique<Bands>(sheet, 0);
+       sheet.bands.push_back({{0, 1, 2, 3, 4}, {0.02, 0.02, 0.02, 0.02}, 0.8, elastic, 0, 1e-6 * elastic, 0});
+       return std::make_unique<Bands>(sheet, 0, 0);
      }},
 };
 

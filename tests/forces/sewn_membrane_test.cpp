@@ -59,8 +59,8 @@ TEST(SewnMembranes, AreStrainedByTheShareOfTheWay) {
 
 TEST(ElasticBands, PullWithTheirStiffnessTimesStrain) {
   mesh::Sheet sheet = flat_sheet();
-  sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 0.8, 50, 0, 0});
-  const Bands bands(sheet, 0);
+  sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 0.8, 50, 0, 0, 0});
+  const Bands bands(sheet, 0, 1000);
   const Positions f = testing::force_of(bands, sheet.rest, testing::zeros(sheet.rest));
   // 20 mm where 16 would be at rest: 50 N · 0.25.
   EXPECT_NEAR(f[0].x(), 12.5, 1e-12);
@@ -68,12 +68,23 @@ TEST(ElasticBands, PullWithTheirStiffnessTimesStrain) {
   EXPECT_NEAR(f[2].x(), -12.5, 1e-12);
 }
 
+TEST(SeamAllowances, AreStripsOfTheCloth) {
+  mesh::Sheet sheet = flat_sheet();
+  const auto plain = lumped_masses(sheet, 0.2);
+  sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 1, 0, 0, 0, 0.03});
+  const auto masses = lumped_masses(sheet, 0.2);
+  EXPECT_NEAR(masses[1] - plain[1], 0.2 * 0.03 * 0.02, 1e-15);
+  const Bands bands(sheet, 0, 1000);
+  for (Vec3& x : sheet.rest) x *= 1.1;
+  EXPECT_NEAR(testing::force_of(bands, sheet.rest, testing::zeros(sheet.rest))[0].x(), 1000 * 0.03 * 0.1, 1e-12);
+}
+
 TEST(ElasticBands, OfSewnSheetsPullNothingAtTheStart) {
   mesh::Sheet sheet = flat_sheet();
-  sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 0.8, 50, 0, 0});
+  sheet.bands.push_back({{0, 1, 2}, {0.02, 0.02}, 0.8, 50, 0, 0, 0});
   sheet.sewn = true;
   for (Vec3& x : sheet.rest) x *= 1.7;
-  Bands bands(sheet, 0);
+  Bands bands(sheet, 0, 1000);
   bands.rest_between_start_and_pattern(0);
   EXPECT_EQ(bands.energy(sheet.rest), 0);
   bands.rest_between_start_and_pattern(1);
@@ -96,7 +107,7 @@ TEST(Hems, ResistBendingAsRods) {
   }
   band.bend = stiffness;
   sheet.bands.push_back(band);
-  const Bands bands(sheet, 0);
+  const Bands bands(sheet, 0, 1000);
   const double inner = length * (pieces - 1) / pieces;  // a hinge at each inner particle
   EXPECT_NEAR(bands.energy(x), 0.5 * stiffness * inner / (radius * radius), 1e-3 * bands.energy(x));
 }
@@ -104,7 +115,7 @@ TEST(Hems, ResistBendingAsRods) {
 TEST(Hems, AddTheirMass) {
   mesh::Sheet sheet = flat_sheet();
   const auto plain = lumped_masses(sheet, 0.2);
-  sheet.bands.push_back({{0, 1, 2, 3, 4}, {0.02, 0.02, 0.02, 0.02}, 1, 0, 0.05, 0});
+  sheet.bands.push_back({{0, 1, 2, 3, 4}, {0.02, 0.02, 0.02, 0.02}, 1, 0, 0.05, 0, 0});
   const auto hemmed = lumped_masses(sheet, 0.2);
   EXPECT_NEAR(hemmed[0] - plain[0], 0.05 * 0.01, 1e-15);
   EXPECT_NEAR(hemmed[2] - plain[2], 0.05 * 0.02, 1e-15);

@@ -166,14 +166,16 @@ TEST_F(SewingText, TheGrainTurnsTheWarp) {
 TEST_F(SewingText, BandsFollowTheirEdges) {
   const Garment garment =
       sew_text(kDart + kDartSeams + "[[elastic]]\nedge = 'front.top'\nratio = 0.8\n[[hem]]\nedge = 'back.low'\n");
-  ASSERT_EQ(garment.sheet.bands.size(), 2U);
-  const mesh::Band& band = garment.sheet.bands[0];
+  ASSERT_EQ(garment.sheet.bands.size(), 5U);  // allowances of three seams, and these
+  EXPECT_NEAR(garment.sheet.bands[2].lengths[0], 0.34 / 17, 1e-12);
+  EXPECT_EQ(garment.sheet.bands[2].allowance, 0.02);
+  const mesh::Band& band = garment.sheet.bands[3];
   EXPECT_EQ(band.vertices.size(), 21U);
   double length = 0;
   for (double l : band.lengths) length += l;
   EXPECT_NEAR(length, 0.4, 1e-12);
   EXPECT_EQ(band.ratio, 0.8);
-  EXPECT_GT(garment.sheet.bands[1].mass, 0);
+  EXPECT_GT(garment.sheet.bands[4].mass, 0);
 }
 
 TEST_F(SewingText, MistakesAreAllNamedWithTheirPlaces) {
