@@ -31,6 +31,7 @@ constexpr double kGap = 1e-3;
 
 /// What there is to be sampled.
 struct Body {
+  std::string source;  ///< for messages: the file it is from
   character::Character character;
   std::optional<character::Clip> clip;
   std::vector<std::string> warnings;
@@ -63,73 +64,83 @@ std::string did_you_mean(const std::string& name, const std::vector<std::string>
 
 /// The clip that the scene names, or the first.
 const character::Clip& choose_clip(const Cast& cast, const std::optional<std::string>& name,
-                                   const std::vector<character::Clip>& clips, const std::filesystem::path& file) {
+                                   const std::vector<character::Clip>& clips, const std::string& source) {
   if (!name) return clips.front();
   std::vector<std::string> names;
   for (const character::Clip& clip : clips) {
     if (clip.name == *name) return clip;
     names.push_back(clip.name);
   }
-  if (names.empty())
-    cast.fail("clip", fmt::format("expected an animation in {}, got none; leave the key out", file.string()));
-  cast.fail("clip", fmt::format("expected one of the {} clips of {}, \"{}\", got \"{}\"{}", names.size(), file.string(),
+  if (names.empty()) cast.fail("clip", fmt::format("expected an animation in {}, got none; leave the key out", source));
+  cast.fail("clip", fmt::format("expected one of the {} clips of {}, \"{}\", got \"{}\"{}", names.size(), source,
                                 fmt::join(names, "\", \""), *name, did_you_mean(*name, names)));
 }
 
 /// The node of a file that a [[character.joint]] names.
 Index named_node(const Cast& cast, const std::string& key, const std::string& name,
-                 const std::vector<character::Node>& nodes, const std::filesystem::path& file) {
+                 const std::vector<character::Node>& nodes, const std::string& source) {
   std::vector<std::string> names;
   for (std::size_t n = 0; n < nodes.size(); ++n) {
     if (nodes[n].name == name) return static_cast<Index>(n);
     names.push_back(nodes[n].name);
   }
-  cast.fail(key, fmt::format("expected the name of a node of {}, got \"{}\"{}", file.string(), name,
-                             did_you_mean(name, names)));
+  cast.fail(key,
+            fmt::format("expected the name of a node of {}, got \"{}\"{}", source, name, did_you_mean(name, names)));
+}
+
+/// The nodes of a skeleton that have the parts of joint_names(), found by their names or as the scene says.
+std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
+                             std::optional<std::string> scene::JointNames::*name, const character::Character& character,
+                             const std::string& source) {
+  std::vector<Index> joints = character::find_joints(character.nodes);
+  for (const scene::JointNames& joint : given) {
+    const Index number = character::joint_number(joint.name);
+    const std::string key = fmt::format("joint.{}", joint.name);
+    if (number < 0)
+      cast.fail(key + ".name", fmt::format("expected a joint of the body, got \"{}\"{}", joint.name,
+                                           did_you_mean(joint.name, character::joint_names())));
+    if (joint.*name)
+      joints[static_cast<std::size_t>(number)] = named_node(cast, key, *(joint.*name), character.nodes, source);
+  }
+  if (joints[static_cast<std::size_t>(character::joint_number("Hips"))] < 0)
+    cast.fail("joint", fmt::format("expected a node of {} that is known as the hips, got none; name it in a "
+                                   "[[character.joint]] with name = \"Hips\"",
+                                   source));
+  return joints;
 }
 
 /// The clip of another skeleton, on this one.
-character::Clip take_over(const Cast& cast, const scene::CharacterFile& source, Body& body) {
-  using Member = std::optional<std::string> scene::JointNames::*;
+character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& body) {
+  const std::string file = acting.motion->string();
   assets::LoadedCharacter motion =
-      assets::load_motion(*source.motion, {{}, scene::FileUp::as_file, cast.scene.up}, cast.where);
+      assets::load_motion(*acting.motion, {{}, scene::FileUp::as_file, cast.scene.up}, cast.where);
   body.warnings.insert(body.warnings.end(), motion.warnings.begin(), motion.warnings.end());
-  const auto joints_of = [&](const character::Character& character, Member given, const std::filesystem::path& file) {
-    std::vector<Index> joints = character::find_joints(character.nodes);
-    for (const scene::JointNames& joint : source.joints) {
-      const Index number = character::joint_number(joint.name);
-      const std::string key = fmt::format("joint.{}", joint.name);
-      if (number < 0)
-        cast.fail(key + ".name", fmt::format("expected a joint of the body, got \"{}\"{}", joint.name,
-                                             did_you_mean(joint.name, character::joint_names())));
-      if (joint.*given)
-        joints[static_cast<std::size_t>(number)] = named_node(cast, key, *(joint.*given), character.nodes, file);
-    }
-    if (joints[static_cast<std::size_t>(character::joint_number("Hips"))] < 0)
-      cast.fail("joint", fmt::format("expected a node of {} that is known as the hips, got none; name it in a "
-                                     "[[character.joint]] with name = \"Hips\"",
-                                     file.string()));
-    return joints;
-  };
-  const std::vector<Index> ours = joints_of(body.character, &scene::JointNames::body, source.path);
-  const std::vector<Index> theirs = joints_of(motion.character, &scene::JointNames::motion, *source.motion);
+  const auto ours = joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source);
+  const auto theirs = joints_of(cast, acting.joints, &scene::JointNames::motion, motion.character, file);
   std::vector<std::string> still;
   for (std::size_t j = 0; j < ours.size(); ++j)
     if (ours[j] >= 0 && theirs[j] < 0) still.push_back(character::joint_names()[j]);
   if (!still.empty())
-    body.warnings.push_back(fmt::format("{}: motion file {}: nothing that moves {}", cast.where,
-                                        source.motion->string(), fmt::join(still, ", ")));
-  const character::Clip& clip = choose_clip(cast, source.clip, motion.character.clips, *source.motion);
+    body.warnings.push_back(
+        fmt::format("{}: motion file {}: nothing that moves {}", cast.where, file, fmt::join(still, ", ")));
+  const character::Clip& clip = choose_clip(cast, acting.clip, motion.character.clips, file);
   return character::retarget({body.character, ours}, {motion.character, theirs}, clip, cast.up());
 }
 
-Body load_body(const Cast& cast, const scene::CharacterFile& source) {
+/// The body as its file has it.
+Body make_body(const Cast& cast, const scene::CharacterFile& source) {
   assets::LoadedCharacter loaded = assets::load_character(source.path, cast.axes(), cast.where);
-  Body body{std::move(loaded.character), {}, std::move(loaded.warnings)};
+  return {source.path.string(), std::move(loaded.character), {}, std::move(loaded.warnings)};
+}
+
+/// The body with the clip that it plays, if it plays one.
+template <class Source>
+Body cast_body(const Cast& cast, const Source& source) {
+  Body body = make_body(cast, source);
   if (source.motion) {
     body.clip = take_over(cast, source, body);
   } else if (source.clip || !body.character.clips.empty()) {
-    body.clip = choose_clip(cast, source.clip, body.character.clips, source.path);
+    body.clip = choose_clip(cast, source.clip, body.character.clips, body.source);
   }
   if (body.clip && !source.loop && cast.settings.start > body.clip->duration)
     cast.fail("start", fmt::format("expected a time of clip \"{}\", at most {:g} s, got {:g}", body.clip->name,
@@ -190,7 +201,7 @@ KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
           times.first > 0};
 }
 
-/// The mesh at the start; a fold of triangles is told from the surface by its faces alone.
+/// The mesh as it starts.
 mesh::Mesh at_start(mesh::Mesh mesh, const KeyFrames& keys) {
   const std::vector<Vec3> zero(mesh.positions.size(), Vec3::Zero());
   Motion motion{zero, zero, zero};
@@ -199,8 +210,9 @@ mesh::Mesh at_start(mesh::Mesh mesh, const KeyFrames& keys) {
   return mesh;
 }
 
-Actor act(const Cast& cast, const scene::CharacterFile& source) {
-  Body body = load_body(cast, source);
+template <class Source>
+Actor act(const Cast& cast, const Source& source) {
+  Body body = cast_body(cast, source);
   const character::Clip still;
   const character::Clip& clip = body.clip ? *body.clip : still;
   const character::Performance performance(
@@ -232,6 +244,23 @@ Actor act(const Cast& cast, const scene::MeshSequence& source) {
   return {std::move(mesh), std::move(keys), {}};
 }
 
+KeyFrameCount count(const Cast& cast, const KeyTimes& times, std::size_t vertices) {
+  return {times.count, vertices, times.bytes(vertices, cast.settings.interpolation)};
+}
+
+template <class Source>
+KeyFrameCount count(const Cast& cast, const Source& source) {
+  const Body body = cast_body(cast, source);
+  return count(cast, key_times(cast, body.clip ? character::key_rate(*body.clip) : 0),
+               body.character.mesh.positions.size());
+}
+
+KeyFrameCount count(const Cast& cast, const scene::MeshSequence& source) {
+  const std::vector<std::filesystem::path> files = scene::sequence_files(source.files);
+  const auto first = assets::load_sequence(std::span(files).first(1), cast.axes(), cast.where);
+  return count(cast, key_times(cast, source.fps), first.mesh.positions.size());
+}
+
 }  // namespace
 
 Actor make_actor(const scene::Scene& scene, const scene::Character& character) {
@@ -241,19 +270,7 @@ Actor make_actor(const scene::Scene& scene, const scene::Character& character) {
 
 KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character& character) {
   const Cast cast = make_cast(scene, character);
-  KeyTimes times;
-  std::size_t vertices = 0;
-  if (const auto* file = std::get_if<scene::CharacterFile>(&character.source)) {
-    const Body body = load_body(cast, *file);
-    times = key_times(cast, body.clip ? character::key_rate(*body.clip) : 0);
-    vertices = body.character.mesh.positions.size();
-  } else {
-    const auto& sequence = std::get<scene::MeshSequence>(character.source);
-    const std::vector<std::filesystem::path> files = scene::sequence_files(sequence.files);
-    times = key_times(cast, sequence.fps);
-    vertices = assets::load_sequence(std::span(files).first(1), cast.axes(), cast.where).mesh.positions.size();
-  }
-  return {times.count, vertices, times.bytes(vertices, character.interpolation)};
+  return std::visit([&](const auto& source) { return count(cast, source); }, character.source);
 }
 
 }  // namespace weft::environment

@@ -24,41 +24,44 @@ const Table& joint_rules() {
 }
 
 /// Access to a member of the source that a character has.
-template <class Kind, class Field>
-auto of_source(Field Kind::*field) {
+template <class Kind, class Base, class Field>
+auto of_source(Field Base::*field) {
   return [field](Character& c) -> Field& { return std::get<Kind>(c.source).*field; };
+}
+
+/// The keys of every skinned body.
+template <class Kind>
+void acting_rows(TableBuilder<Character>& rows) {
+  rows.plain(Type::file, "motion", of_source<Kind>(&Acting::motion),
+             "file, such as BVH, of a skeleton whose motion it takes over")
+      .by_default("none")
+      .list(Type::list, "joint", of_source<Kind>(&Acting::joints), joint_rules())
+      .plain(Type::text, "clip", of_source<Kind>(&Acting::clip), "animation of the motion, else of the body itself")
+      .by_default("the first")
+      .choice("stance", of_source<Kind>(&Acting::stance), {"first", "rest"},
+              "pose that it stands in before: the one at start, or that without any animation")
+      .plain(Type::boolean, "loop", of_source<Kind>(&Acting::loop),
+             "again and again, each round from where the last one has come to")
+      .number("crossfade", of_source<Kind>(&Acting::crossfade), within(0, 60), "s",
+              "time of the clip at the end of a round that passes over into the next; 0 for clips that close");
 }
 
 /// The keys of each source, in the order of CharacterSource.
 void source_rows(TableBuilder<Character>& rows) {
   using Rows = TableBuilder<Character>;
-  rows.variant(
-      "file",
-      Rows()
-          .plain(Type::file, "file", of_source(&CharacterFile::path),
-                 "with skeleton, skin and animations; relative paths start at the scene's folder")
-          .need(Need::required)
-          .plain(Type::file, "motion", of_source(&CharacterFile::motion),
-                 "file, such as BVH, of a skeleton whose motion it takes over")
-          .by_default("none")
-          .list(Type::list, "joint", of_source(&CharacterFile::joints), joint_rules())
-          .plain(Type::text, "clip", of_source(&CharacterFile::clip),
-                 "animation of the motion, else of the file itself")
-          .by_default("the first")
-          .choice("stance", of_source(&CharacterFile::stance), {"first", "rest"},
-                  "pose that it stands in before: the one at start, or that without any animation")
-          .plain(Type::boolean, "loop", of_source(&CharacterFile::loop),
-                 "again and again, each round from where the last one has come to")
-          .number("crossfade", of_source(&CharacterFile::crossfade), within(0, 60), "s",
-                  "time of the clip at the end of a round that passes over into the next; 0 for clips that close"));
+  rows.variant("file", Rows()
+                           .plain(Type::file, "file", of_source<CharacterFile>(&CharacterFile::path),
+                                  "with skeleton, skin and animations; relative paths start at the scene's folder")
+                           .need(Need::required)
+                           .with(acting_rows<CharacterFile>));
   rows.variant(
       "sequence",
       Rows()
-          .plain(Type::text, "files", of_source(&MeshSequence::files),
+          .plain(Type::text, "files", of_source<MeshSequence>(&MeshSequence::files),
                  "folder of mesh files, or a file name with one *, in the order of the numbers in their names; "
                  "relative paths start at the scene's folder")
           .need(Need::required)
-          .number("fps", of_source(&MeshSequence::fps), above(0, 1000), "Hz", "files a second"));
+          .number("fps", of_source<MeshSequence>(&MeshSequence::fps), above(0, 1000), "Hz", "files a second"));
 }
 
 }  // namespace
