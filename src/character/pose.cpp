@@ -32,10 +32,9 @@ Value value_at(const Curve<Value>& curve, double t) {
   return between(curve.values[k - 1], curve.values[k], weight);
 }
 
-/// The rotation of a map: its columns made perpendicular one after the other. A mirroring map turns its first axis.
+/// The rotation of a map: its columns made perpendicular one after the other. What mirrors is left to the stretch.
 Mat3 rotation_of(const Mat3& linear) {
   Vec3 x = linear.col(0), y = linear.col(1);
-  if (linear.determinant() < 0) x = -x;
   const double length = std::max({linear.col(0).norm(), linear.col(1).norm(), linear.col(2).norm()});
   // A map that crushes an axis says nothing about its rotation.
   if (!(x.norm() > 1e-9 * length) || !(x.cross(y).norm() > 1e-9 * x.norm() * length)) return Mat3::Identity();

@@ -56,8 +56,9 @@ std::string describe_scene(const scene::Scene& scene) {
   for (const scene::Cloth& cloth : scene.cloths) {
     particles += static_cast<std::size_t>(rectangle_particles(cloth));
   }
-  return fmt::format("{}, {}, {}, {} at {:.4g} fps", counted(scene.cloths.size(), "cloth", "cloths"),
-                     counted(scene.obstacles.size(), "obstacle", "obstacles"),
+  std::string bodies = counted(scene.obstacles.size(), "obstacle", "obstacles");
+  if (!scene.characters.empty()) bodies += ", " + counted(scene.characters.size(), "character", "characters");
+  return fmt::format("{}, {}, {}, {} at {:.4g} fps", counted(scene.cloths.size(), "cloth", "cloths"), bodies,
                      counted(particles, "particle", "particles"),
                      counted(static_cast<std::size_t>(scene.frame_count()), "frame", "frames"), scene.time.fps);
 }

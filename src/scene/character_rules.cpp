@@ -24,25 +24,25 @@ const Table& joint_rules() {
 }
 
 /// Access to a member of the source that a character has.
-template <class Kind, class Field, class Owner>
-auto of_source(Field Owner::*field) {
+template <class Kind, class Base, class Field>
+auto of_source(Field Base::*field) {
   return [field](Character& c) -> Field& { return std::get<Kind>(c.source).*field; };
 }
 
-/// The keys of what has joints.
+/// The keys of every skinned body.
 template <class Kind>
 void acting_rows(TableBuilder<Character>& rows) {
-  rows.plain(Type::file, "motion", of_source<Kind>(&Kind::motion),
+  rows.plain(Type::file, "motion", of_source<Kind>(&Acting::motion),
              "file, such as BVH, of a skeleton whose motion it takes over")
       .by_default("none")
-      .list(Type::list, "joint", of_source<Kind>(&Kind::joints), joint_rules())
-      .plain(Type::text, "clip", of_source<Kind>(&Kind::clip), "animation of the motion, else of the file itself")
+      .list(Type::list, "joint", of_source<Kind>(&Acting::joints), joint_rules())
+      .plain(Type::text, "clip", of_source<Kind>(&Acting::clip), "animation of the motion, else of the body itself")
       .by_default("the first")
-      .choice("stance", of_source<Kind>(&Kind::stance), {"first", "rest"},
+      .choice("stance", of_source<Kind>(&Acting::stance), {"first", "rest"},
               "pose that it stands in before: the one at start, or that without any animation")
-      .plain(Type::boolean, "loop", of_source<Kind>(&Kind::loop),
+      .plain(Type::boolean, "loop", of_source<Kind>(&Acting::loop),
              "again and again, each round from where the last one has come to")
-      .number("crossfade", of_source<Kind>(&Kind::crossfade), within(0, 60), "s",
+      .number("crossfade", of_source<Kind>(&Acting::crossfade), within(0, 60), "s",
               "time of the clip at the end of a round that passes over into the next; 0 for clips that close");
 }
 
@@ -103,7 +103,8 @@ const Table& character_rules() {
           .with([](auto& rows) {
             pose_rows(rows, &Character::pose, "of the file's origin, or of the floor below the mannequin");
           })
-          .number("dressing", &Character::dressing, within(0, 3600), "s", "how long it stands still before it moves")
+          .number("dressing", &Character::dressing, within(0, 3600), "s",
+                  "how long it stands still from the start of the preroll on, before it moves")
           .number("blend", &Character::blend, within(0, 60), "s", "in which it then gets going")
           .number("start", &Character::start, within(0, 86400), "s", "time of the clip that it gets going from")
           .number("speed", &Character::speed, above(0, 100), "", "of the clip; 1 as it is")

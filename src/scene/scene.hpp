@@ -224,14 +224,14 @@ struct JointNames {
   std::optional<std::string> motion;  ///< in the file of the motion
 };
 
-/// Which clip a character of joints plays, and how.
+/// How a skinned body is made to move.
 struct Acting {
+  std::optional<std::string> clip;              ///< of `motion`, else of the body itself; absent: the first
   std::optional<std::filesystem::path> motion;  ///< file whose motion it takes over; absolute after checking
   std::vector<JointNames> joints;
-  std::optional<std::string> clip;  ///< of `motion`, else of the character's own file; absent: the first
-  bool loop = false;                ///< again and again, each round from where the last one has come to
-  double crossfade = 0;             ///< [s] of clip time at the end of a round that pass over into the next
-  Stance stance = Stance::first;    ///< pose that is held while dressing
+  Stance stance = Stance::first;  ///< pose that is held while dressing
+  bool loop = false;              ///< again and again, each round from where the last one has come to
+  double crossfade = 0;           ///< [s] of clip time at the end of a round that pass over into the next
 };
 
 /// A skinned and animated character from a file.

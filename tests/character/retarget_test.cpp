@@ -54,7 +54,9 @@ Character sticks(double size, double arm, double facing, const Quat& frame, bool
   const Index upper =
       b.add(name("LeftUpperArm", "Bip01 L UpperArm"), spine, at(shoulder.x(), shoulder.y(), shoulder.z()));
   const Index lower = b.add(name("LeftLowerArm", "Bip01 L Forearm"), upper, at(elbow.x(), elbow.y(), elbow.z()));
-  b.add(name("LeftHand", "Bip01 L Hand"), lower, at(hand.x(), hand.y(), hand.z()));
+  const Index palm = b.add(name("LeftHand", "Bip01 L Hand"), lower, at(hand.x(), hand.y(), hand.z()));
+  const Vec3 finger = hand + 0.1 * along;
+  b.add("finger", palm, at(finger.x(), finger.y(), finger.z()));
   for (const auto& [side, letter, x] : {std::tuple{"Left", "L", 0.1}, std::tuple{"Right", "R", -0.1}}) {
     const std::string plain = side, other = std::string("Bip01 ") + letter;
     const Index thigh = b.add(name((plain + "UpperLeg").c_str(), (other + " Thigh").c_str()), hips, at(x, 0, 0.95));
@@ -90,6 +92,12 @@ struct Result {
     const auto globals = global_transforms(body, pose_at(body, clip, t));
     return globals[static_cast<std::size_t>(joints[static_cast<std::size_t>(joint_number(joint))])].translation();
   }
+  Vec3 finger(double t) const {  // of no joint
+    const auto globals = global_transforms(body, pose_at(body, clip, t));
+    for (std::size_t n = 0; n < body.nodes.size(); ++n)
+      if (body.nodes[n].name == "finger") return globals[n].translation();
+    return Vec3::Zero();
+  }
   Vec3 direction(const std::string& from, const std::string& to, double t) const {
     return (place(to, t) - place(from, t)).normalized();
   }
@@ -121,6 +129,8 @@ TEST(Retarget, LaysAnArmInAPoseAlongTheMotionInTPose) {
   EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 0) - Vec3::UnitX()).norm(), kRounding);
   EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 0) - Vec3::UnitX()).norm(), kRounding);
   EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 1) - Vec3::UnitX()).norm(), kRounding);
+  EXPECT_LT(((result.finger(0) - result.place("LeftHand", 0)).normalized() - Vec3::UnitX()).norm(), kRounding)
+      << "hands go with their arms";
   EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 1) - Vec3::UnitZ()).norm(), kRounding);
 }
 
