@@ -14,11 +14,13 @@ struct HarmonicCurve {
 };
 
 /// Fitted to subject 12, trial 1 of the CMU Graphics Lab Motion Capture Database (mocap.cs.cmu.edu, created with
-/// funding from NSF EIA-0196217; free for all uses): 4.4 s of straight walking at 120 Hz, which hold two strides from
-/// left to left and one and a half from right to right. Least squares over all of these; what belongs to a side was
-/// fitted to both, the right one half a stride later; what turns or sways has odd harmonics only, what nods even ones.
-/// Degrees and metres. Root of the mean square that is left: 2.5° of foot pitch, 3.4° and 2.9° of arm and elbow, below
-/// 1.6° of all other angles; 1.4 cm of places.
+/// funding from NSF EIA-0196217; free for use in research and commercial projects worldwide): 4.4 s of straight walking
+/// at 120 Hz, two strides of the left foot and three of the right. A heel strikes where its ankle is farthest before
+/// the hips (Zeni et al., "Two simple methods for determining gait events", 2008); phases are linear between strikes.
+/// Least squares over all frames between the first strike and the last; what belongs to a side was fitted to both, the
+/// right one half a stride later; what turns or sways has odd harmonics only, what nods even ones. Degrees and metres.
+/// Root of the mean square that is left: 2.5° of foot pitch, 3.4° and 2.9° of arm and elbow, below 1.6° of all other
+/// angles; 1.4 cm of places.
 namespace walking {
 
 constexpr double kSpeed = 0.896, kPeriod = 1.289;  ///< of the recording [m/s], [s]

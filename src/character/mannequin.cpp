@@ -113,7 +113,7 @@ std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
   // Fractions of the height: Drillis & Contini (1966): ankle 0.039, knee 0.285, hip 0.530, shoulder 0.818 less half
   // of a shoulder's thickness, upper arm 0.186, forearm 0.146.
   const double h = build.height, cm = h / 175;
-  const double wide = 1 + 0.16 * build.masculinity;
+  const double wide = 1 + 0.2 * build.masculinity;
   std::array<Vec3, kJointCount> at{};
   const auto set = [&](Joint joint, double x, double forward, double up) { at[z(joint)] = Vec3(x, -forward, up); };
   set(Joint::hips, 0, 0, 0.545 * h);
