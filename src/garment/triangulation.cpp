@@ -13,8 +13,9 @@ namespace {
 // Least distance of lattice points from the outline, in spacings: the strip between is then 0.6 to 1.6 spacings wide,
 // which bounds its angles from both sides.
 constexpr double kMargin = 0.62;
-// Shift of every other row where diagonals are chosen, in spacings. Large against rounding, small against any angle.
-constexpr double kRowShift = 1e-4;
+// Shift of each row against the one below where diagonals are chosen, in spacings. Large against rounding, small
+// against any angle, also summed up over the rows.
+constexpr double kRowShift = 1e-6;
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -202,7 +203,7 @@ FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spac
     for (int i = 0; i <= count[0]; ++i) {
       const Vec2 p = first + spacing * Vec2(i, j);
       if (!holds(turned, p) || !far_from(turned, p, kMargin * spacing)) continue;
-      inside.emplace_back(p.x() + (j % 2) * kRowShift * spacing, p.y());
+      inside.emplace_back(p.x() + j * kRowShift * spacing, p.y());
       exact.emplace_back(p.x() * Vec2(warp.y(), -warp.x()) + p.y() * warp);
     }
   FlatMesh mesh = triangulate(turned, inside);

@@ -23,9 +23,10 @@ struct FlatMesh {
 FlatMesh triangulate(std::span<const Vec2> outline, std::span<const Vec2> inside);
 
 /// Fills a polygon whose edges are about as long as `spacing` with a lattice of squares of that size along `warp` (a
-/// unit vector) and at right angles to it. Their diagonals alternate from row to row, so that six edges meet at each
-/// inner point and no direction of bias is preferred. Points too near to the outline are left out; the strip along it
-/// is filled by the triangulation.
+/// unit vector) and at right angles to it, all cut along the same diagonal: six edges meet at each inner point, and
+/// folds run smoothly. (With diagonals that alternate from row to row every sharp fold of a dress was corrugated, with
+/// a period of two rows.) Points too near to the outline are left out; the strip along it is filled by the
+/// triangulation.
 FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spacing);
 
 /// Signed area of a polygon [m²].

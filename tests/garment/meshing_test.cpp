@@ -68,7 +68,7 @@ TEST(PanelMeshes, AreDelaunay) {
     Eigen::Matrix2d sides;
     sides << 2 * (b - a).transpose(), 2 * (c - a).transpose();
     const Vec2 centre = sides.inverse() * Vec2(b.squaredNorm() - a.squaredNorm(), c.squaredNorm() - a.squaredNorm());
-    // Rows are shifted by 1e-4 spacings where diagonals are chosen.
+    // Rows are shifted by less than 1e-4 spacings in all where diagonals are chosen.
     const double radius = (a - centre).norm() - 1e-4 * 0.05;
     for (const Vec2& p : mesh.points) EXPECT_GT((p - centre).norm(), radius - 1e-9);
   }
