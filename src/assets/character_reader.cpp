@@ -54,7 +54,8 @@ std::vector<NodeWithParent> nodes_with_parents(const aiNode& root) {
       stack.pop_back();
       nodes.push_back(next);
       const auto children = children_of(*next.first);
-      for (std::size_t c = children.size(); c-- > 0;) stack.emplace_back(children[c], Index(nodes.size()) - 1);
+      for (std::size_t c = children.size(); c-- > 0;)
+        if (children[c] != nullptr) stack.emplace_back(children[c], Index(nodes.size()) - 1);  // RAW leaves gaps
     }
     return nodes;
   };

@@ -110,7 +110,8 @@ Soup read_soup(const std::filesystem::path& file) {
     for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) append_mesh(soup, *scene->mMeshes[m], to_world);
     for (unsigned c = node->mNumChildren; c-- > 0;) {
       const aiNode* child = node->mChildren[c];
-      stack.emplace_back(child, to_world * to_eigen(child->mTransformation));
+      // The reader of RAW files leaves gaps.
+      if (child != nullptr) stack.emplace_back(child, to_world * to_eigen(child->mTransformation));
     }
   }
   return soup;

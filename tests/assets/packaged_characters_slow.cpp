@@ -94,7 +94,7 @@ TEST_F(Packaged, FilesAreEachLoadedOrRefusedByName) {
   // Of version 5.2.5~ds0-1; other versions may have others.
   EXPECT_GE(loaded, 300);
   EXPECT_GE(animated, 50);
-  EXPECT_GE(skinned, 10);
+  EXPECT_GE(skinned, 6) << "with vertices that several bones hold";
 }
 
 /// An evaluation of its own, straight from assimp's scene: nodes are walked recursively, every vertex of every mesh by
