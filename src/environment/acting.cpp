@@ -137,24 +137,6 @@ Body make_body(const Cast& cast, const scene::CharacterFile& source) {
   return {source.path.string(), std::move(loaded.character), {}, std::move(loaded.warnings)};
 }
 
-/// Turns a character with all of its motions about the origin.
-void turn(const Quat& by, character::Character& character) {
-  for (Vec3& x : character.mesh.positions) x = by * x;
-  for (character::Bone& bone : character.bones) bone.offset = bone.offset * by.inverse();
-  std::vector<char> root(character.nodes.size(), 0);
-  for (std::size_t n = 0; n < root.size(); ++n) {
-    if (character.nodes[n].parent >= 0) continue;
-    root[n] = 1;
-    character.nodes[n].local = by * character.nodes[n].local;
-  }
-  for (character::Clip& clip : character.clips)
-    for (character::Channel& channel : clip.channels) {
-      if (!root[static_cast<std::size_t>(channel.node)]) continue;
-      for (Vec3& x : channel.position.values) x = by * x;
-      for (Quat& q : channel.rotation.values) q = by * q;
-    }
-}
-
 /// The mannequin with its walk.
 Body make_body(const Cast& cast, const scene::Mannequin& source) {
   Body body{"the mannequin",
@@ -166,7 +148,8 @@ Body make_body(const Cast& cast, const scene::Mannequin& source) {
         body.character,
         {.speed = source.pace, .distance = source.walk, .turn_back = source.turn_back, .arms_out = source.arms_out}));
   // Shapes with their axis along z are turned the same way.
-  if (cast.scene.up == scene::UpAxis::y) turn(Quat::FromTwoVectors(Vec3::UnitZ(), Vec3::UnitY()), body.character);
+  const Mat3 z_to_y{{1, 0, 0}, {0, 0, 1}, {0, -1, 0}};
+  if (cast.scene.up == scene::UpAxis::y) assets::transform(body.character, 1, z_to_y);
   return body;
 }
 
