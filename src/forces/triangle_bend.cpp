@@ -34,17 +34,10 @@ Plane plane_of(const std::vector<Index>& particles, std::span<const Vec3> x) {
 TriangleBend::TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters)
     : rigidity_(parameters.rigidity), damping_(parameters) {
   const std::vector<CurvatureStencil> stencils = curvature_stencils(sheet);
-  std::vector<CurvatureStencil> compact;
-  if (damping_.any()) compact = compact_stencils(sheet, stencils);
   for (std::size_t t = 0; t < stencils.size(); ++t) {
-    Element element;
-    element.particles = stencils[t].vertices;
-    element.weights = stencils[t].weights;
-    element.area = mesh::rest_area(sheet, t);
+    Element element{stencils[t].vertices, stencils[t].weights, mesh::rest_area(sheet, t), Vec3::Zero(), {}};
     if (!sheet.sewn) find_rest(element, sheet.material[t], sheet.rest);
-    if (damping_.any()) element.damped = {compact[t].vertices, compact[t].weights, {}};
-    for (Stencil* stencil : {static_cast<Stencil*>(&element), &element.damped})
-      for (Index& particle : stencil->particles) particle += first;
+    for (Index& particle : element.particles) particle += first;
     elements_.push_back(std::move(element));
   }
 }
@@ -70,66 +63,61 @@ void TriangleBend::find_rest(Element& element, const std::array<Vec2, 3>& materi
       element.weights[k] -= gradients[k][axis] * (curved.transpose() * tangents[static_cast<std::size_t>(axis)]);
 }
 
-Mat3 TriangleBend::curvature(const Stencil& stencil, std::span<const Vec3> x) {
+Mat3 TriangleBend::curvature(const Element& element, std::span<const Vec3> x) {
   Mat3 sum = Mat3::Zero();
-  for (std::size_t k = 0; k < stencil.particles.size(); ++k)
-    sum += x[static_cast<std::size_t>(stencil.particles[k])] * stencil.weights[k].transpose();
+  for (std::size_t k = 0; k < element.particles.size(); ++k)
+    sum += x[static_cast<std::size_t>(element.particles[k])] * element.weights[k].transpose();
   return sum;
 }
 
 void TriangleBend::couple(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Element& element : elements_)
-    for (const Stencil* stencil : {static_cast<const Stencil*>(&element), &element.damped})
-      for (std::size_t a = 0; a < stencil->particles.size(); ++a)
-        for (std::size_t b = a + 1; b < stencil->particles.size(); ++b)
-          pairs.emplace_back(stencil->particles[a], stencil->particles[b]);
+    for (std::size_t a = 0; a < element.particles.size(); ++a)
+      for (std::size_t b = a + 1; b < element.particles.size(); ++b)
+        pairs.emplace_back(element.particles[a], element.particles[b]);
 }
 
 void TriangleBend::attach(const solver::BlockMatrix& matrix) {
-  for (Element& element : elements_)
-    for (Stencil* stencil : {static_cast<Stencil*>(&element), &element.damped}) {
-      stencil->slots.clear();
-      for (Index a : stencil->particles)
-        for (Index b : stencil->particles) stencil->slots.push_back(matrix.slot(a, b));
-    }
+  for (Element& element : elements_) {
+    element.slots.clear();
+    for (Index a : element.particles)
+      for (Index b : element.particles) element.slots.push_back(matrix.slot(a, b));
+  }
 }
 
 void TriangleBend::add(const Evaluation& at) const {
   for (const Element& element : elements_) {
     const Mat3 curved = curvature(element, at.x);
-    const Mat3 moment = element.area * rigidity_ * curved;
+    Mat3 moment = rigidity_ * curved;
+    if (damping_.any()) add_damping(element, curved, at, moment);
     for (std::size_t k = 0; k < element.particles.size(); ++k)
-      at.force[static_cast<std::size_t>(element.particles[k])] -= moment * kCount.cwiseProduct(element.weights[k]);
-    if (damping_.any()) add_damping(element, at);
+      at.force[static_cast<std::size_t>(element.particles[k])] -=
+          element.area * moment * kCount.cwiseProduct(element.weights[k]);
     if (!element.rest.isZero(0)) add_rest_moment(element, curved, at);
   }
 }
 
-void TriangleBend::add_damping(const Element& element, const Evaluation& at) const {
-  const Stencil& stencil = element.damped;
-  const Mat3 curved = curvature(stencil, at.x), velocity = curvature(stencil, at.v);
-  Mat3 moment;
+// moment += viscosity and friction; their Jacobian goes into the matrix, if there is one.
+void TriangleBend::add_damping(const Element& element, const Mat3& curved, const Evaluation& at, Mat3& moment) const {
+  const Mat3 velocity = curvature(element, at.v);
   std::array<Mat3, 3> blocks;
   for (int c = 0; c < 3; ++c) {
-    const double size = element.area * kCount[c];
     if (at.matrix == nullptr) {
-      moment.col(c) = size * damping_.moment(curved.col(c), velocity.col(c));
+      moment.col(c) += damping_.moment(curved.col(c), velocity.col(c));
       continue;
     }
     const auto linearised = damping_.linearised(curved.col(c), velocity.col(c), at.rate, at.linearisation);
-    moment.col(c) = size * linearised.moment;
-    blocks[static_cast<std::size_t>(c)] = size * linearised.jacobian;
+    moment.col(c) += linearised.moment;
+    blocks[static_cast<std::size_t>(c)] = element.area * kCount[c] * linearised.jacobian;
   }
-  const std::size_t count = stencil.particles.size();
-  for (std::size_t k = 0; k < count; ++k)
-    at.force[static_cast<std::size_t>(stencil.particles[k])] -= moment * stencil.weights[k];
   if (at.matrix == nullptr) return;
+  const std::size_t count = element.particles.size();
   for (std::size_t a = 0; a < count; ++a) {
-    const Vec3& weight = stencil.weights[a];
-    const std::array<Mat3, 3> rows{weight[0] * blocks[0], weight[1] * blocks[1], weight[2] * blocks[2]};
+    const std::array<Mat3, 3> rows{element.weights[a][0] * blocks[0], element.weights[a][1] * blocks[1],
+                                   element.weights[a][2] * blocks[2]};
     for (std::size_t b = 0; b < count; ++b) {
-      const Vec3& w = stencil.weights[b];
-      at.matrix->add(stencil.slots[a * count + b], w[0] * rows[0] + w[1] * rows[1] + w[2] * rows[2]);
+      const Vec3& w = element.weights[b];
+      at.matrix->add(element.slots[a * count + b], w[0] * rows[0] + w[1] * rows[1] + w[2] * rows[2]);
     }
   }
 }

@@ -12,8 +12,7 @@ namespace weft::forces {
 /// taken out along s_u and s_v, so that the rest shape itself has no energy.
 ///
 /// The part without κ is quadratic with a constant, definite Jacobian, as for quads; only triangles with rest curvature
-/// add to it in every evaluation, −B A κ_ab n·s_ab. Viscosity and friction, of the curvature by
-/// compact stencils: see BendDamping.
+/// add to it in every evaluation, −B A κ_ab n·s_ab. Viscosity and friction: see BendDamping.
 class TriangleBend final : public Force {
  public:
   TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters);
@@ -25,20 +24,17 @@ class TriangleBend final : public Force {
   void add_constant_stiffness(solver::BlockMatrix& matrix) const override;
 
  private:
-  struct Stencil {
+  struct Element {
     std::vector<Index> particles;     // corners first
     std::vector<Vec3> weights;        // of s_uu, s_vv and s_uv [1/m²]
+    double area;                      // [m²]
+    Vec3 rest = Vec3::Zero();         // κ_uu, κ_vv, κ_uv [1/m]
     std::vector<solver::Slot> slots;  // row-major over pairs of particles
   };
-  struct Element : Stencil {
-    double area;               // [m²]
-    Vec3 rest = Vec3::Zero();  // κ_uu, κ_vv, κ_uv [1/m]
-    Stencil damped;            // the compact one, where anything is damped
-  };
   /// s_uu, s_vv, s_uv as columns.
-  static Mat3 curvature(const Stencil& stencil, std::span<const Vec3> x);
+  static Mat3 curvature(const Element& element, std::span<const Vec3> x);
   static void find_rest(Element& element, const std::array<Vec2, 3>& material, std::span<const Vec3> rest);
-  void add_damping(const Element& element, const Evaluation& at) const;
+  void add_damping(const Element& element, const Mat3& curvature, const Evaluation& at, Mat3& moment) const;
   void add_rest_moment(const Element& element, const Mat3& curvature, const Evaluation& at) const;
 
   double rigidity_;

@@ -20,9 +20,6 @@ constexpr int kMaxRings = 3;
 constexpr double kMaxCorrection = 1;
 // Rounding of the moments of a stencil whose lengths are about one.
 constexpr double kExact = 1e-9;
-// Size of the weights of a compact stencil by those of the full one from which on the six vertices are taken for lying
-// on a conic.
-constexpr double kLargeWeights = 4;
 
 /// Derivative of a function at the middle of an edge, outward from its first triangle [1/m].
 using Slope = std::vector<std::pair<Index, double>>;
@@ -37,8 +34,6 @@ class Slopes {
 
   const mesh::EdgeSet& edges() const { return edges_; }
   Slope across(const mesh::Edge& edge) const;
-  /// The vertices of a triangle and its neighbours in its plane, its own corners first.
-  std::vector<std::pair<Index, Point>> around(Index triangle) const;
 
  private:
   /// Triangles around an edge, unfolded into the plane of the first.
@@ -91,15 +86,6 @@ void Slopes::add_ring(Patch& patch) const {
   patch.last_ring = last;
   for (std::size_t member = first; member < last; ++member)
     for (std::size_t side = 0; side < 3; ++side) add_neighbour(patch, member, side);
-}
-
-std::vector<std::pair<Index, Point>> Slopes::around(Index triangle) const {
-  Patch patch;
-  patch.triangles.push_back({triangle, {material(triangle, 0), material(triangle, 1), material(triangle, 2)}});
-  for (std::size_t k = 0; k < 3; ++k)
-    patch.vertices.emplace_back(sheet_.triangles[at(triangle)][k], material(triangle, k));
-  for (std::size_t k = 0; k < 3; ++k) add_neighbour(patch, 0, k);
-  return std::move(patch.vertices);
 }
 
 // Starts from the difference of the two vertices opposite the edge, exact for linear functions, and adds the smallest
@@ -208,36 +194,6 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet) {
     for (const auto& [vertex, weight] : weights)
       if (std::find(corners.begin(), corners.end(), vertex) == corners.end() && weight.norm() * area > kExact)
         append(vertex, weight);
-  }
-  return stencils;
-}
-
-std::vector<CurvatureStencil> compact_stencils(const mesh::Sheet& sheet, const std::vector<CurvatureStencil>& full) {
-  const auto size = [](const CurvatureStencil& stencil) {
-    double sum = 0;
-    for (const Vec3& weight : stencil.weights) sum += weight.squaredNorm();
-    return std::sqrt(sum);
-  };
-  const Slopes slopes(sheet);
-  std::vector<CurvatureStencil> stencils = full;
-  for (std::size_t t = 0; t < full.size(); ++t) {
-    const auto vertices = slopes.around(static_cast<Index>(t));
-    if (vertices.size() != 6 || full[t].vertices.size() <= 6) continue;
-    const double unit = std::sqrt(mesh::rest_area(sheet, t));
-    Eigen::Matrix<double, 6, 6> moments;
-    for (Eigen::Index k = 0; k < 6; ++k) {
-      const Point d = (vertices[static_cast<std::size_t>(k)].second - vertices[0].second) / unit;
-      const double u = d.real(), v = d.imag();
-      moments.col(k) << 1, u, v, 0.5 * u * u, 0.5 * v * v, u * v;
-    }
-    const Eigen::Matrix<double, 6, 3> weights =
-        moments.fullPivLu().solve(Eigen::Matrix<double, 6, 6>::Identity().rightCols<3>()) / (unit * unit);
-    CurvatureStencil compact;
-    for (Eigen::Index k = 0; k < 6; ++k) {
-      compact.vertices.push_back(vertices[static_cast<std::size_t>(k)].first);
-      compact.weights.emplace_back(weights.row(k).transpose());
-    }
-    if (size(compact) < kLargeWeights * size(full[t])) stencils[t] = std::move(compact);
   }
   return stencils;
 }

@@ -29,9 +29,4 @@ struct CurvatureStencil {
 /// vanishes (κ_nn = 0, ν = 0).
 std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet);
 
-/// Smaller ones for what needs no exact stiffness: from the quadratic through a triangle's corners and those of its
-/// three neighbours, six vertices instead of about twelve, so that a quarter of the matrix entries change. `full` is
-/// kept along borders and where the six lie nearly on a conic.
-std::vector<CurvatureStencil> compact_stencils(const mesh::Sheet& sheet, const std::vector<CurvatureStencil>& full);
-
 }  // namespace weft::forces
