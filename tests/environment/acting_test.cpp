@@ -205,6 +205,38 @@ TEST_F(Acting, PlaysMeshFilesOneAfterTheOther) {
                         [&] { make_actor(scene_, character_); });
 }
 
+TEST_F(Acting, DressingBeginsWithThePreroll) {
+  character_.dressing = 0.75;
+  character_.blend = 0.5;
+  character_.keys_per_second = 100;
+  const Actor late = make();
+  scene_.time.preroll = 0.48;  // twelve frames
+  const Actor shown = make();
+  for (const double t : {0.2, 0.5, 0.9, 1.3})
+    EXPECT_LT((at(shown, t)[kHigh] - at(late, t + 0.48)[kHigh]).norm(), 1e-3) << t;  // keys at other times
+  EXPECT_EQ(at(shown, -0.48), at(shown, 0.2));
+  EXPECT_GT((at(shown, 1.3)[kHigh] - at(shown, 0)[kHigh]).norm(), 0.5);
+}
+
+TEST_F(Acting, MannequinWalksAndStandsUprightWhicheverAxisIsUp) {
+  character_.source = scene::Mannequin{{}, 1.7, 1, 0, 0.06, 1.5, 1.2, false, 13};
+  scene_.time.duration = 3;
+  const Actor z_up = make_actor(scene_, character_);
+  scene_.up = scene::UpAxis::y;
+  const Actor y_up = make_actor(scene_, character_);
+  for (const double t : {0.0, 1.1, 3.0}) {
+    const std::vector<Vec3> a = at(z_up, t), b = at(y_up, t);
+    for (std::size_t v = 0; v < a.size(); ++v)
+      ASSERT_LT((Vec3(a[v].x(), a[v].z(), -a[v].y()) - b[v]).norm(), 1e-12) << v;
+  }
+  const auto top = [&](double t) {
+    const std::vector<Vec3> x = at(z_up, t);
+    return *std::ranges::max_element(x, {}, [](const Vec3& p) { return p.z(); });
+  };
+  EXPECT_NEAR(top(0).z(), 1.7, 0.06);  // standing, knees a little bent
+  EXPECT_NEAR(top(3).y() - top(0).y(), -1.5, 0.05);
+}
+
 TEST_F(Acting, CharactersOfASceneMoveAsBodiesAfterItsObstacles) {
   scene_.obstacles.emplace_back();
   scene_.obstacles[0].name = "ball";

@@ -164,7 +164,7 @@ const std::vector<Malformed> kMalformed = {
      "\"/none/*.obj\": 0 there\n"},
     {"KeyOfTheOtherSource", "[[character]]\nname = 'a'\nsource = 'sequence'\nloop = true\n",
      "s.toml:1:1: character.a.files: expected a text, got none\n"
-     "s.toml:4:1: character.a.loop: unknown key of a sequence; it belongs to file\n"},
+     "s.toml:4:1: character.a.loop: unknown key of a sequence; it belongs to file or mannequin\n"},
     {"NameOfClothAndObstacle", kBand + "[[obstacle]]\nname = 'band'\nshape = 'box'\n",
      "s.toml:3:8: obstacle.band.name: expected a name used once, got \"band\", which a cloth has\n"},
     {"NameThatIsAPath", "[[cloth]]\nname = '../band'\n",

@@ -114,7 +114,7 @@ TEST_F(EveryKey, OfAClothFillsItsMember) {
 }
 
 TEST_F(EveryKey, OfACharacterFillsItsMember) {
-  ASSERT_EQ(scene_.characters.size(), 2u);
+  ASSERT_EQ(scene_.characters.size(), 3u);
   const Character& character = scene_.characters[0];
   EXPECT_EQ(character.name, "dancer");
   const auto& file = std::get<CharacterFile>(character.source);
@@ -144,6 +144,18 @@ TEST_F(EveryKey, OfACharacterFillsItsMember) {
   const auto& sequence = std::get<MeshSequence>(scene_.characters[1].source);
   EXPECT_EQ(sequence.files, kFolder + "frames/*.obj");
   EXPECT_EQ(sequence.fps, 12);
+}
+
+TEST_F(EveryKey, OfAMannequinFillsItsMember) {
+  const auto& mannequin = std::get<Mannequin>(scene_.characters.at(2).source);
+  EXPECT_EQ(mannequin.height, 1.62);
+  EXPECT_EQ(mannequin.girth, 1.1);
+  EXPECT_EQ(mannequin.masculinity, 0.3);
+  EXPECT_EQ(mannequin.edge_length, 0.03);
+  EXPECT_EQ(mannequin.walk, 3.5);
+  EXPECT_EQ(mannequin.pace, 0.9);
+  EXPECT_TRUE(mannequin.turn_back);
+  EXPECT_EQ(mannequin.arms_out, 21);
 }
 
 TEST_F(EveryKey, OfAPinFillsItsMember) {
@@ -201,7 +213,7 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
   EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
   EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
-  EXPECT_EQ(scene_.obstacles[7].line, 146) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].line, 147) << "where the scene names its file";
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 

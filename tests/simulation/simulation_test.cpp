@@ -319,5 +319,34 @@ TEST(Simulation, RejectedStepIsHalvedUntilItCanBeSolved) {
   EXPECT_EQ(simulation.snapshot()->frame, 4);
 }
 
+TEST(Preroll, IsSimulatedBeforeFrameZeroWhileKeysStand) {
+  scene::Scene scene = sheet_alone(0.6, 5, 2);
+  scene.obstacles.push_back(obstacle("ball", scene::Sphere{0.25}));
+  scene::Obstacle& ball = scene.obstacles[0];
+  ball.motion.keys = {{0.2, {{0, 0, 0}, Quat::Identity()}}, {0.6, {{0.3, 0, 0}, Quat::Identity()}}};
+  Simulation plain(scene);
+  for (int k = 1; k <= 5; ++k) plain.advance();
+
+  scene.time.preroll = 0.2;  // five frames
+  for (scene::PoseKey& key : ball.motion.keys) key.time -= 0.2;
+  Simulation shown(scene);
+  EXPECT_EQ(shown.snapshot()->frame, -5);
+  int asked = 0;
+  EXPECT_FALSE(shown.run_preroll([&] { return ++asked <= 2; }));
+  EXPECT_TRUE(shown.run_preroll());
+  EXPECT_EQ(shown.snapshot()->frame, 0);
+  EXPECT_EQ(shown.initial_report().frame, 0);
+  EXPECT_GT(shown.initial_report().steps, 0);
+  const double fallen = 2 - sheet_of(plain.snapshot())[12].z();
+  EXPECT_NEAR(2 - sheet_of(shown.snapshot())[12].z(), fallen, 1e-13);
+  EXPECT_GT(fallen, 0.19);
+  for (int k = 1; k <= 4; ++k) shown.advance(), plain.advance();
+  EXPECT_EQ(shown.snapshot()->frame, 4);
+  const std::vector<Vec3>&there = shown.snapshot()->states[1].positions, &here = plain.snapshot()->states[1].positions;
+  for (std::size_t i = 0; i < there.size(); ++i) EXPECT_LT((there[i] - here[i]).norm(), 1e-14);
+  EXPECT_TRUE(shown.run_preroll()) << "and then there is none left";
+  EXPECT_EQ(shown.snapshot()->frame, 4);
+}
+
 }  // namespace
 }  // namespace weft::simulation
