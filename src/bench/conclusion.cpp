@@ -66,10 +66,10 @@ class Line {
     if (!std::isfinite(x) || !std::isfinite(y)) return;
     ++n_, x_ += x, y_ += y, xx_ += x * x, xy_ += x * y;
   }
-  // Factor in CPU time for a tenth of the error.
+  // Factor in CPU time for a tenth of the error: "3.6 times", or empty where the line does not tell.
   std::string cost_of_a_digit() const {
     const double spread = n_ * xx_ - x_ * x_, slope = (n_ * xy_ - x_ * y_) / spread;
-    if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "an unknown factor of";
+    if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "";
     return slope < -1.5 ? std::string("more than 30 times") : fmt::format("{:.1f} times", std::pow(10, -slope));
   }
 
@@ -102,15 +102,23 @@ std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
     least = error_of(*run, quantity);
     front.add(*run, quantity);
   }
+  const auto or_unknown = [](const std::string& cost) { return cost.empty() ? std::string("unknown") : cost; };
   std::string each;
-  for (Integrator integrator : {Integrator::implicit_euler, Integrator::implicit_midpoint, Integrator::bdf2})
-    each += fmt::format("{}{} {} and {}", each.empty() ? "" : ", ", name_of(integrator),
-                        digit_of_series(accuracy, Axis::step, integrator, quantity),
-                        digit_of_series(accuracy, Axis::tolerance, integrator, quantity));
+  bool any = false;
+  for (Integrator integrator : {Integrator::implicit_euler, Integrator::implicit_midpoint, Integrator::bdf2}) {
+    const std::string by_step = digit_of_series(accuracy, Axis::step, integrator, quantity),
+                      by_tolerance = digit_of_series(accuracy, Axis::tolerance, integrator, quantity);
+    any = any || !by_step.empty() || !by_tolerance.empty();
+    each += fmt::format("{}{} {} and {}", each.empty() ? "" : ", ", name_of(integrator), or_unknown(by_step),
+                        or_unknown(by_tolerance));
+  }
+  const std::string cheapest = front.cost_of_a_digit();
+  if (cheapest.empty() && !any)
+    return "What one more digit costs is not known: too few runs differ from the reference.";
   return fmt::format(
-      "One more digit costs, along the cheapest settings, {} the CPU time (by integrator, exactly solved steps and "
+      "The CPU time for one more digit, along the cheapest settings: {} (by integrator, exactly solved steps and "
       "tolerances: {}).",
-      front.cost_of_a_digit(), each);
+      or_unknown(cheapest), each);
 }
 
 std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
