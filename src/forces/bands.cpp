@@ -66,7 +66,7 @@ void Bands::add(const Evaluation& at) const {
     at.force[b] -= pull;
     if (at.matrix == nullptr) continue;
     double lateral = 1 - piece.rest / length;
-    if (at.linearisation == Linearisation::definite) lateral = std::max(lateral, 0.0);
+    if (at.linearisation != Linearisation::exact) lateral = std::max(lateral, 0.0);
     const Mat3 hessian =
         piece.stiffness / piece.rest * ((1 - lateral) * n * n.transpose() + lateral * Mat3::Identity());
     at.matrix->add(piece.slots[0], hessian);

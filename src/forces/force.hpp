@@ -16,6 +16,7 @@ namespace weft::forces {
 enum class Linearisation {
   exact,     ///< the Jacobian itself, indefinite under compression and unsymmetric with viscosity
   definite,  ///< made symmetric and positive semidefinite term by term: what conjugate gradients and descent need
+  cautious,  ///< likewise, and stiffer where edges are compressed: shorter steps, where definite ones overshoot
 };
 
 /// One evaluation of the forces at (x, v).

@@ -125,7 +125,7 @@ Mat3 TriangleMembrane::stretch_hessian(double k, const Vec3& s, const Vec3& rate
   const Vec3 n = s / length;
   const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
   double lateral = 1 - 1 / length;
-  if (at.linearisation == Linearisation::definite) lateral = std::max(lateral, 0.0);
+  if (at.linearisation != Linearisation::exact) lateral = std::max(lateral, 0.0);
   Mat3 hessian = (k + at.rate * stretch_.viscosity) * along + (k * lateral) * across;
   if (at.linearisation == Linearisation::exact && stretch_.viscosity > 0)
     hessian += stretch_.viscosity / length * (n * (across * rate).transpose() + n.dot(rate) * across);
@@ -142,7 +142,7 @@ void TriangleMembrane::add_shear_hessian(const Gradient& s, const Gradient& rate
   h.uv += outer * s.v * s.u.transpose();
   h.vu += outer * s.u * s.v.transpose();
   h.vv += outer * s.u * s.u.transpose();
-  if (at.linearisation == Linearisation::definite) {
+  if (at.linearisation != Linearisation::exact) {
     h.uu.diagonal().array() += 0.5 * std::abs(elastic);
     h.vv.diagonal().array() += 0.5 * std::abs(elastic);
     h.uv.diagonal().array() += 0.5 * elastic;

@@ -215,7 +215,7 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
   for (;;) {
     evaluate(now, stage);
     std::fill(force_.begin(), force_.end(), Vec3::Zero());
-    system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, force_, scratch);
+    system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, report.newton_iterations}, force_, scratch);
     cg_.prepare(scratch);
     gather_residual(masses, stage);
     const double before = cg_.norm(residual_), at_rest = weight(masses, gravity);

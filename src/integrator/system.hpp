@@ -21,6 +21,7 @@ struct StagePoint {
   std::span<const Vec3> x_end;  ///< positions at the end of the step that this stage leads to; contacts act there
   double rate = 0;              ///< dv/dx = 1/β [1/s]
   double end_rate = 1;          ///< dx_end/dx: 1, or 2 for the midpoint rule
+  int iteration = 0;            ///< of Newton's method, from 0 in each step
 };
 
 class System {
