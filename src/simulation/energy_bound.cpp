@@ -42,7 +42,6 @@ EnergyBound::EnergyBound(const scene::Scene& scene, const FrameReport& start)
 
 void EnergyBound::check(int frame, const FrameReport& energies) {
   if (!applies_) return;
-  elastic_ = std::max(elastic_, energies.elastic_energy);
   potential_low_ = std::min(potential_low_, energies.potential_energy);
   potential_high_ = std::max(potential_high_, energies.potential_energy);
   const double in_play = moving_ + elastic_ + potential_high_ - potential_low_;

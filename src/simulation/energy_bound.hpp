@@ -20,7 +20,7 @@ class EnergyBound {
   bool applies_;
   scene::Integrator integrator_;
   double start_;                           // mechanical energy [J]
-  double moving_, elastic_;                // kinetic energy of the start, most elastic energy so far [J]
+  double moving_, elastic_;                // kinetic and elastic energy of the start [J]
   double potential_low_, potential_high_;  // so far [J]
 };
 

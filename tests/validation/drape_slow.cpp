@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <vector>
 
 #include "validation/every_frame.hpp"
 
@@ -17,20 +18,15 @@ struct Drape {
   double cpu_s = 0;
 };
 
-/// The sheet falls on the top of the sphere: without noise it stays symmetric for a while, buckles by what rounding
-/// says, and comes to lie anywhere between 0.151 and 0.158 m. With a micrometre of it (1 to 8 µm were tried) it lies at
-/// 0.1527 to 0.1538 m, and with an eighth of the step at 0.1534 to 0.1541 m.
-constexpr double kStartNoise = 1e-6;  // [m]
-
 bool on_border(std::size_t particle, std::size_t n) {
   const std::size_t i = particle % n, j = particle / n;
   return i == 0 || j == 0 || i + 1 == n || j + 1 == n;
 }
 
-Drape drape_with(double step_factor) {
+Drape drape_with(double step_factor, double start_noise = 0) {
   scene::Scene scene = testing::scene_of({"sphere_drape", 1, -1});
   scene.time.step *= step_factor;
-  scene.cloths[0].start_noise = kStartNoise;
+  scene.cloths[0].start_noise = start_noise;
   const auto frames = support::run_scene(scene, {.judged = false});
   Drape drape;
   for (const support::MeasuredFrame& frame : frames) {
@@ -55,11 +51,19 @@ Drape drape_with(double step_factor) {
   return drape;
 }
 
-// The height of the drape is the mean over the whole sheet, 0.152 m: what the folds do with the hem changes from step
-// to step, for the sheet buckles into them.
+// What the folds do with the hem changes from run to run, for the sheet buckles into them: started with noise of some
+// micrometres it comes to lie between 0.1527 and 0.1547 m high, without, symmetric as it is, between 0.151 and 0.158 m.
+double mean_height(double step_factor, const std::vector<double>& start_noises) {
+  double sum = 0;
+  for (double noise : start_noises) sum += drape_with(step_factor, noise).height;
+  return sum / static_cast<double>(start_noises.size());
+}
+
 TEST(Drape, LiesAsHighAsWithAnEighthOfTheStep) {
-  const double fine = drape_with(1.0 / 8).height;
-  EXPECT_NEAR(drape_with(1).height, fine, 0.01 * fine);
+  const double fine = mean_height(1.0 / 8, {1e-6, 2e-6}), shipped = mean_height(1, {1e-6, 2e-6, 4e-6, 8e-6});
+  std::printf("mean height %.6f m, with an eighth of the step %.6f m\n", shipped, fine);
+  // Spread of single runs 0.5 %, so of the difference of these means 0.4 %.
+  EXPECT_NEAR(shipped, fine, 0.01 * fine);
   for (double factor : {2.0, 4.0}) drape_with(factor);  // for their figures
 }
 
