@@ -102,6 +102,16 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
                        "no obstacle moves"));
 }
 
+void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
+  items.push_back(of_cloths(
+      "preparation: sewing", scene, [](const Cloth& c) { return c.shape == scene::ClothShape::pattern; },
+      "no cloth is sewn from a pattern"));
+  const int frames = scene.preroll_frames();
+  items.push_back(when("preparation: preroll", frames > 0,
+                       fmt::format("{} frame{} before the first", frames, frames == 1 ? "" : "s"),
+                       "time.preroll is 0"));
+}
+
 // How much the key frames of characters hold; only their files tell.
 void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   if (scene.characters.empty()) items.push_back({"motion: characters", false, "no character"});
@@ -118,6 +128,7 @@ void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
 
 std::vector<PlanItem> plan(const Scene& scene) {
   std::vector<PlanItem> items;
+  plan_preparation(scene, items);
   plan_forces(scene, items);
   plan_constraints(scene, items);
   plan_collisions(scene, items);
@@ -126,8 +137,9 @@ std::vector<PlanItem> plan(const Scene& scene) {
   const char* method = scene.time.integrator == scene::Integrator::implicit_euler      ? "implicit Euler"
                        : scene.time.integrator == scene::Integrator::implicit_midpoint ? "implicit midpoint"
                                                                                        : "BDF2";
-  items.push_back({"integrator: " + std::string(method), true,
-                   fmt::format("step at most {:.4g} ms, {} fps", 1e3 * scene.time.step, scene.time.fps)});
+  const std::string steps = scene.time.tolerance ? fmt::format("error of a step {:g} m", *scene.time.tolerance)
+                                                 : fmt::format("step at most {:.4g} ms", 1e3 * scene.time.step);
+  items.push_back({"integrator: " + std::string(method), true, fmt::format("{}, {} fps", steps, scene.time.fps)});
   items.push_back(when("render: heat colours", scene.render.heat != scene::HeatQuantity::none,
                        scene.render.heat == scene::HeatQuantity::strain ? "strain" : "speed", "render.heat is none"));
   const bool camera = !scene.cameras.empty();

@@ -308,6 +308,11 @@ TEST_F(Program, PlanNamesWhatIsLeftOut) {
   EXPECT_TRUE(contains(with.out, "\n  uses ")) << with.out;
   EXPECT_TRUE(contains(without.out, "\n  leaves out ")) << without.out;
   EXPECT_NE(with.out, without.out);
+  const Outcome prepared =
+      run_weft({"check", "--plan", "s.toml", "--set", "time.preroll=0.2", "--set", "time.tolerance=0.001"}, folder_);
+  EXPECT_TRUE(contains(with.out, "time.preroll is 0")) << with.out;
+  EXPECT_TRUE(contains(prepared.out, "2 frames before the first")) << prepared.out;
+  EXPECT_TRUE(contains(prepared.out, "error of a step 0.001 m")) << prepared.out;
 }
 
 TEST_F(Program, ThumbnailDrawsTheFrameThatWasAskedFor) {
