@@ -203,9 +203,7 @@ TEST(Conclusion, NamesTheCheapestSettingForEachAccuracyAndTheCostOfADigit) {
   EXPECT_NE(text.find("0.001 m: implicit_midpoint, step 5 ms, newton_tolerance 0.1 (16 CPU s)"), std::string::npos)
       << text;
   // A digit: ten times the steps with Euler, √10 times with midpoint.
-  EXPECT_NE(text.find("implicit_euler 10.0 times and unknown, implicit_midpoint 3.2 times"),
-            std::string::npos)
-      << text;
+  EXPECT_NE(text.find("implicit_euler 10.0 times and unknown, implicit_midpoint 3.2 times"), std::string::npos) << text;
 }
 
 TEST(Conclusion, DoesNotPromiseWhatTheReferenceDoesNotKnow) {
