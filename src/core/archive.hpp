@@ -1,0 +1,64 @@
+// Values to plain bytes and back. A type is described once, as `template <class Archive> void exchange(Archive&, T&)`,
+// so that writing and reading cannot differ.
+#pragma once
+
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace weft {
+
+/// Appends what it is called with, in the byte order of this machine.
+struct ByteWriter {
+  std::string bytes;
+
+  void raw(const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }
+  /// Plain values without padding, which would be bytes that nobody has set.
+  template <class T>
+  void value(T& value) {
+    raw(&value, sizeof value);
+  }
+  template <class List>
+  void size(List& list) {
+    const std::size_t count = list.size();
+    raw(&count, sizeof count);
+  }
+};
+
+/// Fills what it is called with. Throws std::runtime_error where the bytes are too few.
+struct ByteReader {
+  std::string_view bytes;
+
+  void raw(void* data, std::size_t size) {
+    if (bytes.size() < size) throw std::runtime_error("the data was cut short");
+    if (size > 0) std::memcpy(data, bytes.data(), size);
+    bytes.remove_prefix(size);
+  }
+  template <class T>
+  void value(T& value) {
+    raw(static_cast<void*>(&value), sizeof value);
+  }
+  template <class List>
+  void size(List& list) {
+    std::size_t count = 0;
+    raw(&count, sizeof count);
+    if (count > bytes.size()) throw std::runtime_error("the data was cut short");  // each takes a byte or more
+    list.resize(count);
+  }
+};
+
+/// A list of plain values, or a text.
+template <class Archive, class List>
+void exchange_plain(Archive& archive, List& list) {
+  archive.size(list);
+  if (!list.empty()) archive.raw(static_cast<void*>(list.data()), list.size() * sizeof list[0]);
+}
+
+template <class Archive, class List, class Exchange>
+void exchange_each(Archive& archive, List& list, const Exchange& exchange_one) {
+  archive.size(list);
+  for (auto& entry : list) exchange_one(entry);
+}
+
+}  // namespace weft
