@@ -20,7 +20,7 @@ struct ByteWriter {
     raw(&value, sizeof value);
   }
   template <class List>
-  void size(List& list) {
+  void size(List& list, std::size_t = 1) {
     const std::size_t count = list.size();
     raw(&count, sizeof count);
   }
@@ -39,11 +39,12 @@ struct ByteReader {
   void value(T& value) {
     raw(static_cast<void*>(&value), sizeof value);
   }
+  /// Each entry takes `least` bytes or more: no more memory is asked for than the bytes can fill.
   template <class List>
-  void size(List& list) {
+  void size(List& list, std::size_t least = 1) {
     std::size_t count = 0;
     raw(&count, sizeof count);
-    if (count > bytes.size()) throw std::runtime_error("the data was cut short");  // each takes a byte or more
+    if (count > bytes.size() / least) throw std::runtime_error("the data was cut short");
     list.resize(count);
   }
 };
@@ -51,13 +52,13 @@ struct ByteReader {
 /// A list of plain values, or a text.
 template <class Archive, class List>
 void exchange_plain(Archive& archive, List& list) {
-  archive.size(list);
+  archive.size(list, sizeof list[0]);
   if (!list.empty()) archive.raw(static_cast<void*>(list.data()), list.size() * sizeof list[0]);
 }
 
 template <class Archive, class List, class Exchange>
-void exchange_each(Archive& archive, List& list, const Exchange& exchange_one) {
-  archive.size(list);
+void exchange_each(Archive& archive, List& list, const Exchange& exchange_one, std::size_t least = 1) {
+  archive.size(list, least);
   for (auto& entry : list) exchange_one(entry);
 }
 

@@ -41,6 +41,15 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
+// Without it a crash of the machine soon after the rename can leave an empty file under the final name.
+int flush_to_disk(const std::filesystem::path& file) {
+  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) return errno;
+  const int error = ::fsync(descriptor) != 0 && errno != EINVAL ? errno : 0;
+  ::close(descriptor);
+  return error;
+}
+
 }  // namespace
 
 TemporaryFile::TemporaryFile(std::filesystem::path final_name) : final_name_(std::move(final_name)) {
@@ -68,14 +77,8 @@ TemporaryFile::~TemporaryFile() {
   if (slot_ >= 0) g_slots[static_cast<std::size_t>(slot_)].state.store(Slot::free);
 }
 
-void TemporaryFile::commit() {
-  // Without the flush a crash of the machine soon after the rename can leave an empty file under the final name.
-  const int descriptor = ::open(path_.c_str(), O_RDONLY | O_CLOEXEC);
-  int error = descriptor < 0 ? errno : 0;
-  if (descriptor >= 0) {
-    if (::fsync(descriptor) != 0 && errno != EINVAL) error = errno;
-    ::close(descriptor);
-  }
+void TemporaryFile::commit(Flush flush) {
+  int error = flush == Flush::yes ? flush_to_disk(path_) : 0;
   if (error == 0 && std::rename(path_.c_str(), final_name_.c_str()) != 0) error = errno;
   if (error != 0)
     throw Error(ExitCode::output_failed, "{}: cannot be written: {}", final_name_.string(), reason(error));
@@ -89,14 +92,14 @@ void remove_temporary_files() noexcept {
   }
 }
 
-void write_file(const std::filesystem::path& file, std::string_view content) {
+void write_file(const std::filesystem::path& file, std::string_view content, Flush flush) {
   TemporaryFile temporary(file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(temporary.path().c_str(), "wbe"),
                                                             [](std::FILE* f) { return std::fclose(f); });
   bool good = out && std::fwrite(content.data(), 1, content.size(), out.get()) == content.size();
   good = good && std::fflush(out.get()) == 0;
   if (!good) throw Error(ExitCode::output_failed, "{}: cannot be written: {}", file.string(), reason(errno));
-  temporary.commit();
+  temporary.commit(flush);
 }
 
 }  // namespace weft

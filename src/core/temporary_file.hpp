@@ -6,6 +6,10 @@
 
 namespace weft {
 
+/// Whether a file must be on the disk, not only in the system's memory, before it gets its name. Without it a process
+/// that dies leaves whole files all the same; a machine that dies may leave empty ones, so the reader has to notice.
+enum class Flush { yes, no };
+
 /// A name beside the final one to write to first: `.<name>.<process>.tmp` in the same folder, so that the rename stays
 /// within one file system. Unless committed, the file is removed by the destructor, and by remove_temporary_files().
 class TemporaryFile {
@@ -18,9 +22,8 @@ class TemporaryFile {
 
   const std::filesystem::path& path() const { return path_; }
 
-  /// Flushes the closed file to disk and gives it its final name, replacing what was there. Throws
-  /// Error(output_failed).
-  void commit();
+  /// Gives the closed file its final name, replacing what was there. Throws Error(output_failed).
+  void commit(Flush flush = Flush::yes);
 
  private:
   std::filesystem::path final_name_, path_;
@@ -31,6 +34,6 @@ class TemporaryFile {
 void remove_temporary_files() noexcept;
 
 /// Writes `content` to `file` through a TemporaryFile. Throws Error(output_failed) with the system's reason.
-void write_file(const std::filesystem::path& file, std::string_view content);
+void write_file(const std::filesystem::path& file, std::string_view content, Flush flush = Flush::yes);
 
 }  // namespace weft

@@ -1,0 +1,45 @@
+// The form that all binary files of a frame cache share. Little endian:
+//
+//   offset  size  what
+//        0     8  89 57 45 46 54 0D 0A 1A ("\x89WEFT\r\n\x1A": text tools and line-end conversions show at once)
+//        8     4  format version, kFormatVersion
+//       12     4  kind: 1 surfaces, 2 frame, 3 state
+//       16     4  frame k, signed (0 for surfaces; the state of a preroll is below 0)
+//       20     4  reserved, 0
+//       24     8  scene hash
+//       32     8  size of the payload
+//       40     8  size of the payload as stored
+//       48     8  XXH3 (64 bits) of bytes 0 to 47 and of the stored payload
+//       56     -  the payload, one frame of Zstandard (RFC 8878)
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+namespace weft::cache {
+
+inline constexpr std::uint32_t kFormatVersion = 1;
+
+enum class Kind : std::uint32_t { surfaces = 1, frame = 2, state = 3 };
+
+struct Label {
+  Kind kind = Kind::surfaces;
+  std::int32_t frame = 0;
+  std::uint64_t scene_hash = 0;
+};
+
+struct Content {
+  Label label;
+  std::string payload;
+};
+
+std::string pack(const Label& label, std::string_view payload);
+
+/// All but the payload's own meaning is checked. Throws std::runtime_error, which says what is wrong.
+Content unpack(std::string_view bytes);
+
+/// The same without unpacking: sizes and checksum. Throws std::runtime_error.
+Label verify(std::string_view bytes);
+
+}  // namespace weft::cache

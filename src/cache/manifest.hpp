@@ -1,0 +1,34 @@
+// What a frame cache is of, readable by people and scripts: `manifest.json`.
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "frame/frame_report.hpp"
+
+namespace weft::cache {
+
+struct Manifest {
+  std::string scene;  ///< its name
+  std::string title;  ///< may be empty
+  std::uint64_t scene_hash = 0;
+  double fps = 25;
+  int frame_count = 1;               ///< of the scene; the cache may hold fewer
+  int preroll_frames = 0;            ///< simulated before frame 0 and not kept
+  int width = 1280, height = 720;    ///< of pictures where the command line does not say [pixels]
+  std::string camera;                ///< likewise; may be empty
+  std::vector<std::string> cameras;  ///< names
+  std::string weft_version, cpu_target;
+  std::string program;  ///< tells builds apart; only the very same program can go on where this one stopped
+  std::vector<frame::ObjectInfo> objects;
+};
+
+std::string manifest_text(const Manifest& manifest);
+
+/// Throws std::runtime_error, which says what is wrong.
+Manifest parse_manifest(std::string_view text);
+
+}  // namespace weft::cache

@@ -1,0 +1,135 @@
+#include "cache/reader.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <new>
+#include <system_error>
+#include <utility>
+
+#include "cache/names.hpp"
+#include "core/error.hpp"
+
+namespace weft::cache {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string read_file(const fs::path& file) {
+  std::error_code error;
+  const std::uintmax_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
+  std::ifstream in(file, std::ios::binary);
+  if (error || !in)
+    throw Error(ExitCode::asset_unreadable, "{}: cannot be read: {}", file.string(),
+                error ? error.message() : std::strerror(errno));
+  std::string bytes(size, '\0');
+  if (!in.read(bytes.data(), static_cast<std::streamsize>(size)))
+    throw Error(ExitCode::asset_unreadable, "{}: cannot be read", file.string());
+  return bytes;
+}
+
+// Names the file in what `read` finds wrong with it.
+template <class Read>
+auto blame(const fs::path& file, const Read& read) {
+  try {
+    return read();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw Error(ExitCode::asset_unreadable, "{}: too large for the memory of this machine", file.string());
+  } catch (const std::exception& error) {
+    throw Error(ExitCode::asset_unreadable, "{}: broken: {}", file.string(), error.what());
+  }
+}
+
+}  // namespace
+
+bool is_cache(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_regular_file(folder / kManifestFile, ignored);
+}
+
+Reader::Reader(fs::path folder) : folder_(std::move(folder)) {
+  if (!is_cache(folder_))
+    throw Error(ExitCode::asset_unreadable, "{}: expected a frame cache, a folder with a {}; weft simulate makes one",
+                folder_.string(), kManifestFile);
+  const fs::path manifest = folder_ / kManifestFile, surfaces = folder_ / kSurfacesFile;
+  manifest_ = blame(manifest, [&] { return parse_manifest(read_file(manifest)); });
+  if (!fs::exists(surfaces)) throw Error(ExitCode::asset_unreadable, "{}: holds no frame yet", folder_.string());
+  surfaces_ = blame(surfaces, [&] { return decode_surfaces(read_part(kSurfacesFile, Kind::surfaces, 0)); });
+  blame(surfaces, [&] { check_objects(); });
+}
+
+void Reader::check_objects() const {
+  const bool same = std::equal(manifest_.objects.begin(), manifest_.objects.end(), surfaces_.surfaces.begin(),
+                               surfaces_.surfaces.end(), [](const auto& object, const auto& surface) {
+                                 return object.name == surface->name && object.kind == surface->kind;
+                               });
+  if (!same) throw std::runtime_error("its objects are not those of the manifest");
+  for (std::size_t i = 0; i < manifest_.objects.size(); ++i)
+    if (manifest_.objects[i].vertices != surfaces_.positions[i].size())
+      throw std::runtime_error(fmt::format("expected {} vertices of '{}' as in the manifest, got {}",
+                                           manifest_.objects[i].vertices, manifest_.objects[i].name,
+                                           surfaces_.positions[i].size()));
+}
+
+std::string Reader::read_part(const char* name, Kind kind, std::optional<int> frame, Label* label) const {
+  const fs::path file = folder_ / name;
+  return blame(file, [&] {
+    Content content = unpack(read_file(file));
+    if (content.label.scene_hash != manifest_.scene_hash)
+      throw std::runtime_error(fmt::format("expected a file of scene {:016x}, got one of {:016x}", manifest_.scene_hash,
+                                           content.label.scene_hash));
+    if (content.label.kind != kind || (frame && content.label.frame != *frame))
+      throw std::runtime_error("it is another file of the cache under this name");
+    if (label != nullptr) *label = content.label;
+    return std::move(content.payload);
+  });
+}
+
+std::string Reader::scene_text() const {
+  return read_file(folder_ / kSceneFile);
+}
+
+std::vector<int> Reader::frames() const {
+  std::vector<int> frames;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder_, error), end; !error && entry != end; entry.increment(error)) {
+    const std::optional<int> frame = frame_of(entry->path().filename().string());
+    if (frame && *frame < manifest_.frame_count) frames.push_back(*frame);
+  }
+  if (error) throw Error(ExitCode::asset_unreadable, "{}: cannot be read: {}", folder_.string(), error.message());
+  std::sort(frames.begin(), frames.end());
+  return frames;
+}
+
+bool Reader::has(int frame) const {
+  std::error_code ignored;
+  return frame >= 0 && frame < manifest_.frame_count && fs::is_regular_file(folder_ / frame_file(frame), ignored);
+}
+
+CachedFrame Reader::read(int frame) const {
+  const std::string name = frame_file(frame);
+  const std::string payload = read_part(name.c_str(), Kind::frame, frame);
+  return blame(folder_ / name, [&] { return decode_frame(payload, frame, surfaces_); });
+}
+
+void Reader::verify(int frame) const {
+  const fs::path file = folder_ / frame_file(frame);
+  blame(file, [&] {
+    const Label label = cache::verify(read_file(file));
+    if (label.scene_hash != manifest_.scene_hash || label.kind != Kind::frame || label.frame != frame)
+      throw std::runtime_error("it is another file under this name");
+  });
+}
+
+std::optional<SolverState> Reader::state() const {
+  std::error_code ignored;
+  if (!fs::exists(folder_ / kStateFile, ignored)) return std::nullopt;
+  Label label;
+  std::string bytes = read_part(kStateFile, Kind::state, std::nullopt, &label);
+  return SolverState{label.frame, std::move(bytes)};
+}
+
+}  // namespace weft::cache

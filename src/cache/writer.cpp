@@ -1,0 +1,134 @@
+#include "cache/writer.hpp"
+
+#include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "cache/container.hpp"
+#include "cache/names.hpp"
+#include "cache/reader.hpp"
+#include "core/error.hpp"
+#include "core/temporary_file.hpp"
+
+namespace weft::cache {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool is_temporary(const std::string& name) {
+  return name.starts_with('.') && name.ends_with(".tmp");
+}
+
+bool is_ours(const std::string& name) {
+  return name == kManifestFile || name == kSceneFile || name == kSurfacesFile || name == kStateFile ||
+         name == kLockFile || frame_of(name) || is_temporary(name);
+}
+
+std::vector<std::string> names_in(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    names.push_back(entry->path().filename().string());
+  if (error) throw Error(ExitCode::output_failed, "{}: cannot be read: {}", folder.string(), error.message());
+  return names;
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  fs::create_directories(folder, error);
+  if (error || !fs::is_directory(folder))
+    throw Error(ExitCode::output_failed, "{}: cannot make the folder: {}", folder.string(),
+                error ? error.message() : "there is a file of this name");
+  for (const std::string& name : names_in(folder))
+    if (!is_ours(name))
+      throw Error(ExitCode::output_failed, "{}: holds {}, which is no part of a frame cache; give another folder",
+                  folder.string(), name);
+}
+
+bool same_file(int descriptor, const fs::path& path) {
+  struct stat open {
+  }, named{};
+  return ::fstat(descriptor, &open) == 0 && ::stat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
+         open.st_dev == named.st_dev;
+}
+
+}  // namespace
+
+Lock::Lock(fs::path folder) : folder_(std::move(folder)) {
+  const fs::path file = folder_ / kLockFile;
+  do {
+    if (descriptor_ >= 0) ::close(descriptor_);
+    make_folder(folder_);
+    descriptor_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+    if (descriptor_ < 0)
+      throw Error(ExitCode::output_failed, "{}: cannot be written: {}", file.string(), std::strerror(errno));
+    if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0) {
+      const int error = errno;
+      ::close(descriptor_);
+      if (error == EWOULDBLOCK)
+        throw Error(ExitCode::output_failed,
+                    "{}: another process is at work on it; wait for its end, or give another name", folder_.string());
+      throw Error(ExitCode::output_failed, "{}: cannot be locked: {}", file.string(), std::strerror(error));
+    }
+    // The one who had it may have taken the folder away in between.
+  } while (!same_file(descriptor_, file));
+  for (const std::string& name : names_in(folder_))
+    if (is_temporary(name)) ::unlink((folder_ / name).c_str());  // of a process that was killed
+}
+
+Lock::~Lock() {
+  ::close(descriptor_);
+}
+
+bool Lock::empty() const {
+  const std::vector<std::string> names = names_in(folder_);
+  return names.empty() || (names.size() == 1 && names[0] == kLockFile);
+}
+
+void Lock::clear() const {
+  ::unlink((folder_ / kManifestFile).c_str());
+  for (const std::string& name : names_in(folder_))
+    if (name != kLockFile && is_ours(name)) ::unlink((folder_ / name).c_str());
+}
+
+void Lock::remove() const {
+  clear();
+  ::unlink((folder_ / kLockFile).c_str());
+  ::rmdir(folder_.c_str());
+}
+
+Writer::Writer(const Lock& lock, Manifest manifest, std::string_view scene_text)
+    : folder_(lock.folder()), manifest_(std::move(manifest)) {
+  write(kSceneFile, std::string(scene_text));
+  write(kManifestFile, manifest_text(manifest_));
+}
+
+void Writer::add(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report) {
+  if (snapshot.frame == 0) {
+    surfaces_ = surfaces_of(snapshot);
+    write(kSurfacesFile, pack({Kind::surfaces, 0, manifest_.scene_hash}, encode_surfaces(*surfaces_)));
+  } else if (!surfaces_) {
+    surfaces_ = surfaces_of(*Reader(folder_).snapshot(0));
+  }
+  write(frame_file(snapshot.frame),
+        pack({Kind::frame, snapshot.frame, manifest_.scene_hash}, encode_frame(snapshot, report, *surfaces_)));
+}
+
+void Writer::save_state(int frame, std::string_view bytes) {
+  write(kStateFile, pack({Kind::state, frame, manifest_.scene_hash}, bytes));
+}
+
+void Writer::write(const std::string& name, const std::string& content) {
+  // Readers find out by the checksum where the machine died before the disk had it all.
+  write_file(folder_ / name, content, Flush::no);
+  bytes_written_ += content.size();
+}
+
+}  // namespace weft::cache

@@ -1,0 +1,41 @@
+// What is known of a frame and of its objects besides how they look: for statistics and plots.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "frame/frame_snapshot.hpp"
+
+namespace weft::frame {
+
+/// What the computation of one frame took and found.
+struct FrameReport {
+  int frame = 0;
+  double time = 0;  ///< [s]
+  double simulate_wall_s = 0, simulate_cpu_s = 0;
+  double collide_wall_s = 0, collide_cpu_s = 0;  ///< part of simulate
+  int steps = 0;                                 ///< accepted
+  int rejected_steps = 0;                        ///< done again, shorter
+  int inexact_steps = 0;                         ///< accepted although their error was above time.tolerance
+  double error_estimate = 0;  ///< sum over the steps of what each adds to the error of positions [m], estimated
+  int newton_iterations = 0;
+  int linear_iterations = 0;
+  int proximities = 0;          ///< pairs of features within 1.5 contact ranges at the start of the last step
+  int constraints = 0;          ///< contacts and pins that acted in the last step
+  double min_distance = 0;      ///< least distance of two surfaces then [m]; infinite if none is within that
+  double max_strain = 0;        ///< largest |length / rest length - 1| of a weft or warp edge
+  double kinetic_energy = 0;    ///< [J]
+  double potential_energy = 0;  ///< of gravity, zero at the origin [J]
+  double elastic_energy = 0;    ///< stretch, shear and bending [J]
+  int pinched_pairs = 0;        ///< most triangles of cloth at once that have no room and are in an obstacle
+  std::vector<std::string>
+      pinches;  ///< those that begin: "frame 37: 'sheet' has no room between ..., near (x, y, z) m"
+};
+
+struct ObjectInfo {
+  std::string name;
+  ObjectKind kind;
+  std::size_t vertices = 0, faces = 0;
+};
+
+}  // namespace weft::frame

@@ -1,0 +1,227 @@
+// Frames to bytes and back, and what comes of bytes that are no frames.
+#include "cache/codec.hpp"
+
+#include <gtest/gtest.h>
+#include <xxhash.h>
+#include <zstd.h>
+
+#include "cache/container.hpp"
+#include "cache/sample.hpp"
+
+namespace weft::cache {
+namespace {
+
+void expect_broken(std::string_view words, const auto& action) {
+  try {
+    action();
+    ADD_FAILURE() << "accepted; expected: " << words;
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string_view(error.what()).find(words), std::string_view::npos) << error.what();
+  }
+}
+
+template <class T>
+T value_at(std::string_view bytes, std::size_t offset) {
+  T value;
+  std::memcpy(&value, bytes.data() + offset, sizeof value);
+  return value;
+}
+
+TEST(Codec, SurfacesComeBackAsTheyWere) {
+  const Sample sample;
+  const Surfaces read = decode_surfaces(encode_surfaces(surfaces_of(*sample.snapshot(0))));
+  EXPECT_EQ(read.stage->up, sample.stage->up);
+  EXPECT_EQ(read.stage->sky_color, sample.stage->sky_color);
+  EXPECT_EQ(read.stage->ground_color, sample.stage->ground_color);
+  EXPECT_EQ(read.stage->sky_intensity, sample.stage->sky_intensity);
+  EXPECT_EQ(read.stage->heat, sample.stage->heat);
+  EXPECT_EQ(read.stage->heat_max, sample.stage->heat_max);
+  ASSERT_EQ(read.surfaces.size(), 2u);
+  for (std::size_t s = 0; s < 2; ++s) {
+    const frame::Surface &a = *sample.surfaces[s], &b = *read.surfaces[s];
+    EXPECT_EQ(a.name, b.name);
+    EXPECT_EQ(a.kind, b.kind);
+    EXPECT_EQ(a.visible, b.visible);
+    EXPECT_EQ(a.infinite_floor, b.infinite_floor);
+    EXPECT_EQ(a.triangles, b.triangles);
+    EXPECT_EQ(a.quads, b.quads);
+    EXPECT_EQ(a.uv, b.uv);
+    EXPECT_EQ(a.crease_angle, b.crease_angle);
+    EXPECT_EQ(a.appearance.color, b.appearance.color);
+    EXPECT_EQ(a.appearance.back_color, b.appearance.back_color);
+    EXPECT_EQ(a.appearance.roughness, b.appearance.roughness);
+    EXPECT_EQ(a.appearance.thread_spacing, b.appearance.thread_spacing);
+    EXPECT_EQ(a.appearance.checker, b.appearance.checker);
+  }
+}
+
+TEST(Codec, FramesComeBackBitForBit) {
+  const Sample sample;
+  const Surfaces surfaces = surfaces_of(*sample.snapshot(0));
+  for (const int k : {0, 1, 2}) {
+    const frame::SnapshotPtr a = sample.snapshot(k);
+    const CachedFrame cached = decode_frame(encode_frame(*a, sample.report(k), surfaces), k, surfaces);
+    const frame::FrameSnapshot& b = *cached.snapshot;
+    EXPECT_EQ(b.frame, k);
+    EXPECT_EQ(a->time, b.time);
+    ASSERT_EQ(b.states.size(), 2u);
+    for (std::size_t s = 0; s < 2; ++s) {
+      EXPECT_TRUE(same_bits(a->states[s].positions, b.states[s].positions)) << s;
+      EXPECT_TRUE(same_bits(a->states[s].heat, b.states[s].heat)) << s;
+    }
+    ASSERT_EQ(b.cameras.size(), 2u);
+    EXPECT_EQ(a->cameras[0].name, b.cameras[0].name);
+    EXPECT_EQ(a->cameras[0].position, b.cameras[0].position);
+    EXPECT_EQ(a->cameras[0].target, b.cameras[0].target);
+    EXPECT_EQ(a->cameras[1].field_of_view, b.cameras[1].field_of_view);
+    ASSERT_EQ(b.lights.size(), 1u);
+    EXPECT_EQ(a->lights[0].name, b.lights[0].name);
+    EXPECT_EQ(a->lights[0].kind, b.lights[0].kind);
+    EXPECT_EQ(a->lights[0].direction, b.lights[0].direction);
+    EXPECT_EQ(a->lights[0].position, b.lights[0].position);
+    EXPECT_EQ(a->lights[0].target, b.lights[0].target);
+    EXPECT_EQ(a->lights[0].cone_angle, b.lights[0].cone_angle);
+    EXPECT_EQ(a->lights[0].color, b.lights[0].color);
+    EXPECT_EQ(a->lights[0].intensity, b.lights[0].intensity);
+    EXPECT_EQ(a->lights[0].softness, b.lights[0].softness);
+    const frame::FrameReport &before = sample.report(k), &after = cached.report;
+    EXPECT_EQ(before.frame, after.frame);
+    EXPECT_EQ(before.time, after.time);
+    EXPECT_EQ(before.simulate_cpu_s, after.simulate_cpu_s);
+    EXPECT_EQ(before.steps, after.steps);
+    EXPECT_EQ(before.newton_iterations, after.newton_iterations);
+    EXPECT_EQ(before.min_distance, after.min_distance);
+    EXPECT_EQ(before.elastic_energy, after.elastic_energy);
+    EXPECT_EQ(before.pinched_pairs, after.pinched_pairs);
+    EXPECT_EQ(before.pinches, after.pinches);
+  }
+}
+
+// A field that is left out of exchange(FrameReport) leaves the report as long as before this one was added.
+TEST(Codec, ReportHasNoFieldThatIsForgotten) {
+  EXPECT_EQ(sizeof(frame::FrameReport), 160u)
+      << "FrameReport has changed: exchange(FrameReport) in codec.cpp and kFormatVersion have to follow";
+}
+
+TEST(Codec, WhatHasNotMovedTakesTwoBytes) {
+  const Sample sample;
+  frame::FrameSnapshot resting = *sample.snapshot(0);
+  const Surfaces surfaces = surfaces_of(resting);
+  const std::string moved = encode_frame(*sample.snapshot(2), {}, surfaces);
+  EXPECT_EQ(moved.size() - encode_frame(resting, {}, surfaces).size(), 4 * sizeof(Vec3));
+  resting.states[0].positions[2].x() = -resting.states[0].positions[2].x();
+  EXPECT_EQ(moved.size(), encode_frame(resting, {}, surfaces).size());
+}
+
+TEST(Codec, PositionsAreStoredInPlanesOfEqualBytes) {
+  const Sample sample;
+  const frame::SnapshotPtr snapshot = sample.snapshot(2);
+  const std::string payload = encode_frame(*snapshot, {}, surfaces_of(*sample.snapshot(0)));
+  // At the end: planes of the cloth's positions, 1, planes of its heat, and 0, 0 for the floor.
+  const std::string_view planes = std::string_view(payload).substr(payload.size() - 2 - 16 - 1 - 96, 96);
+  const auto* bytes = reinterpret_cast<const char*>(snapshot->states[0].positions.data());
+  for (std::size_t vertex = 0; vertex < 4; ++vertex)
+    for (std::size_t byte = 0; byte < 24; ++byte) EXPECT_EQ(planes[byte * 4 + vertex], bytes[vertex * 24 + byte]);
+}
+
+TEST(Container, HeaderIsLaidOutAsDocumented) {
+  std::string payload = "payload payload payload payload";
+  const std::string bytes = pack({Kind::state, -7, kSampleHash}, payload);
+  EXPECT_EQ(bytes.substr(0, 8), "\x89WEFT\r\n\x1A");
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 8), kFormatVersion);
+  EXPECT_EQ(value_at<std::uint32_t>(bytes, 12), 3u);
+  EXPECT_EQ(value_at<std::int32_t>(bytes, 16), -7);
+  EXPECT_EQ(value_at<std::uint64_t>(bytes, 24), kSampleHash);
+  EXPECT_EQ(value_at<std::uint64_t>(bytes, 32), payload.size());
+  EXPECT_EQ(value_at<std::uint64_t>(bytes, 40), bytes.size() - 56);
+  EXPECT_EQ(value_at<std::uint64_t>(bytes, 48), [&] {
+    const std::string checked = bytes.substr(0, 48) + bytes.substr(56);
+    return XXH3_64bits(checked.data(), checked.size());
+  }());
+  std::string unpacked(payload.size(), ' ');
+  EXPECT_EQ(ZSTD_decompress(unpacked.data(), unpacked.size(), bytes.data() + 56, bytes.size() - 56), payload.size());
+  EXPECT_EQ(unpacked, payload);
+  EXPECT_EQ(unpack(bytes).payload, payload);
+  EXPECT_EQ(unpack(bytes).label.frame, -7);
+  EXPECT_EQ(unpack(pack({}, "")).payload, "");
+}
+
+TEST(Container, EveryTruncationAndEveryFlippedBitIsFound) {
+  const Sample sample;
+  const std::string good = pack({Kind::surfaces, 0, kSampleHash}, encode_surfaces(surfaces_of(*sample.snapshot(0))));
+  for (std::size_t size = 0; size < good.size(); ++size)
+    EXPECT_THROW(unpack(std::string_view(good).substr(0, size)), std::runtime_error) << size;
+  EXPECT_THROW(unpack(good + "x"), std::runtime_error);
+  for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+    std::string bad = good;
+    bad[bit / 8] = static_cast<char>(bad[bit / 8] ^ (1 << (bit % 8)));
+    EXPECT_THROW(unpack(bad), std::runtime_error) << bit;
+    EXPECT_THROW(verify(bad), std::runtime_error) << bit;
+  }
+}
+
+// Header and checksum right, promises wrong.
+TEST(Container, PromisedSizeIsNotBelieved) {
+  for (const std::uint64_t size : {std::uint64_t{0}, std::uint64_t{4}, std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+    std::string bytes = pack({}, "12345");
+    std::memcpy(bytes.data() + 32, &size, 8);
+    const std::string checked = bytes.substr(0, 48) + bytes.substr(56);
+    const std::uint64_t checksum = XXH3_64bits(checked.data(), checked.size());
+    std::memcpy(bytes.data() + 48, &checksum, 8);
+    expect_broken("size of its content", [&] { unpack(bytes); });
+  }
+}
+
+TEST(Codec, SurfacesThatMakeNoSenseAreRefused) {
+  const Sample sample;
+  const auto refuse = [&](const char* words, const auto& spoil) {
+    Surfaces surfaces = surfaces_of(*sample.snapshot(0));
+    auto surface = std::make_shared<frame::Surface>(*surfaces.surfaces[0]);
+    spoil(*surface, surfaces.positions[0]);
+    surfaces.surfaces[0] = surface;
+    expect_broken(words, [&] { decode_surfaces(encode_surfaces(surfaces)); });
+  };
+  using Positions = std::vector<Vec3>;
+  refuse("a vertex that is not there", [](frame::Surface& s, Positions&) { s.triangles[1][2] = 4; });
+  refuse("a vertex that is not there", [](frame::Surface& s, Positions&) { s.triangles[1][0] = -1; });
+  refuse("a vertex that is not there", [](frame::Surface& s, Positions&) { s.quads[0][3] = 4; });
+  refuse("one (u, v) per vertex", [](frame::Surface& s, Positions&) { s.uv.pop_back(); });
+  refuse("(u, v) is not finite", [](frame::Surface& s, Positions&) { s.uv[0].x() = NAN; });
+  refuse("position is not finite", [](frame::Surface&, Positions& p) { p[0].x() = NAN; });
+  refuse("not finite", [](frame::Surface& s, Positions&) { s.appearance.roughness = INFINITY; });
+  refuse("name of a surface", [](frame::Surface& s, Positions&) { s.name = "../../etc/passwd"; });
+  refuse("name of a surface", [](frame::Surface& s, Positions&) { s.name = ""; });
+  refuse("stands for nothing", [](frame::Surface& s, Positions&) { s.kind = static_cast<frame::ObjectKind>(3); });
+}
+
+// Changed behind the checksum, as only a broken writer could: refused or read, never a crash (sanitizers look on).
+TEST(Codec, NoBytesCrashTheDecoder) {
+  const Sample sample;
+  const Surfaces surfaces = surfaces_of(*sample.snapshot(0));
+  const std::string first = encode_surfaces(surfaces), second = encode_frame(*sample.snapshot(2), {}, surfaces);
+  std::mt19937 random(6);
+  int refused = 0;
+  const auto attempt = [&](const auto& decode) {
+    try {
+      decode();
+    } catch (const std::runtime_error&) {
+      ++refused;
+    }
+  };
+  for (std::size_t size = 0; size < first.size(); ++size) attempt([&] { decode_surfaces(first.substr(0, size)); });
+  for (std::size_t size = 0; size < second.size(); ++size)
+    attempt([&] { decode_frame(second.substr(0, size), 2, surfaces); });
+  EXPECT_EQ(refused, static_cast<int>(first.size() + second.size())) << "a truncated payload was taken for whole";
+  for (int round = 0; round < 20'000; ++round) {
+    std::string a = first, b = second;
+    for (std::uint32_t flips = 1 + random() % 4; flips > 0; --flips) {
+      a[random() % a.size()] = static_cast<char>(random());
+      b[random() % b.size()] = static_cast<char>(random());
+    }
+    attempt([&] { decode_surfaces(a); });
+    attempt([&] { decode_frame(b, 2, surfaces); });
+  }
+}
+
+}  // namespace
+}  // namespace weft::cache

@@ -1,0 +1,108 @@
+// A made-up scene of two surfaces, one of which moves, with numbers that are easily spoilt.
+#pragma once
+
+#include <cstring>
+#include <limits>
+#include <memory>
+#include <random>
+
+#include "cache/manifest.hpp"
+#include "frame/frame_report.hpp"
+#include "frame/frame_snapshot.hpp"
+
+namespace weft::cache {
+
+inline constexpr std::uint64_t kSampleHash = 0xfedcba9876543210;
+
+struct Sample {
+  std::shared_ptr<const frame::Stage> stage;
+  std::vector<std::shared_ptr<const frame::Surface>> surfaces;
+
+  Sample() {
+    frame::Stage a_stage;
+    a_stage.up = {0, 1, 0};
+    a_stage.heat = frame::Stage::Heat::strain;
+    a_stage.heat_max = 0.25;
+    stage = std::make_shared<frame::Stage>(a_stage);
+    frame::Surface cloth;
+    cloth.name = "cloth";
+    cloth.triangles = {{0, 1, 2}, {0, 2, 3}};
+    cloth.quads = {{0, 1, 2, 3}};
+    cloth.uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    cloth.crease_angle = 180;
+    cloth.appearance.color = {0.1, 0.2, 0.3};
+    cloth.appearance.thread_spacing = 1e-3;
+    frame::Surface floor;
+    floor.name = "floor";
+    floor.kind = frame::ObjectKind::obstacle;
+    floor.infinite_floor = true;
+    floor.visible = false;
+    floor.triangles = {{2, 1, 0}};
+    floor.appearance.checker = true;
+    surfaces = {std::make_shared<frame::Surface>(cloth), std::make_shared<frame::Surface>(floor)};
+  }
+
+  frame::SnapshotPtr snapshot(int k) const {
+    auto snapshot = std::make_shared<frame::FrameSnapshot>();
+    snapshot->frame = k;
+    snapshot->time = k / 25.0;
+    snapshot->stage = stage;
+    snapshot->surfaces = surfaces;
+    std::mt19937_64 random(static_cast<std::uint64_t>(k));
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    frame::SurfaceState cloth, floor;
+    for (int i = 0; i < 4; ++i) cloth.positions.emplace_back(uniform(random), uniform(random), uniform(random));
+    if (k == 1) cloth.positions[3] = {-0.0, 5e-324, 1.7976931348623157e308};
+    for (int i = 0; i < 4; ++i) cloth.heat.push_back(static_cast<float>(uniform(random)));
+    floor.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
+    snapshot->states = {cloth, floor};
+    frame::Camera camera{"front", {0.1 * k, -3, 1}, {0, 0, 1.0 / 3}, 35};
+    snapshot->cameras = {camera, frame::Camera{}};
+    frame::Light light;
+    light.name = "lamp";
+    light.kind = frame::Light::Kind::spot;
+    light.position = {1, 2, 3.0 / 7 + k};
+    snapshot->lights = {light};
+    return snapshot;
+  }
+
+  frame::FrameReport report(int k) const {
+    frame::FrameReport report;
+    report.frame = k;
+    report.time = k / 25.0;
+    report.simulate_cpu_s = 0.1;
+    report.steps = 10 + k;
+    report.newton_iterations = 30;
+    report.min_distance = std::numeric_limits<double>::infinity();
+    report.elastic_energy = 1.0 / 3;
+    report.pinched_pairs = 2;
+    report.pinches = {"frame 3: 'sheet' has no room", ""};
+    return report;
+  }
+
+  Manifest manifest() const {
+    Manifest manifest;
+    manifest.scene = "sample";
+    manifest.title = "A \"sample\" for tests: é";
+    manifest.scene_hash = kSampleHash;
+    manifest.fps = 25;
+    manifest.frame_count = 10;
+    manifest.preroll_frames = 3;
+    manifest.width = 640;
+    manifest.height = 360;
+    manifest.camera = "front";
+    manifest.cameras = {"front", ""};
+    manifest.weft_version = "0.1.0";
+    manifest.cpu_target = "x86-64-v3";
+    manifest.program = "0123";
+    manifest.objects = {{"cloth", frame::ObjectKind::cloth, 4, 1}, {"floor", frame::ObjectKind::obstacle, 3, 1}};
+    return manifest;
+  }
+};
+
+template <class T>
+bool same_bits(const std::vector<T>& a, const std::vector<T>& b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size() * sizeof(T)) == 0);
+}
+
+}  // namespace weft::cache
