@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/color.hpp"
+#include "image/color.hpp"
 
 namespace weft::render {
 namespace {
@@ -120,7 +120,7 @@ LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, con
   packed.toward_light << (-travel_direction(light)).cast<float>(), spot ? 1.0f : 0.0f;
   const double outer = std::cos(half_cone(light)), inner = std::cos(0.8 * half_cone(light));
   packed.position << light.position.cast<float>(), static_cast<float>(outer);
-  packed.color << (light.intensity * scale.cwiseProduct(linear_from_srgb(light.color))).cast<float>(),
+  packed.color << (light.intensity * scale.cwiseProduct(image::linear_from_srgb(light.color))).cast<float>(),
       static_cast<float>(1 / (inner - outer));
   // Half a texel for the slope that the filter cannot see, and 0.2 mm for what rasterising rounds.
   const double bias = (0.25 * shadow.texel_metres + 2e-4) * shadow.depth_per_metre;

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "render/color.hpp"
+#include "image/color.hpp"
 
 namespace weft::render {
 namespace {
@@ -17,17 +17,17 @@ std::vector<std::string> shading_defines(const QualitySettings& quality, bool fu
 
 Texture make_heat_colors(const Gl& gl) {
   std::vector<float> texels;
-  for (const Vec3& color : heat_table()) {
+  for (const Vec3& color : image::heat_table()) {
     for (const double channel : color) texels.push_back(static_cast<float>(channel));
   }
-  Texture texture = make_texture(gl, GL_RGB32F, kHeatColors, 1, GL_LINEAR);
-  gl.TextureSubImage2D(texture.name(), 0, 0, 0, kHeatColors, 1, GL_RGB, GL_FLOAT, texels.data());
+  Texture texture = make_texture(gl, GL_RGB32F, image::kHeatColors, 1, GL_LINEAR);
+  gl.TextureSubImage2D(texture.name(), 0, 0, 0, image::kHeatColors, 1, GL_RGB, GL_FLOAT, texels.data());
   return texture;
 }
 
 Eigen::Vector4f texel(const Vec3& color, double fourth) {
   Eigen::Vector4f result;
-  result << linear_from_srgb(color).cast<float>(), static_cast<float>(fourth);
+  result << image::linear_from_srgb(color).cast<float>(), static_cast<float>(fourth);
   return result;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/color.hpp"
+#include "image/color.hpp"
 
 namespace weft::render {
 namespace {
@@ -84,20 +84,21 @@ double sky_reach(const Box3& subjects) {
 
 Exposure expose(const frame::Stage& stage, const std::optional<Floor>& floor, std::span<const frame::Light> lights,
                 double share) {
-  const Vec3 sky_color = linear_from_srgb(stage.sky_color), sky = (1 - share) * sky_color;
+  const Vec3 sky_color = image::linear_from_srgb(stage.sky_color), sky = (1 - share) * sky_color;
   if (!floor) return {Vec3::Constant(share), 0.62 * sky_color};
   Vec3 direct = Vec3::Zero();
   for (const frame::Light& each : lights) {
     // Far away no spot reaches.
     if (each.kind != frame::Light::Kind::sun || each.direction.squaredNorm() == 0) continue;
     const double facing = std::max(0.0, -each.direction.normalized().dot(floor->normal));
-    direct += share * each.intensity * facing * linear_from_srgb(each.color);
+    direct += share * each.intensity * facing * image::linear_from_srgb(each.color);
   }
   const Vec3 missing = (Vec3::Ones() - sky).cwiseQuotient(direct.cwiseMax(1e-6));
   const double level = kLuminance.dot(Vec3::Ones() - sky) / std::max(kLuminance.dot(direct), 1e-6);
   const Vec3 tint = (missing / std::max(level, 1e-6)).cwiseMax(1 - kBalance).cwiseMin(1 + kBalance);
   const Vec3 gain = std::clamp(level, 1.0, kBrightest) * tint;
-  return {share * gain, kHorizon * linear_from_srgb(floor->look.color).cwiseProduct(sky + gain.cwiseProduct(direct))};
+  return {share * gain,
+          kHorizon * image::linear_from_srgb(floor->look.color).cwiseProduct(sky + gain.cwiseProduct(direct))};
 }
 
 FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,
@@ -109,7 +110,7 @@ FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3&
   const double radius = 0.5 * subjects.diagonal().norm(), reach = sky_reach(subjects);
   const double share = std::clamp(stage.sky_intensity, 0.0, 1.0);
   const SkyView above = fit_sky(subjects, up, reach, true), below = fit_sky(subjects, up, reach, false);
-  const Vec3 sky = linear_from_srgb(stage.sky_color), ground = linear_from_srgb(stage.ground_color);
+  const Vec3 sky = image::linear_from_srgb(stage.sky_color), ground = image::linear_from_srgb(stage.ground_color);
 
   FrameUniform frame;
   frame.clip_from_world = view.clip_from_world.cast<float>();

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "core/error.hpp"
-#include "render/color.hpp"
+#include "image/color.hpp"
 #include "render/renderer.hpp"
 #include "render/snapshots.hpp"
 
@@ -109,7 +109,7 @@ TEST(Picture, ObliqueLightFallsWithTheCosine) {
   frame::FrameSnapshot snapshot = facing_square(frame::ObjectKind::obstacle, 0.3, kRed);
   snapshot.lights = {sun(Vec3(std::sqrt(3.0), 1, 0))};
   const image::Image image = Renderer(settings()).draw(snapshot);
-  const Vec3 expected = srgb_from_linear(Vec3(0.5 * linear_from_srgb(kRed)));
+  const Vec3 expected = image::srgb_from_linear(Vec3(0.5 * image::linear_from_srgb(kRed)));
   for (int channel = 0; channel < 3; ++channel) {
     EXPECT_NEAR(image.pixel(160, 100)[channel], 255 * expected[channel], 3) << channel;
   }
@@ -277,7 +277,7 @@ TEST(Picture, FloorIsExposedToItsOwnColorAndNeverDarkened) {
   // 0.4 * 0.6 = 0.24 comes to 0.4 by a gain of 1.67.
   EXPECT_LE((draw(1) - 255 * Vec3(0.7, 0.6, 0.5)).cwiseAbs().maxCoeff(), 4) << draw(1).transpose();
   // 0.6 + 3 * 0.24 = 1.32.
-  const Vec3 bright = srgb_from_linear(Vec3(1.32 * linear_from_srgb(Vec3(0.7, 0.6, 0.5))));
+  const Vec3 bright = image::srgb_from_linear(Vec3(1.32 * image::linear_from_srgb(Vec3(0.7, 0.6, 0.5))));
   EXPECT_LE((draw(3) - 255 * bright).cwiseAbs().maxCoeff(), 4) << draw(3).transpose();
 }
 
@@ -324,10 +324,10 @@ TEST(Picture, HeatShowsTheEndsAndTheMiddleOfTheScale) {
     snapshot.stage = stage;
     snapshot.states[0].heat.assign(4, static_cast<float>(share * stage->heat_max));
     const image::Image image = renderer.draw(snapshot);
-    const Vec3 expected = srgb_from_linear(heat_color(share));
+    const Vec3 expected = image::srgb_from_linear(heat_color(share));
     for (int channel = 0; channel < 3; ++channel) {
       // Brighter than 0.8 the tone curve bends: the pale end is compared below that only.
-      if (linear_from_srgb(expected.maxCoeff()) > 0.8) continue;
+      if (image::linear_from_srgb(expected.maxCoeff()) > 0.8) continue;
       EXPECT_NEAR(image.pixel(160, 100)[channel], 255 * expected[channel], 4) << share << " " << channel;
     }
     if (share >= 1) {

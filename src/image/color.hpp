@@ -5,7 +5,7 @@
 
 #include "core/types.hpp"
 
-namespace weft::render {
+namespace weft::image {
 
 /// IEC 61966-2-1: encoded sRGB [0,1] to linear light and back, per channel.
 double linear_from_srgb(double encoded);
@@ -24,4 +24,4 @@ Vec3 heat_color(double t);
 /// heat_color at i / (kHeatColors - 1).
 std::array<Vec3, kHeatColors> heat_table();
 
-}  // namespace weft::render
+}  // namespace weft::image

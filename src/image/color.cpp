@@ -1,10 +1,10 @@
-#include "render/color.hpp"
+#include "image/color.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 
-namespace weft::render {
+namespace weft::image {
 namespace {
 
 /// CIE L*a*b* (D65) to linear sRGB; CIE 15:2004 and IEC 61966-2-1.
@@ -59,4 +59,4 @@ std::array<Vec3, kHeatColors> heat_table() {
   return table;
 }
 
-}  // namespace weft::render
+}  // namespace weft::image

@@ -1,10 +1,10 @@
-#include "render/color.hpp"
+#include "image/color.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-namespace weft::render {
+namespace weft::image {
 namespace {
 
 // IEC 61966-2-1 worked out by hand: 0.5 encoded is ((0.5 + 0.055) / 1.055)^2.4 linear.
@@ -32,4 +32,4 @@ TEST(Color, HeatOutsideTheScaleKeepsTheEnds) {
 }
 
 }  // namespace
-}  // namespace weft::render
+}  // namespace weft::image

@@ -1,0 +1,85 @@
+#include "compare/compare.hpp"
+
+#include <array>
+#include <cmath>
+#include <cstdlib>
+
+#include "compare/flip.hpp"
+#include "compare/ssim.hpp"
+#include "core/error.hpp"
+#include "image/color.hpp"
+
+namespace weft::compare {
+namespace {
+
+Figures count_pixels(const image::Image& reference, const image::Image& test, int tolerance) {
+  Figures figures;
+  figures.width = reference.width;
+  figures.height = reference.height;
+  for (int y = 0; y < reference.height; ++y) {
+    const std::uint8_t *a = reference.pixel(0, y), *b = test.pixel(0, y);
+    for (int x = 0; x < reference.width; ++x, a += 3, b += 3) {
+      const int difference = std::max({std::abs(a[0] - b[0]), std::abs(a[1] - b[1]), std::abs(a[2] - b[2])});
+      figures.pixels_changed += difference > 0;
+      figures.pixels_over += difference > tolerance;
+      if (difference <= figures.largest) continue;
+      figures.largest = difference;
+      figures.largest_x = x;
+      figures.largest_y = y;
+    }
+  }
+  return figures;
+}
+
+double mean(const Plane<float>& plane) {
+  const double sum = parallel_sum(plane.values.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+    double part = 0;
+    for (std::size_t i = begin; i < end; ++i) part += static_cast<double>(plane.values[i]);
+    return part;
+  });
+  return sum / static_cast<double>(plane.values.size());
+}
+
+}  // namespace
+
+Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance) {
+  const bool same_size = reference.width == test.width && reference.height == test.height;
+  if (!same_size || reference.rgb.empty() || reference.rgb.size() != test.rgb.size()) {
+    throw Error(ExitCode::internal, "expected two images of one size to compare, got {}x{} and {}x{}", reference.width,
+                reference.height, test.width, test.height);
+  }
+  Comparison result;
+  result.figures = count_pixels(reference, test, pixel_tolerance);
+  if (result.figures.pixels_changed == 0) {
+    result.flip = Plane<float>(reference.width, reference.height);
+    return result;
+  }
+  result.figures.ssim = structural_similarity(reference, test);
+  result.flip = flip_map(reference, test);
+  result.figures.flip = mean(result.flip);
+  return result;
+}
+
+Verdict verdict(const Figures& figures, const Limits& limits) {
+  if (figures.pixels_changed == 0) return Verdict::same;
+  const bool within = figures.share_over() <= limits.pixel_budget && figures.flip <= limits.flip;
+  return within ? Verdict::within : Verdict::differs;
+}
+
+image::Image heat_map(const Plane<float>& flip) {
+  const auto table = image::heat_table();
+  std::array<std::array<std::uint8_t, 3>, image::kHeatColors> colors;
+  for (int i = 0; i < image::kHeatColors; ++i) {
+    const Vec3 encoded = image::srgb_from_linear(table[i]);
+    for (int c = 0; c < 3; ++c) colors[i][c] = static_cast<std::uint8_t>(std::lround(255 * encoded[c]));
+  }
+  image::Image picture(flip.width, flip.height);
+  std::uint8_t* to = picture.rgb.data();
+  for (const float value : flip.values) {
+    const auto& color = colors[static_cast<std::size_t>(std::lround(std::sqrt(value) * (image::kHeatColors - 1)))];
+    to = std::copy(color.begin(), color.end(), to);
+  }
+  return picture;
+}
+
+}  // namespace weft::compare

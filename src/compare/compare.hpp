@@ -1,0 +1,51 @@
+// How two images of one size differ: in numbers, and as a picture.
+#pragma once
+
+#include <cstdint>
+
+#include "compare/plane.hpp"
+#include "image/image.hpp"
+
+namespace weft::compare {
+
+/// What may differ before two images count as different. The defaults let through what another processor or Mesa makes
+/// of the same scene, and nothing that is seen when one flips between the images; README tells how they were measured.
+struct Limits {
+  int pixel_tolerance = 4;     ///< levels of 255 by which the channels of a pixel may differ
+  double pixel_budget = 1e-4;  ///< share of the pixels that may differ by more
+  double flip = 2e-3;          ///< mean of the FLIP map: catches what is small but everywhere
+};
+
+struct Figures {
+  int width = 0, height = 0;         ///< pixels
+  std::int64_t pixels_changed = 0;   ///< pixels that differ at all
+  std::int64_t pixels_over = 0;      ///< those that differ by more than the tolerance
+  int largest = 0;                   ///< difference of any channel [levels of 255]
+  int largest_x = 0, largest_y = 0;  ///< where it is first, reading like text; pixels from the left and the top
+  double ssim = 1;                   ///< mean structural similarity, 1 where equal
+  double flip = 0;                   ///< mean of the FLIP map, 0 where equal
+
+  double share_over() const { return static_cast<double>(pixels_over) / (static_cast<double>(width) * height); }
+};
+
+enum class Verdict {
+  same,     ///< equal in every pixel
+  within,   ///< differs, within the limits
+  differs,  ///< past a limit
+};
+
+struct Comparison {
+  Figures figures;
+  Plane<float> flip;  ///< for each pixel 0 (looks the same) to 1
+};
+
+/// Throws Error(internal) for images of different size or without pixels.
+Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance);
+
+Verdict verdict(const Figures& figures, const Limits& limits);
+
+/// The FLIP map in the heat colours of `image::heat_color`, from dark blue for 0, with the position on the scale the
+/// square root of the value, because what a test must find is small: 0.01 is at a tenth of the scale.
+image::Image heat_map(const Plane<float>& flip);
+
+}  // namespace weft::compare

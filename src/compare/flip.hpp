@@ -1,0 +1,48 @@
+// FLIP, how different two images look when one flips between them: Andersson, Nilsson, Akenine-Möller, Oskarsson,
+// Åström and Fairchild, "FLIP: a difference evaluator for alternating images", 2020. Written from its formulas; the
+// stages are here by themselves so that each can be checked.
+#pragma once
+
+#include <array>
+
+#include "compare/plane.hpp"
+#include "core/types.hpp"
+#include "image/image.hpp"
+
+namespace weft::compare {
+
+/// Pixels in a degree of the field of view: the paper's 0.7 m before a display 0.7 m wide with 3840 pixels.
+inline constexpr double kPixelsPerDegree = 67.02064327658226;
+
+/// The map: for each pixel 0 (looks the same) to 1. Both images have the same size.
+Plane<float> flip_map(const image::Image& reference, const image::Image& test);
+
+namespace flip {
+
+using Color = Eigen::Vector3f;
+/// Achromatic, red-green and blue-yellow.
+using Channels = std::array<Plane<float>, 3>;
+
+/// Linear sRGB to Y C_x C_z, an opponent space linear in the light (Section 4.1.1), and back.
+Color opponent_from_linear(const Color& linear);
+Color linear_from_opponent(const Color& opponent);
+
+/// Linear sRGB to L*a*b* with the white of sRGB, a* and b* shrunk for dark colours after Hunt: a L* / 100
+/// (Section 4.1.2).
+Color hunt_lab(const Color& linear);
+
+/// |dL| + sqrt(da² + db²) (Section 4.1.2; Abasi et al. 2020).
+float hyab(const Color& a, const Color& b);
+
+/// A HyAB distance of Hunt-adjusted colours to [0, 1]: bent by the power 0.7, then small ones stretched to 0.95 of the
+/// scale, large ones up to the distance of pure green and blue pressed into the rest (Section 4.1.3).
+float remapped(float distance);
+
+/// One channel (0 to 2) as the eye resolves it: convolved with the contrast sensitivity of Section 4.1.1, Table 1.
+Plane<float> as_seen(const Plane<float>& plane, int channel);
+
+/// How much edges and points stand out differently, 0 to 1 (Section 4.2), of Y channels scaled to [0, 1].
+Plane<float> feature_difference(const Plane<float>& reference, const Plane<float>& test);
+
+}  // namespace flip
+}  // namespace weft::compare

@@ -1,0 +1,83 @@
+#include "compare/compare.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+
+#include "compare/pictures.hpp"
+#include "core/error.hpp"
+#include "image/color.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::compare {
+namespace {
+
+TEST(Compare, EqualImagesAreTheSame) {
+  const image::Image a = textured(64, 36, 1);
+  const Comparison result = compare(a, a, 4);
+  EXPECT_EQ(result.figures.pixels_changed, 0);
+  EXPECT_EQ(result.figures.ssim, 1);
+  EXPECT_EQ(result.figures.flip, 0);
+  EXPECT_EQ(verdict(result.figures, {}), Verdict::same);
+}
+
+TEST(Compare, CountsPixelsOnceAndNamesTheFirstOfTheLargest) {
+  const image::Image a = plain(20, 10, 100, 100, 100);
+  image::Image b = a;
+  b.pixel(3, 2)[0] = 104;  // at the tolerance
+  b.pixel(5, 2)[1] = 95;   // past it
+  for (int c = 0; c < 3; ++c) b.pixel(7, 4)[c] = 90;
+  b.pixel(9, 4)[2] = 110;  // as large, but later
+  const Figures figures = compare(a, b, 4).figures;
+  EXPECT_EQ(figures.pixels_changed, 4);
+  EXPECT_EQ(figures.pixels_over, 3);
+  EXPECT_EQ(figures.largest, 10);
+  EXPECT_EQ(figures.largest_x, 7);
+  EXPECT_EQ(figures.largest_y, 4);
+  EXPECT_EQ(figures.share_over(), 3 / 200.0);
+}
+
+TEST(Compare, EachLimitDecidesByItself) {
+  Figures figures;
+  figures.width = figures.height = 100;
+  figures.pixels_changed = 500;
+  Limits limits;
+  limits.pixel_budget = 0.01;
+  limits.flip = 0.1;
+  figures.pixels_over = 100;
+  figures.flip = 0.1;
+  EXPECT_EQ(verdict(figures, limits), Verdict::within);
+  figures.pixels_over = 101;
+  EXPECT_EQ(verdict(figures, limits), Verdict::differs);
+  figures.pixels_over = 0;
+  figures.flip = 0.1001;
+  EXPECT_EQ(verdict(figures, limits), Verdict::differs);
+}
+
+TEST(Compare, ImagesOfDifferentSizeAreNotForThisFunction) {
+  support::expect_error(ExitCode::internal, "20x10 and 10x20",
+                        [] { compare(plain(20, 10, 0, 0, 0), plain(10, 20, 0, 0, 0), 4); });
+}
+
+TEST(Compare, FigureIsTheMeanOfTheMap) {
+  const image::Image a = textured(90, 70, 1);
+  const Comparison result = compare(a, with_noise(a, 900, 40, 7), 4);
+  double sum = 0;
+  for (const float value : result.flip.values) sum += static_cast<double>(value);
+  EXPECT_NEAR(result.figures.flip, sum / 6300, 1e-12);
+  EXPECT_GT(result.figures.flip, 0);
+}
+
+TEST(Compare, HeatMapShowsTheSquareRootOfTheMapOnTheHeatScale) {
+  Plane<float> map(3, 1);
+  map.values = {0, 0.25f, 1};
+  const image::Image picture = heat_map(map);
+  const std::array<double, 3> positions = {0, 0.5, 1};
+  for (int x = 0; x < 3; ++x) {
+    const Vec3 expected = 255 * image::srgb_from_linear(image::heat_color(positions[static_cast<std::size_t>(x)]));
+    for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.pixel(x, 0)[c], expected[c], 1.5) << x;  // 256 steps of colour
+  }
+}
+
+}  // namespace
+}  // namespace weft::compare

@@ -1,0 +1,76 @@
+#include "compare/ssim.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "compare/pictures.hpp"
+
+namespace weft::compare {
+namespace {
+
+constexpr double kC1 = 0.01 * 255 * 0.01 * 255, kC2 = 0.03 * 255 * 0.03 * 255;
+
+double luma(const std::uint8_t* p) {
+  return 0.2126 * p[0] + 0.7152 * p[1] + 0.0722 * p[2];
+}
+
+// The definition, window by window, with deviations from the mean instead of differences of squares.
+double window_similarity(const image::Image& a, const image::Image& b, int left, int top) {
+  double total = 0, mean_a = 0, mean_b = 0, var_a = 0, var_b = 0, cov = 0;
+  const auto each = [&](const auto& body) {
+    for (int j = 0; j < 11; ++j) {
+      for (int i = 0; i < 11; ++i) {
+        const double weight = std::exp(-((i - 5) * (i - 5) + (j - 5) * (j - 5)) / (2 * 1.5 * 1.5));
+        body(weight, luma(a.pixel(left + i, top + j)), luma(b.pixel(left + i, top + j)));
+      }
+    }
+  };
+  each([&](double weight, double, double) { total += weight; });
+  each([&](double weight, double va, double vb) {
+    mean_a += weight / total * va;
+    mean_b += weight / total * vb;
+  });
+  each([&](double weight, double va, double vb) {
+    var_a += weight / total * (va - mean_a) * (va - mean_a);
+    var_b += weight / total * (vb - mean_b) * (vb - mean_b);
+    cov += weight / total * (va - mean_a) * (vb - mean_b);
+  });
+  return (2 * mean_a * mean_b + kC1) * (2 * cov + kC2) /
+         ((mean_a * mean_a + mean_b * mean_b + kC1) * (var_a + var_b + kC2));
+}
+
+double by_definition(const image::Image& a, const image::Image& b) {
+  double sum = 0;
+  for (int top = 0; top + 11 <= a.height; ++top) {
+    for (int left = 0; left + 11 <= a.width; ++left) sum += window_similarity(a, b, left, top);
+  }
+  return sum / ((a.width - 10.0) * (a.height - 10.0));
+}
+
+TEST(Ssim, EqualsItsDefinition) {
+  const image::Image a = textured(47, 31, 1);
+  for (const image::Image& b : {with_noise(a, 500, 60, 2), textured(47, 31, 9), plain(47, 31, 90, 120, 30)}) {
+    EXPECT_NEAR(structural_similarity(a, b), by_definition(a, b), 1e-10);
+  }
+}
+
+TEST(Ssim, EqualImagesHaveOne) {
+  const image::Image a = textured(40, 30, 3);
+  EXPECT_NEAR(structural_similarity(a, a), 1, 1e-12);
+}
+
+// Without structure only the first factor of Eq. (13) is left.
+TEST(Ssim, FlatImagesDifferByTheirMeansAlone) {
+  const double expected = (2 * 100.0 * 120 + kC1) / (100.0 * 100 + 120.0 * 120 + kC1);
+  EXPECT_NEAR(structural_similarity(plain(20, 20, 100, 100, 100), plain(20, 20, 120, 120, 120)), expected, 1e-12);
+}
+
+// No window lies inside; the value is still one of an SSIM.
+TEST(Ssim, ImagesSmallerThanAWindowAreCompared) {
+  EXPECT_NEAR(structural_similarity(textured(7, 5, 1), textured(7, 5, 1)), 1, 1e-12);
+  EXPECT_LT(structural_similarity(plain(7, 5, 0, 0, 0), plain(7, 5, 255, 255, 255)), 0.01);
+}
+
+}  // namespace
+}  // namespace weft::compare
