@@ -56,22 +56,23 @@ Reader::Reader(fs::path folder) : folder_(std::move(folder)) {
                 folder_.string(), kManifestFile);
   const fs::path manifest = folder_ / kManifestFile, surfaces = folder_ / kSurfacesFile;
   manifest_ = blame(manifest, [&] { return parse_manifest(read_file(manifest)); });
-  if (!fs::exists(surfaces)) throw Error(ExitCode::asset_unreadable, "{}: holds no frame yet", folder_.string());
+  std::error_code ignored;
+  if (!fs::exists(surfaces, ignored)) return;
   surfaces_ = blame(surfaces, [&] { return decode_surfaces(read_part(kSurfacesFile, Kind::surfaces, 0)); });
   blame(surfaces, [&] { check_objects(); });
 }
 
 void Reader::check_objects() const {
-  const bool same = std::equal(manifest_.objects.begin(), manifest_.objects.end(), surfaces_.surfaces.begin(),
-                               surfaces_.surfaces.end(), [](const auto& object, const auto& surface) {
+  const bool same = std::equal(manifest_.objects.begin(), manifest_.objects.end(), surfaces_->surfaces.begin(),
+                               surfaces_->surfaces.end(), [](const auto& object, const auto& surface) {
                                  return object.name == surface->name && object.kind == surface->kind;
                                });
   if (!same) throw std::runtime_error("its objects are not those of the manifest");
   for (std::size_t i = 0; i < manifest_.objects.size(); ++i)
-    if (manifest_.objects[i].vertices != surfaces_.positions[i].size())
+    if (manifest_.objects[i].vertices != surfaces_->positions[i].size())
       throw std::runtime_error(fmt::format("expected {} vertices of '{}' as in the manifest, got {}",
                                            manifest_.objects[i].vertices, manifest_.objects[i].name,
-                                           surfaces_.positions[i].size()));
+                                           surfaces_->positions[i].size()));
 }
 
 std::string Reader::read_part(const char* name, Kind kind, std::optional<int> frame, Label* label) const {
@@ -111,8 +112,9 @@ bool Reader::has(int frame) const {
 
 CachedFrame Reader::read(int frame) const {
   const std::string name = frame_file(frame);
+  if (!surfaces_) throw Error(ExitCode::asset_unreadable, "{}: holds no frame yet", folder_.string());
   const std::string payload = read_part(name.c_str(), Kind::frame, frame);
-  return blame(folder_ / name, [&] { return decode_frame(payload, frame, surfaces_); });
+  return blame(folder_ / name, [&] { return decode_frame(payload, frame, *surfaces_); });
 }
 
 void Reader::verify(int frame) const {

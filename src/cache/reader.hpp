@@ -22,6 +22,7 @@ struct SolverState {
 /// what is wrong with it.
 class Reader {
  public:
+  /// Reads what all frames share. A cache that has no frame yet is none that is broken.
   explicit Reader(std::filesystem::path folder);
 
   const std::filesystem::path& folder() const { return folder_; }
@@ -49,7 +50,7 @@ class Reader {
 
   std::filesystem::path folder_;
   Manifest manifest_;
-  Surfaces surfaces_;
+  std::optional<Surfaces> surfaces_;  // absent before frame 0 is there
 };
 
 /// True for a folder with a manifest, whether it can be read or not.

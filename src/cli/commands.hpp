@@ -10,6 +10,12 @@ namespace weft::cli {
 /// finished.
 ExitCode run(const RunOptions& options);
 
+/// Simulates into a frame cache.
+ExitCode simulate(const SimulateOptions& options);
+
+/// Draws and writes what a frame cache holds.
+ExitCode render(const RenderOptions& options);
+
 /// Mistakes go to standard error, good scenes and plans to standard output.
 ExitCode check(const CheckOptions& options);
 

@@ -99,29 +99,58 @@ void add_backend(CLI::App& command, render::Backend& backend) {
             [&](const std::string& text) { backend = parse_choice("--backend", text, kBackends); });
 }
 
-void add_common(CLI::App& command, SceneOptions& options) {
-  command.add_option("SCENE", options.scene, "The scene, a TOML file")->required()->type_name("");
+void add_picture(CLI::App& command, SceneOptions& options) {
   add_value(command, "--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]",
             [&](const std::string& text) { options.size = parse_size(text); });
-  add_value(command, "--fps", "N", "Frames a second [the scene's]",
-            [&](const std::string& text) { options.fps = parse_fps(text); });
   add_value(command, "--camera", "NAME", "A camera of the scene [its choice, or automatic framing]",
             [&](const std::string& text) { options.camera = text; });
   add_value(command, "--quality", "draft|preview|final", "Care taken in drawing [final]",
             [&](const std::string& text) { options.quality = parse_choice("--quality", text, kQualities); });
-  add_overrides(command, options.overrides);
+  add_backend(command, options.backend);
+}
+
+void add_process(CLI::App& command, SceneOptions& options) {
   add_value(command, "--threads", "N", "Threads to use at most [all cores]; results do not depend on it",
             [&](const std::string& text) { options.threads = parse_integer("--threads", text, 1, kMaxThreads); });
-  add_backend(command, options.backend);
   add_value(command, "--progress", "auto|bar|plain|none", "Progress on standard error [auto]",
             [&](const std::string& text) { options.progress = parse_choice("--progress", text, kProgressStyles); });
   command.add_flag("--overwrite", options.overwrite, "Replace files that exist already");
+}
+
+void add_common(CLI::App& command, SceneOptions& options) {
+  command.add_option("SCENE", options.scene, "The scene, a TOML file")->required()->type_name("");
+  add_value(command, "--fps", "N", "Frames a second [the scene's]",
+            [&](const std::string& text) { options.fps = parse_fps(text); });
+  add_overrides(command, options.overrides);
+  add_picture(command, options);
+  add_process(command, options);
+}
+
+void add_output(CLI::App& command, RunOptions& options) {
+  add_value(command, "-o,--output", "FILE", "Video (.mp4) or pictures ('out/{frame:05}.png') [output/<scene>.mp4]",
+            [&](const std::string& text) { options.output = text; });
+}
+
+void add_frames(CLI::App& command, RunOptions& options, const char* description) {
+  add_value(command, "--frames", "A:B[:STEP]", description,
+            [&](const std::string& text) { options.frames = parse_frames(text); });
+}
+
+void add_side_files(CLI::App& command, RunOptions& options) {
+  add_value(command, "--meshes", "DIR", "Also write each cloth and obstacle of each such frame as PLY",
+            [&](const std::string& text) { options.meshes = text; });
+  add_value(command, "--stats", "FILE", "Also write times, iterations and energies as JSON",
+            [&](const std::string& text) { options.stats = text; });
+  add_value(command, "--log-json", "FILE|-", "Also write events as JSON lines (-: standard output)",
+            [&](const std::string& text) { options.log_json = text; });
 }
 
 // The program's commands and the values that CLI11 writes into while parsing.
 struct Parser {
   CLI::App app{"Weft: cloth scenes to video, on any machine, without a window.", "weft"};
   RunOptions run;
+  SimulateOptions simulate;
+  RenderOptions render;
   CheckOptions check;
   ThumbnailOptions thumbnail;
   SchemaOptions schema;
@@ -136,11 +165,14 @@ struct Parser {
     app.footer(
         "\nExamples:\n"
         "  weft run scenes/falling_band.toml\n"
+        "  weft simulate scenes/falling_band.toml --cache band.cache && weft render band.cache -o band.mp4\n"
         "  weft check --plan scenes/falling_band.toml\n"
         "  weft thumbnail scenes/falling_band.toml -o band.png --frame 60\n"
         "\nExit codes: 0 well, 1 our own fault, 2 command line, 3 scene, 4 asset, 5 simulation,\n"
         "  6 output or encoder, 75 interrupted.");
     add_run();
+    add_simulate();
+    add_render();
     add_check();
     add_thumbnail();
     add_schema();
@@ -150,17 +182,11 @@ struct Parser {
 
   void add_run() {
     CLI::App& command = *app.add_subcommand("run", "Simulate a scene, draw it and encode the video");
-    add_value(command, "-o,--output", "FILE", "Video (.mp4) or pictures ('out/{frame:05}.png') [output/<scene>.mp4]",
-              [this](const std::string& text) { run.output = text; });
-    add_value(command, "--frames", "A:B[:STEP]", "Draw frames A up to but without B, counted from 0 [all]",
-              [this](const std::string& text) { run.frames = parse_frames(text); });
+    add_output(command, run);
+    add_frames(command, run, "Draw frames A up to but without B, counted from 0 [all]");
     add_common(command, run.common);
-    add_value(command, "--meshes", "DIR", "Also write each cloth and obstacle of each drawn frame as PLY",
-              [this](const std::string& text) { run.meshes = text; });
-    add_value(command, "--stats", "FILE", "Also write times, iterations and energies as JSON",
-              [this](const std::string& text) { run.stats = text; });
-    add_value(command, "--log-json", "FILE|-", "Also write events as JSON lines (-: standard output)",
-              [this](const std::string& text) { run.log_json = text; });
+    add_side_files(command, run);
+    command.add_flag("--resume", run.resume, "Go on with a run of the same output that did not end well");
     command.footer(
         "\nExamples:\n"
         "  weft run scenes/falling_band.toml\n"
@@ -168,7 +194,40 @@ struct Parser {
         "  weft run scenes/falling_band.toml --frames 0:50 -o 'out/{frame:05}.png' --overwrite\n"
         "  weft run scenes/falling_band.toml --set cloth.band.material.stretch=1e4 --stats band.json\n"
         "\nCtrl-C or SIGTERM ends the run after the current frame with a playable video (exit code 75);\n"
-        "a second one quits at once. With a STEP the video keeps the true speed at fewer frames a second.");
+        "a second one quits at once. What was simulated is kept, also when the run is killed: --resume goes\n"
+        "on from there, to the same frames as without the interruption. With a STEP the video keeps the true speed at "
+        "fewer frames a second.");
+  }
+
+  void add_simulate() {
+    CLI::App& command = *app.add_subcommand("simulate", "Simulate a scene into a frame cache, to be drawn later");
+    command.add_option("--cache", simulate.cache, "Folder of the cache")->required()->type_name("DIR");
+    add_frames(command, simulate, "Simulate up to but without frame B; A and STEP are for --meshes [all]");
+    add_common(command, simulate.common);
+    add_side_files(command, simulate);
+    command.add_flag("--resume", simulate.resume, "Go on where the cache ends");
+    command.footer(
+        "\nExamples:\n"
+        "  weft simulate scenes/falling_band.toml --cache band.cache\n"
+        "  weft simulate scenes/falling_band.toml --cache band.cache --resume\n"
+        "\nSize and camera become those that weft render draws with if it is told nothing else.");
+  }
+
+  void add_render() {
+    CLI::App& command = *app.add_subcommand("render", "Draw the frames of a cache");
+    command.add_option("CACHE", render.common.scene, "The folder that weft simulate has filled")
+        ->required()
+        ->type_name("");
+    add_output(command, render);
+    add_frames(command, render, "Draw frames A up to but without B, counted from 0 [all that are there]");
+    add_picture(command, render.common);
+    add_process(command, render.common);
+    add_side_files(command, render);
+    command.footer(
+        "\nExamples:\n"
+        "  weft render band.cache -o band.mp4\n"
+        "  weft render band.cache --frames 50:100 --camera side --size 1920x1080 -o 'side/{frame:05}.png'\n"
+        "\nSeveral processes may draw from one cache at once, also while it is filled.");
   }
 
   void add_check() {
@@ -311,6 +370,8 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "bench" && parser.bench.kind == BenchOptions::Kind::stability && has_scene)
     throw Error(ExitCode::usage, "weft bench stability: expected no SCENE and no --set, its scenes are its own");
   if (name == "run") return parser.run;
+  if (name == "simulate") return parser.simulate;
+  if (name == "render") return parser.render;
   if (name == "check") return parser.check;
   if (name == "thumbnail") return parser.thumbnail;
   if (name == "schema") return parser.schema;

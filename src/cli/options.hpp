@@ -17,7 +17,7 @@ struct PictureSize {
   int width = 0, height = 0;  ///< pixels
 };
 
-/// What run and thumbnail share.
+/// What all commands that start from a scene share.
 struct SceneOptions {
   std::filesystem::path scene;
   std::vector<std::string> overrides;  ///< of --set
@@ -38,7 +38,15 @@ struct RunOptions {
   std::filesystem::path meshes;  ///< folder; empty: none
   std::filesystem::path stats;   ///< file; empty: none
   std::string log_json;          ///< file, "-" for standard output; empty: none
+  bool resume = false;
 };
+
+struct SimulateOptions : RunOptions {
+  std::filesystem::path cache;  ///< folder
+};
+
+/// Its scene is the folder of a cache.
+struct RenderOptions : RunOptions {};
 
 struct CheckOptions {
   std::vector<std::filesystem::path> scenes;
@@ -71,8 +79,8 @@ struct PrintText {
   std::string text;
 };
 
-using Command =
-    std::variant<RunOptions, CheckOptions, ThumbnailOptions, SchemaOptions, DoctorOptions, BenchOptions, PrintText>;
+using Command = std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SchemaOptions,
+                             DoctorOptions, BenchOptions, PrintText>;
 
 /// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
 Command parse_command_line(const std::vector<std::string>& arguments);

@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cstdio>
 #include <cstring>
+#include <regex>
 
 #include "core/error.hpp"
 #include "core/temporary_file.hpp"
@@ -44,7 +45,7 @@ fs::path FramePattern::name(int frame) const {
 }
 
 fs::path OutputTarget::file(int frame) const {
-  return kind == Kind::video ? fs::path(text) : FramePattern(text).name(frame);
+  return kind == Kind::images ? FramePattern(text).name(frame) : fs::path(text);
 }
 
 OutputTarget parse_output(const std::string& text, const std::string& scene_name) {
@@ -80,6 +81,18 @@ void check_absent(const fs::path& file, bool overwrite) {
   if (!overwrite && fs::exists(file, ignored)) {
     throw Error(ExitCode::output_failed, "{}: exists already; give --overwrite to replace it, or another name",
                 file.string());
+  }
+}
+
+void remove_half_files(const fs::path& folder, const std::set<std::string>& names) {
+  static const std::regex kTemporary(R"(\.(.+)\.[0-9]+\.tmp)");  // as TemporaryFile names them
+  std::error_code error;
+  for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end; !error && entry != end;
+       entry.increment(error)) {
+    const std::string name = entry->path().filename().string();
+    std::smatch match;
+    std::error_code ignored;
+    if (std::regex_match(name, match, kTemporary) && names.contains(match[1])) fs::remove(entry->path(), ignored);
   }
 }
 

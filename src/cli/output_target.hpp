@@ -1,7 +1,8 @@
-// Where the pictures go: one video, or one PNG file per frame.
+// Where the pictures go: one video, one PNG file per frame, or nowhere.
 #pragma once
 
 #include <filesystem>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -23,7 +24,7 @@ class FramePattern {
 };
 
 struct OutputTarget {
-  enum class Kind { video, images };
+  enum class Kind { video, images, none };
   Kind kind = Kind::video;
   std::string text;  ///< as the user typed it, or the default; a pattern where kind is images
 
@@ -40,6 +41,10 @@ void check_writable(const std::filesystem::path& file);
 
 /// Throws Error(output_failed) if `file` exists and `overwrite` is not set, or if it is a folder.
 void check_absent(const std::filesystem::path& file, bool overwrite);
+
+/// Removes from `folder` what a killed process has left of files with these names under their temporary ones. The
+/// caller has made sure that no other process writes them.
+void remove_half_files(const std::filesystem::path& folder, const std::set<std::string>& names);
 
 /// Both checks for the files of the target.
 void prepare_output(const OutputTarget& target, const FrameRange& frames, bool overwrite);

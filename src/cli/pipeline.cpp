@@ -21,10 +21,10 @@ struct DrawnFrame {
 // Fields of a FrameRecord are written by the stage they belong to; the queues order writes before reads.
 class Pipeline {
  public:
-  Pipeline(const PipelineParts& parts, const FrameRange& wanted, const std::atomic<bool>& stop,
+  Pipeline(const PipelineParts& parts, const FrameRange& made, const FrameRange& wanted, const std::atomic<bool>& stop,
            const PipelineObserver& observer)
-      : parts_(parts), wanted_(wanted), stop_(stop), observer_(observer) {
-    result_.frames.resize(static_cast<std::size_t>(wanted.last() + 1));
+      : parts_(parts), made_(made), wanted_(wanted), stop_(stop), observer_(observer) {
+    result_.frames.resize(static_cast<std::size_t>(made.count()));
   }
 
   PipelineResult run() {
@@ -39,25 +39,27 @@ class Pipeline {
       }
       write();
     }
-    result_.frames.resize(static_cast<std::size_t>(simulated_));
+    result_.frames.resize(static_cast<std::size_t>(made_so_far_));
     return std::move(result_);
   }
 
  private:
-  FrameRecord& record(int frame) { return result_.frames[static_cast<std::size_t>(frame)]; }
+  FrameRecord& record(int frame) {
+    return result_.frames[static_cast<std::size_t>((frame - made_.begin) / made_.step)];
+  }
 
   void simulate() noexcept {
     try {
       const std::unique_ptr<FrameSource> source = parts_.make_source();
-      // Frame 0 costs nothing more, so even a run that is stopped at once has a picture.
-      for (int frame = 0; frame <= wanted_.last(); ++frame) {
-        if (frame > 0 && stop_) {
+      // The first one costs little more, so even a run that is stopped at once has a picture.
+      for (int frame = made_.begin; frame <= wanted_.last(); frame += made_.step) {
+        if (frame > made_.begin && stop_) {
           result_.interrupted = true;
           break;
         }
         SimulatedFrame simulated = source->next();
         record(frame).report = simulated.report;
-        simulated_ = frame + 1;
+        if (++made_so_far_ == 1) first_frame_ = source->first_frame();
         observer_.stage_done(Stage::simulate);
         if (!wanted_.contains(frame)) {
           observer_.frame_done(record(frame));
@@ -76,6 +78,7 @@ class Pipeline {
       const std::unique_ptr<FramePainter> painter = parts_.make_painter();
       result_.painter = painter->description();
       while (frame::SnapshotPtr snapshot = snapshots_.pop().value_or(nullptr)) {
+        if (first_frame_) painter->frame_on(*std::exchange(first_frame_, nullptr));
         DrawnFrame drawn{snapshot, painter->draw(*snapshot)};
         record(snapshot->frame).render = painter->last_time();
         observer_.stage_done(Stage::draw);
@@ -127,20 +130,21 @@ class Pipeline {
   }
 
   const PipelineParts& parts_;
-  const FrameRange wanted_;
+  const FrameRange made_, wanted_;
   const std::atomic<bool>& stop_;
   const PipelineObserver& observer_;
   BoundedQueue<frame::SnapshotPtr> snapshots_{kQueueLength};
   BoundedQueue<DrawnFrame> pictures_{kQueueLength};
-  int simulated_ = 0;  // by the simulating thread; read after it has ended
+  frame::SnapshotPtr first_frame_;  // from the simulating to the drawing thread, before the first snapshot
+  int made_so_far_ = 0;             // by the simulating thread; read after it has ended
   PipelineResult result_;
 };
 
 }  // namespace
 
-PipelineResult run_pipeline(const PipelineParts& parts, const FrameRange& wanted, const std::atomic<bool>& stop,
-                            const PipelineObserver& observer) {
-  return Pipeline(parts, wanted, stop, observer).run();
+PipelineResult run_pipeline(const PipelineParts& parts, const FrameRange& made, const FrameRange& wanted,
+                            const std::atomic<bool>& stop, const PipelineObserver& observer) {
+  return Pipeline(parts, made, wanted, stop, observer).run();
 }
 
 }  // namespace weft::cli

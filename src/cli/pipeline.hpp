@@ -31,17 +31,21 @@ struct StageTime {
   }
 };
 
-/// First stage: yields frame 0, then one frame later at each call. Throws when it cannot go on.
+/// First stage: yields one frame after the other. Throws when it cannot go on.
 class FrameSource {
  public:
   virtual ~FrameSource() = default;
   virtual SimulatedFrame next() = 0;
+  /// Frame 0, once next() was called: automatic framing looks at it whichever frames are drawn.
+  virtual frame::SnapshotPtr first_frame() const { return nullptr; }
 };
 
 /// Second stage.
 class FramePainter {
  public:
   virtual ~FramePainter() = default;
+  /// What automatic framing looks at; without it, at the first frame that is drawn.
+  virtual void frame_on(const frame::FrameSnapshot&) {}
   virtual image::Image draw(const frame::FrameSnapshot& snapshot) = 0;
   virtual StageTime last_time() const = 0;
   virtual std::string description() const = 0;
@@ -79,7 +83,7 @@ struct PipelineObserver {
 };
 
 struct PipelineResult {
-  std::vector<FrameRecord> frames;  ///< all simulated frames, from 0
+  std::vector<FrameRecord> frames;  ///< all that were made, in order
   int written = 0;
   bool interrupted = false;      ///< stopped on request before the last wanted frame
   std::string painter;           ///< its description; empty if none was made
@@ -87,9 +91,10 @@ struct PipelineResult {
   bool finished_output = false;  ///< what was written is whole, under its final name
 };
 
-/// Runs until the last frame of `wanted`, `stop`, or a failure. Whatever ends the run, the frames that were written are
+/// Runs through the frames that the source makes until the last of `wanted`, `stop`, or a failure; `made` has all of
+/// `wanted`. Whatever ends the run, the frames that were written are
 /// finished and kept if the writer itself works. Never throws for a failure of a stage: see `failure`.
-PipelineResult run_pipeline(const PipelineParts& parts, const FrameRange& wanted, const std::atomic<bool>& stop,
-                            const PipelineObserver& observer);
+PipelineResult run_pipeline(const PipelineParts& parts, const FrameRange& made, const FrameRange& wanted,
+                            const std::atomic<bool>& stop, const PipelineObserver& observer);
 
 }  // namespace weft::cli

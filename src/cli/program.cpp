@@ -23,6 +23,8 @@ ExitCode print(const std::string& text) {
 
 struct Dispatch {
   ExitCode operator()(const RunOptions& options) const { return run(options); }
+  ExitCode operator()(const SimulateOptions& options) const { return simulate(options); }
+  ExitCode operator()(const RenderOptions& options) const { return render(options); }
   ExitCode operator()(const CheckOptions& options) const { return check(options); }
   ExitCode operator()(const ThumbnailOptions& options) const { return thumbnail(options); }
   ExitCode operator()(const SchemaOptions&) const { return print(scene::json_schema() + "\n"); }

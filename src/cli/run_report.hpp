@@ -19,16 +19,18 @@ struct RunReport {
   std::size_t particles = 0;
   int threads = 0;
   std::string gl;
-  int width = 0, height = 0;  ///< pixels
+  int width = 0, height = 0;  ///< pixels; 0 where nothing is drawn
   double fps = 0;
   std::string output;               ///< as the user named it
   std::uintmax_t output_bytes = 0;  ///< of a video; 0 for pictures or none
   FrameRange wanted;
-  std::vector<FrameRecord> frames;  ///< those simulated
+  std::vector<FrameRecord> frames;  ///< those simulated or read
   int written = 0;
-  StageTime setup;               ///< reading the scene and building the simulation
-  double wall_s = 0, cpu_s = 0;  ///< of the whole process, all threads
-  std::int64_t peak_memory = 0;  ///< [bytes]
+  StageTime cache;                 ///< keeping frames and states
+  std::uintmax_t cache_bytes = 0;  ///< written to it
+  StageTime setup;                 ///< reading the scene and building the simulation
+  double wall_s = 0, cpu_s = 0;    ///< of the whole process, all threads
+  std::int64_t peak_memory = 0;    ///< [bytes]
   std::vector<std::string> warnings;
   ExitCode exit_code = ExitCode::ok;
   std::string message;  ///< why it ended early; empty if it did not

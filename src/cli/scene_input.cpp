@@ -1,21 +1,19 @@
 #include "cli/scene_input.hpp"
 
+#include <algorithm>
+
+#include "cli/system_info.hpp"
 #include "core/error.hpp"
 #include "core/nearest.hpp"
+#include "core/version.hpp"
 
 namespace weft::cli {
 namespace {
 
-void check_camera(const scene::Scene& scene, const std::string& camera) {
+std::vector<std::string> camera_names(const scene::Scene& scene) {
   std::vector<std::string> names;
-  for (const scene::Camera& known : scene.cameras) {
-    if (known.name == camera) return;
-    names.push_back(known.name);
-  }
-  if (names.empty()) throw Error(ExitCode::usage, "--camera: the scene names no cameras, got {}", camera);
-  const std::string nearest = nearest_name(camera, names);
-  throw Error(ExitCode::usage, "--camera: expected {}, got {}{}", fmt::join(names, " or "), camera,
-              nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+  for (const scene::Camera& camera : scene.cameras) names.push_back(camera.name);
+  return names;
 }
 
 std::string counted(std::size_t count, const char* singular, const char* plural) {
@@ -24,13 +22,21 @@ std::string counted(std::size_t count, const char* singular, const char* plural)
 
 }  // namespace
 
+void check_camera(const std::vector<std::string>& names, const std::string& camera) {
+  if (std::find(names.begin(), names.end(), camera) != names.end()) return;
+  if (names.empty()) throw Error(ExitCode::usage, "--camera: the scene names no cameras, got {}", camera);
+  const std::string nearest = nearest_name(camera, names);
+  throw Error(ExitCode::usage, "--camera: expected {}, got {}{}", fmt::join(names, " or "), camera,
+              nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+}
+
 scene::Scene load_scene(const SceneOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   // As an override, so that the scene's hash tells runs at other frame times apart.
   if (options.fps) overrides.push_back(fmt::format("time.fps={}", *options.fps));
   scene::LoadResult loaded = scene::load(options.scene, overrides);
   if (!loaded.ok()) throw Error(ExitCode::scene_invalid, mistakes_text(loaded));
-  if (!options.camera.empty()) check_camera(loaded.scene, options.camera);
+  if (!options.camera.empty()) check_camera(camera_names(loaded.scene), options.camera);
   return std::move(loaded.scene);
 }
 
@@ -40,15 +46,37 @@ std::string mistakes_text(const scene::LoadResult& loaded) {
   return text;
 }
 
-render::Settings render_settings(const scene::Scene& scene, const SceneOptions& options) {
+render::Settings render_settings(const PictureSize& size, const std::string& camera, const SceneOptions& options) {
   render::Settings settings;
-  settings.width = options.size ? options.size->width : scene.render.width;
-  settings.height = options.size ? options.size->height : scene.render.height;
+  settings.width = options.size ? options.size->width : size.width;
+  settings.height = options.size ? options.size->height : size.height;
   settings.quality = options.quality;
   settings.backend = options.backend;
-  settings.camera = options.camera.empty() ? scene.render.camera : options.camera;
+  settings.camera = options.camera.empty() ? camera : options.camera;
   settings.threads = options.threads;
   return settings;
+}
+
+render::Settings render_settings(const scene::Scene& scene, const SceneOptions& options) {
+  return render_settings({scene.render.width, scene.render.height}, scene.render.camera, options);
+}
+
+cache::Manifest manifest_of(const scene::Scene& scene, const render::Settings& settings) {
+  cache::Manifest manifest;
+  manifest.scene = scene.name;
+  manifest.title = scene.title;
+  manifest.scene_hash = scene.hash;
+  manifest.fps = scene.time.fps;
+  manifest.frame_count = scene.frame_count();
+  manifest.preroll_frames = scene.preroll_frames();
+  manifest.width = settings.width;
+  manifest.height = settings.height;
+  manifest.camera = settings.camera;
+  manifest.cameras = camera_names(scene);
+  manifest.weft_version = kVersion;
+  manifest.cpu_target = WEFT_CPU;
+  manifest.program = program_fingerprint();
+  return manifest;
 }
 
 std::string describe_scene(const scene::Scene& scene) {

@@ -25,6 +25,8 @@ class GlPainter : public FramePainter {
  public:
   explicit GlPainter(const render::Settings& settings) : renderer_(settings) {}
 
+  void frame_on(const frame::FrameSnapshot& snapshot) override { renderer_.frame_on(snapshot); }
+
   image::Image draw(const frame::FrameSnapshot& snapshot) override {
     image::Image image = renderer_.draw(snapshot);
     if (!warned_ && shows_single_color(image)) {
@@ -46,6 +48,13 @@ class GlPainter : public FramePainter {
   bool warned_ = false;
 };
 
+class IdlePainter : public FramePainter {
+ public:
+  image::Image draw(const frame::FrameSnapshot&) override { return {}; }
+  StageTime last_time() const override { return {}; }
+  std::string description() const override { return "none"; }
+};
+
 class OutputWriter : public FrameWriter {
  public:
   explicit OutputWriter(const WriterSettings& settings) : settings_(settings) {
@@ -55,7 +64,7 @@ class OutputWriter : public FrameWriter {
   void write(const frame::FrameSnapshot& snapshot, const image::Image& image) override {
     if (video_) {
       video_->add(image);
-    } else {
+    } else if (settings_.target.kind == OutputTarget::Kind::images) {
       image::write_png(settings_.target.file(snapshot.frame), image,
                        describe_still(settings_.metadata, snapshot.frame, snapshot.time));
     }
@@ -96,10 +105,14 @@ std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings) 
   return std::make_unique<GlPainter>(settings);
 }
 
-Metadata describe_pictures(const scene::Scene& scene, const render::Settings& settings, const std::string& gl) {
+std::unique_ptr<FramePainter> make_idle_painter() {
+  return std::make_unique<IdlePainter>();
+}
+
+Metadata describe_pictures(const cache::Manifest& scene, const render::Settings& settings, const std::string& gl) {
   constexpr const char* kQualities[] = {"draft", "preview", "final"};
-  Metadata metadata{{"scene", scene.name},
-                    {"scene_hash", fmt::format("{:016x}", scene.hash)},
+  Metadata metadata{{"scene", scene.scene},
+                    {"scene_hash", fmt::format("{:016x}", scene.scene_hash)},
                     {"weft_version", kVersion},
                     {"gl", gl},
                     {"quality", kQualities[static_cast<int>(settings.quality)]}};

@@ -7,11 +7,11 @@
 #include <string>
 #include <vector>
 
+#include "cache/manifest.hpp"
 #include "cli/output_target.hpp"
 #include "cli/pipeline.hpp"
 #include "image/image.hpp"
 #include "render/renderer.hpp"
-#include "scene/scene.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::cli {
@@ -19,10 +19,13 @@ namespace weft::cli {
 /// Draws with OpenGL; warns of the first picture that shows a single colour.
 std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings);
 
+/// Draws nothing, for runs that keep frames and meshes only.
+std::unique_ptr<FramePainter> make_idle_painter();
+
 using Metadata = std::map<std::string, std::string>;
 
 /// What video and stills say about themselves: scene, scene_hash, weft_version, gl, camera, quality.
-Metadata describe_pictures(const scene::Scene& scene, const render::Settings& settings, const std::string& gl);
+Metadata describe_pictures(const cache::Manifest& scene, const render::Settings& settings, const std::string& gl);
 
 /// Adds what holds for one still: frame and time_s.
 Metadata describe_still(Metadata metadata, int frame, double time_s);
@@ -36,7 +39,7 @@ struct WriterSettings {
   Metadata metadata;
 };
 
-/// Writes the video or the pictures, and the meshes.
+/// Writes the video or the pictures, if any, and the meshes.
 std::unique_ptr<FrameWriter> make_writer(const WriterSettings& settings);
 
 /// `DIR/<object>_<frame:05>.ply`.

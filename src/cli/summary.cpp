@@ -22,6 +22,9 @@ std::string bytes_text(std::uintmax_t bytes) {
 }
 
 std::string headline(const RunReport& report) {
+  if (report.width == 0)
+    return fmt::format("{}: {} frame{} at {:.4g} fps, {}", report.output, report.frames.size(),
+                       report.frames.size() == 1 ? "" : "s", report.fps, bytes_text(report.cache_bytes));
   if (report.written == 0) return fmt::format("{}: no frame was written", report.output);
   const double video_fps = report.fps / report.wanted.step;
   std::string line = fmt::format("{}: {} frame{}, {}x{} at {:.4g} fps", report.output, report.written,
@@ -42,9 +45,12 @@ std::string times_table(const RunReport& report) {
   std::vector<Row> rows{{"", "wall", "CPU", "CPU a frame"},
                         stage_row("set up", report.setup, 0),
                         stage_row("simulate", totals.simulate, simulated),
-                        stage_row("  collisions", totals.collide, simulated),
-                        stage_row("draw", totals.render, report.written),
-                        stage_row("encode", totals.encode, report.written)};
+                        stage_row("  collisions", totals.collide, simulated)};
+  if (report.cache.wall_s > 0) rows.push_back(stage_row("cache", report.cache, static_cast<int>(report.frames.size())));
+  if (report.width > 0) {
+    rows.push_back(stage_row("draw", totals.render, report.written));
+    rows.push_back(stage_row("encode", totals.encode, report.written));
+  }
   if (totals.meshes.wall_s > 0) rows.push_back(stage_row("meshes", totals.meshes, report.written));
   rows.push_back(stage_row("whole run", {report.wall_s, report.cpu_s}, report.written));
   return format_table(rows, "lrrr", 2);

@@ -1,8 +1,11 @@
 #include "cli/system_info.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
+#include <xxhash.h>
 
 #include <fstream>
+#include <iterator>
 
 namespace weft::cli {
 
@@ -13,6 +16,12 @@ std::string cpu_model() {
     if (line.starts_with("model name") && colon != std::string::npos) return line.substr(colon + 2);
   }
   return "unknown";
+}
+
+std::string program_fingerprint() {
+  std::ifstream program("/proc/self/exe", std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(program), {}};
+  return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
 }
 
 std::int64_t peak_memory_bytes() {

@@ -9,6 +9,9 @@ namespace weft::cli {
 /// Model name of the processor; "unknown" where the system does not tell.
 std::string cpu_model();
 
+/// The same for the very same program only, 16 hexadecimal digits.
+std::string program_fingerprint();
+
 /// The most memory that the process held so far [bytes].
 std::int64_t peak_memory_bytes();
 

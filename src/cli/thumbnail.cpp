@@ -63,7 +63,8 @@ ExitCode thumbnail(const ThumbnailOptions& options) {
     const image::Image image = painter->draw(*snapshot);
     progress.advance(Stage::draw);
     image::write_png(file, image,
-                     describe_still(describe_pictures(scene, settings, painter->description()), frame, snapshot->time));
+                     describe_still(describe_pictures(manifest_of(scene, settings), settings, painter->description()),
+                                    frame, snapshot->time));
   }
   log::info(fmt::format("{}: frame {} (t = {:.4g} s)", file.string(), frame, frame / scene.time.fps));
   return ExitCode::ok;

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/archive.hpp"
+
 namespace weft::collision {
 namespace {
 
@@ -146,7 +148,7 @@ void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
 
 // Whether the gathered features still hold every pair within the reach at x.
 bool Engine::near_start(std::span<const Vec3> x) const {
-  if (from_.size() != x.size()) return false;
+  if (margin_ < 0) return false;
   const double skin = margin_ - 0.5 * reach_;
   for (std::size_t i = 0; i < x.size(); ++i)
     if (!((x[i] - from_[i]).squaredNorm() <= skin * skin)) return false;
@@ -379,5 +381,44 @@ double Engine::min_distance() const {
   for (const Proximity& proximity : proximities_) least = std::min(least, proximity.distance);
   return least;
 }
+
+void Engine::forget() {
+  if (!BroadPhase::remembers(parameters_.search)) return;
+  broad_phase_.forget();
+  margin_ = -1;
+}
+
+template <class Archive>
+void Engine::exchange(Archive& archive, std::span<const Vec3> x) {
+  pinched_.exchange(archive);
+  constraints_.exchange(archive);
+  bool kept = near_start(x);
+  archive.value(kept);
+  if (kept)
+    exchange_candidates(archive);
+  else if constexpr (Archive::kReads)
+    margin_ = -1;
+}
+
+// Candidates and features follow from the two positions that they were collected for.
+template <class Archive>
+void Engine::exchange_candidates(Archive& archive) {
+  std::vector<Vec3> from = from_, to = to_;
+  for (const Body& body : bodies_) {
+    if (!body.moving) continue;
+    const auto first = static_cast<std::size_t>(body.first_vertex),
+               bytes = static_cast<std::size_t>(body.vertex_count) * sizeof(Vec3);
+    for (std::vector<Vec3>* x : {&from, &to}) archive.raw(x->data() + first, bytes);
+  }
+  if constexpr (Archive::kReads) {
+    const auto finite = [](const Vec3& x) { return x.allFinite(); };
+    require(std::ranges::all_of(from, finite) && std::ranges::all_of(to, finite), "finite points");
+    collect(from, to);
+  }
+  separation_.exchange(archive);
+}
+
+template void Engine::exchange(ByteWriter&, std::span<const Vec3>);
+template void Engine::exchange(ByteReader&, std::span<const Vec3>);
 
 }  // namespace weft::collision

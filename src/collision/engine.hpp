@@ -25,6 +25,7 @@ struct Body {
   bool deformable = false;
   double thickness = 0;  ///< of cloth [m]; 0 for obstacles
   double friction = 0;   ///< Coulomb coefficient; of a pair: the geometric mean
+  bool moving = true;    ///< false: its vertices stay where they are at the start
 };
 
 /// Coulomb coefficients of two bodies while they slide and before.
@@ -62,6 +63,14 @@ class Engine {
   /// Finds the contacts of a step over h [s] from x_t0, with x_t1 the expected end: obstacles exactly, particles by
   /// guess.
   void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h);
+
+  /// Lets go, between two steps, of what only makes the search faster and cannot be exchanged.
+  void forget();
+
+  /// What the next step from x [m] depends on, besides that. Throws std::runtime_error where these bodies cannot have
+  /// it.
+  template <class Archive>
+  void exchange(Archive& archive, std::span<const Vec3> x);
 
   /// The contacts found, to act inside the solve.
   ContactSet& contacts() { return contacts_; }
@@ -121,6 +130,8 @@ class Engine {
                          std::span<const Vec3> x_t1);
   bool near_start(std::span<const Vec3> x) const;
   bool inside_bounds(std::span<const Vec3> x) const;
+  template <class Archive>
+  void exchange_candidates(Archive& archive);
 
   std::vector<Body> bodies_;
   EngineParameters parameters_;
@@ -142,7 +153,7 @@ class Engine {
   CandidatePairs near_;  // those that may be within the reach
   // What the candidates are good for: vertices between these positions, or no further from there than the margin [m].
   std::vector<Vec3> from_, to_;
-  double margin_ = -1;
+  double margin_ = -1;  // negative: there are none
   std::vector<Proximity> proximities_;
   // Sorted vertices of the features that push with all their stiffness; sorted itself.
   std::vector<std::array<Index, 4>> in_contact_;

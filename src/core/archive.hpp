@@ -6,11 +6,16 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <type_traits>
+#include <vector>
+
+#include "core/types.hpp"
 
 namespace weft {
 
 /// Appends what it is called with, in the byte order of this machine.
 struct ByteWriter {
+  static constexpr bool kReads = false;
   std::string bytes;
 
   void raw(const void* data, std::size_t size) { bytes.append(static_cast<const char*>(data), size); }
@@ -28,6 +33,7 @@ struct ByteWriter {
 
 /// Fills what it is called with. Throws std::runtime_error where the bytes are too few.
 struct ByteReader {
+  static constexpr bool kReads = true;
   std::string_view bytes;
 
   void raw(void* data, std::size_t size) {
@@ -37,7 +43,13 @@ struct ByteReader {
   }
   template <class T>
   void value(T& value) {
-    raw(static_cast<void*>(&value), sizeof value);
+    if constexpr (std::is_same_v<T, bool>) {
+      unsigned char byte = 0;  // of which a bool may hold but two values
+      raw(&byte, 1);
+      value = byte != 0;
+    } else {
+      raw(static_cast<void*>(&value), sizeof value);
+    }
   }
   /// Each entry takes `least` bytes or more: no more memory is asked for than the bytes can fill.
   template <class List>
@@ -48,6 +60,17 @@ struct ByteReader {
     list.resize(count);
   }
 };
+
+/// For what was read: throws std::runtime_error where it cannot be.
+inline void require(bool holds, const char* expected) {
+  if (!holds) throw std::runtime_error(std::string("the data does not fit: expected ") + expected);
+}
+
+/// Plain values, one after the other.
+template <class Archive, class... Values>
+void exchange_values(Archive& archive, Values&... values) {
+  (archive.value(values), ...);
+}
 
 /// A list of plain values, or a text.
 template <class Archive, class List>
@@ -60,6 +83,16 @@ template <class Archive, class List, class Exchange>
 void exchange_each(Archive& archive, List& list, const Exchange& exchange_one, std::size_t least = 1) {
   archive.size(list, least);
   for (auto& entry : list) exchange_one(entry);
+}
+
+/// A list whose length is known before it is read, of finite points or vectors.
+template <class Archive>
+void exchange_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
+  exchange_plain(archive, points);
+  if constexpr (Archive::kReads) {
+    require(points.size() == count, "as many points as the scene has");
+    for (const Vec3& point : points) require(point.allFinite(), "finite points");
+  }
 }
 
 }  // namespace weft

@@ -77,8 +77,9 @@ std::string progress_bar(const StageCounts& done, const StageCounts& totals, std
       fmt::format("[{:#>{}}{:->{}}] {:3.0f} %", "", filled, "", kCells - filled, std::floor(100 * share));
   // Before the counts: it is what people look for, and a narrow terminal cuts the end.
   if (seconds_left) line += fmt::format("  {} left", format_duration(*seconds_left));
-  line +=
-      fmt::format("  sim {}  drawn {}  written {} of {}", done[kSimulate], done[kDraw], done[kWrite], totals[kWrite]);
+  if (totals[kSimulate] > 0) line += fmt::format("  sim {}", done[kSimulate]);
+  if (totals[kWrite] > 0) line += fmt::format("  drawn {}  written {}", done[kDraw], done[kWrite]);
+  line += fmt::format(" of {}", totals[totals[kWrite] > 0 ? kWrite : kSimulate]);
   // One column less than there are: a full line would wrap and could not be redrawn in place.
   if (columns > 0 && line.size() >= static_cast<std::size_t>(columns))
     line.resize(static_cast<std::size_t>(columns - 1));
@@ -87,8 +88,14 @@ std::string progress_bar(const StageCounts& done, const StageCounts& totals, std
 
 std::string progress_line(const StageCounts& done, const StageCounts& totals, double seconds,
                           std::optional<double> seconds_left) {
-  std::string line = fmt::format("{} of {} frames simulated, {} of {} drawn, {} written after {}", done[kSimulate],
-                                 totals[kSimulate], done[kDraw], totals[kDraw], done[kWrite], format_duration(seconds));
+  std::vector<std::string> parts;
+  if (totals[kSimulate] > 0)
+    parts.push_back(fmt::format("{} of {} frames simulated", done[kSimulate], totals[kSimulate]));
+  if (totals[kDraw] > 0) {
+    parts.push_back(fmt::format("{} of {} drawn", done[kDraw], totals[kDraw]));
+    parts.push_back(fmt::format("{} written", done[kWrite]));
+  }
+  std::string line = fmt::format("{} after {}", fmt::join(parts, ", "), format_duration(seconds));
   if (seconds_left) line += fmt::format(", about {} left", format_duration(*seconds_left));
   return line;
 }

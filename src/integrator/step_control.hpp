@@ -1,6 +1,9 @@
 // Lengths of steps from estimates of their local errors.
 #pragma once
 
+#include <cmath>
+
+#include "core/archive.hpp"
 #include "integrator/stepper.hpp"
 
 namespace weft::integrator {
@@ -25,6 +28,15 @@ class StepControl {
   void accepted(double h, double error);
   void too_inexact(double h, double error);
   void unsolved(double h);
+
+  /// What it remembers. Throws std::runtime_error where that cannot be.
+  template <class Archive>
+  void exchange(Archive& archive) {
+    exchange_values(archive, wanted_, last_share_, after_failure_);
+    // Half of the shortest step may be wanted after it failed.
+    if constexpr (Archive::kReads)
+      require(wanted_ >= 0.1 * kShortestStep && std::isfinite(wanted_) && std::isfinite(last_share_), "a step length");
+  }
 
   /// Steps are not cut below this for their error [s]. Where only an impact's jump of velocity counts, the error is
   /// about h Δv, and 1e-4 m with 10 m/s is just met by it; smooth motion meets 1e-9 m with it.

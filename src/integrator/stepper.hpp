@@ -1,10 +1,12 @@
 // One implicit time step (seed, Fig. 2): method → implicit equation → Newton with residual control → constrained CG.
 #pragma once
 
+#include <cmath>
 #include <span>
 #include <string_view>
 #include <vector>
 
+#include "core/archive.hpp"
 #include "integrator/system.hpp"
 #include "solver/conjugate_gradient.hpp"
 
@@ -88,6 +90,16 @@ class Stepper {
 
   /// Forgets the history: the next BDF2 step is an Euler step. For the start and after a jump.
   void restart() { previous_h_ = 0; }
+
+  /// The history, of so many particles. Throws std::runtime_error where it cannot be.
+  template <class Archive>
+  void exchange(Archive& archive, std::size_t particles) {
+    archive.value(previous_h_);
+    if constexpr (Archive::kReads) require(previous_h_ >= 0 && std::isfinite(previous_h_), "a step length");
+    if (previous_h_ == 0) return;
+    exchange_points(archive, previous_.x, particles);
+    exchange_points(archive, previous_.v, particles);
+  }
 
  private:
   struct Stage {

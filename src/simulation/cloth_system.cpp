@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 
+#include "core/archive.hpp"
 #include "forces/bend.hpp"
 #include "forces/shear.hpp"
 #include "forces/stretch.hpp"
@@ -160,16 +161,33 @@ void ClothSystem::cut_groups(const environment::Environment& environment) {
   } while (groupings_.back().count > std::max(kPatches, static_cast<Index>(boxes.size())));
 }
 
+void ClothSystem::Sewing::use_share(double new_share) {
+  share = new_share;
+  membrane->rest_between_start_and_pattern(share);
+  if (bands != nullptr) bands->rest_between_start_and_pattern(share);
+}
+
 void ClothSystem::sew(double t) {
   for (Sewing& sewing : sewing_) {
     const double share = sewing.duration > 0 ? ease(t / sewing.duration) : 1;
     if (share == sewing.share) continue;
-    sewing.share = share;
-    sewing.membrane->rest_between_start_and_pattern(share);
-    if (sewing.bands != nullptr) sewing.bands->rest_between_start_and_pattern(share);
+    sewing.use_share(share);
     forget();
   }
 }
+
+template <class Archive>
+void ClothSystem::exchange(Archive& archive) {
+  for (Sewing& sewing : sewing_) {
+    archive.value(sewing.share);
+    if constexpr (!Archive::kReads) continue;
+    require(sewing.share >= 0 && sewing.share <= 1, "a share of the way to the pattern");
+    sewing.use_share(sewing.share);
+  }
+}
+
+template void ClothSystem::exchange(ByteWriter&);
+template void ClothSystem::exchange(ByteReader&);
 
 // What is being sewn has no weight: it would fall before it fits.
 void ClothSystem::take_weight_off(std::span<Vec3> force) const {

@@ -36,6 +36,10 @@ class ClothSystem final : public integrator::System {
   /// Gives cloths that are being sewn the rest shape that they have at time t [s].
   void sew(double t);
 
+  /// What lasts from frame to frame: how far cloths are sewn.
+  template <class Archive>
+  void exchange(Archive& archive);
+
   /// Makes the next linearisation put the matrix together anew: what is computed from here on depends on positions and
   /// velocities alone.
   void forget() {
@@ -79,6 +83,8 @@ class ClothSystem final : public integrator::System {
     double share = -1;  // of the way to the pattern
     forces::TriangleMembrane* membrane;
     forces::Bands* bands;  // nullptr where it has none
+
+    void use_share(double new_share);
   };
   std::vector<Sewing> sewing_;
   Vec3 gravity_;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "core/archive.hpp"
 #include "core/error.hpp"
 
 namespace weft::simulation {
@@ -82,9 +83,9 @@ collision::EngineParameters engine_parameters(const scene::Scene& scene, const e
 std::vector<collision::Body> make_bodies(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<collision::Body> bodies;
   Index first = 0;
-  const auto add = [&](const mesh::Mesh& mesh, bool deformable, double thickness, double friction) {
+  const auto add = [&](const mesh::Mesh& mesh, bool deformable, double thickness, double friction, bool moving = true) {
     const auto count = static_cast<Index>(mesh.positions.size());
-    bodies.push_back({shifted(mesh, first), first, count, deformable, thickness, friction});
+    bodies.push_back({shifted(mesh, first), first, count, deformable, thickness, friction, moving});
     first += count;
   };
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
@@ -93,7 +94,7 @@ std::vector<collision::Body> make_bodies(const scene::Scene& scene, const enviro
         std::min(material.thickness, kThicknessOfSpacing * environment.cloths[c].spacing), material.friction);
   }
   for (std::size_t b : colliding_bodies(scene, environment))
-    add(environment.bodies[b].mesh, false, 0, environment.bodies[b].friction);
+    add(environment.bodies[b].mesh, false, 0, environment.bodies[b].friction, environment.bodies[b].moving);
   return bodies;
 }
 
@@ -139,19 +140,20 @@ std::string CollisionStage::describe(const collision::CornerPair& pair) const {
                      names_[engine_.body_of(pair.b[0])], engine_.triangle_of(pair.b), at.x(), at.y(), at.z());
 }
 
+void CollisionStage::copy_obstacles(const environment::Environment& environment, std::vector<Vec3>& all) const {
+  auto place = all.begin() + static_cast<std::ptrdiff_t>(particles_);
+  for (std::size_t b : bodies_) {
+    const auto& positions = environment.bodies[b].motion.positions;
+    place = std::copy(positions.begin(), positions.end(), place);
+  }
+}
+
 void CollisionStage::begin_step(environment::Environment& environment, const integrator::State& now,
                                 std::span<const integrator::HeldParticle> held, double t, double h) {
-  const auto copy_obstacles = [&](std::vector<Vec3>& all) {
-    auto place = all.begin() + static_cast<std::ptrdiff_t>(particles_);
-    for (std::size_t b : bodies_) {
-      const auto& positions = environment.bodies[b].motion.positions;
-      place = std::copy(positions.begin(), positions.end(), place);
-    }
-  };
   environment.move_to(t);
-  copy_obstacles(all_t0_);
+  copy_obstacles(environment, all_t0_);
   environment.move_to(t + h);
-  copy_obstacles(all_t1_);
+  copy_obstacles(environment, all_t1_);
 
   movable_.assign(all_t0_.size(), 0);
   std::fill_n(movable_.begin(), particles_, std::uint8_t{1});
@@ -213,5 +215,21 @@ CollisionStage::Pinches CollisionStage::take_pinches() {
   pinching_.clear();
   return std::exchange(pinches_, {});
 }
+
+template <class Archive>
+void CollisionStage::exchange(Archive& archive, const environment::Environment& environment,
+                              const integrator::State& now) {
+  std::vector<Vec3> all = all_t0_;
+  std::copy(now.x.begin(), now.x.end(), all.begin());
+  copy_obstacles(environment, all);
+  engine_.exchange(archive, all);
+  std::vector<PinchingObjects> before(pinching_before_.begin(), pinching_before_.end());
+  exchange_each(archive, before,
+                [&](PinchingObjects& objects) { exchange_values(archive, objects.first, objects.second); });
+  pinching_before_ = {before.begin(), before.end()};
+}
+
+template void CollisionStage::exchange(ByteWriter&, const environment::Environment&, const integrator::State&);
+template void CollisionStage::exchange(ByteReader&, const environment::Environment&, const integrator::State&);
 
 }  // namespace weft::simulation

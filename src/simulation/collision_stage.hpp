@@ -62,6 +62,14 @@ class CollisionStage {
   };
   Pinches take_pinches();
 
+  /// Before a frame: see Engine::forget.
+  void forget() { engine_.forget(); }
+
+  /// What the next step depends on, with the particles at `now` and the bodies where the environment has them. Throws
+  /// std::runtime_error where this scene cannot have it.
+  template <class Archive>
+  void exchange(Archive& archive, const environment::Environment& environment, const integrator::State& now);
+
   int proximities() const { return engine_.proximities(); }
   double min_distance() const { return engine_.min_distance(); }
 
@@ -69,6 +77,7 @@ class CollisionStage {
   std::string describe(const collision::CornerPair& pair) const;
   std::string describe(const collision::Pinch& pinch) const;
   void note_pinches();
+  void copy_obstacles(const environment::Environment& environment, std::vector<Vec3>& all) const;
 
   std::vector<std::string> names_;   // per body
   std::vector<std::size_t> bodies_;  // of the environment, those that collide

@@ -1,6 +1,7 @@
 // Tells energy that comes from nowhere: a method of integration that runs away stays finite for long.
 #pragma once
 
+#include "core/archive.hpp"
 #include "environment/environment.hpp"
 #include "scene/scene.hpp"
 #include "simulation/simulation.hpp"
@@ -15,6 +16,11 @@ class EnergyBound {
 
   /// Throws Error(simulation_failed) where the energies of this frame are more than there can be.
   void check(int frame, const FrameReport& energies);
+
+  template <class Archive>
+  void exchange(Archive& archive) {
+    exchange_values(archive, potential_low_, potential_high_);
+  }
 
  private:
   bool applies_;

@@ -6,6 +6,7 @@
 #include <limits>
 #include <optional>
 
+#include "core/archive.hpp"
 #include "core/error.hpp"
 #include "core/timer.hpp"
 #include "environment/environment.hpp"
@@ -59,6 +60,19 @@ std::vector<Index> first_particles(const scene::Scene& scene, const ClothSystem&
   return first;
 }
 
+// More than any scene has; what was read is held against it.
+constexpr int kMostFrames = 1 << 30;
+
+// Times are not part of a state: two runs take different ones.
+template <class Archive>
+void exchange(Archive& archive, FrameReport& report) {
+  exchange_values(archive, report.frame, report.time, report.steps, report.rejected_steps, report.inexact_steps,
+                  report.error_estimate, report.newton_iterations, report.linear_iterations, report.proximities,
+                  report.constraints, report.min_distance, report.max_strain, report.kinetic_energy,
+                  report.potential_energy, report.elastic_energy, report.pinched_pairs);
+  exchange_each(archive, report.pinches, [&](std::string& text) { exchange_plain(archive, text); });
+}
+
 /// Adds the wall and CPU time of a scope to two counters.
 class Stopwatch {
  public:
@@ -88,6 +102,8 @@ struct Simulation::Impl {
   void measure(FrameReport& report) const;
   void report_pinches(FrameReport& report);
   frame::SnapshotPtr make_snapshot() const;
+  template <class Archive>
+  void exchange(Archive& archive);
 
   // Why a step was rejected; empty where it was not.
   using Rejection = std::optional<std::string>;
@@ -278,6 +294,7 @@ FrameReport Simulation::Impl::advance() {
     // Frame k is at k / fps exactly, whatever the steps between.
     const double t_t0 = frame / scene.time.fps, t_t1 = (frame + 1) / scene.time.fps;
     system.forget();
+    if (collisions) collisions->forget();
     const integrator::State start = now;
     const integrator::Stepper stepper_start = stepper;
     const auto control_start = control;
@@ -352,6 +369,23 @@ frame::SnapshotPtr Simulation::Impl::make_snapshot() const {
   return snapshots.make(frame, frame / scene.time.fps, environment, std::move(heat));
 }
 
+// Mean accelerations of the last step are left out: nothing looks at them before the next one.
+template <class Archive>
+void Simulation::Impl::exchange(Archive& archive) {
+  archive.value(frame);
+  if constexpr (Archive::kReads)
+    require(frame >= -scene.preroll_frames() && frame < kMostFrames, "a frame of the scene");
+  const std::size_t particles = system.masses().size();
+  exchange_points(archive, now.x, particles);
+  exchange_points(archive, now.v, particles);
+  stepper.exchange(archive, particles);
+  if (control) control->exchange(archive);
+  system.exchange(archive);
+  energy_bound->exchange(archive);
+  simulation::exchange(archive, start_report);
+  if (collisions) collisions->exchange(archive, environment, now);
+}
+
 Simulation::Simulation(const scene::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
 Simulation::~Simulation() = default;
 
@@ -370,14 +404,29 @@ ParticleState Simulation::state() const {
 }
 
 bool Simulation::run_preroll(const std::function<bool()>& proceed) {
-  std::vector<std::string> pinches;
+  FrameReport& report = impl_->start_report;
   while (impl_->frame < 0) {
     if (!proceed()) return false;
-    impl_->start_report = impl_->advance();
-    pinches.insert(pinches.end(), impl_->start_report.pinches.begin(), impl_->start_report.pinches.end());
+    const std::vector<std::string> pinches = report.pinches;
+    report = impl_->advance();
+    report.pinches.insert(report.pinches.begin(), pinches.begin(), pinches.end());
   }
-  impl_->start_report.pinches = std::move(pinches);
   return true;
+}
+
+void Simulation::save(std::string& bytes) const {
+  ByteWriter writer{std::move(bytes)};
+  impl_->exchange(writer);
+  bytes = std::move(writer.bytes);
+}
+
+void Simulation::restore(std::string_view bytes) {
+  ByteReader reader{bytes};
+  impl_->exchange(reader);
+  require(reader.bytes.empty(), "an end");
+  impl_->environment.move_to(impl_->frame / impl_->scene.time.fps);
+  impl_->write_back();
+  impl_->current = impl_->make_snapshot();
 }
 
 FrameReport Simulation::initial_report() const {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "frame/frame_report.hpp"
@@ -56,6 +57,13 @@ class Simulation {
   std::size_t particles() const;
   /// Of the current frame; valid until the next advance().
   ParticleState state() const;
+
+  /// Appends all that later frames depend on, in a form for machines of one kind and one version of the program. Not
+  /// after a failed advance().
+  void save(std::string& bytes) const;
+  /// Goes on from what a simulation of the same scene has saved: what follows has the same bits. Only before the first
+  /// advance(). Throws std::runtime_error where the bytes are none of this scene; the simulation is then of no use.
+  void restore(std::string_view bytes);
 
  private:
   struct Impl;

@@ -119,8 +119,8 @@ PipelineResult play(Script& script, const FrameRange& wanted) {
                               ++script.writers_made;
                               return std::make_unique<Writer>(script);
                             }};
-  PipelineResult result =
-      run_pipeline(parts, wanted, script.stop ? *script.stop : never, {[](Stage) {}, [](const FrameRecord&) {}});
+  PipelineResult result = run_pipeline(parts, {0, wanted.last() + 1, 1}, wanted, script.stop ? *script.stop : never,
+                                       {[](Stage) {}, [](const FrameRecord&) {}});
   EXPECT_EQ(script.alive, 0) << "a stage was left behind";
   EXPECT_EQ(result.frames.size(), script.simulated.size());
   EXPECT_EQ(static_cast<std::size_t>(result.written), script.written.size());

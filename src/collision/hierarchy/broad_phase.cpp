@@ -40,6 +40,11 @@ class TreesOf final : public BroadPhase::Trees {
     collision::pairs(trees_[a], trees_[b], out, traversal(a, b));
   }
 
+  void forget() override {
+    for (auto& tree : trees_) tree.forget();
+    lists_.clear();
+  }
+
  private:
   Traversal traversal(std::size_t a, std::size_t b) {
     return {options_.open_longer_side, options_.separation_list ? &lists_[{a, b}] : nullptr,
@@ -98,6 +103,10 @@ void BroadPhase::self_pairs(std::size_t surface, CandidatePairs& out) {
 
 void BroadPhase::pairs(std::size_t a, std::size_t b, CandidatePairs& out) {
   trees_->pairs(a, b, out);
+}
+
+void BroadPhase::forget() {
+  trees_->forget();
 }
 
 }  // namespace weft::collision

@@ -62,12 +62,18 @@ class BroadPhase {
   /// Appends pairs (a of surface a, b of surface b).
   void pairs(std::size_t a, std::size_t b, CandidatePairs& out);
 
+  /// Whether bounds and the order of the pairs depend on the steps before.
+  static bool remembers(const BroadPhaseOptions& options) { return options.separation_list || options.velocity_cones; }
+  /// From here on they no longer do.
+  void forget();
+
   /// One kind of tree; the only place that knows its type.
   struct Trees {
     virtual ~Trees() = default;
     virtual void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) = 0;
     virtual void self_pairs(std::size_t surface, CandidatePairs& out) = 0;
     virtual void pairs(std::size_t a, std::size_t b, CandidatePairs& out) = 0;
+    virtual void forget() = 0;
   };
 
  private:

@@ -57,6 +57,9 @@ class Tree {
   /// as they are. Bounds are never smaller than after refit.
   void refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin);
 
+  /// Makes the next lazy refit give all bounds anew.
+  void forget() { resting_margin_ = -1; }
+
   bool empty() const { return leaves_.empty(); }
   const Surface& surface() const { return surface_; }
   Ref root() const { return root_; }

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "collision/proximity/closest_points.hpp"
+#include "core/archive.hpp"
 
 namespace weft::collision {
 namespace {
@@ -202,5 +203,27 @@ std::vector<PinchTouch> PinchedPairs::find_touches(std::span<const Surface> surf
   }
   return touches;
 }
+
+template <class Archive>
+void PinchedPairs::exchange(Archive& archive) {
+  std::vector<std::pair<Key, Origin>> pinched(origins_.begin(), origins_.end());
+  exchange_each(archive, pinched, [&](auto& pair) {
+    auto& [key, origin] = pair;
+    exchange_values(archive, key.cloth, key.body, origin.side, origin.outward);
+    if constexpr (Archive::kReads) {
+      const auto is_particle = [&](Index v) { return v >= 0 && v < first_obstacle_; };
+      require(std::ranges::all_of(key.cloth, is_particle) &&
+                  key.body > body_of_[static_cast<std::size_t>(first_obstacle_ - 1)] && key.body <= body_of_.back(),
+              "pinched triangles of a cloth and an obstacle");
+    }
+  });
+  if constexpr (Archive::kReads) {
+    origins_ = {pinched.begin(), pinched.end()};
+    list_particles();
+  }
+}
+
+template void PinchedPairs::exchange(ByteWriter&);
+template void PinchedPairs::exchange(ByteReader&);
 
 }  // namespace weft::collision

@@ -88,6 +88,10 @@ class PinchedPairs {
 
   const auto& origins() const { return origins_; }
 
+  /// All that is held. Throws std::runtime_error where these cloths and obstacles cannot have it.
+  template <class Archive>
+  void exchange(Archive& archive);
+
  private:
   void list_particles();
   Key key(const CornerPair& pair) const { return {pair.a, body_of_[static_cast<std::size_t>(pair.b[0])]}; }

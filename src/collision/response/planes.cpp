@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/archive.hpp"
+
 namespace weft::collision {
 namespace {
 
@@ -128,5 +130,24 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
              static_cast<float>(gap > 0 ? (1 - 1e-6) * gap : gap)};
   }
 }
+
+template <class Archive>
+void Planes::exchange(Archive& archive, std::span<const Vec3> reference) {
+  std::vector<std::uint32_t> changed;
+  if constexpr (!Archive::kReads) {
+    Planes fresh(triangles_);
+    fresh.watch(pairs_, reference);
+    for (std::size_t p = 0; p < planes_.size(); ++p)
+      if (planes_[p] != fresh.planes_[p]) changed.push_back(static_cast<std::uint32_t>(p));
+  }
+  exchange_plain(archive, changed);
+  for (std::uint32_t p : changed) {
+    if constexpr (Archive::kReads) require(p < planes_.size(), "planes of the pairs near each other");
+    exchange_values(archive, planes_[p].n, planes_[p].gap);
+  }
+}
+
+template void Planes::exchange(ByteWriter&, std::span<const Vec3>);
+template void Planes::exchange(ByteReader&, std::span<const Vec3>);
 
 }  // namespace weft::collision

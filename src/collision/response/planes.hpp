@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -32,11 +33,17 @@ class Planes {
   void find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                     std::span<const float> moved, std::vector<CornerPair>& failing);
 
+  /// The planes that are others than watch() has found for these pairs at the reference: all else that a new object
+  /// needs, once it watches the same pairs.
+  template <class Archive>
+  void exchange(Archive& archive, std::span<const Vec3> reference);
+
  private:
   struct Plane {
     std::array<float, 3> n;
     float gap;  // at the reference, above kFloor and rounding [m]; negative: see is_known
     bool is_known() const { return n[0] != 0 || n[1] != 0 || n[2] != 0; }
+    bool operator==(const Plane&) const = default;
   };
   void look_at_eight(std::size_t first, std::size_t count, float rounding);
 

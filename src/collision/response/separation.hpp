@@ -55,6 +55,12 @@ class Separation {
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
                            PinchedPairs* pinched = nullptr);
 
+  /// What has been found since watch(), for an object that watches the same pairs from the same positions.
+  template <class Archive>
+  void exchange(Archive& archive) {
+    planes_.exchange(archive, reference_);
+  }
+
  private:
   bool push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                   std::span<const std::uint8_t> movable, SeparationReport& report);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/archive.hpp"
+
 namespace weft::collision {
 namespace {
 
@@ -332,5 +334,19 @@ void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate
     system.diagonal_terms.push_back({particle.particle, end_rate * sliding.stiffness});
   }
 }
+
+template <class Archive>
+void VelocityConstraints::exchange(Archive& archive) {
+  exchange_each(archive, remembered_, [&](Index& particle) {
+    archive.value(particle);
+    if constexpr (Archive::kReads) require(particle >= 0 && index(particle) < masses_.size(), "particles of the scene");
+    Memory& memory = memory_[index(particle)];
+    exchange_values(archive, memory.state, memory.push, memory.load);
+    if constexpr (Archive::kReads) require(memory.state <= State::sliding, "a particle that sticks or slides");
+  });
+}
+
+template void VelocityConstraints::exchange(ByteWriter&);
+template void VelocityConstraints::exchange(ByteReader&);
 
 }  // namespace weft::collision

@@ -75,6 +75,10 @@ class VelocityConstraints {
   void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 
+  /// What accept() has remembered. Throws std::runtime_error where these particles cannot have it.
+  template <class Archive>
+  void exchange(Archive& archive);
+
  private:
   enum class State : std::uint8_t { away, sticking, sliding };
 

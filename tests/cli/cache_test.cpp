@@ -1,0 +1,272 @@
+// run, simulate, render and --resume: the same bits whichever way the frames come.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <nlohmann/json.hpp>
+
+#include "cache/writer.hpp"
+#include "cli/cached_run.hpp"
+#include "cli/video_probe.hpp"
+#include "image/png.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::json;
+
+constexpr const char* kPictures = "{frame:05}.png";
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+// Statistics without what depends on the moment: times, memory, and where it was.
+Json lasting(const fs::path& file) {
+  Json stats = Json::parse(support::read_bytes(file));
+  for (const char* key : {"totals", "peak_memory_bytes", "scene_file", "output", "cache_bytes"}) stats.erase(key);
+  for (Json& frame : stats.at("frames"))
+    for (const char* stage : {"simulate", "collide", "render", "encode"}) {
+      frame.erase(std::string(stage) + "_ms");
+      frame.erase(std::string(stage) + "_cpu_ms");
+    }
+  return stats;
+}
+
+TEST_F(CachedRun, SimulateAndRenderGiveThePixelsMeshesAndFiguresOfRun) {
+  expect_well({"run", "s.toml", "-o", std::string("a/") + kPictures, "--meshes", "ma", "--stats", "a.json"});
+  expect_well({"simulate", "s.toml", "--cache", "c", "--meshes", "mc", "--stats", "c.json"});
+  expect_well({"render", "c", "-o", std::string("b/") + kPictures, "--meshes", "mb", "--stats", "b.json"});
+  expect_same("a", "b", ".png", kFrames);
+  expect_same("ma", "mb", ".ply", 3 * kFrames);
+  expect_same("ma", "mc", ".ply", 3 * kFrames);
+  EXPECT_EQ(lasting(folder_ / "a.json"), lasting(folder_ / "b.json"));
+  expect_same("a", "b", ".toml", 1);
+}
+
+TEST_F(CachedRun, VideoFromACacheIsThatOfRun) {
+  expect_well({"run", "s.toml", "-o", "a.mp4", "--frames", "4:18:2"});
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  expect_well({"render", "c", "-o", "b.mp4", "--frames", "4:18:2"});
+  EXPECT_EQ(decoded("a.mp4"), decoded("b.mp4"));
+  EXPECT_EQ(probe_video(folder_ / "a.mp4").metadata, probe_video(folder_ / "b.mp4").metadata);
+}
+
+TEST_F(CachedRun, FourProcessesAtOnceRenderTheQuartersOfOneCache) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  expect_well({"render", "c", "-o", std::string("whole/") + kPictures});
+  std::vector<std::unique_ptr<Subprocess>> processes;
+  for (const char* frames : {"15:21", "10:15", "0:5", "5:10"})
+    processes.push_back(
+        std::make_unique<Subprocess>(Arguments{"render", "c", "-o", std::string("parts/") + kPictures, "--frames",
+                                               frames, "--size", "64x36", "--quality", "draft", "--progress", "none"},
+                                     folder_));
+  for (const auto& process : processes) EXPECT_EQ(process->wait().exit_code, 0);
+  expect_same("whole", "parts", ".png", kFrames);
+}
+
+TEST_F(CachedRun, FramesHaveTheSameBitsForAnyNumberOfThreads) {
+  std::vector<std::uint64_t> hashes;
+  for (const char* threads : {"1", "2", "3", "8"}) {
+    expect_well({"simulate", "s.toml", "--cache", threads, "--threads", threads});
+    hashes.push_back(hash_of_frames(threads, kFrames));
+  }
+  EXPECT_EQ(hashes, std::vector<std::uint64_t>(4, hashes[0]));
+}
+
+TEST_F(CachedRun, SimulationGoesOnWithTheSameBitsFromAnyFrame) {
+  expect_well({"simulate", "s.toml", "--cache", "whole"});
+  const std::uint64_t expected = hash_of_frames("whole", kFrames);
+  for (const char* end : {":1", ":7", ":13", ":20", ":21"}) {
+    expect_well({"simulate", "s.toml", "--cache", "c", "--frames", end});
+    expect_well({"simulate", "s.toml", "--cache", "c", "--resume"});
+    EXPECT_EQ(hash_of_frames("c", kFrames), expected) << end;
+    fs::remove_all(folder_ / "c");
+  }
+}
+
+TEST_F(CachedRun, SimulationGoesOnFromTheMiddleOfItsPreroll) {
+  const Arguments scene{"s.toml", "--set", "time.preroll=0.4"};
+  const auto simulate = [&](Arguments more) {
+    more.insert(more.begin(), {"simulate", "s.toml", "--set", "time.preroll=0.4"});
+    return more;
+  };
+  expect_well(simulate({"--cache", "whole"}));
+  Subprocess weft(simulate({"--cache", "c", "--set", "time.step=1e-4", "--progress", "none"}), folder_);
+  // Not before the first state is there.
+  for (int i = 0; i < 600 && !fs::exists(folder_ / "c/state.weft"); ++i) usleep(100'000);
+  weft.send(SIGTERM);
+  EXPECT_EQ(weft.wait().exit_code, 75);
+  EXPECT_LT(cache::Reader(folder_ / "c").state()->frame, 0);
+  EXPECT_TRUE(cache::Reader(folder_ / "c").frames().empty());
+  expect_well(simulate({"--cache", "c", "--set", "time.step=1e-4", "--resume", "--frames", ":3"}));
+  expect_well(simulate({"--cache", "once", "--set", "time.step=1e-4", "--frames", ":3"}));
+  EXPECT_EQ(hash_of_frames("c", 3), hash_of_frames("once", 3));
+}
+
+TEST_F(CachedRun, EditedSceneNeverMeetsOldFrames) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":5"});
+  const Outcome edited = weft({"simulate", "s.toml", "--cache", "c", "--resume", "--set", "obstacle.ball.radius=0.11"});
+  EXPECT_EQ(edited.exit_code, 6);
+  EXPECT_TRUE(contains(edited.err, "which has changed since")) << edited.err;
+  EXPECT_TRUE(contains(edited.err, "leave --resume away to start again, or undo the change")) << edited.err;
+  expect_well({"simulate", "s.toml", "--cache", "c", "--resume"});
+  const Outcome again = weft({"simulate", "s.toml", "--cache", "c"});
+  EXPECT_EQ(again.exit_code, 6);
+  EXPECT_TRUE(contains(again.err, "c: holds a cache already; give --resume to go on with it, --overwrite"))
+      << again.err;
+  expect_well({"simulate", "s.toml", "--cache", "c", "--overwrite", "--frames", ":2"});
+  EXPECT_EQ(cache::Reader(folder_ / "c").frames().size(), 2u) << "frames of the cache before are left";
+}
+
+TEST_F(CachedRun, AnotherBuildDoesNotGoOn) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":5"});
+  cache::Manifest manifest = cache::Reader(folder_ / "c").manifest();
+  manifest.program = "0123456789abcdef";
+  support::write_bytes(folder_ / "c/manifest.json", cache::manifest_text(manifest));
+  const Outcome other = weft({"simulate", "s.toml", "--cache", "c", "--resume"});
+  EXPECT_EQ(other.exit_code, 6);
+  EXPECT_TRUE(contains(other.err, "was made by another build of Weft")) << other.err;
+  expect_well({"render", "c", "-o", "c.mp4"});
+}
+
+TEST_F(CachedRun, BrokenCacheIsSaidAndMadeAnew) {
+  expect_well({"simulate", "s.toml", "--cache", "whole"});
+  const std::uint64_t expected = hash_of_frames("whole", kFrames);
+  for (const char* name : {"frame_00003.weft", "state.weft", "surfaces.weft", "manifest.json"}) {
+    expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8", "--overwrite"});
+    std::string bytes = support::read_bytes(folder_ / "c" / name);
+    bytes.resize(bytes.size() / 2);
+    support::write_bytes(folder_ / "c" / name, bytes);
+    const Outcome render = weft({"render", "c", "-o", "c.mp4", "--overwrite"});
+    if (name != std::string("state.weft")) {
+      EXPECT_EQ(render.exit_code, 4) << render.err;
+      EXPECT_TRUE(contains(render.err, std::string("c/") + name + ": broken")) << render.err;
+    }
+    const Outcome resumed = weft({"simulate", "s.toml", "--cache", "c", "--resume"});
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_TRUE(contains(resumed.err, "starting at the beginning")) << resumed.err;
+    EXPECT_EQ(hash_of_frames("c", kFrames), expected) << name;
+  }
+}
+
+TEST_F(CachedRun, RenderSaysWhichFramesAreMissing) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
+  const Outcome part = weft({"render", "c", "-o", "part.mp4"});
+  EXPECT_EQ(part.exit_code, 0);
+  EXPECT_TRUE(contains(part.err, "c holds 8 of 21 frames")) << part.err;
+  EXPECT_EQ(probe_video(folder_ / "part.mp4").frames, 8);
+  const Outcome beyond = weft({"render", "c", "-o", "beyond.mp4", "--frames", "5:12"});
+  EXPECT_EQ(beyond.exit_code, 4);
+  EXPECT_TRUE(contains(beyond.err, "c: frame 8 is not there; weft simulate --resume")) << beyond.err;
+  EXPECT_EQ(weft({"render", "c", "-o", "d.mp4", "--frames", "5:22"}).exit_code, 2);
+  EXPECT_EQ(weft({"render", "c", "-o", "d.mp4", "--camera", "front"}).exit_code, 2);
+  const Outcome none = weft({"render", "s.toml", "-o", "d.mp4"});
+  EXPECT_EQ(none.exit_code, 4);
+  EXPECT_TRUE(contains(none.err, "s.toml: expected a frame cache, a folder with a manifest.json")) << none.err;
+}
+
+TEST_F(CachedRun, SecondProcessAtTheSamePlaceIsRefused) {
+  {
+    const cache::Lock cache(folder_ / "c"), working(folder_ / ".a.weft-cache");
+    for (const Arguments& arguments :
+         {Arguments{"simulate", "s.toml", "--cache", "c"}, Arguments{"run", "s.toml", "-o", "a.mp4"}}) {
+      const Outcome outcome = weft(arguments);
+      EXPECT_EQ(outcome.exit_code, 6);
+      EXPECT_TRUE(contains(outcome.err, "another process is at work on it")) << outcome.err;
+    }
+  }
+  expect_well({"run", "s.toml", "-o", "a.mp4"});
+  EXPECT_FALSE(fs::exists(folder_ / ".a.weft-cache")) << "the working cache outlives a run that ended well";
+}
+
+class KilledRun : public CachedRun {
+ protected:
+  // Kills a run after so many frames.
+  void kill_after(int frames) const {
+    Subprocess process({"run", "s.toml", "-o", "a.mp4", "--meshes", "m", "--size", "64x36", "--quality", "draft",
+                        "--progress", "none", "--log-json", "-"},
+                       folder_);
+    ASSERT_TRUE(process.wait_for_output("\"frame\":" + std::to_string(frames) + ","));
+    process.send(SIGKILL);
+    EXPECT_EQ(process.wait().exit_code, 128 + SIGKILL);
+  }
+  Outcome resume() const { return weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "m", "--resume"}); }
+};
+
+TEST_F(KilledRun, GoesOnToTheFramesAndMeshesOfTheUninterruptedOne) {
+  expect_well({"run", "s.toml", "-o", "whole.mp4", "--meshes", "mw"});
+  for (const int frame : {0, 5, 12}) {
+    kill_after(frame);
+    EXPECT_FALSE(fs::exists(folder_ / "a.mp4")) << "a half file under the final name";
+    EXPECT_TRUE(fs::exists(folder_ / ".a.weft-cache/state.weft"));
+    const Outcome resumed = resume();
+    EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+    EXPECT_EQ(decoded("a.mp4"), decoded("whole.mp4"));
+    expect_same("m", "mw", ".ply", 3 * kFrames);
+    for (const auto& entry : fs::directory_iterator(folder_))
+      EXPECT_FALSE(entry.path().filename().string().starts_with(".")) << entry.path() << " was left";
+    fs::remove(folder_ / "a.mp4");
+    fs::remove_all(folder_ / "m");
+  }
+}
+
+TEST_F(KilledRun, IsThrownAwayWithANoteByOneThatDoesNotResume) {
+  kill_after(5);
+  const Outcome outcome = weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "n"});
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(contains(outcome.err, "of a run that did not end well are thrown away; with --resume")) << outcome.err;
+}
+
+TEST_F(KilledRun, WithNothingThereResumeStartsAtTheBeginning) {
+  const Outcome outcome = resume();
+  EXPECT_EQ(outcome.exit_code, 0);
+  EXPECT_TRUE(contains(outcome.err, "nothing to resume; starting at the beginning")) << outcome.err;
+  const Outcome again = resume();
+  EXPECT_EQ(again.exit_code, 6) << "a finished video was replaced";
+}
+
+TEST_F(KilledRun, ThatWasEditedIsNotResumedAndNotLost) {
+  kill_after(5);
+  const Outcome edited =
+      weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "m", "--resume", "--set", "obstacle.ball.radius=0.11"});
+  EXPECT_EQ(edited.exit_code, 6);
+  EXPECT_TRUE(contains(edited.err, "which has changed since")) << edited.err;
+  EXPECT_EQ(resume().exit_code, 0);
+}
+
+TEST_F(CachedRun, InterruptedByCtrlCRunGoesOnToTheWholeVideo) {
+  expect_well({"run", "s.toml", "-o", "whole.mp4"});
+  Subprocess process({"run", "s.toml", "-o", "a.mp4", "--size", "64x36", "--quality", "draft", "--progress", "none",
+                      "--log-json", "-"},
+                     folder_);
+  ASSERT_TRUE(process.wait_for_output("\"frame\":3,"));
+  process.send(SIGINT);
+  const Outcome interrupted = process.wait();
+  if (interrupted.exit_code == 0) GTEST_SKIP() << "it was done before the signal came";
+  EXPECT_EQ(interrupted.exit_code, 75);
+  EXPECT_TRUE(contains(interrupted.err, "the same command with --resume goes on from there")) << interrupted.err;
+  EXPECT_LT(probe_video(folder_ / "a.mp4").frames, kFrames);
+  expect_well({"run", "s.toml", "-o", "a.mp4", "--resume"});
+  EXPECT_EQ(decoded("a.mp4"), decoded("whole.mp4"));
+}
+
+TEST_F(CachedRun, FullDiskEndsASimulationButOnlyTheCacheOfARun) {
+  const Arguments common{"--size", "64x36", "--quality", "draft", "--progress", "none"};
+  const auto limited = [&](Arguments arguments, std::size_t bytes) {
+    arguments.insert(arguments.end(), common.begin(), common.end());
+    return Subprocess(arguments, folder_, bytes).wait();
+  };
+  const Outcome simulated = limited({"simulate", "s.toml", "--cache", "c"}, 3000);
+  EXPECT_EQ(simulated.exit_code, 6);
+  EXPECT_TRUE(contains(simulated.err, "cannot be written: File too large")) << simulated.err;
+  // Pictures of a few kilobytes fit where states do not.
+  const Outcome run = limited({"run", "s.toml", "-o", std::string("p/") + kPictures}, 8000);
+  EXPECT_EQ(run.exit_code, 0) << run.err;
+  EXPECT_TRUE(contains(run.err, "the run goes on, but could not be resumed")) << run.err;
+  EXPECT_EQ(contents("p", ".png").size(), static_cast<std::size_t>(kFrames));
+  EXPECT_FALSE(fs::exists(folder_ / "p/.s.weft-cache"));
+}
+
+}  // namespace
+}  // namespace weft::cli

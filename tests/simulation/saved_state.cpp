@@ -1,0 +1,118 @@
+#include "simulation/saved_state.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cstring>
+
+#include "core/parallel.hpp"
+#include "simulation/simulation.hpp"
+
+namespace weft::simulation::testing {
+namespace {
+
+/// All that is seen of a frame.
+struct Seen {
+  std::vector<Vec3> positions, velocities;
+  frame::SnapshotPtr snapshot;
+  FrameReport report, initial;
+};
+
+template <class T>
+bool same_bits(std::span<const T> a, std::span<const T> b) {
+  return a.size() == b.size() && (a.empty() || std::memcmp(a.data(), b.data(), a.size_bytes()) == 0);
+}
+
+std::string figures(const FrameReport& r) {
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", r.frame, r.time, r.steps, r.rejected_steps,
+                     r.inexact_steps, r.error_estimate, r.newton_iterations, r.linear_iterations, r.proximities,
+                     r.constraints, r.min_distance, r.max_strain, r.kinetic_energy, r.potential_energy,
+                     r.elastic_energy, r.pinched_pairs, fmt::join(r.pinches, " | "));
+}
+
+bool same_picture(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) {
+  const auto same = [](const frame::SurfaceState& one, const frame::SurfaceState& other) {
+    return same_bits<Vec3>(one.positions, other.positions) && same_bits<float>(one.heat, other.heat);
+  };
+  return a.frame == b.frame && a.time == b.time && std::ranges::equal(a.states, b.states, same);
+}
+
+// What differs; empty if nothing does.
+std::string compare(const Seen& expected, const Seen& came) {
+  if (!same_bits<Vec3>(expected.positions, came.positions)) return "positions";
+  if (!same_bits<Vec3>(expected.velocities, came.velocities)) return "velocities";
+  if (!same_picture(*expected.snapshot, *came.snapshot)) return "what is shown";
+  if (figures(expected.report) != figures(came.report))
+    return fmt::format("report\n  {}\nin place of\n  {}", figures(came.report), figures(expected.report));
+  if (figures(expected.initial) != figures(came.initial)) return "initial report";
+  return "";
+}
+
+// The next frame, be it one of the preroll.
+Seen next_frame(Simulation& simulation) {
+  Seen seen;
+  if (simulation.snapshot()->frame < 0) {
+    int asked = 0;
+    simulation.run_preroll([&] { return asked++ == 0; });
+  } else {
+    seen.report = simulation.advance();
+  }
+  const ParticleState state = simulation.state();
+  seen.positions.assign(state.positions.begin(), state.positions.end());
+  seen.velocities.assign(state.velocities.begin(), state.velocities.end());
+  seen.snapshot = simulation.snapshot();
+  seen.initial = simulation.initial_report();
+  return seen;
+}
+
+std::string saved(const Simulation& simulation) {
+  std::string bytes;
+  simulation.save(bytes);
+  return bytes;
+}
+
+// From a state after frame k to the end, against the run as it was.
+std::string go_on(const scene::Scene& scene, const std::string& state, int k, const std::vector<Seen>& run) {
+  Simulation simulation(scene);
+  simulation.restore(state);
+  if (saved(simulation) != state) return fmt::format("the state after frame {}, restored, is saved as another one", k);
+  if (k > 0 && !same_picture(*run[static_cast<std::size_t>(k - 1)].snapshot, *simulation.snapshot()))
+    return fmt::format("restored after frame {}: another picture", k);
+  for (auto next = static_cast<std::size_t>(k); next < run.size(); ++next)
+    if (const std::string what = compare(run[next], next_frame(simulation)); !what.empty())
+      return fmt::format("restored after frame {}, frame {}: {}", k, next + 1, what);
+  return "";
+}
+
+}  // namespace
+
+Continued continue_runs(const scene::Scene& scene, const Interruptions& interruptions) {
+  Continued result;
+  std::vector<Seen> run;
+  Simulation plain(scene), saving(scene);
+  std::vector<std::string> states{saved(saving)};
+  for (int k = 1; k <= interruptions.frames; ++k) {
+    run.push_back(next_frame(plain));
+    const FrameReport& report = run.back().report;
+    result.rejected_steps += report.rejected_steps;
+    result.inexact_steps += report.inexact_steps;
+    result.pinched_pairs = std::max(result.pinched_pairs, report.pinched_pairs);
+    result.most_proximities = std::max(result.most_proximities, report.proximities);
+    if (const std::string what = compare(run.back(), next_frame(saving)); !what.empty()) {
+      result.difference = fmt::format("saving changes frame {}: {}", k, what);
+      return result;
+    }
+    states.push_back(saved(saving));
+    result.largest_state = std::max(result.largest_state, states.back().size());
+  }
+  const int threads = thread_count();
+  if (interruptions.threads_after > 0) set_thread_count(interruptions.threads_after);
+  for (int k : interruptions.saved_at)
+    if (result.difference.empty()) result.difference = go_on(scene, states[static_cast<std::size_t>(k)], k, run);
+  set_thread_count(threads);
+  return result;
+}
+
+}  // namespace weft::simulation::testing

@@ -1,0 +1,320 @@
+// A run that goes on from a saved state is the run that was never interrupted, bit for bit.
+#include "simulation/saved_state.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <ostream>
+#include <stdexcept>
+
+#include "core/parallel.hpp"
+#include "simulation/scenes.hpp"
+#include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::simulation {
+namespace {
+
+using testing::continue_runs;
+using testing::Continued;
+
+// A sheet falls on a ball, folds down its sides, and meets itself and the floor.
+constexpr const char* kDrape = R"(
+[time]
+duration = 1
+[[cloth]]
+name = "sheet"
+size = [0.5, 0.5]
+particles = [12, 12]
+position = [0.02, 0, 0.27]
+[[obstacle]]
+name = "ball"
+shape = "sphere"
+radius = 0.15
+segments = 16
+position = [0, 0, 0.1]
+[[obstacle]]
+name = "floor"
+shape = "plane"
+position = [0, 0, -0.05]
+)";
+
+// Two sheets at rest on a tray that creeps away: what is near is found once for many frames.
+constexpr const char* kAtRest = R"(
+[time]
+duration = 1
+[[cloth]]
+name = "lower"
+size = [0.3, 0.3]
+particles = [11, 11]
+position = [0, 0, 0.0012]
+velocity = [0, 0, -0.02]
+[[cloth]]
+name = "upper"
+size = [0.26, 0.26]
+particles = [10, 10]
+position = [0.01, 0.02, 0.0032]
+rotation = [0, 0, 20]
+[[obstacle]]
+name = "tray"
+shape = "box"
+size = [0.5, 0.5, 0.02]
+interpolation = "linear"
+keys = [{ time = 0, position = [0, 0, -0.01] }, { time = 2, position = [0.002, 0, -0.01] }]
+[[obstacle]]
+name = "wall"
+shape = "box"
+size = [0.02, 0.5, 0.2]
+position = [0.3, 0, 0.1]
+)";
+
+// Two jaws close on a hanging sheet until they overlap, and part.
+constexpr const char* kJaws = R"(
+[time]
+duration = 1
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [11, 11]
+position = [0, 0, 0.6]
+rotation = [90, 0, 0]
+pin = [{ low = [0, 1], high = [1, 1] }]
+[[obstacle]]
+name = "left"
+shape = "box"
+size = [0.2, 0.2, 0.2]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [0.02, -0.2, 0.55] }, { time = 0.2, position = [0.02, -0.095, 0.55] },
+  { time = 0.4, position = [0.02, -0.095, 0.55] }, { time = 0.6, position = [0.02, -0.25, 0.55] },
+]
+[[obstacle]]
+name = "right"
+shape = "box"
+size = [0.2, 0.2, 0.2]
+interpolation = "linear"
+keys = [
+  { time = 0.0, position = [-0.02, 0.2, 0.53] }, { time = 0.2, position = [-0.02, 0.095, 0.53] },
+  { time = 0.4, position = [-0.02, 0.095, 0.53] }, { time = 0.6, position = [-0.02, 0.25, 0.53] },
+]
+)";
+
+// A flag in the wind, triangles, with colours of strain and a pin that lets go.
+constexpr const char* kFlag = R"(
+[time]
+duration = 1
+[physics]
+wind = [3, 0.5, 0]
+[render]
+heat = "strain"
+[[cloth]]
+name = "flag"
+shape = "crossed_triangles"
+size = [0.4, 0.3]
+particles = [8, 6]
+position = [0, 0, 1]
+rotation = [90, 0, 0]
+material = { bend = 1e-4, bend_viscosity = 1e-5, bend_friction = 1e-4 }
+pin = [{ low = [0, 0], high = [0, 1] }, { low = [0.9, 0.9], high = [1, 1], release = 0.2 }]
+)";
+
+struct Kind {
+  const char* name;
+  const char* scene;
+  std::vector<std::string> overrides;
+  testing::Interruptions interruptions;
+};
+
+std::ostream& operator<<(std::ostream& out, const Kind& kind) {
+  return out << kind.name;
+}
+
+class SavedState : public ::testing::TestWithParam<Kind> {};
+
+TEST_P(SavedState, GoesOnAsIfNothingHadBeen) {
+  const scene::Scene scene = support::scene_of_text(GetParam().scene, GetParam().overrides);
+  EXPECT_EQ(continue_runs(scene, GetParam().interruptions).difference, "");
+}
+
+const std::vector<int> kSome{0, 6, 9, 12};
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, SavedState,
+    ::testing::Values(
+        Kind{"euler", kDrape, {"time.integrator=implicit_euler"}, {14, kSome}},
+        Kind{"midpoint", kDrape, {"time.integrator=implicit_midpoint"}, {14, kSome}},
+        Kind{"bdf2", kDrape, {"time.integrator=bdf2"}, {14, kSome}},
+        Kind{"one_thread_then_three", kDrape, {}, {14, kSome, 3}},
+        Kind{"controlled_euler", kDrape, {"time.integrator=implicit_euler", "time.tolerance=3e-4"}, {11, {0, 7, 9}}},
+        Kind{"controlled_midpoint", kDrape, {"time.integrator=implicit_midpoint", "time.tolerance=1e-3"}, {10, {3, 8}}},
+        Kind{"controlled_bdf2", kDrape, {"time.integrator=bdf2", "time.tolerance=3e-4"}, {11, {0, 7, 9}}},
+        Kind{"velocity_constraints", kDrape, {"contact.response=velocity_constraints"}, {14, kSome}},
+        Kind{"separation_lists", kDrape, {"contact.search.separation_lists=true"}, {14, kSome}},
+        Kind{"velocity_cones", kDrape, {"contact.search.velocity_cones=true"}, {14, kSome}},
+        Kind{"normal_cones", kDrape, {"contact.search.normal_cones=true"}, {14, kSome}},
+        Kind{"no_reuse", kDrape, {"contact.search.reuse=false"}, {14, kSome}},
+        Kind{"at_rest", kAtRest, {}, {24, {0, 5, 10, 15, 20, 22}}},
+        Kind{"at_rest_velocity_constraints", kAtRest, {"contact.response=velocity_constraints"}, {20, {5, 10, 18}}},
+        Kind{"at_rest_separation_lists", kAtRest, {"contact.search.separation_lists=true"}, {20, {5, 10, 18}}},
+        Kind{"at_rest_velocity_cones", kAtRest, {"contact.search.velocity_cones=true"}, {20, {5, 10, 18}}},
+        Kind{"flag", kFlag, {}, {14, {0, 3, 5, 9}}},
+        Kind{"preroll", kDrape, {"time.preroll=0.4"}, {14, {4, 9, 10, 12}}}),
+    [](const auto& kind) { return std::string(kind.param.name); });
+
+TEST(SavedStates, OfPinchedClothKnowWhereItCameFromAndWhatWasSaid) {
+  const Continued pinched = continue_runs(support::scene_of_text(kJaws), {16, {4, 6, 8, 11}});
+  EXPECT_EQ(pinched.difference, "");
+  EXPECT_GT(pinched.pinched_pairs, 0);
+}
+
+TEST(SavedStates, OfAPrerollKeepWhatItsFramesHaveSaid) {
+  scene::Scene scene = support::scene_of_text(kJaws, {"time.preroll=0.6"});
+  for (scene::Obstacle& jaw : scene.obstacles)
+    for (scene::PoseKey& key : jaw.motion.keys) key.time -= 0.6;
+  const Continued pinched = continue_runs(scene, {16, {4, 8, 14, 15}});
+  EXPECT_EQ(pinched.difference, "");
+  Simulation simulation(scene);
+  simulation.run_preroll();
+  EXPECT_FALSE(simulation.initial_report().pinches.empty());
+}
+
+TEST(SavedStates, AfterRejectedAndInexactStepsGoOnTheSameWay) {
+  scene::Scene scene = support::scene_of_text(kDrape, {"time.integrator=bdf2", "solver.newton_iterations=7"});
+  const Continued rejected = continue_runs(scene, {12, {5, 6, 8, 9}});
+  EXPECT_EQ(rejected.difference, "");
+  EXPECT_GT(rejected.rejected_steps, 0);
+
+  scene = support::scene_of_text(kDrape, {"time.integrator=bdf2", "time.tolerance=1e-4", "solver.halvings=0"});
+  const Continued inexact = continue_runs(scene, {8, {2, 5, 6}});
+  EXPECT_EQ(inexact.difference, "");
+  EXPECT_GT(inexact.inexact_steps, 0);
+}
+
+TEST(SavedStates, KeepTheBoundOfEnergy) {
+  // A stiff sheet that hangs from two corners, at steps far too long for the midpoint rule.
+  scene::Scene scene = testing::sheet_alone(0.5, 11, 1);
+  scene.time = {.duration = 10, .fps = 10, .step = 0.02, .integrator = scene::Integrator::implicit_midpoint};
+  scene.cloths[0].material.stretch_weft = scene.cloths[0].material.stretch_warp = 100;
+  scene::Pin left, right;
+  left.low = left.high = {0, 1};
+  right.low = right.high = {1, 1};
+  scene.cloths[0].pins = {left, right};
+  const auto refusal = [](Simulation& simulation, std::vector<std::string>* states) {
+    for (int k = 0; k < 100; ++k) try {
+        simulation.advance();
+        if (states != nullptr) simulation.save(states->emplace_back());
+      } catch (const Error& error) {
+        return std::string(error.what());
+      }
+    return std::string("none");
+  };
+  std::vector<std::string> states;
+  Simulation first(scene);
+  const std::string words = refusal(first, &states);
+  EXPECT_NE(words.find("more than at the start"), std::string::npos) << words;
+  ASSERT_GT(states.size(), 2u);
+  // The words hold the energy that was in play, from the least and the largest of all frames before.
+  for (const std::string& state : {states.front(), states.back()}) {
+    Simulation resumed(scene);
+    resumed.restore(state);
+    EXPECT_EQ(refusal(resumed, nullptr), words);
+  }
+}
+
+class SavedGarment : public support::TestFolder {};
+
+TEST_F(SavedGarment, IsSewnOnInThePrerollAndAfter) {
+  support::write_bytes(folder_ / "tube.toml", R"(
+depth = 0.14
+[[panel]]
+name = "front"
+path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
+edges = "hem right top left"
+[[panel]]
+name = "back"
+side = "back"
+path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
+edges = "hem right top left"
+[[seam]]
+a = "front.left"
+b = "back.left"
+[[seam]]
+a = "front.right"
+b = "back.right"
+[[elastic]]
+edge = "front.top"
+ratio = 0.85
+)");
+  const scene::Scene scene = support::scene_of_text(
+      "[[cloth]]\nname = 'tube'\nshape = 'pattern'\nfile = '" + (folder_ / "tube.toml").string() +
+      "'\nedge_length = 0.05\nsewing = 0.55\nposition = [0, 0, 0.1]\n"
+      "[time]\nduration = 0.6\npreroll = 0.4\n[render]\nheat = 'strain'\n"
+      "[[obstacle]]\nname = 'post'\nshape = 'cylinder'\nradius = 0.1\nheight = 1.2\n"
+      "position = [0, 0, 0.4]\nsegments = 24\n");
+  EXPECT_EQ(continue_runs(scene, {17, {3, 9, 11, 14}}).difference, "");
+}
+
+TEST(SavedStates, OfASceneWithACharacterFindItWhereItWalks) {
+  const scene::Scene scene = support::scene_of_text(R"(
+[time]
+duration = 0.5
+preroll = 0.2
+[[character]]
+name = "model"
+source = "mannequin"
+dressing = 0.1
+blend = 0.1
+walk = 1
+[[cloth]]
+name = "sheet"
+size = [0.3, 0.3]
+particles = [9, 9]
+position = [0, 0, 1.83]
+)");
+  const Continued walked = continue_runs(scene, {9, {3, 7}});
+  EXPECT_EQ(walked.difference, "");
+  EXPECT_GT(walked.most_proximities, 0);
+}
+
+// Whatever the bytes are, restoring throws std::runtime_error or yields a simulation that can be asked.
+void try_bytes(const scene::Scene& scene, const std::string& bytes) {
+  Simulation simulation(scene);
+  try {
+    simulation.restore(bytes);
+    EXPECT_EQ(simulation.snapshot()->states[0].positions.size(), simulation.state().positions.size());
+  } catch (const std::runtime_error&) {
+  }
+}
+
+TEST(SavedStates, ThatAreCutShortOrTooLongOrForeignAreRefused) {
+  const scene::Scene scene = support::scene_of_text(kJaws);
+  Simulation simulation(scene);
+  for (int k = 0; k < 6; ++k) simulation.advance();
+  std::string bytes;
+  simulation.save(bytes);
+  for (std::size_t size = 0; size < bytes.size(); size += 1 + bytes.size() / 150) {
+    Simulation other(scene);
+    EXPECT_THROW(other.restore(std::string_view(bytes).substr(0, size)), std::runtime_error) << size;
+  }
+  Simulation longer(scene), foreign(support::scene_of_text(kDrape));
+  EXPECT_THROW(longer.restore(bytes + "x"), std::runtime_error);
+  EXPECT_THROW(foreign.restore(bytes), std::runtime_error);
+}
+
+TEST(SavedStates, WithAnyByteChangedDoNoHarm) {
+  const scene::Scene scene = support::scene_of_text(kJaws, {"contact.response=velocity_constraints"});
+  Simulation simulation(scene);
+  for (int k = 0; k < 8; ++k) simulation.advance();
+  std::string bytes;
+  simulation.save(bytes);
+  const std::size_t every = 1 + bytes.size() / 250;
+  for (std::size_t i = 0; i < bytes.size(); i += every)
+    for (char flip : {char(0x01), char(0x80), char(0xFF)}) {
+      std::string broken = bytes;
+      broken[i] = static_cast<char>(broken[i] ^ flip);
+      try_bytes(scene, broken);
+    }
+}
+
+}  // namespace
+}  // namespace weft::simulation
