@@ -27,4 +27,10 @@ ExitCode doctor(const DoctorOptions& options);
 /// Measures what this program can do and writes tables and plots; exit code 1 where a case ends in nonsense.
 ExitCode bench(const BenchOptions& options);
 
+/// Prints how each pair differs; exit code 4, 7 or 8 where one cannot be read, differs, or has no reference.
+ExitCode diff(const DiffOptions& options);
+
+/// Replaces references by the files named, after writing down why.
+ExitCode accept(const AcceptOptions& options);
+
 }  // namespace weft::cli

@@ -18,6 +18,7 @@
 #include "cli/failure.hpp"
 #include "cli/system_info.hpp"
 #include "cli/table.hpp"
+#include "compare/references.hpp"
 #include "core/parallel.hpp"
 #include "core/version.hpp"
 #include "render/renderer.hpp"
@@ -113,6 +114,8 @@ void draw_test_picture(const DoctorOptions& options, image::Image& image, Examin
     return renderer->description();
   });
   if (!made) return;
+  examination.note(
+      "", fmt::format("its pictures' class among references: {}", compare::machine_class(renderer->description())));
   examination.test("drawing", [&] {
     image = renderer->draw(test_scene());
     const std::uint8_t *middle = image.pixel(kWidth / 2, kHeight / 2), *corner = image.pixel(0, 0);

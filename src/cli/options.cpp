@@ -58,6 +58,15 @@ int parse_integer(const char* option, const std::string& text, int low, int high
   return value;
 }
 
+double parse_share(const char* option, const std::string& text) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= 1)) {
+    throw Error(ExitCode::usage, "{}: expected a number from 0 to 1, got {}", option, text);
+  }
+  return value;
+}
+
 double parse_fps(const std::string& text) {
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
@@ -89,7 +98,7 @@ void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
 }
 
 // One option with one value, handed to `read` as text.
-void add_value(CLI::App& command, const char* name, const char* value, const char* description,
+void add_value(CLI::App& command, const char* name, const char* value, const std::string& description,
                std::function<void(const std::string&)> read) {
   command.add_option_function<std::string>(name, read, description)->type_name(value);
 }
@@ -156,6 +165,8 @@ struct Parser {
   SchemaOptions schema;
   DoctorOptions doctor;
   BenchOptions bench;
+  DiffOptions diff;
+  AcceptOptions accept;
 
   Parser() {
     app.set_version_flag("--version", fmt::format("weft {}", kVersion), "Print the version");
@@ -169,7 +180,7 @@ struct Parser {
         "  weft check --plan scenes/falling_band.toml\n"
         "  weft thumbnail scenes/falling_band.toml -o band.png --frame 60\n"
         "\nExit codes: 0 well, 1 our own fault, 2 command line, 3 scene, 4 asset, 5 simulation,\n"
-        "  6 output or encoder, 75 interrupted.");
+        "  6 output or encoder, 7 images differ, 8 reference missing, 75 interrupted.");
     add_run();
     add_simulate();
     add_render();
@@ -178,6 +189,8 @@ struct Parser {
     add_schema();
     add_doctor();
     add_bench();
+    add_diff();
+    add_accept();
   }
 
   void add_run() {
@@ -274,6 +287,52 @@ struct Parser {
         "\nExamples:\n"
         "  weft bench stability -o stability\n"
         "  weft bench accuracy scenes/falling_band.toml --set time.duration=0.8 -o accuracy");
+  }
+
+  void add_diff() {
+    CLI::App& command = *app.add_subcommand("diff", "Compare pictures, videos, or folders of them");
+    command.add_option("REFERENCE", diff.reference, "What it should look like: .png, video, or folder")
+        ->required()
+        ->type_name("");
+    command.add_option("TEST", diff.test, "What it looks like now: likewise")->required()->type_name("");
+    const compare::Limits usual;
+    const auto with_usual = [](const char* text, double value) { return fmt::format("{} [{}]", text, value); };
+    add_value(command, "--pixel-tolerance", "N",
+              with_usual("Levels of 255 by which a pixel may differ", usual.pixel_tolerance),
+              [this](const std::string& text) {
+                diff.limits.pixel_tolerance = parse_integer("--pixel-tolerance", text, 0, 255);
+              });
+    add_value(command, "--pixel-budget", "SHARE",
+              with_usual("Share of the pixels that may differ by more", usual.pixel_budget),
+              [this](const std::string& text) { diff.limits.pixel_budget = parse_share("--pixel-budget", text); });
+    add_value(command, "--max-flip", "X", with_usual("Largest mean of FLIP, 0 (looks the same) to 1", usual.flip),
+              [this](const std::string& text) { diff.limits.flip = parse_share("--max-flip", text); });
+    add_value(command, "--heatmap", "FILE.png|DIR", "Also paint where it differs; a video's worst frame",
+              [this](const std::string& text) { diff.heatmap = text; });
+    command.add_flag("--json", diff.json, "Print JSON instead of text");
+    command.footer(
+        "\nExamples:\n"
+        "  weft diff references/band.png band.png --heatmap difference.png\n"
+        "  weft diff references output --heatmap output/differences\n"
+        "  weft diff before.mp4 after.mp4\n"
+        "\nFolders are compared by name. A folder of references may hold one folder for each class of machines,\n"
+        "named as weft doctor says, and one named default for all others.\n"
+        "Exit codes: 0 all within the limits, 7 something differs, 8 a reference is missing, 4 a file is unreadable.");
+  }
+
+  void add_accept() {
+    CLI::App& command = *app.add_subcommand("accept", "Make pictures the new references, and record why");
+    command.add_option("REFERENCE", accept.reference, "The reference, or the folder of references")
+        ->required()
+        ->type_name("");
+    command.add_option("TEST", accept.tests, "The new pictures or videos, each by name")->required()->type_name("");
+    command.add_option("--reason", accept.reason, "Why: goes into accepted.md beside the references")
+        ->required()
+        ->type_name("TEXT");
+    command.footer(
+        "\nExamples:\n"
+        "  weft accept references output/band.png --reason \"floor is darker by design\"\n"
+        "  weft accept references/mesa-22.3-256bit output/band.png --reason \"one pixel at the hem\"");
   }
 
   std::vector<std::string> command_names() const {
@@ -376,6 +435,8 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "thumbnail") return parser.thumbnail;
   if (name == "schema") return parser.schema;
   if (name == "bench") return parser.bench;
+  if (name == "diff") return parser.diff;
+  if (name == "accept") return parser.accept;
   return parser.doctor;
 }
 

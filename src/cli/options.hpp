@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/frame_range.hpp"
+#include "compare/compare.hpp"
 #include "core/progress.hpp"
 #include "render/renderer.hpp"
 
@@ -74,13 +75,26 @@ struct BenchOptions {
   std::filesystem::path output;        ///< folder; empty: output/bench
 };
 
+struct DiffOptions {
+  std::filesystem::path reference, test;  ///< files or folders
+  compare::Limits limits;
+  std::filesystem::path heatmap;  ///< picture or folder; empty: none
+  bool json = false;
+};
+
+struct AcceptOptions {
+  std::filesystem::path reference;           ///< file or folder
+  std::vector<std::filesystem::path> tests;  ///< files
+  std::string reason;
+};
+
 /// Help or version: to be printed on standard output, and that was all.
 struct PrintText {
   std::string text;
 };
 
 using Command = std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SchemaOptions,
-                             DoctorOptions, BenchOptions, PrintText>;
+                             DoctorOptions, BenchOptions, DiffOptions, AcceptOptions, PrintText>;
 
 /// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
 Command parse_command_line(const std::vector<std::string>& arguments);

@@ -30,6 +30,8 @@ struct Dispatch {
   ExitCode operator()(const SchemaOptions&) const { return print(scene::json_schema() + "\n"); }
   ExitCode operator()(const DoctorOptions& options) const { return doctor(options); }
   ExitCode operator()(const BenchOptions& options) const { return bench(options); }
+  ExitCode operator()(const DiffOptions& options) const { return diff(options); }
+  ExitCode operator()(const AcceptOptions& options) const { return accept(options); }
   ExitCode operator()(const PrintText& text) const { return print(text.text); }
 };
 

@@ -163,8 +163,9 @@ float hyab(const Color& a, const Color& b) {
 float remapped(float distance) {
   constexpr float kPower = 0.7f, kBend = 0.4f, kAtBend = 0.95f;
   static const float largest = std::pow(hyab(hunt_lab({0, 1, 0}), hunt_lab({0, 0, 1})), kPower);
-  const float bend = kBend * largest, value = std::pow(distance, kPower);
-  return value < bend ? kAtBend * value / bend : kAtBend + (1 - kAtBend) * (value - bend) / (largest - bend);
+  const float share = std::pow(distance, kPower) / largest;
+  const float value = share < kBend ? kAtBend * share / kBend : kAtBend + (1 - kAtBend) * (share - kBend) / (1 - kBend);
+  return std::min(value, 1.0f);
 }
 
 Plane<float> as_seen(const Plane<float>& plane, int channel) {

@@ -106,7 +106,7 @@ TEST(Options, MisspeltOptionsAndCommandsNameTheNearest) {
   EXPECT_EQ(refusal({"a.toml"}), "expected a command before a.toml; did you mean weft run a.toml?");
   EXPECT_EQ(refusal({"--versoin"}),
             "unknown option --versoin before the command; did you mean --version?; see weft --help");
-  EXPECT_EQ(refusal({}), "expected a command: run, check, thumbnail, schema, doctor, bench; see weft --help");
+  EXPECT_EQ(refusal({}), "expected a command: run, check, thumbnail, schema, doctor, bench, diff, accept; see weft --help");
 }
 
 TEST(Options, MissingOrSurplusArgumentsAreRefused) {

@@ -324,7 +324,7 @@ TEST(Picture, HeatShowsTheEndsAndTheMiddleOfTheScale) {
     snapshot.stage = stage;
     snapshot.states[0].heat.assign(4, static_cast<float>(share * stage->heat_max));
     const image::Image image = renderer.draw(snapshot);
-    const Vec3 expected = image::srgb_from_linear(heat_color(share));
+    const Vec3 expected = image::srgb_from_linear(image::heat_color(share));
     for (int channel = 0; channel < 3; ++channel) {
       // Brighter than 0.8 the tone curve bends: the pale end is compared below that only.
       if (image::linear_from_srgb(expected.maxCoeff()) > 0.8) continue;

@@ -1,0 +1,53 @@
+#include <pwd.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdlib>
+
+#include "cli/commands.hpp"
+#include "compare/acceptance.hpp"
+#include "compare/files.hpp"
+#include "core/log.hpp"
+
+namespace weft::cli {
+namespace {
+
+std::string user_name() {
+  const char* name = std::getenv("USER");
+  if (name && *name) return name;
+  const passwd* entry = ::getpwuid(::geteuid());
+  return entry ? entry->pw_name : fmt::format("user {}", ::geteuid());
+}
+
+bool is_blank(const std::string& text) {
+  return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) != 0; });
+}
+
+}  // namespace
+
+ExitCode accept(const AcceptOptions& options) {
+  if (is_blank(options.reason)) {
+    throw Error(ExitCode::usage, "--reason: expected words that tell others why the picture changed");
+  }
+  const bool is_file = compare::is_comparable(options.reference) && !std::filesystem::is_directory(options.reference);
+  if (is_file && options.tests.size() > 1) {
+    throw Error(ExitCode::usage, "{} files cannot all become {}: name the folder of references instead",
+                options.tests.size(), options.reference.string());
+  }
+  // All are looked at before the first reference changes.
+  std::vector<compare::Acceptance> plans;
+  for (const std::filesystem::path& test : options.tests) {
+    plans.push_back(compare::Acceptance::plan(options.reference, test));
+    plans.back().reason = options.reason;
+    plans.back().user = user_name();
+  }
+  for (const compare::Acceptance& plan : plans) {
+    const bool changed = plan.carry_out();
+    log::info(fmt::format("{}: {}", plan.reference.string(),
+                          changed ? fmt::format("now as {}", plan.test.string()) : "is the same already"));
+  }
+  return ExitCode::ok;
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,108 @@
+#include "compare/files.hpp"
+
+#include <array>
+#include <optional>
+#include <utility>
+
+#include "core/error.hpp"
+#include "image/png.hpp"
+#include "video/decoder.hpp"
+
+namespace weft::compare {
+namespace {
+
+using Outcome = FileComparison::Outcome;
+
+constexpr std::array kVideoEndings{".mp4", ".mov", ".mkv", ".webm", ".avi"};
+
+std::string size_problem(int width, int height, int test_width, int test_height) {
+  return fmt::format("{}x{} pixels, the reference has {}x{}", test_width, test_height, width, height);
+}
+
+// Takes one frame into the result; it keeps the worst.
+void add_frame(FileComparison& result, Comparison&& frame, const Limits& limits) {
+  const bool differs = verdict(frame.figures, limits) == Verdict::differs;
+  const bool first_differing = differs && result.frames_differing == 0;
+  const bool may_be_worst = differs || result.frames_differing == 0;
+  if (result.frames == 0 || first_differing || (may_be_worst && frame.figures.flip > result.worst.figures.flip)) {
+    result.worst_frame = result.frames;
+    result.worst = std::move(frame);
+  }
+  ++result.frames;
+  result.frames_differing += differs;
+}
+
+Outcome outcome_of(const FileComparison& result) {
+  if (result.frames_differing > 0) return Outcome::differs;
+  return result.worst.figures.pixels_changed > 0 ? Outcome::within : Outcome::same;
+}
+
+void compare_pictures(FileComparison& result, const Limits& limits) {
+  const image::Image reference = image::read_png(result.reference), test = image::read_png(result.test);
+  if (reference.width != test.width || reference.height != test.height) {
+    result.outcome = Outcome::size;
+    result.problem = size_problem(reference.width, reference.height, test.width, test.height);
+    return;
+  }
+  add_frame(result, compare(reference, test, limits.pixel_tolerance), limits);
+  result.outcome = outcome_of(result);
+}
+
+// Decodes and counts what is left.
+int count_rest(video::Decoder& decoder) {
+  int frames = 0;
+  while (decoder.next()) ++frames;
+  return frames;
+}
+
+void compare_videos(FileComparison& result, const Limits& limits) {
+  video::Decoder reference(result.reference), test(result.test);
+  if (reference.width() != test.width() || reference.height() != test.height()) {
+    result.outcome = Outcome::size;
+    result.problem = size_problem(reference.width(), reference.height(), test.width(), test.height());
+    return;
+  }
+  std::optional<image::Image> a, b;
+  while ((a = reference.next()), (b = test.next()), a && b) {
+    add_frame(result, compare(*a, *b, limits.pixel_tolerance), limits);
+  }
+  result.outcome = outcome_of(result);
+  const int reference_frames = result.frames + (a ? 1 + count_rest(reference) : 0);
+  const int test_frames = result.frames + (b ? 1 + count_rest(test) : 0);
+  if (reference_frames != test_frames) {
+    result.outcome = Outcome::frame_count;
+    result.problem = fmt::format("{} frames, the reference has {}", test_frames, reference_frames);
+  } else if (result.frames == 0) {
+    throw Error(ExitCode::asset_unreadable, "{}: holds no pictures", result.test.string());
+  }
+}
+
+}  // namespace
+
+bool is_video(const std::filesystem::path& file) {
+  return std::find(kVideoEndings.begin(), kVideoEndings.end(), file.extension()) != kVideoEndings.end();
+}
+
+bool is_comparable(const std::filesystem::path& file) {
+  return file.extension() == ".png" || is_video(file);
+}
+
+FileComparison compare_files(const std::filesystem::path& reference, const std::filesystem::path& test,
+                             const Limits& limits) {
+  FileComparison result;
+  result.name = test.filename();
+  result.reference = reference;
+  result.test = test;
+  result.video = is_video(reference) && is_video(test);
+  try {
+    // A video against a picture ends as a picture that cannot be read, which is what it is.
+    result.video ? compare_videos(result, limits) : compare_pictures(result, limits);
+  } catch (const Error& error) {
+    if (error.code() != ExitCode::asset_unreadable) throw;
+    result.outcome = Outcome::unreadable;
+    result.problem = error.what();
+  }
+  return result;
+}
+
+}  // namespace weft::compare

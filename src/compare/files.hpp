@@ -1,0 +1,43 @@
+// Two files compared: pictures, or videos frame by frame.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "compare/compare.hpp"
+
+namespace weft::compare {
+
+/// By its ending: .png, or one of .mp4 .mov .mkv .webm .avi.
+bool is_video(const std::filesystem::path& file);
+bool is_comparable(const std::filesystem::path& file);
+
+struct FileComparison {
+  enum class Outcome {
+    same,          ///< equal in every pixel
+    within,        ///< differs, within the limits
+    differs,       ///< past a limit
+    size,          ///< pictures of different size: not compared
+    frame_count,   ///< videos of different length; the frames that both have are compared
+    no_test,       ///< only the reference is there
+    no_reference,  ///< only the test is there
+    unreadable,
+  };
+  std::string name;
+  std::filesystem::path reference, test;
+  Outcome outcome = Outcome::same;
+  std::string problem;       ///< in words, for the outcomes from `size` on
+  bool video = false;        ///< else a picture, of one frame
+  int frames = 0;            ///< that were compared
+  int frames_differing = 0;  ///< of these, those past a limit
+  int worst_frame = 0;       ///< from 0; past a limit before within it, then with the largest mean of the FLIP map
+  Comparison worst;          ///< of that frame; empty if none was compared
+
+  bool good() const { return outcome == Outcome::same || outcome == Outcome::within; }
+};
+
+/// Both files exist; a problem of one of them is in the result.
+FileComparison compare_files(const std::filesystem::path& reference, const std::filesystem::path& test,
+                             const Limits& limits);
+
+}  // namespace weft::compare

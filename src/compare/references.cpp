@@ -1,0 +1,78 @@
+#include "compare/references.hpp"
+
+#include <algorithm>
+#include <regex>
+#include <set>
+#include <system_error>
+
+#include "compare/files.hpp"
+#include "core/error.hpp"
+#include "image/png.hpp"
+#include "video/decoder.hpp"
+
+namespace weft::compare {
+namespace {
+
+namespace fs = std::filesystem;
+
+// Where references may be, the more special first.
+std::vector<fs::path> places(const fs::path& folder, const std::string& machine) {
+  std::vector<fs::path> found = {folder / "default", folder};
+  if (!machine.empty()) found.insert(found.begin(), folder / machine);
+  return found;
+}
+
+}  // namespace
+
+std::string machine_class(const std::string& gl) {
+  std::smatch mesa, bits;
+  if (!std::regex_search(gl, mesa, std::regex(R"(Mesa (\d+\.\d+))"))) return "";
+  const bool wide = std::regex_search(gl, bits, std::regex(R"((\d+) bits)"));
+  return "mesa-" + mesa[1].str() + (wide ? "-" + bits[1].str() + "bit" : "");
+}
+
+std::string machine_class_of(const fs::path& file) {
+  try {
+    image::Metadata metadata;
+    if (is_video(file)) {
+      metadata = video::Decoder(file).metadata();
+    } else {
+      image::read_png(file, &metadata);
+    }
+    return machine_class(metadata["gl"]);
+  } catch (const Error&) {
+    return "";  // told when the file is compared
+  }
+}
+
+std::optional<fs::path> find_reference(const fs::path& folder, const std::string& name, const std::string& machine) {
+  for (const fs::path& place : places(folder, machine)) {
+    if (fs::is_regular_file(place / name)) return place / name;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> reference_names(const fs::path& folder, const std::string& machine) {
+  std::set<std::string> names;
+  for (const fs::path& place : places(folder, machine)) {
+    if (!fs::is_directory(place)) continue;
+    const auto here = comparable_names(place);
+    names.insert(here.begin(), here.end());
+  }
+  return {names.begin(), names.end()};
+}
+
+std::vector<std::string> comparable_names(const fs::path& folder) {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& entry : fs::directory_iterator(folder, error)) {
+    // Hidden files are those that are still being written.
+    const std::string name = entry.path().filename();
+    if (entry.is_regular_file() && is_comparable(name) && !name.starts_with('.')) names.push_back(name);
+  }
+  if (error) throw Error(ExitCode::asset_unreadable, "{}: {}", folder.string(), error.message());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+}  // namespace weft::compare
