@@ -21,4 +21,7 @@ ExitCode doctor(const DoctorOptions& options);
 /// Measures what this program can do and writes tables and plots; exit code 1 where a case ends in nonsense.
 ExitCode bench(const BenchOptions& options);
 
+/// Writes the page for looking at runs.
+ExitCode review(const ReviewOptions& options);
+
 }  // namespace weft::cli

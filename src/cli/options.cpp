@@ -127,6 +127,7 @@ struct Parser {
   SchemaOptions schema;
   DoctorOptions doctor;
   BenchOptions bench;
+  ReviewOptions review;
 
   Parser() {
     app.set_version_flag("--version", fmt::format("weft {}", kVersion), "Print the version");
@@ -146,6 +147,7 @@ struct Parser {
     add_schema();
     add_doctor();
     add_bench();
+    add_review();
   }
 
   void add_run() {
@@ -215,6 +217,23 @@ struct Parser {
         "\nExamples:\n"
         "  weft bench stability -o stability\n"
         "  weft bench accuracy scenes/falling_band.toml --set time.duration=0.8 -o accuracy");
+  }
+
+  void add_review() {
+    CLI::App& command = *app.add_subcommand("review", "Write a page for looking at runs, which opens in any browser");
+    command.add_option("DIR", review.folders, "Folders with videos and statistics of weft run")
+        ->required()
+        ->type_name("");
+    add_value(command, "-o,--output", "DIR", "Folder of the page [output/review]",
+              [this](const std::string& text) { review.output = text; });
+    add_value(command, "--reference", "DIR", "Folder with runs of the same names to compare with",
+              [this](const std::string& text) { review.reference = text; });
+    command.add_flag("--overwrite", review.overwrite, "Replace a page that exists already");
+    command.footer(
+        "\nExample:\n"
+        "  weft run scenes/falling_band.toml -o runs/band.mp4 --stats runs/band.json\n"
+        "  weft review runs -o page\n"
+        "\nOpen page/index.html; the folder needs no server and loads nothing from elsewhere.");
   }
 
   std::vector<std::string> command_names() const {
@@ -315,6 +334,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "thumbnail") return parser.thumbnail;
   if (name == "schema") return parser.schema;
   if (name == "bench") return parser.bench;
+  if (name == "review") return parser.review;
   return parser.doctor;
 }
 

@@ -28,6 +28,7 @@ struct Dispatch {
   ExitCode operator()(const SchemaOptions&) const { return print(scene::json_schema() + "\n"); }
   ExitCode operator()(const DoctorOptions& options) const { return doctor(options); }
   ExitCode operator()(const BenchOptions& options) const { return bench(options); }
+  ExitCode operator()(const ReviewOptions& options) const { return review(options); }
   ExitCode operator()(const PrintText& text) const { return print(text.text); }
 };
 

@@ -207,9 +207,12 @@ class Run {
     }
   }
 
-  // Beside the output: the checked scene with every default filled in.
+  // Beside the output: the checked scene with every default filled in. A video's has its name, since a folder may hold
+  // several of one scene.
   fs::path effective_scene_file() const {
-    return target_.file(wanted_.begin).parent_path() / (scene_.name + ".effective.toml");
+    const fs::path file = target_.file(wanted_.begin);
+    const bool video = target_.kind == OutputTarget::Kind::video;
+    return file.parent_path() / ((video ? file.stem().string() : scene_.name) + ".effective.toml");
   }
 
   const RunOptions& options_;
