@@ -33,4 +33,7 @@ ExitCode diff(const DiffOptions& options);
 /// Replaces references by the files named, after writing down why.
 ExitCode accept(const AcceptOptions& options);
 
+/// Writes the page for looking at runs.
+ExitCode review(const ReviewOptions& options);
+
 }  // namespace weft::cli

@@ -177,7 +177,9 @@ void Job::try_side_file(const Write& write) {
 
 // Beside the output: the checked scene with every default filled in.
 fs::path Job::effective_scene_file() const {
-  return plan_.target.file(plan_.wanted.begin).parent_path() / (plan_.scene.scene + ".effective.toml");
+  const fs::path file = plan_.target.file(plan_.wanted.begin);
+  const bool video = plan_.target.kind == OutputTarget::Kind::video;
+  return file.parent_path() / ((video ? file.stem().string() : plan_.scene.scene) + ".effective.toml");
 }
 
 }  // namespace weft::cli

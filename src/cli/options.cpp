@@ -167,6 +167,7 @@ struct Parser {
   BenchOptions bench;
   DiffOptions diff;
   AcceptOptions accept;
+  ReviewOptions review;
 
   Parser() {
     app.set_version_flag("--version", fmt::format("weft {}", kVersion), "Print the version");
@@ -191,6 +192,7 @@ struct Parser {
     add_bench();
     add_diff();
     add_accept();
+    add_review();
   }
 
   void add_run() {
@@ -335,6 +337,23 @@ struct Parser {
         "  weft accept references/mesa-22.3-256bit output/band.png --reason \"one pixel at the hem\"");
   }
 
+  void add_review() {
+    CLI::App& command = *app.add_subcommand("review", "Write a page for looking at runs, which opens in any browser");
+    command.add_option("DIR", review.folders, "Folders with videos and statistics of weft run")
+        ->required()
+        ->type_name("");
+    add_value(command, "-o,--output", "DIR", "Folder of the page [output/review]",
+              [this](const std::string& text) { review.output = text; });
+    add_value(command, "--reference", "DIR", "Folder with runs of the same names to compare with",
+              [this](const std::string& text) { review.reference = text; });
+    command.add_flag("--overwrite", review.overwrite, "Replace a page that exists already");
+    command.footer(
+        "\nExample:\n"
+        "  weft run scenes/falling_band.toml -o runs/band.mp4 --stats runs/band.json\n"
+        "  weft review runs -o page\n"
+        "\nOpen page/index.html; the folder needs no server and loads nothing from elsewhere.");
+  }
+
   std::vector<std::string> command_names() const {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
@@ -437,6 +456,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "bench") return parser.bench;
   if (name == "diff") return parser.diff;
   if (name == "accept") return parser.accept;
+  if (name == "review") return parser.review;
   return parser.doctor;
 }
 

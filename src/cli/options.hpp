@@ -88,13 +88,20 @@ struct AcceptOptions {
   std::string reason;
 };
 
+struct ReviewOptions {
+  std::vector<std::filesystem::path> folders;
+  std::filesystem::path reference;  ///< folder; empty: none
+  std::filesystem::path output;     ///< folder; empty: output/review
+  bool overwrite = false;
+};
+
 /// Help or version: to be printed on standard output, and that was all.
 struct PrintText {
   std::string text;
 };
 
 using Command = std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SchemaOptions,
-                             DoctorOptions, BenchOptions, DiffOptions, AcceptOptions, PrintText>;
+                             DoctorOptions, BenchOptions, DiffOptions, AcceptOptions, ReviewOptions, PrintText>;
 
 /// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
 Command parse_command_line(const std::vector<std::string>& arguments);

@@ -32,6 +32,7 @@ struct Dispatch {
   ExitCode operator()(const BenchOptions& options) const { return bench(options); }
   ExitCode operator()(const DiffOptions& options) const { return diff(options); }
   ExitCode operator()(const AcceptOptions& options) const { return accept(options); }
+  ExitCode operator()(const ReviewOptions& options) const { return review(options); }
   ExitCode operator()(const PrintText& text) const { return print(text.text); }
 };
 

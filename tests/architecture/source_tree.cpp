@@ -30,7 +30,7 @@ std::vector<std::string> lines_of(const fs::path& path) {
 
 const std::set<std::string> kCode = {".cpp", ".hpp", ".c", ".h", ".glsl", ".vert", ".frag", ".geom", ".comp"};
 // What else is written by hand; scripts and dotfiles have no extension.
-const std::set<std::string> kOtherText = {".toml", ".txt", ".md", ".json", ".sh", ""};
+const std::set<std::string> kOtherText = {".toml", ".txt", ".md", ".json", ".sh", ".js", ".css", ".html", ""};
 
 // Files of the folders that we write, and of the top level itself, in order of their names, relative to root. What is
 // built or put out lies elsewhere.
@@ -49,7 +49,7 @@ std::vector<fs::path> written_files(const fs::path& root, const std::vector<std:
 }
 
 // Headers that the build writes.
-const std::set<std::string> kGeneratedHeaders = {"embedded_shaders.hpp"};
+const std::set<std::string> kGeneratedHeaders = {"embedded_shaders.hpp", "embedded_review.hpp"};
 
 const std::vector<std::string> kCodeFolders = {"src", "shaders", "tests"};
 const std::vector<std::string> kAllFolders = {"src", "shaders", "tests", "scenes", ".ci"};

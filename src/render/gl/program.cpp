@@ -11,7 +11,7 @@ namespace {
 
 std::string_view embedded_file(const std::string& file) {
   for (const auto& shader : kEmbeddedShaders) {
-    if (shader.name == file) return shader.source;
+    if (shader.name == file) return shader.text;
   }
   throw Error(ExitCode::internal, "shaders/{}: not among the shaders built into this program", file);
 }

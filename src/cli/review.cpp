@@ -1,0 +1,27 @@
+#include "review/review.hpp"
+
+#include <fmt/format.h>
+
+#include "cli/commands.hpp"
+#include "cli/signals.hpp"
+#include "core/log.hpp"
+
+namespace weft::cli {
+
+ExitCode review(const ReviewOptions& options) {
+  const StopSignals signals;
+  review::Request request;
+  request.folders = options.folders;
+  request.reference = options.reference;
+  request.output = options.output.empty() ? "output/review" : options.output;
+  request.overwrite = options.overwrite;
+  request.stop = [&signals] { return signals.requested().load(); };
+  const review::Outcome outcome = review::write_review(request);
+  std::string line = fmt::format("{}: {} run{}", outcome.page.string(), outcome.runs, outcome.runs == 1 ? "" : "s");
+  if (outcome.incomplete > 0)
+    line += fmt::format(", {} with something missing, which the page names", outcome.incomplete);
+  log::info(line);
+  return ExitCode::ok;
+}
+
+}  // namespace weft::cli

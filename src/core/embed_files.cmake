@@ -1,0 +1,19 @@
+# Writes OUTPUT, a header with the text of every file below FOLDER as NAME, an array of EmbeddedFile, so that the program
+# needs no file beside it: cmake -DFOLDER=... -DOUTPUT=... -DNAME=kEmbeddedShaders -P embed_files.cmake
+file(GLOB_RECURSE files RELATIVE ${FOLDER} ${FOLDER}/*)
+set(entries "")
+foreach(file IN LISTS files)
+  file(READ "${FOLDER}/${file}" text)
+  string(APPEND entries "    {\"${file}\", R\"embedded(${text})embedded\"},\n")
+endforeach()
+file(WRITE ${OUTPUT} "#pragma once
+
+#include \"core/embedded_file.hpp\"
+
+namespace weft {
+
+inline constexpr EmbeddedFile ${NAME}[] = {
+${entries}};
+
+}  // namespace weft
+")

@@ -1,0 +1,208 @@
+#include "review/find_runs.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <optional>
+#include <set>
+#include <string_view>
+#include <utility>
+
+#include "core/error.hpp"
+
+namespace weft::review {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kEffectiveEnding = ".effective.toml";
+
+std::string read_text(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+bool is_hidden(const fs::path& path) {
+  return path.filename().string().starts_with('.');
+}
+
+// Every regular file below the folder, in order of the paths.
+std::vector<fs::path> list_files(const fs::path& folder) {
+  std::error_code error;
+  if (!fs::is_directory(folder, error))
+    throw Error(ExitCode::asset_unreadable, "{}: expected a folder with runs, found none", folder.string());
+  std::vector<fs::path> files;
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::skip_permission_denied, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
+    std::error_code ignored;  // a file that went away in between is none
+    if (entry->is_directory(ignored)) {
+      if (is_hidden(entry->path()) || is_review_page(entry->path())) entry.disable_recursion_pending();
+    } else if (entry->is_regular_file(ignored) && !is_hidden(entry->path())) {
+      files.push_back(entry->path());
+    }
+  }
+  if (error) throw Error(ExitCode::asset_unreadable, "{}: cannot be listed: {}", folder.string(), error.message());
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+// "band_00012" is "band_" and "00012".
+std::pair<std::string, std::string> split_number(const std::string& stem) {
+  const std::size_t digits = stem.find_last_not_of("0123456789") + 1;  // npos + 1 is 0
+  return {stem.substr(0, digits), stem.substr(digits)};
+}
+
+bool is_statistics(const Json& json) {
+  if (!json.is_object() || !json.contains("scene") || !json["scene"].is_string()) return false;
+  const auto frames = json.find("frames");
+  return frames != json.end() && frames->is_array() &&
+         std::all_of(frames->begin(), frames->end(), [](const Json& frame) { return frame.is_object(); });
+}
+
+// The files below one folder while runs are put together from them.
+class Search {
+ public:
+  explicit Search(const fs::path& folder) : folder_(folder) {
+    for (const fs::path& file : list_files(folder)) {
+      const std::string ending = file.extension().string();
+      if (ending == ".mp4") videos_.insert(file);
+      if (ending == ".json") statistics_.push_back(file);
+      if (file.filename().string().ends_with(kEffectiveEnding)) effective_.insert(file);
+      if (ending != ".png") continue;
+      const auto [prefix, digits] = split_number(file.stem().string());
+      if (!digits.empty()) pictures_[file.parent_path() / (prefix + "{}")].push_back(file);
+    }
+    for (auto& [prefix, files] : pictures_) {
+      std::stable_sort(files.begin(), files.end(),
+                       [](const fs::path& a, const fs::path& b) { return picture_number(a) < picture_number(b); });
+    }
+  }
+
+  std::vector<RunFiles> runs() {
+    for (const fs::path& file : statistics_) add_with_statistics(file);
+    for (const fs::path& file : std::set<fs::path>(videos_)) {
+      RunFiles run = named(file);
+      run.video = file;
+      const auto problem = unusable_.find(run.name);
+      if (problem != unusable_.end()) run.problems.push_back(problem->second);
+      runs_.push_back(std::move(run));
+    }
+    for (const auto& [prefix, files] : pictures_) add_pictures(prefix, files);
+    for (RunFiles& run : runs_) find_effective(run);
+    std::sort(runs_.begin(), runs_.end(), [](const RunFiles& a, const RunFiles& b) { return a.name < b.name; });
+    return std::move(runs_);
+  }
+
+ private:
+  RunFiles named(const fs::path& file) const {
+    RunFiles run;
+    run.name = fs::path(file).replace_extension().lexically_relative(folder_).generic_string();
+    return run;
+  }
+
+  void add_with_statistics(const fs::path& file) {
+    RunFiles run = named(file);
+    try {
+      run.stats_json = Json::parse(read_text(file));
+    } catch (const Json::parse_error& error) {
+      // Any program may leave JSON here; it is missed only where a video of this name is.
+      unusable_[run.name] = fmt::format("{}: not readable as JSON: {}", file.filename().string(), error.what());
+      return;
+    }
+    if (!is_statistics(run.stats_json)) {
+      unusable_[run.name] =
+          fmt::format("{}: expected the statistics that weft run --stats writes", file.filename().string());
+      return;
+    }
+    run.stats = file;
+    take_pictures(run);
+    runs_.push_back(std::move(run));
+  }
+
+  // What the statistics name as output, looked for beside them, since folders are moved and fetched from other
+  // machines; else what has their name.
+  void take_pictures(RunFiles& run) {
+    const fs::path beside = run.stats.parent_path();
+    const auto named_output = run.stats_json.find("output");
+    const fs::path output =
+        named_output != run.stats_json.end() && named_output->is_string() ? named_output->get<std::string>() : "";
+    for (auto part = output.begin(); part != output.end(); ++part) {
+      fs::path file = beside;
+      for (auto rest = part; rest != output.end(); ++rest) file /= rest->relative_path();
+      if (take(run, file.lexically_normal())) return;
+    }
+    take(run, fs::path(run.stats).replace_extension(".mp4"));
+  }
+
+  bool take(RunFiles& run, const fs::path& file) {
+    if (videos_.erase(file) > 0) {
+      run.video = file;
+      return true;
+    }
+    const std::string name = file.filename().string();
+    const auto pictures = pictures_.find(file.parent_path() / (name.substr(0, name.find('{')) + "{}"));
+    if (name.find('{') == std::string::npos || pictures == pictures_.end()) return false;
+    run.pictures = std::move(pictures->second);
+    pictures_.erase(pictures);
+    return true;
+  }
+
+  // One picture alone is a thumbnail or a sheet, no run.
+  void add_pictures(const fs::path& prefix, const std::vector<fs::path>& files) {
+    if (files.size() < 2) return;
+    std::string name = prefix.lexically_relative(folder_).generic_string();
+    name.resize(name.size() - 2);
+    while (!name.empty() && std::string_view("_-./").find(name.back()) != std::string_view::npos) name.pop_back();
+    RunFiles run;
+    run.name = name.empty() ? fs::absolute(folder_).lexically_normal().filename().string() : name;
+    run.pictures = files;
+    runs_.push_back(std::move(run));
+  }
+
+  void find_effective(RunFiles& run) const {
+    const fs::path pictures = run.pictures.empty() ? fs::path() : run.pictures.front();
+    std::vector<fs::path> places;
+    for (const fs::path& file : {run.video, pictures, run.stats}) {
+      if (file.empty()) continue;
+      places.push_back(file.parent_path() / file.stem());
+      if (!run.stats.empty()) places.push_back(file.parent_path() / run.stats_json["scene"].get<std::string>());
+    }
+    for (const fs::path& place : places) {
+      const fs::path file = place.string() + std::string(kEffectiveEnding);
+      if (!effective_.contains(file)) continue;
+      run.effective = file;
+      return;
+    }
+  }
+
+  const fs::path folder_;
+  std::vector<fs::path> statistics_;
+  std::set<fs::path> videos_, effective_;               // videos that belong to no run yet
+  std::map<fs::path, std::vector<fs::path>> pictures_;  // by what stands before the number; of no run yet
+  std::map<std::string, std::string> unusable_;         // JSON files by name: why
+  std::vector<RunFiles> runs_;
+};
+
+}  // namespace
+
+std::vector<RunFiles> find_runs(const fs::path& folder) {
+  return Search(folder).runs();
+}
+
+long long picture_number(const fs::path& picture) {
+  const std::string digits = split_number(picture.stem().string()).second;
+  long long number = -1;
+  std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  return number;
+}
+
+bool is_review_page(const fs::path& folder) {
+  std::ifstream in(folder / "index.html", std::ios::binary);
+  std::string head(1024, '\0');
+  in.read(head.data(), static_cast<std::streamsize>(head.size()));
+  return head.find(kPageMark) != std::string::npos;
+}
+
+}  // namespace weft::review

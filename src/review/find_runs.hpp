@@ -1,0 +1,38 @@
+// Finds what `weft run` left in folders, and which of the files belong together.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace weft::review {
+
+using Json = nlohmann::ordered_json;
+
+/// The files of one run. What is empty was not found.
+struct RunFiles {
+  std::string name;             ///< path below the searched folder without ending, such as "stiff/falling_band"
+  std::filesystem::path video;  ///< MP4
+  std::vector<std::filesystem::path> pictures;  ///< numbered PNG files in order, where there is no video
+  std::filesystem::path stats;
+  Json stats_json;  ///< content of `stats`
+  std::filesystem::path effective;
+  std::vector<std::string> problems;  ///< files that cannot be used, each with the reason
+};
+
+/// All runs below `folder`, in order of their names. Hidden files and review pages are passed over. Throws
+/// Error(asset_unreadable) where `folder` is none or cannot be listed.
+std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
+
+/// The number at the end of a picture's name before the ending: 12 for band_00012.png; -1 if there is none.
+long long picture_number(const std::filesystem::path& picture);
+
+/// Whether `folder` is a page that `weft review` wrote.
+bool is_review_page(const std::filesystem::path& folder);
+
+/// What tells our pages from other ones: stands in index.html.
+inline constexpr const char* kPageMark = "name=\"generator\" content=\"weft review";
+
+}  // namespace weft::review

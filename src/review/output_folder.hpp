@@ -1,0 +1,28 @@
+// A folder that appears under its final name only when it is whole.
+#pragma once
+
+#include <filesystem>
+
+namespace weft::review {
+
+/// A hidden folder beside the final one to write into first. Unless committed, it is removed by the destructor.
+class OutputFolder {
+ public:
+  /// Refuses what would lose something: a page that exists, unless `overwrite` is set, and in any case a folder that
+  /// holds anything else. Throws Error(output_failed).
+  OutputFolder(std::filesystem::path final_name, bool overwrite);
+  ~OutputFolder();
+  OutputFolder(const OutputFolder&) = delete;
+  OutputFolder& operator=(const OutputFolder&) = delete;
+
+  const std::filesystem::path& path() const { return path_; }
+
+  /// Flushes everything to disk and gives the folder its final name; a former page is exchanged for it in one step,
+  /// then removed. Throws Error(output_failed).
+  void commit();
+
+ private:
+  std::filesystem::path final_name_, path_;
+};
+
+}  // namespace weft::review

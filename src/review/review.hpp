@@ -1,0 +1,34 @@
+// `weft review`: one static folder for looking at runs, which opens without a server.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+#include "review/find_runs.hpp"
+
+namespace weft::review {
+
+struct Request {
+  std::vector<std::filesystem::path> folders;  ///< with runs
+  std::filesystem::path reference;             ///< folder with runs to compare with; empty: none
+  std::filesystem::path output;
+  bool overwrite = false;
+  std::function<bool()> stop = [] { return false; };  ///< asked between runs
+};
+
+struct Outcome {
+  std::filesystem::path page;
+  int runs = 0;
+  int incomplete = 0;  ///< of them, with something missing
+};
+
+/// Writes the page. Throws Error: asset_unreadable for folders without runs, reference_missing for a reference that is
+/// no folder with runs, output_failed, interrupted.
+Outcome write_review(const Request& request);
+
+/// The text of index.html around `data`, which a script element holds as JSON.
+std::string page_html(std::string_view page, const Json& data);
+
+}  // namespace weft::review

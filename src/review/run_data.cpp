@@ -1,0 +1,147 @@
+#include "review/run_data.hpp"
+
+#include <toml++/toml.h>
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <set>
+
+#include "core/error.hpp"
+
+namespace weft::review {
+namespace {
+
+// More than a plot of 1000 pixels can show, at half the size of the file.
+constexpr double kDigits = 1e6;
+
+Json rounded(const Json& value) {
+  if (!value.is_number_float()) return value.is_number() || value.is_boolean() ? value : Json(nullptr);
+  const auto number = value.get<double>();
+  if (number == 0 || !std::isfinite(number)) return number == 0 ? Json(0) : Json(nullptr);
+  return std::stod(fmt::format("{:.6g}", number));
+}
+
+// An entry of a list by its name where it has one, as in --set.
+std::string entry_name(const toml::node& entry, std::size_t index) {
+  const toml::table* table = entry.as_table();
+  const toml::node* name = table != nullptr ? table->get("name") : nullptr;
+  return name != nullptr && name->is_string() ? name->ref<std::string>() : fmt::format("{}", index);
+}
+
+std::string value_text(const toml::node& node) {
+  if (const auto* text = node.as_string()) return Json(text->get()).dump();
+  if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
+  if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";
+  std::vector<std::string> parts;
+  if (const auto* list = node.as_array()) {
+    for (const toml::node& part : *list) parts.push_back(value_text(part));
+    return fmt::format("[{}]", fmt::join(parts, ", "));
+  }
+  return "?";  // dates, which no scene has
+}
+
+bool has_tables(const toml::node& node) {
+  const toml::array* list = node.as_array();
+  return list != nullptr && !list->empty() && list->front().is_table();
+}
+
+void add_values(const toml::node& node, const std::string& path, Json& values) {
+  const std::string prefix = path.empty() ? "" : path + ".";
+  if (const toml::table* table = node.as_table()) {
+    for (const auto& [key, value] : *table) add_values(value, prefix + std::string(key.str()), values);
+  } else if (has_tables(node)) {
+    std::size_t index = 0;
+    for (const toml::node& entry : *node.as_array()) {
+      add_values(entry, prefix + entry_name(entry, index), values);
+      ++index;
+    }
+  } else {
+    values[path] = value_text(node);
+  }
+}
+
+Json effective_json(const RunFiles& run, std::vector<std::string>& problems) {
+  if (run.effective.empty()) {
+    problems.push_back("no effective scene: expected an .effective.toml of this name beside the video");
+    return nullptr;
+  }
+  std::ifstream in(run.effective, std::ios::binary);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  Json effective{{"text", text}, {"values", Json::object()}};
+  try {
+    effective["values"] = scene_values(text, run.effective.filename().string());
+  } catch (const Error& error) {
+    problems.push_back(error.what());
+  }
+  return effective;
+}
+
+double number_or_zero(const Json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_number() ? found->get<double>() : 0;
+}
+
+}  // namespace
+
+Json frame_columns(const Json& frames) {
+  Json columns = Json::object();
+  for (const Json& frame : frames) {
+    for (const auto& [key, value] : frame.items()) columns.emplace(key, Json::array());
+  }
+  for (auto& [key, column] : columns.items()) {
+    for (const Json& frame : frames) {
+      const auto value = frame.find(key);
+      column.push_back(value == frame.end() ? Json(nullptr) : rounded(*value));
+    }
+  }
+  return columns;
+}
+
+PictureTimes picture_times(const RunFiles& run) {
+  std::vector<long long> shown;
+  if (!run.pictures.empty()) {
+    for (const auto& picture : run.pictures) shown.push_back(picture_number(picture));
+  } else if (!run.stats.empty()) {
+    for (const Json& frame : run.stats_json["frames"]) {
+      if (frame.value("written", Json(true)) == true) {
+        shown.push_back(static_cast<long long>(number_or_zero(frame, "frame")));
+      }
+    }
+  }
+  PictureTimes times;
+  times.count = static_cast<long long>(shown.size());
+  if (times.count > 0) times.first = shown.front();
+  if (times.count > 1) times.step = std::max(1ll, shown[1] - shown[0]);
+  if (!run.stats.empty()) times.fps = number_or_zero(run.stats_json, "fps") / static_cast<double>(times.step);
+  return times;
+}
+
+Json scene_values(const std::string& toml, const std::string& file) {
+  try {
+    Json values = Json::object();
+    add_values(toml::parse(toml), "", values);
+    return values;
+  } catch (const toml::parse_error& error) {
+    throw Error(ExitCode::asset_unreadable, "{}:{}: not readable as TOML: {}", file, error.source().begin.line,
+                error.description());
+  }
+}
+
+Json run_data(const RunFiles& run) {
+  std::vector<std::string> problems = run.problems;
+  if (run.video.empty() && run.pictures.empty()) problems.push_back("no video or pictures beside the statistics");
+  if (run.stats.empty() && problems.empty())
+    problems.push_back("no statistics: weft run --stats FILE.json writes them, for figures and plots");
+  const PictureTimes times = picture_times(run);
+  Json stats = run.stats_json.is_object() ? run.stats_json : Json::object();
+  Json columns = frame_columns(stats.value("frames", Json::array()));
+  stats.erase("frames");
+  Json effective = effective_json(run, problems);
+  Json pictures{{"first", times.first}, {"step", times.step}, {"count", times.count}, {"fps", times.fps}};
+  return {{"name", run.name},     {"problems", problems},          {"stats", std::move(stats)},
+          {"pictures", pictures}, {"columns", std::move(columns)}, {"effective", std::move(effective)}};
+}
+
+}  // namespace weft::review

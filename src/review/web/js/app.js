@@ -1,0 +1,64 @@
+// Puts the page together: which one the address asks for, the bar at the top, the keys that work everywhere.
+//
+// Addresses: #run=ID (&with=ID&view=slider&frame=12), #compare=ID&compare=ID (&left=ID&right=ID&view=side&frame=12),
+// else the overview (#chosen=ID&sort=strain).
+"use strict";
+{
+  const { h } = review;
+  const content = document.getElementById("content");
+  const themeSwitch = document.getElementById("theme-switch");
+  let page = null;
+  let written = null; // the address that the page itself wrote last
+
+  // Notes the state of the page in its address without opening it again.
+  review.replaceAddress = (address) => {
+    written = `#${address}`;
+    if (location.hash.replace(/^#?$/, "#") === written) return;
+    history.replaceState(null, "", written);
+  };
+
+  const makePage = (address) => {
+    if (review.model.find(address.get("run"))) return new review.RunPage(address);
+    if (address.getAll("compare").filter(review.model.find).length >= 2) return new review.ComparePage(address);
+    return new review.OverviewPage(address);
+  };
+
+  const open = () => {
+    page?.close();
+    const firstTime = page === null;
+    page = makePage(new URLSearchParams(location.hash.slice(1)));
+    content.replaceChildren(page.element);
+    document.title = `${page.title} – Weft review`;
+    document.getElementById("trail").replaceChildren(
+      ...(page instanceof review.OverviewPage ? [] : [h("a", { href: "#" }, "Overview"), h("span", { "aria-current": "page" }, page.title)]));
+    review.keys.bind([...page.keys, ...everywhere(page)]);
+    page.mounted();
+    scrollTo(0, 0);
+    if (!firstTime) content.focus({ preventScroll: true });
+  };
+
+  const everywhere = (current) => [
+    !(current instanceof review.OverviewPage) && { keys: ["o", "Escape"], does: "overview", action: () => (location.hash = "") },
+    { keys: ["t"], does: "colours: as the system, light, dark", action: () => review.theme.next() },
+    { keys: ["?"], does: "these keys", action: () => review.keys.showHelp() },
+  ];
+
+  const showTheme = () => {
+    const { choice } = review.theme;
+    const name = { auto: "Auto", light: "Light", dark: "Dark" }[choice];
+    themeSwitch.textContent = name;
+    themeSwitch.title = themeSwitch.ariaLabel = `Colours: ${choice === "auto" ? "as the system" : choice} (t)`;
+  };
+
+  themeSwitch.addEventListener("click", () => review.theme.next());
+  document.getElementById("help-switch").addEventListener("click", () => review.keys.showHelp());
+  review.theme.onChange(() => {
+    showTheme();
+    page?.themeChanged?.();
+  });
+  addEventListener("hashchange", () => {
+    if (location.hash !== written) open();
+  });
+  showTheme();
+  open();
+}

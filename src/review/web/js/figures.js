@@ -1,0 +1,72 @@
+// The figures of a run that fit into one line each. Pages and tables all take them from here.
+"use strict";
+{
+  const { known, count, milliseconds, seconds, millimetres, percent, joule, bytes } = review.format;
+
+  const sum = (column) => column?.reduce((total, value) => total + (value ?? 0), 0);
+
+  // The frame with the extreme value, and that value.
+  const extreme = (name, better) => (run) => {
+    const column = run.column(name);
+    if (!column) return {};
+    let row = -1;
+    column.forEach((value, i) => {
+      if (known(value) && (row < 0 || better(value, column[row]))) row = i;
+    });
+    return { value: column[row], frame: column[row] !== 0 ? run.columns.frame?.[row] : undefined };
+  };
+  const largest = (name) => extreme(name, (a, b) => a > b);
+  const smallest = (name) => extreme(name, (a, b) => a < b);
+  const last = (name) => (run) => ({ value: run.column(name)?.findLast(known) });
+  const total = (name) => (run) => ({ value: run.totals[name] });
+  const perFrame = (name) => (run) => {
+    const frames = (run.columns.frame?.length ?? 0) - 1; // frame 0 is given, not computed
+    return { value: known(run.totals[name]) && frames > 0 ? (1e3 * run.totals[name]) / frames : undefined };
+  };
+  const ratio = (part, whole) => (known(part) && known(whole) && whole > 0 ? part / whole : undefined);
+
+  // Names for narrow tables.
+  const SHORT = { strain: "Strain", distance: "Distance", error: "Error", newton: "Newton/step", cpu_frame: "CPU/frame" };
+  const figure = (key, label, of, format, note) => ({ key, label, short: SHORT[key] ?? label, of, format, note });
+
+  review.figures = [
+    figure("frames", "Frames", (run) => ({ value: run.columns.frame?.length }), count, "simulated, frame 0 included"),
+    figure("particles", "Particles", (run) => ({ value: run.stats.particles }), count),
+    figure("strain", "Largest strain", largest("max_strain"), percent, "of any thread, stretched or squeezed"),
+    figure("distance", "Smallest distance", smallest("min_distance_m"), millimetres, "between surfaces; at or below 0 they touched"),
+    figure("error", "Error estimate", total("error_estimate_m"), millimetres, "of position from the time steps, summed up over all of them"),
+    figure("pinched", "Pinched pairs", largest("pinched_pairs"), count, "cloth without room between obstacles"),
+    figure("kinetic", "Kinetic energy, end", last("kinetic_energy_j"), joule),
+    figure("elastic", "Elastic energy, end", last("elastic_energy_j"), joule),
+    figure("steps", "Steps", total("steps"), count),
+    figure("rejected", "Rejected steps", total("rejected_steps"), count),
+    figure("inexact", "Inexact steps", total("inexact_steps"), count, "taken with an error above time.tolerance"),
+    figure("newton", "Newton per step", (run) => ({ value: ratio(sum(run.column("newton_iterations")), run.totals.steps) }), review.format.number),
+    figure("linear", "Linear per Newton", (run) => ({ value: ratio(sum(run.column("linear_iterations")), sum(run.column("newton_iterations"))) }), review.format.number),
+    figure("cpu_frame", "CPU per frame", perFrame("cpu"), milliseconds, "all threads, whole run"),
+    figure("simulate", "Simulate, CPU", perFrame("simulate_cpu"), milliseconds, "per frame, collisions included"),
+    figure("collide", "Collisions, CPU", perFrame("collide_cpu"), milliseconds, "per frame, a part of simulate"),
+    figure("render", "Render, CPU", perFrame("render_cpu"), milliseconds, "per frame"),
+    figure("encode", "Encode, CPU", perFrame("encode_cpu"), milliseconds, "per frame"),
+    figure("wall", "Wall time", total("wall"), seconds),
+    figure("memory", "Peak memory", (run) => ({ value: run.stats.peak_memory_bytes }), bytes),
+  ];
+  review.figure = Object.fromEntries(review.figures.map((entry) => [entry.key, entry]));
+
+  /** What machine and program a run came from: [label, text] each. */
+  review.environment = (run) => {
+    const { stats } = run;
+    const size = known(stats.width) ? `${stats.width} × ${stats.height} at ${review.format.number(stats.fps)} fps` : undefined;
+    return [
+      ["Scene file", stats.scene_file],
+      ["Scene hash", stats.scene_hash],
+      ["Weft", stats.version],
+      ["Processor", stats.cpu],
+      ["Threads", stats.threads],
+      ["OpenGL", stats.gl],
+      ["Picture", size],
+      ["Output", stats.output],
+      ["Exit code", stats.exit_code],
+    ].filter(([, text]) => text !== undefined && text !== "");
+  };
+}

@@ -1,0 +1,92 @@
+// The runs of this page, as index.html carries them.
+//
+// A *frame* is a state of the simulation, at frame / fps. A *picture* is what the video or the stills show of it: the
+// k-th picture shows frame first + k * step. Everything on the page is tied together by the frame's time.
+"use strict";
+{
+  const { known, plural } = review.format;
+  const EXIT_CODES = { 1: "own fault", 2: "command line", 3: "scene", 4: "asset", 5: "simulation", 6: "output", 75: "interrupted" };
+  const ASSUMED_FPS = 25; // of a video that nothing is known of
+
+  class Run {
+    constructor(data) {
+      this.id = data.id;
+      this.name = data.name;
+      this.problems = data.problems;
+      this.stats = data.stats;
+      this.totals = data.stats.totals ?? {};
+      this.columns = data.columns;
+      this.effective = data.effective;
+      this.pictures = data.pictures;
+      this.sheet = data.sheet ?? [];
+      this.poster = data.poster ?? null;
+      this.referenceId = data.reference ?? null;
+      this.comparison = data.comparison ?? null;
+      this.isReference = data.id.startsWith("references/");
+      this.rows = new Map((this.column("frame") ?? []).map((frame, row) => [frame, row]));
+    }
+
+    get scene() {
+      return this.stats.scene ?? this.name;
+    }
+    get label() {
+      return this.isReference ? `${this.name} (reference)` : this.name;
+    }
+    get reference() {
+      return review.model.find(this.referenceId);
+    }
+    get aspect() {
+      return known(this.stats.width) && known(this.stats.height) ? this.stats.width / this.stats.height : 16 / 9;
+    }
+
+    // Pictures a second as shown.
+    get fps() {
+      return this.pictures.fps > 0 ? this.pictures.fps : ASSUMED_FPS;
+    }
+    get hasPictures() {
+      return this.pictures.kind !== "none" && (this.pictures.count > 0 || this.pictures.kind === "video");
+    }
+    frameOf(picture) {
+      return this.pictures.first + picture * this.pictures.step;
+    }
+    timeOf(picture) {
+      return this.frameOf(picture) / (this.fps * this.pictures.step);
+    }
+    pictureAt(time) {
+      const picture = Math.round((time * this.fps * this.pictures.step - this.pictures.first) / this.pictures.step);
+      return Math.max(0, Math.min(this.pictures.count - 1, picture));
+    }
+    pictureOfFrame(frame) {
+      return this.pictureAt(frame / (this.fps * this.pictures.step));
+    }
+
+    /** One value for each simulated frame, or undefined where the statistics have none. */
+    column(name) {
+      const column = this.columns[name];
+      return column?.some(known) ? column : undefined;
+    }
+    valueAt(name, frame) {
+      return this.columns[name]?.[this.rows.get(frame)];
+    }
+
+    get warnings() {
+      return this.stats.warnings ?? [];
+    }
+    /** {level, text}: level is good, warn, bad or unknown. */
+    get verdict() {
+      const code = this.stats.exit_code;
+      if (code === undefined) return { level: "unknown", text: "no statistics" };
+      if (code === 75) return { level: "warn", text: "interrupted" };
+      if (code !== 0) return { level: "bad", text: `failed: ${EXIT_CODES[code] ?? `exit code ${code}`}` };
+      if (this.warnings.length > 0) return { level: "warn", text: plural(this.warnings.length, "warning") };
+      return { level: "good", text: "well" };
+    }
+  }
+
+  const data = JSON.parse(document.getElementById("review-data").textContent);
+  const runs = data.runs.map((run) => new Run(run));
+  const references = data.references.map((run) => new Run(run));
+  const byId = new Map([...runs, ...references].map((run) => [run.id, run]));
+
+  review.model = { version: data.version, runs, references, find: (id) => byId.get(id) ?? null };
+}

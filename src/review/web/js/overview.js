@@ -1,0 +1,169 @@
+// All runs at a glance: verdict, picture, key figures. Chosen runs go on to be compared.
+"use strict";
+{
+  const { h } = review;
+  const { plural } = review.format;
+  const COLUMNS = ["frames", "particles", "strain", "distance", "error", "newton", "cpu_frame"].map((key) => review.figure[key]);
+  const STAGES = ["simulate_cpu", "collide_cpu", "render_cpu", "encode_cpu"];
+  const LEVELS = ["bad", "warn", "unknown", "good"];
+
+  review.chip = ({ level, text }) => h(`span.chip.${level}`, {}, text);
+
+  review.posterOf = (run) => {
+    if (run.poster) return h("img", { src: run.poster, alt: "", loading: "lazy" });
+    if (run.pictures.kind === "stills") return h("img", { src: run.pictures.files[run.pictures.files.length >> 1], alt: "", loading: "lazy" });
+    return h("span.no-picture", {}, "no picture");
+  };
+
+  // How the CPU time of a run is divided.
+  const shares = (run) => {
+    const [simulate, collide, render, encode] = STAGES.map((stage) => run.totals[stage] ?? 0);
+    const parts = [simulate - collide, collide, render, encode];
+    const whole = parts.reduce((a, b) => a + b, 0);
+    if (!(whole > 0)) return null;
+    const names = ["simulate", "collide", "render", "encode"];
+    const text = parts.map((part, i) => `${names[i]} ${Math.round((100 * part) / whole)} %`).join(", ");
+    return h("span.shares", { role: "img", "aria-label": text, title: text },
+      parts.map((part, i) => h("i", { style: { width: `${(100 * part) / whole}%`, background: `var(--series-${i + 1})` } })));
+  };
+
+  review.OverviewPage = class {
+    constructor(address) {
+      this.chosen = new Set(address.getAll("chosen"));
+      this.sortKey = address.get("sort");
+      this.rows = review.model.runs.map((run) => this.buildRow(run));
+      this.filter = h("input", { type: "search", placeholder: "Filter by name, scene, verdict", "aria-label": "Filter the runs", oninput: () => this.applyFilter() });
+      this.count = h("span.found", { role: "status" });
+      this.compare = h("button.primary", { type: "button", onclick: () => this.openComparison() });
+      this.body = h("tbody", {}, this.rows.map(({ element }) => element));
+      this.element = h("div.overview", {}, this.buildHead(), h("div.table-frame", {}, h("table.runs", {}, this.buildColumns(), this.body)), this.nothing());
+      this.updateChosen();
+      if (this.sortKey) this.sort(this.sortKey);
+    }
+
+    get title() {
+      return "Overview";
+    }
+
+    buildHead() {
+      const { runs } = review.model;
+      const counts = LEVELS.map((level) => [level, runs.filter((run) => run.verdict.level === level).length]).filter(([, count]) => count > 0);
+      const words = { bad: "failed", warn: "with warnings", unknown: "without statistics", good: "well" };
+      return h("div.page-head", {},
+        h("h1", {}, plural(runs.length, "run")),
+        h("p.counts", {}, counts.map(([level, count]) => review.chip({ level, text: `${count} ${words[level]}` }))),
+        h("div.page-tools", {}, this.filter, this.count, this.compare));
+    }
+    nothing() {
+      this.none = h("p.nothing", { hidden: true }, "No run matches.");
+      return this.none;
+    }
+
+    buildColumns() {
+      this.sorters = new Map();
+      const sorter = (key, label, note) => {
+        const button = h("button", { type: "button", title: note, onclick: () => this.sort(key) }, label);
+        const cell = h("th", { scope: "col" }, button);
+        this.sorters.set(key, cell);
+        return cell;
+      };
+      return h("thead", {}, h("tr", {},
+        h("th", {}, h("span.hidden", {}, "Choose")), h("th", {}, h("span.hidden", {}, "Picture")),
+        sorter("name", "Run"), sorter("verdict", "Verdict"), COLUMNS.map(({ key, label, note }) => sorter(key, label, note))));
+    }
+
+    buildRow(run) {
+      const address = `#run=${encodeURIComponent(run.id)}`;
+      const box = h("input", { type: "checkbox", "aria-label": `Choose ${run.name}`, onchange: () => this.choose(run, box.checked) });
+      const figures = COLUMNS.map(({ key, short, of, format }) =>
+        h("td.figure", { "data-label": short }, format(of(run).value), key === "cpu_frame" && shares(run)));
+      const notes = [...run.warnings, ...run.problems];
+      const element = h("tr", { "data-run": run.id },
+        h("td.choose", {}, h("label", {}, box)),
+        h("td.poster", {}, h("a", { href: address, tabindex: -1, "aria-hidden": "true" }, review.posterOf(run))),
+        h("td.name", {}, h("a", { href: address }, review.breakable(run.name)),
+          h("small", {}, run.scene === run.name ? "" : run.scene),
+          run.reference && h("small", {}, "has a reference")),
+        h("td.verdict", {}, review.chip(run.verdict), run.problems.length > 0 && review.chip({ level: "unknown", text: "incomplete" }),
+          notes.length > 0 && h("small", { title: notes.join("\n") }, notes[0])),
+        figures);
+      return { run, box, element };
+    }
+
+    choose(run, chosen) {
+      if (chosen) this.chosen.add(run.id);
+      else this.chosen.delete(run.id);
+      this.updateChosen();
+    }
+    updateChosen() {
+      for (const { run, box, element } of this.rows) {
+        box.checked = this.chosen.has(run.id);
+        element.classList.toggle("chosen", box.checked);
+      }
+      this.compare.disabled = this.chosen.size < 2;
+      this.compare.textContent = this.chosen.size < 2 ? "Choose runs to compare" : `Compare ${this.chosen.size} runs`;
+      const address = new URLSearchParams([...this.chosen].map((id) => ["chosen", id]));
+      if (this.sortKey) address.set("sort", this.sortKey);
+      review.replaceAddress(address);
+    }
+    openComparison() {
+      if (this.chosen.size < 2) return;
+      location.hash = new URLSearchParams([...this.chosen].map((id) => ["compare", id])).toString();
+    }
+
+    applyFilter() {
+      const wanted = this.filter.value.trim().toLowerCase();
+      let shown = 0;
+      for (const { run, element } of this.rows) {
+        const text = [run.name, run.scene, run.verdict.text, ...run.warnings, ...run.problems].join(" ").toLowerCase();
+        element.hidden = !text.includes(wanted);
+        shown += element.hidden ? 0 : 1;
+      }
+      this.none.hidden = shown > 0;
+      this.count.textContent = wanted ? `${shown} of ${this.rows.length}` : "";
+    }
+
+    // Again on the same column: the other way round. What is not known comes last.
+    sort(key) {
+      const down = this.sorters.get(key)?.ariaSort === "ascending";
+      const value = ({ run }) => {
+        if (key === "name") return run.name;
+        if (key === "verdict") return LEVELS.indexOf(run.verdict.level);
+        return review.figure[key]?.of(run).value;
+      };
+      const order = (a, b) => {
+        const [x, y] = [value(a), value(b)];
+        if (x === y) return 0;
+        if (x === undefined || x === null) return 1;
+        if (y === undefined || y === null) return -1;
+        return (x < y ? -1 : 1) * (down ? -1 : 1);
+      };
+      this.sortKey = key;
+      this.rows.sort(order);
+      this.body.append(...this.rows.map(({ element }) => element));
+      for (const [name, cell] of this.sorters) cell.ariaSort = name === key ? (down ? "descending" : "ascending") : null;
+    }
+
+    moveFocus(step) {
+      const links = this.rows.filter(({ element }) => !element.hidden).map(({ element }) => element.querySelector(".name a"));
+      const at = links.findIndex((link) => link.closest("tr").contains(document.activeElement));
+      links[Math.max(0, Math.min(links.length - 1, at + step))]?.focus();
+    }
+    toggleFocused() {
+      const row = this.rows.find(({ element }) => element.contains(document.activeElement));
+      if (row) this.choose(row.run, !row.box.checked);
+    }
+
+    get keys() {
+      return [
+        { keys: ["j", "ArrowDown"], does: "next run", action: () => this.moveFocus(1) },
+        { keys: ["k", "ArrowUp"], does: "previous run", action: () => this.moveFocus(-1) },
+        { keys: ["x"], does: "choose the run for comparison", action: () => this.toggleFocused() },
+        { keys: ["c"], does: "compare the chosen runs", action: () => this.openComparison() },
+        { keys: ["/"], does: "filter", action: () => this.filter.select() },
+      ];
+    }
+    mounted() {}
+    close() {}
+  };
+}

@@ -1,0 +1,54 @@
+// Dark or light: the system's choice unless the reader made another. Runs before anything is drawn.
+"use strict";
+
+const review = {}; // the one name that the scripts of this page share
+
+{
+  const KEY = "weft-review-theme";
+  const CHOICES = ["auto", "light", "dark"];
+  const changed = new EventTarget();
+
+  // A browser may refuse storage to a page opened from a file; the choice then lasts until it is closed.
+  const stored = () => {
+    try {
+      return localStorage.getItem(KEY);
+    } catch {
+      return null;
+    }
+  };
+  const store = (choice) => {
+    try {
+      localStorage.setItem(KEY, choice);
+    } catch {
+      // as above
+    }
+  };
+
+  let choice = CHOICES.includes(stored()) ? stored() : "auto";
+  const system = matchMedia("(prefers-color-scheme: dark)");
+
+  const apply = () => {
+    const dark = choice === "dark" || (choice === "auto" && system.matches);
+    document.documentElement.dataset.theme = dark ? "dark" : "light";
+    changed.dispatchEvent(new Event("change"));
+  };
+  system.addEventListener("change", apply);
+  apply();
+
+  review.theme = {
+    get choice() {
+      return choice;
+    },
+    next() {
+      choice = CHOICES[(CHOICES.indexOf(choice) + 1) % CHOICES.length];
+      store(choice);
+      apply();
+    },
+    onChange(listener, signal) {
+      changed.addEventListener("change", listener, { signal });
+    },
+    color(name) {
+      return getComputedStyle(document.documentElement).getPropertyValue(`--${name}`).trim();
+    },
+  };
+}

@@ -1,0 +1,90 @@
+#include <gtest/gtest.h>
+
+#include "review/made_runs.hpp"
+
+namespace weft::review {
+namespace {
+
+class FindRuns : public MadeRuns {};
+
+TEST_F(FindRuns, FilesOfOneNameAreOneRun) {
+  write("band.mp4");
+  write("band.json", statistics("elsewhere/band.mp4"));
+  write("band.effective.toml");
+  write("ball.mp4");
+  EXPECT_EQ(found(), "ball: ball.mp4\nband: band.mp4 band.json band.effective.toml\n");
+}
+
+TEST_F(FindRuns, StatisticsNameTheirVideo) {
+  write("a.mp4");
+  write("b.mp4");
+  write("statistics.json", statistics("out/b.mp4"));
+  EXPECT_EQ(found(), "a: a.mp4\nstatistics: b.mp4 statistics.json\n");
+}
+
+TEST_F(FindRuns, VideoIsFoundBesideMovedStatistics) {
+  write("moved/stats.json", statistics("elsewhere/out/b.mp4"));
+  write("moved/out/b.mp4");
+  write("b.mp4");
+  EXPECT_EQ(found(), "b: b.mp4\nmoved/stats: b.mp4 stats.json\n");
+}
+
+TEST_F(FindRuns, EffectiveSceneOfTheVideoIsPreferredToThatOfTheScene) {
+  write("a.mp4");
+  write("a.json", statistics("a.mp4"));
+  write("s.effective.toml");
+  EXPECT_EQ(found(), "a: a.mp4 a.json s.effective.toml\n");
+  write("a.effective.toml");
+  EXPECT_EQ(found(), "a: a.mp4 a.json a.effective.toml\n");
+}
+
+TEST_F(FindRuns, NumberedPicturesAreARunInTheOrderOfTheirNumbers) {
+  write("p/f_10.png");
+  write("p/f_9.png");
+  write("p/thumbnail.png");
+  write("p/single_1.png");
+  EXPECT_EQ(found(), "p/f: f_9.png f_10.png\n");
+  write("p.json", statistics("p/f_{frame}.png"));
+  EXPECT_EQ(found(), "p: p.json f_9.png f_10.png\n");
+}
+
+TEST_F(FindRuns, PicturesNamedByNumbersAloneAreNamedAsTheirFolder) {
+  write("p/0.png");
+  write("p/1.png");
+  EXPECT_EQ(found(), "p: 0.png 1.png\n");
+  EXPECT_EQ(found("p"), "p: 0.png 1.png\n");
+}
+
+TEST_F(FindRuns, HiddenFilesAndFormerPagesArePassedOver) {
+  write(".band.mp4.1.tmp.mp4");
+  write(".git/band.mp4");
+  write("page/index.html", fmt::format("<meta {} 1\">", kPageMark));
+  write("page/runs/band/video.mp4");
+  write("site/index.html", "<title>Something else</title>");
+  write("site/video.mp4");
+  EXPECT_EQ(found(), "site/video: video.mp4\n");
+}
+
+TEST_F(FindRuns, OtherJsonIsNoRunButIsNamedWhereAVideoMissesIt) {
+  write("package.json", "{}");
+  write("log.json", "{\"event\": 1}\n{\"event\": 2}\n");
+  write("a.json", "{\"scene\": ");
+  write("a.mp4");
+  write("b.json", "{\"scene\": \"s\", \"frames\": [1]}");
+  write("b.mp4");
+  const auto runs = find_runs(folder_);
+  ASSERT_EQ(runs.size(), 2u);
+  ASSERT_EQ(runs[0].problems.size(), 1u);
+  EXPECT_NE(runs[0].problems[0].find("a.json: not readable as JSON"), std::string::npos) << runs[0].problems[0];
+  ASSERT_EQ(runs[1].problems.size(), 1u);
+  EXPECT_EQ(runs[1].problems[0], "b.json: expected the statistics that weft run --stats writes");
+}
+
+TEST_F(FindRuns, WhatIsNoFolderIsRefused) {
+  write("a.mp4");
+  support::expect_error(ExitCode::asset_unreadable, "expected a folder", [&] { find_runs(folder_ / "a.mp4"); });
+  support::expect_error(ExitCode::asset_unreadable, "expected a folder", [&] { find_runs(folder_ / "b"); });
+}
+
+}  // namespace
+}  // namespace weft::review

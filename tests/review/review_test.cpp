@@ -1,0 +1,190 @@
+#include "review/review.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "review/made_runs.hpp"
+
+namespace weft::review {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Review : public MadeRuns {
+ protected:
+  void SetUp() override {
+    MadeRuns::SetUp();
+    write("in/a.mp4", "video");
+    write("in/a.json", statistics("a.mp4"));
+    write("in/a.effective.toml", "a = 1\n");
+  }
+
+  Request request() const {
+    Request request;
+    request.folders = {folder_ / "in"};
+    request.output = folder_ / "page";
+    return request;
+  }
+
+  // What the page's script element holds.
+  Json data() const {
+    const std::string html = support::read_bytes(folder_ / "page/index.html"), mark = "id=\"review-data\">";
+    const std::size_t begin = html.find(mark) + mark.size();
+    return Json::parse(html.substr(begin, html.find("</script>", begin) - begin));
+  }
+};
+
+TEST(PageHtml, NoTextOfARunCanEndTheScriptOrBeginAnotherOne) {
+  const std::string name = "</script><script>alert(1)</script><!-- & \" ' \\ \u2028";
+  const std::string html = page_html("{{version}}<script>{{data}}</script>", {{"name", name}});
+  const std::size_t begin = html.find("<script>") + 8, end = html.find("</script>");
+  EXPECT_EQ(html.find('<', begin), end);
+  EXPECT_EQ(html.size(), end + 9);
+  EXPECT_EQ(Json::parse(html.substr(begin, end - begin)).at("name"), name);
+}
+
+TEST(PageHtml, MarksWithinTheDataStayText) {
+  const std::string html = page_html("{{version}}|{{data}}", {{"name", "{{data}}{{version}}"}});
+  EXPECT_EQ(html.substr(html.find('|')), "|{\"name\":\"{{data}}{{version}}\"}");
+}
+
+TEST(PageHtml, BrokenUtf8IsReplaced) {
+  const std::string html = page_html("{{version}}|{{data}}", {{"name", "a\xff"}});
+  EXPECT_EQ(html.substr(html.find('|')), "|{\"name\":\"a\ufffd\"}");
+}
+
+TEST_F(Review, PageHoldsTheRunAndItsFiles) {
+  const Outcome outcome = write_review(request());
+  EXPECT_EQ(outcome.page, folder_ / "page/index.html");
+  EXPECT_EQ(outcome.runs, 1);
+  const Json run = data().at("runs").at(0);
+  EXPECT_EQ(run.at("name"), "a");
+  EXPECT_EQ(run.at("id"), "runs/a");
+  EXPECT_EQ(run.at("pictures").at("files"), Json::parse(R"(["runs/a/video.mp4"])"));
+  EXPECT_EQ(support::read_bytes(folder_ / "page/runs/a/video.mp4"), "video");
+  EXPECT_EQ(support::read_bytes(folder_ / "page/runs/a/scene.toml"), "a = 1\n");
+  EXPECT_EQ(support::read_bytes(folder_ / "page/runs/a/stats.json"), statistics("a.mp4"));
+  EXPECT_TRUE(is_review_page(folder_ / "page"));
+}
+
+TEST_F(Review, EveryFileThatThePageNamesIsThereAndLocal) {
+  write_review(request());
+  const std::string html = support::read_bytes(folder_ / "page/index.html");
+  int files = 0;
+  for (const std::string mark : {" src=\"", " href=\""}) {
+    for (std::size_t at = html.find(mark); at != std::string::npos; at = html.find(mark, at + 1)) {
+      const std::size_t begin = at + mark.size();
+      const std::string name = html.substr(begin, html.find('"', begin) - begin);
+      if (name.starts_with('#') || name.starts_with("data:")) continue;
+      EXPECT_TRUE(fs::is_regular_file(folder_ / "page" / name)) << name;
+      ++files;
+    }
+  }
+  EXPECT_GT(files, 10);
+}
+
+TEST_F(Review, NamesOfFilesCannotLeaveThePageOrMeet) {
+  write("in/A .mp4");
+  write("in/a-.mp4");
+  write("in/\xc3\xa4.mp4");
+  write_review(request());
+  const Json page = data();
+  std::vector<std::string> ids;
+  for (const Json& run : page.at("runs")) ids.push_back(run.at("id"));
+  std::sort(ids.begin(), ids.end());
+  EXPECT_EQ(ids, (std::vector<std::string>{"runs/a", "runs/a-2", "runs/a-3", "runs/run"}));
+}
+
+TEST_F(Review, RunsOfSeveralFoldersAreNamedWithThem) {
+  write("other/a.mp4");
+  Request both = request();
+  both.folders.push_back(folder_ / "other/");
+  write_review(both);
+  EXPECT_EQ(data().at("runs").at(0).at("name"), "in/a");
+  EXPECT_EQ(data().at("runs").at(1).at("name"), "other/a");
+}
+
+TEST_F(Review, ReferenceIsTheRunOfTheSamePathElseTheOnlyOneOfItsName) {
+  write("in/b.mp4");
+  write("in/c/d.mp4");
+  write("in/e.mp4");
+  write("ref/a.mp4");
+  write("ref/x/d.mp4");
+  write("ref/y/e.mp4");
+  write("ref/z/e.mp4");
+  Request with = request();
+  with.reference = folder_ / "ref";
+  EXPECT_EQ(write_review(with).incomplete, 3);
+  const Json page = data();
+  EXPECT_EQ(page.at("references").size(), 2u);
+  EXPECT_EQ(page.at("runs").at(0).at("reference"), "references/a");
+  EXPECT_EQ(page.at("runs").at(2).at("reference"), "references/x-d");
+  for (const int without : {1, 3}) {
+    const Json& run = page.at("runs").at(without);
+    EXPECT_FALSE(run.contains("reference")) << run.at("name");
+    EXPECT_NE(run.at("problems").dump().find("no reference of this name"), std::string::npos) << run.at("problems");
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "page/references/a/video.mp4"));
+}
+
+TEST_F(Review, NothingToShowIsRefusedBeforeAnythingIsWritten) {
+  Request empty = request();
+  fs::create_directories(folder_ / "empty");
+  empty.folders = {folder_ / "empty"};
+  support::expect_error(ExitCode::asset_unreadable, "found none", [&] { write_review(empty); });
+  Request without = request();
+  without.reference = folder_ / "nowhere";
+  support::expect_error(ExitCode::reference_missing, "nowhere", [&] { write_review(without); });
+  EXPECT_EQ(files(), (std::vector<std::string>{"empty", "in"}));
+}
+
+TEST_F(Review, FormerPageIsReplacedOnlyOnRequest) {
+  write_review(request());
+  write("in/b.mp4");
+  support::expect_error(ExitCode::output_failed, "--overwrite", [&] { write_review(request()); });
+  EXPECT_EQ(data().at("runs").size(), 1u);
+  Request again = request();
+  again.overwrite = true;
+  write_review(again);
+  EXPECT_EQ(data().at("runs").size(), 2u);
+  EXPECT_EQ(files(), (std::vector<std::string>{"in", "page"}));
+}
+
+TEST_F(Review, FolderOfSomethingElseIsNeverReplaced) {
+  write("page/thesis.txt");
+  Request again = request();
+  again.overwrite = true;
+  support::expect_error(ExitCode::output_failed, "a former review page", [&] { write_review(again); });
+  again.output = folder_ / "in/a.mp4";
+  support::expect_error(ExitCode::output_failed, "a former review page", [&] { write_review(again); });
+  EXPECT_EQ(support::read_bytes(folder_ / "page/thesis.txt"), "-");
+  EXPECT_EQ(files(), (std::vector<std::string>{"in", "page"}));
+}
+
+TEST_F(Review, EmptyFolderIsTaken) {
+  fs::create_directories(folder_ / "page");
+  write_review(request());
+  EXPECT_EQ(data().at("runs").size(), 1u);
+}
+
+TEST_F(Review, FormerPageStaysWhereTheNewOneIsGivenUp) {
+  write_review(request());
+  Request again = request();
+  again.overwrite = true;
+  again.stop = [] { return true; };
+  support::expect_error(ExitCode::interrupted, "interrupted", [&] { write_review(again); });
+  EXPECT_EQ(data().at("runs").size(), 1u);
+  EXPECT_EQ(files(), (std::vector<std::string>{"in", "page"}));
+}
+
+TEST_F(Review, PageBesideTheRunsIsNoRun) {
+  Request within = request();
+  within.output = folder_ / "in/page";
+  write_review(within);
+  within.overwrite = true;
+  EXPECT_EQ(write_review(within).runs, 1);
+}
+
+}  // namespace
+}  // namespace weft::review

@@ -1,0 +1,87 @@
+#include "review/run_data.hpp"
+
+#include <gtest/gtest.h>
+
+#include "review/made_runs.hpp"
+
+namespace weft::review {
+namespace {
+
+TEST(FrameColumns, OneArrayForEachQuantityWithNullWhereAFrameHasNone) {
+  const Json frames = Json::parse(R"([{"frame": 0, "a": 1.5}, {"frame": 1, "b": true, "a": "x"}, {"frame": 2}])");
+  EXPECT_EQ(frame_columns(frames),
+            Json::parse(R"({"frame": [0, 1, 2], "a": [1.5, null, null], "b": [null, true, null]})"));
+  EXPECT_EQ(frame_columns(Json::array()), Json::object());
+}
+
+TEST(FrameColumns, KeepSixDigits) {
+  const Json frames = Json::parse(R"([{"a": 0.0123456789, "b": 123456789, "c": -1.23456789e-30, "d": 0.0}])");
+  EXPECT_EQ(frame_columns(frames).dump(), R"({"a":[0.0123457],"b":[123456789],"c":[-1.23457e-30],"d":[0]})");
+}
+
+TEST(SceneValues, HaveThePathsThatSetTakes) {
+  const std::string scene =
+      "up = \"z\"\n[time]\nstep = 0.01\n[[cloth]]\nname = \"band\"\nsize = [1, 0.5]\n"
+      "[cloth.material]\nstretch = [4e3, 4e3]\nself = true\n[[camera]]\nfov = 40\n";
+  EXPECT_EQ(nlohmann::json(scene_values(scene, "a.toml")), nlohmann::json::parse(R"({
+    "up": "\"z\"", "time.step": "0.01", "cloth.band.name": "\"band\"", "cloth.band.size": "[1, 0.5]",
+    "cloth.band.material.stretch": "[4000, 4000]", "cloth.band.material.self": "true", "camera.0.fov": "40"})"));
+}
+
+TEST(SceneValues, WhatIsNoTomlIsNamedWithItsLine) {
+  support::expect_error(ExitCode::asset_unreadable, "a.toml:2: not readable as TOML",
+                        [] { scene_values("a = 1\nb =\n", "a.toml"); });
+}
+
+class RunData : public MadeRuns {
+ protected:
+  Json only_run() const {
+    const auto runs = find_runs(folder_);
+    EXPECT_EQ(runs.size(), 1u);
+    return run_data(runs.at(0));
+  }
+};
+
+TEST_F(RunData, PicturesOfAVideoAreTheWrittenFrames) {
+  write("a.mp4");
+  write("a.json", R"({"scene": "s", "output": "a.mp4", "fps": 50, "frames": [
+    {"frame": 0, "written": false}, {"frame": 1, "written": true}, {"frame": 2, "written": false},
+    {"frame": 3, "written": true}, {"frame": 4, "written": false}, {"frame": 5, "written": true}]})");
+  EXPECT_EQ(only_run().at("pictures"), Json::parse(R"({"first": 1, "step": 2, "count": 3, "fps": 25.0})"));
+}
+
+TEST_F(RunData, NumberedPicturesTellTheirFrames) {
+  write("f_008.png");
+  write("f_004.png");
+  write("f_012.png");
+  EXPECT_EQ(only_run().at("pictures"), Json::parse(R"({"first": 4, "step": 4, "count": 3, "fps": 0.0})"));
+}
+
+TEST_F(RunData, WholeRunHasNoProblems) {
+  write("a.mp4");
+  write("a.json", statistics("a.mp4", "\"warnings\": [\"w\"],"));
+  write("a.effective.toml", "[time]\nstep = 0.01\n");
+  const Json data = only_run();
+  EXPECT_EQ(data.at("problems"), Json::array());
+  EXPECT_EQ(data.at("stats").at("warnings"), Json::parse(R"(["w"])"));
+  EXPECT_FALSE(data.at("stats").contains("frames")) << "they are in the columns";
+  EXPECT_EQ(data.at("columns").at("max_strain"), Json::parse("[0, 0.0123457]"));
+  EXPECT_EQ(data.at("effective").at("text"), "[time]\nstep = 0.01\n");
+}
+
+TEST_F(RunData, MissingPiecesAreNamed) {
+  write("a.mp4");
+  EXPECT_EQ(only_run().at("problems"),
+            Json::parse(R"(["no statistics: weft run --stats FILE.json writes them, for figures and plots",
+                            "no effective scene: expected an .effective.toml of this name beside the video"])"));
+  std::filesystem::remove(folder_ / "a.mp4");
+  write("a.json", statistics("a.mp4"));
+  write("a.effective.toml", "=\n");
+  const Json problems = only_run().at("problems");
+  ASSERT_EQ(problems.size(), 2u) << problems;
+  EXPECT_EQ(problems[0], "no video or pictures beside the statistics");
+  EXPECT_EQ(problems[1].get<std::string>().find("a.effective.toml:1: not readable as TOML"), 0u) << problems;
+}
+
+}  // namespace
+}  // namespace weft::review
