@@ -51,5 +51,11 @@ constexpr HarmonicCurve arm_forward{
 constexpr HarmonicCurve arm_out{1.47, {-3.60, 0, 0.02, 0.12, 0.01, -0.02}, {0.91, -0.09, 0.10, 0.05, 0.04, 0.04}};
 constexpr HarmonicCurve elbow{23.61, {-5.76, 4.14, -0.20, -0.05, 0.08, -0.17}, {2.17, -3.43, 0.02, 0.28, 0.23, 0.02}};
 
+/// Flexion of the knee: 5° at contact, 18° in loading response, 5.5° in terminal stance, 39° when the toes leave and
+/// 60° in initial swing, as in Perry, "Normal Gait" (Atlas of Limb Prosthetics, 1992, ch. 13); between them by eye, as
+/// a spline, of which these harmonics are within 0.6°. Not of the recording, whose knees are bent by 20° more in stance
+/// and clipped at 0.
+constexpr HarmonicCurve knee{22.99, {-3.24, -13.50, -0.53, -0.87, 0.13, -0.21}, {-20.21, 8.12, 3.68, 0.64, 0.49, 0.02}};
+
 }  // namespace walking
 }  // namespace weft::character

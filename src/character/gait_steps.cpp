@@ -5,135 +5,151 @@
 #include <numbers>
 
 #include "character/gait_curves.hpp"
-#include "character/mannequin_skin.hpp"
 
 namespace weft::character {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
+constexpr double kKeysPerSecond = 60;
+constexpr double kHalfTrack = 0.048;  ///< ankle from the middle line, of the height; the recording has 0.038, which
+                                      ///< would have the thighs touch
+constexpr double kAside = 0.07;       ///< of a foot that turns with the body, outward [m]
+constexpr double kFirst = 0.65, kLast = 0.75;  ///< lengths of the first and the last step, of an even one
+constexpr double kShift = 0.45;                ///< share of a stride to shift the weight before a first step
 
-constexpr double kPitchShare = 0.79;  ///< the recorded walker lifts the heels more than a mannequin should
-constexpr double kMoreLift = 0.07;    ///< so that toes clear the floor though legs are straighter than the recorded [m]
-constexpr double kLag = 0.06;         ///< [m]
+/// What is walked around: the turn leads along a small arc, degrees to the side of the foot that begins. The inner foot
+/// opens, the outer one follows, so that toes do not meet.
+constexpr std::array<double, 4> kTurns{54, 36, 54, 36};
+constexpr double kTurnStep = 0.11;  ///< forward in each step of a turn [m], for a height of 1.75 m
 
-constexpr double kRecordedStance = 0.67;  ///< until the toes leave; the recorded walk is slow and stands longer
+Vec2 forward_of(double yaw) {
+  return {std::sin(yaw), -std::cos(yaw)};
+}
+Vec2 left_of(double yaw) {
+  return {std::cos(yaw), std::sin(yaw)};
+}
 
-/// Place, velocity and acceleration at one moment, by central differences.
-struct Motion {
-  Vec3 place, velocity, acceleration;
+/// How large even steps are against the recorded ones.
+double step_size(const Physique& body, const Pace& pace) {
+  const double recorded = walking::kSpeed * walking::kPeriod / 2 * body.leg() / walking::kLegLength;
+  return std::clamp(pace.step_length / recorded, 0.5, 1.2);
+}
+
+/// One step: how the body goes on from the step before, and the foot beside it.
+struct Step {
+  double forward = 0, left = 0;  ///< [m]
+  double turn = 0;               ///< [rad]
+  double size = 1;
 };
-template <class Path>
-Motion motion_of(const Path& path, double t, double h) {
-  const Vec3 before = path(t - h), here = path(t), after = path(t + h);
-  return {here, (after - before) / (2 * h), (after - 2 * here + before) / (h * h)};
+
+/// Collects the steps of a walk.
+class Planner {
+ public:
+  Planner(const Physique& body, const Pace& pace, double stand) : body_(body) {
+    plan.step_keys = keys_of_step(pace);
+    plan.key_time = pace.step_time / plan.step_keys;
+    plan.speed = pace.step_length / pace.step_time;
+    next_strike_ = static_cast<int>(std::round(stand / plan.key_time)) + share(kShift) + share(kSwing);
+    for (int side = 0; side < 2; ++side) plan.plants[static_cast<std::size_t>(side)].push_back(plant_of(side));
+  }
+
+  /// Moves the middle of the body and sets one foot beside it.
+  void step(int side, const Step& step) {
+    yaw_ += step.turn;
+    middle_ += step.forward * forward_of(yaw_) + step.left * left_of(yaw_);
+    auto& plants = plan.plants[static_cast<std::size_t>(side)];
+    Plant plant = plant_of(side);
+    plant.strike = next_strike_;
+    plant.size = step.size;
+    if (step.turn != 0) plant.aside = kAside;
+    plants.back().off = next_strike_ - share(kSwing);
+    plants.push_back(plant);
+    plan.strikes.push_back({next_strike_, side});
+    next_strike_ += plan.step_keys;
+  }
+
+  StepPlan plan;
+
+ private:
+  int share(double of_stride) const { return static_cast<int>(std::round(of_stride * plan.period())); }
+
+  Plant plant_of(int side) const {
+    const double sign = side == 0 ? 1 : -1;
+    Plant plant;
+    plant.at = middle_ + sign * kHalfTrack * body_.height * left_of(yaw_) - body_.stance_forward * forward_of(yaw_);
+    plant.yaw = yaw_;
+    plant.foot_yaw = yaw_ + sign * body_.foot_yaw;
+    return plant;
+  }
+
+  const Physique& body_;
+  Vec2 middle_ = Vec2::Zero();
+  double yaw_ = 0;
+  int next_strike_ = 0;
+};
+
+/// The steps of a straight way; `left`: how far the way leads aside, over the steps from `from` on, four at most.
+/// Returns the foot that is next.
+int go_ahead(Planner& planner, const Physique& body, const Pace& pace, int steps, int side, double left, int from) {
+  const int aside = std::min(4, steps);
+  for (int k = 0; k < steps; ++k, side = 1 - side) {
+    Step step;
+    step.size = step_size(body, pace);
+    step.forward = pace.step_length * (k == 0 ? kFirst : k + 1 == steps ? kLast : 1);
+    if (k == 0) step.size *= 0.8;
+    if (k >= from && k < from + aside) step.left = left / aside;
+    planner.step(side, step);
+  }
+  return side;
 }
 
-/// The quintic from one motion to another over the time `span`, at the share s of it.
-Vec3 quintic(const Motion& a, const Motion& b, double span, double s) {
-  const double s2 = s * s, s3 = s2 * s, s4 = s3 * s, s5 = s4 * s;
-  const double h0 = 1 - 10 * s3 + 15 * s4 - 6 * s5, h1 = s - 6 * s3 + 8 * s4 - 3 * s5,
-               h2 = 0.5 * (s2 - 3 * s3 + 3 * s4 - s5), g0 = 1 - h0, g1 = -4 * s3 + 7 * s4 - 3 * s5,
-               g2 = 0.5 * (s3 - 2 * s4 + s5);
-  return h0 * a.place + h1 * span * a.velocity + h2 * span * span * a.acceleration + g0 * b.place +
-         g1 * span * b.velocity + g2 * span * span * b.acceleration;
+/// Half a turn on a small arc; returns the foot that is next.
+int turn_round(Planner& planner, const Physique& body, int side) {
+  const double sign = side == 0 ? 1 : -1, forward = kTurnStep * body.height / 1.75;
+  for (const double turn : kTurns) {
+    planner.step(side, {forward, 0, sign * turn * kDegree, 0.5});
+    side = 1 - side;
+  }
+  return side;
 }
 
-/// By how much the recorded ankle is higher in the air than its own quintic [m].
-double recorded_lift(double s) {
-  constexpr double span = 1 - kRecordedStance;
-  const auto path = [](double phase) { return Vec3(0, 0, walking::ankle_up.at(phase)); };
-  static const Motion off = motion_of(path, kRecordedStance, 1e-3), strike = motion_of(path, 1, 1e-3);
-  return (path(kRecordedStance + s * span) - quintic(off, strike, span, s)).z();
-}
-
-/// Phase of the recording, by the phase since the toes left: the heel rises more slowly than recorded, and therefore
-/// earlier, which lets a straighter leg reach; by the next strike phases and rates agree.
-double recorded_phase(double since_off) {
-  constexpr double rate = 0.7, air = 1 - kStance, rest = 1 - kRecordedStance - rate * air;
-  constexpr double bend = 4 - (1 - rate) * air / rest;  // of a cubic and a quartic with rate 1 at the end
-  const double s = std::max(since_off, 0.0) / air;
-  return kRecordedStance + rate * since_off + rest * s * s * s * (bend + (1 - bend) * s);
-}
-
-Vec3 forward_of(double yaw) {
-  return {std::sin(yaw), -std::cos(yaw), 0};
+/// How far the arc of a turn to the left leads ahead and to the left, before the turn [m].
+Vec2 arc_of_turn(const Physique& body) {
+  double yaw = 0;
+  Vec2 way = Vec2::Zero();
+  for (const double turn : kTurns) {
+    yaw += turn * kDegree;
+    way += kTurnStep * body.height / 1.75 * Vec2(std::cos(yaw), std::sin(yaw));
+  }
+  return way;
 }
 
 }  // namespace
 
-double HarmonicCurve::at(double phase) const {
-  double sum = mean;
-  for (std::size_t k = 0; k < cosine.size(); ++k) {
-    const double angle = 2 * std::numbers::pi * static_cast<double>(k + 1) * phase;
-    sum += cosine[k] * std::cos(angle) + sine[k] * std::sin(angle);
+Physique physique_of(const Character& mannequin) {
+  const auto z = [](Joint joint) { return static_cast<std::size_t>(joint); };
+  Physique body;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const Node& node = mannequin.nodes[j];
+    body.joints[j] = node.local.translation();
+    if (node.parent >= 0) body.joints[j] += body.joints[static_cast<std::size_t>(node.parent)];
   }
-  return sum;
-}
-
-FootPath::FootPath(const FootShape& shape, std::vector<Plant> plants, double period)
-    : shape_(shape), plants_(std::move(plants)), period_(period) {}
-
-/// As recorded before and after a strike and around the toes' leaving, exactly 0 in between.
-double FootPath::pitch(double t, std::size_t plant) const {
-  const Plant& here = plants_[plant];
-  const double since_strike = (t - here.strike) / period_;
-  const double until_off = (here.off - t) / period_;
-  const auto recorded = [](double phase) {
-    return kPitchShare * kDegree * (walking::foot_pitch.at(phase) - walking::kFlatPitch);
-  };
-  if (since_strike < 0.16) return here.step_size * recorded(since_strike) * (1 - smooth_ramp(since_strike, 0.08, 0.16));
-  if (until_off > kRise || plant + 1 == plants_.size()) return 0;
-  return plants_[plant + 1].step_size * recorded(recorded_phase(-until_off)) * smooth_ramp(-until_off, -kRise, -0.16);
-}
-
-Vec3 FootPath::rolling_ankle(double t, std::size_t plant) const {
-  const double angle = pitch(t, plant);
-  const bool on_heel = angle > 0;
-  // Around the middle of the heel, which rolls back as the toes rise, or around the ball, which stays.
-  const double forward = on_heel ? -shape_.heel_back - shape_.heel_radius * angle : shape_.ball_forward;
-  const double up = on_heel ? shape_.heel_radius : shape_.ball_height;
-  const double arm_forward = on_heel ? shape_.heel_back : -shape_.ball_forward, arm_up = shape_.ankle_height - up;
-  const double c = std::cos(angle), s = std::sin(angle);
-  const Plant& here = plants_[plant];
-  return Vec3(here.at.x(), here.at.y(), 0) + (forward + c * arm_forward - s * arm_up) * forward_of(here.yaw) +
-         (up + s * arm_forward + c * arm_up) * Vec3::UnitZ();
-}
-
-Vec3 FootPath::swinging_ankle(double t, std::size_t plant) const {
-  const Plant &from = plants_[plant], &to = plants_[plant + 1];
-  const double span = to.strike - from.off, s = (t - from.off) / span;
-  const Motion off = motion_of([&](double at) { return rolling_ankle(at, plant); }, from.off, 1e-3);
-  const Motion strike = motion_of([&](double at) { return rolling_ankle(at, plant + 1); }, to.strike, 1e-3);
-  const double bump = 64 * s * s * s * (1 - s) * (1 - s) * (1 - s);
-  const double lift = recorded_lift(s) + kMoreLift * bump;
-  // Late in the air the quintic is ahead of where a leg can be, and skims the floor.
-  const double lag = kLag / 8.9e-4 * std::pow(s, 10) * (1 - s) * (1 - s) * (1 - s);
-  const Vec3 detour(to.detour.x(), to.detour.y(), 0);
-  return quintic(off, strike, span, s) + bump * detour +
-         to.step_size * shape_.leg_length / walking::kLegLength *
-             ((lift + 0.2 * lag) * Vec3::UnitZ() - lag * forward_of(to.yaw));
-}
-
-FootState FootPath::at(double t) const {
-  std::size_t plant = 0;
-  while (plant + 1 < plants_.size() && t >= plants_[plant + 1].strike) ++plant;
-  const Plant& here = plants_[plant];
-  FootState state;
-  state.stands = t <= here.off;
-  state.pitch = pitch(t, plant);
-  if (state.stands) {
-    state.ankle = rolling_ankle(t, plant);
-    state.yaw = here.yaw;
-    state.toes = std::max(-state.pitch, 0.0);
-    return state;
-  }
-  const Plant& next = plants_[plant + 1];
-  const double s = (t - here.off) / (next.strike - here.off);
-  state.ankle = swinging_ankle(t, plant);
-  state.yaw = here.yaw + (next.yaw - here.yaw) * smooth_ramp(s, 0, 1);
-  // The toes stretch again early in the air.
-  state.toes = std::max(-state.pitch, 0.0) * (1 - smooth_ramp(s, 0.05, 0.6));
-  return state;
+  const Vec3 hip = body.joints[z(Joint::left_upper_leg)], knee = body.joints[z(Joint::left_lower_leg)],
+             ankle = body.joints[z(Joint::left_foot)], ball = body.joints[z(Joint::left_toes)] - ankle;
+  body.height = hip.z() / 0.530;
+  body.foot_yaw = std::atan2(ball.x(), -ball.y());
+  const double cm = body.height / 175;
+  body.ankle_height = ankle.z();
+  body.ball_forward = std::hypot(ball.x(), ball.y());
+  body.ball_height = ankle.z() + ball.z();
+  body.heel_back = 3.35 * cm;
+  body.heel_radius = 2.4 * cm;
+  body.toe_length = 6.0 * cm;
+  body.toe_radius = 1.0 * cm;
+  body.thigh = (knee - hip).norm();
+  body.shin = (ankle - knee).norm();
+  body.stance_forward = 1.3 * cm;
+  return body;
 }
 
 Pace pace_of(double speed, double height) {
@@ -141,6 +157,52 @@ Pace pace_of(double speed, double height) {
   constexpr double recorded_height = 1.70;  // m; from the walker's legs
   const double length = std::sqrt(walk_ratio * height / recorded_height * 60 * speed);
   return {length, length / speed};
+}
+
+int keys_of_step(const Pace& pace) {
+  return 2 * static_cast<int>(std::round(kKeysPerSecond / 2 * pace.step_time));
+}
+
+std::size_t StepPlan::plant_at(int side, int key) const {
+  const auto& list = plants[static_cast<std::size_t>(side)];
+  std::size_t plant = 0;
+  while (plant + 1 < list.size() && key >= list[plant + 1].strike) ++plant;
+  return plant;
+}
+
+StepPlan plan_walk(const Physique& body, const Walk& walk) {
+  Pace pace = pace_of(walk.speed, body.height);
+  // A whole number of steps, of which the first and the last are shorter.
+  constexpr double shorter = 2 - kFirst - kLast;
+  const int steps = std::max(2, static_cast<int>(std::round(walk.distance / pace.step_length + shorter)));
+  pace.step_length = walk.distance / (steps - shorter);
+  pace.step_time = pace.step_length / walk.speed;
+  Planner planner(body, pace, walk.stand);
+  int side = 1;
+  if (walk.turn_back) {
+    // Half of the way that the turn leads aside is gone before it, half after it.
+    const Vec2 arc = arc_of_turn(body);
+    // The first step of the turn still goes ahead.
+    const double ahead = std::cos(kTurns[0] * kDegree) * kTurnStep * body.height / 1.75;
+    pace.step_length -= ahead / (steps - shorter);
+    const double aside = (1 + steps) % 2 == 0 ? -0.5 * arc.y() : 0.5 * arc.y();
+    side = go_ahead(planner, body, pace, steps, side, aside, std::max(0, steps - 4));
+    side = turn_round(planner, body, side);
+    Pace back = pace;
+    back.step_length += arc.x() / (steps - shorter);
+    side = go_ahead(planner, body, back, steps, side, -aside, 0);
+  } else {
+    side = go_ahead(planner, body, pace, steps, side, 0, 0);
+  }
+  planner.step(side, {0, 0, 0, 0.6});
+  return std::move(planner.plan);
+}
+
+StepPlan plan_even_steps(const Physique& body, double speed, int count) {
+  const Pace pace = pace_of(speed, body.height);
+  Planner planner(body, pace, 0);
+  for (int k = 0; k < 2 * count; ++k) planner.step(k % 2, {pace.step_length, 0, 0, step_size(body, pace)});
+  return std::move(planner.plan);
 }
 
 }  // namespace weft::character

@@ -38,11 +38,13 @@ mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJ
   const double wrist = joints[z(Joint::left_hand)].x(), shoulder = joints[z(Joint::left_upper_arm)].x();
   const Vec3 crotch(0, 0, 0.78 * unit), armpit(0.82 * shoulder, 0, 1.31 * unit);
   return [=](const Vec3& p) {
-    const double arm = smooth_ramp(p.x(), shoulder, wrist), leg = 1 - smooth_ramp(p.z(), 0, 0.4 * unit);
+    const double arm =
+        0.5 * smooth_ramp(p.x(), shoulder, wrist) + 0.17 * smooth_ramp(p.x(), wrist - 0.02 * unit, wrist + 0.03 * unit);
+    const double leg = 1 - smooth_ramp(p.z(), 0, 0.4 * unit);
     const double head = smooth_ramp(p.z(), 1.38 * unit, 1.52 * unit);
     const double fold = std::min((p - crotch).norm(), (p - armpit).norm());
     const double folds = 1 - smooth_ramp(fold, 0.02 * unit, 0.11 * unit);
-    return build.edge_length * (1 - std::max({0.5 * arm, 0.5 * leg, 0.3 * head, 0.4 * folds}));
+    return build.edge_length * (1 - std::max({arm, 0.5 * leg, 0.3 * head, 0.4 * folds}));
   };
 }
 

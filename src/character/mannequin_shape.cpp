@@ -134,18 +134,22 @@ void add_arm(BlendedBody& body, const Scale& s, const LoftFrame& frame) {
     row.back *= k;
   }
   body.add(Loft(frame, scaled(arm, s), 4.4 * s.length, 2 * s.length), 0.045, true);
-  // A mitten, fingers slightly bent toward the thigh.
-  const Rows hand{{58.5, 0, 0.3, 1.9, 2.6, 2.5, 2.2},   {62, 0.0, 0.3, 1.75, 3.4, 3.1, 2.3},
-                  {66, -0.1, 0.2, 1.55, 3.9, 3.9, 2.4}, {69, -0.3, 0.1, 1.4, 3.7, 3.9, 2.4},
-                  {72, -0.8, 0.1, 1.15, 3.3, 3.5, 2.4}, {75, -1.6, 0.2, 0.95, 2.6, 2.7, 2.3}};
-  body.add(Loft(frame, scaled(hand, s, false), 2 * s.length, 1.8 * s.length), 0.02, true);
+  // The palm and four fingers in one, slightly bent toward the thigh; the thumb apart.
+  const Rows hand{{57.5, 0, 0.3, 1.3, 1.9, 1.8, 2},         {61, 0.05, 0.3, 1.5, 2.8, 2.7, 2.1},
+                  {64, 0.0, 0.3, 1.5, 3.5, 3.4, 2.2},       {67.5, -0.15, 0.2, 1.35, 3.8, 3.8, 2.3},
+                  {70.5, -0.45, 0.15, 1.15, 3.6, 3.7, 2.3}, {73.3, -0.8, 0.15, 1.0, 3.05, 3.1, 2.2},
+                  {75.3, -1.0, 0.15, 0.9, 2.4, 2.4, 2.1}};
+  body.add(Loft(frame, scaled(hand, s, false), 2 * s.length, 2.0 * s.length), 0.025, true);
   LoftFrame thumb = frame;
-  thumb.origin += s.length * (60.8 * frame.along + 2.2 * frame.v - 0.4 * frame.u);
-  thumb.along = (0.72 * frame.along + 0.66 * frame.v - 0.2 * frame.u).normalized();
+  thumb.origin += s.length * (60.2 * frame.along + 2.0 * frame.v - 0.5 * frame.u);
+  thumb.along = (0.76 * frame.along + 0.62 * frame.v - 0.22 * frame.u).normalized();
   thumb.v = (frame.v - frame.v.dot(thumb.along) * thumb.along).normalized();
   thumb.u = thumb.along.cross(thumb.v);
-  const Rows rows{{0, 0, 0, 1.3, 1.3, 1.3, 2}, {3, 0, 0, 1.05, 1.15, 1.15, 2}, {6, 0, 0, 0.85, 0.9, 0.9, 2}};
-  body.add(Loft(thumb, scaled(rows, s, false), 1.2 * s.length, 1.1 * s.length), 0.022, true);
+  const Rows rows{{0, 0, 0, 1.35, 1.5, 1.5, 2},
+                  {3, 0, 0.1, 1.2, 1.3, 1.3, 2},
+                  {5, 0.05, 0.0, 1.05, 1.1, 1.1, 2},
+                  {7, 0.1, -0.2, 0.9, 0.9, 0.9, 2}};
+  body.add(Loft(thumb, scaled(rows, s, false), 1.5 * s.length, 1.3 * s.length), 0.02, true);
 }
 
 void add_leg(BlendedBody& body, const Scale& s) {

@@ -1,0 +1,113 @@
+#include "character/gait_track.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "character/mannequin_skin.hpp"
+
+namespace weft::character {
+namespace {
+
+constexpr double kGravity = 9.81;       // m/s²
+constexpr double kMassHeight = 0.55;    // centre of mass, of the height
+constexpr double kForesight = 0.7;      // of a stride: what is later does not yet count
+constexpr double kRollBack = -0.01;     // the weight under the heel at first, behind where it is standing [m]
+constexpr double kRollForward = 0.175;  // and at last under the ball, before that [m]
+
+/// Mean over `width` keys around each, an even number; half a share at both ends keeps it centred.
+template <class Value>
+std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
+  std::vector<Value> means;
+  const int n = static_cast<int>(values.size());
+  for (int k = 0; k < n; ++k) {
+    Value sum = values[0] * 0;
+    for (int d = -width / 2; d <= width / 2; ++d) {
+      const double share = std::abs(d) == width / 2 ? 0.5 : 1;
+      sum += share / width * values[static_cast<std::size_t>(std::clamp(k + d, 0, n - 1))];
+    }
+    means.push_back(sum);
+  }
+  return means;
+}
+
+/// The mean with weights exp(-ω |τ|) on either side, which are taken to 0 at `reach` keys: who stands, stands still.
+std::vector<Vec2> balanced(const std::vector<Vec2>& p, double omega, double key_time, int reach) {
+  std::vector<double> weights;  // of d keys to either side
+  double sum = 0;
+  for (int d = 0; d < reach; ++d) {
+    weights.push_back(std::exp(-omega * d * key_time) * (1 - smooth_ramp(d, 0.5 * reach, reach)));
+    sum += d == 0 ? weights[0] : 2 * weights.back();
+  }
+  std::vector<Vec2> means;
+  const int n = static_cast<int>(p.size());
+  for (int k = 0; k < n; ++k) {
+    Vec2 mean = Vec2::Zero();
+    for (int d = 1 - reach; d < reach; ++d) {
+      mean += weights[static_cast<std::size_t>(std::abs(d))] / sum *
+              p[static_cast<std::size_t>(std::clamp(k + d, 0, n - 1))];
+    }
+    means.push_back(mean);
+  }
+  return means;
+}
+
+/// How far a foot bears the weight, 0 to 1: it takes it on while the other one gives it away.
+double load(const StepPlan& plan, const Plant& plant, int key) {
+  const double on = std::clamp(plan.since_strike(plant, key) / kOverlap, 0.0, 1.0);
+  const double off = std::clamp(plan.until_off(plant, key) / kOverlap, 0.0, 1.0);
+  return std::min(on, off);
+}
+
+/// The point of a foot that bears: rolls from the heel to the ball.
+Vec2 bearing_point(const Physique& body, const StepPlan& plan, const Plant& plant, double next_size, int key) {
+  const double cm = body.height / 175;
+  const double back = kRollBack * (1 - smooth_ramp(plan.since_strike(plant, key), 0, 0.3)) * plant.size;
+  const double front = kRollForward * smooth_ramp(-plan.until_off(plant, key), -0.4, 0) * std::min(next_size, 1.0);
+  const Vec2 forward(std::sin(plant.yaw), -std::cos(plant.yaw));
+  return plant.at + (body.stance_forward + 100 * cm * (front - back)) * forward;
+}
+
+}  // namespace
+
+double Track::yaw_at(int key) const {
+  return yaw[index(std::clamp(key, first, last()))];
+}
+
+Track lay_track(const Physique& body, const StepPlan& plan, int first, int last) {
+  Track track;
+  track.first = first;
+  std::vector<double> phase;
+  for (int key = first; key <= last; ++key) {
+    Vec2 point = Vec2::Zero();
+    double yaw = 0, sum = 0;
+    for (int side = 0; side < 2; ++side) {
+      const auto& plants = plan.plants[static_cast<std::size_t>(side)];
+      const std::size_t number = plan.plant_at(side, key);
+      const double share = load(plan, plants[number], key);
+      const double next_size = number + 1 < plants.size() ? plants[number + 1].size : 0;
+      point += share * bearing_point(body, plan, plants[number], next_size, key);
+      yaw += share * plants[number].yaw;
+      sum += share;
+    }
+    track.place.push_back(point / sum);
+    track.yaw.push_back(yaw / sum);
+    // Steps before the first and after the last are as long as all others.
+    const auto& strikes = plan.strikes;
+    std::size_t next = 1;
+    while (next + 1 < strikes.size() && key >= strikes[next].key) ++next;
+    const double between =
+        static_cast<double>(key - strikes[next - 1].key) / (strikes[next].key - strikes[next - 1].key);
+    phase.push_back(0.5 * (static_cast<double>(next - 1) + between + strikes[0].side));
+  }
+  const double omega = std::sqrt(kGravity / (kMassHeight * body.height));
+  track.place = balanced(track.place, omega, plan.key_time, static_cast<int>(kForesight * plan.period()));
+  track.yaw = mean_around(mean_around(track.yaw, plan.step_keys), plan.step_keys);
+  track.phase = std::move(phase);
+  std::vector<double> speed(track.place.size(), 0);
+  for (std::size_t k = 1; k + 1 < speed.size(); ++k)
+    speed[k] = (track.place[k + 1] - track.place[k - 1]).norm() / (2 * plan.key_time * plan.speed);
+  track.speed = mean_around(mean_around(speed, plan.step_keys), plan.step_keys / 2 / 2 * 2);
+  return track;
+}
+
+}  // namespace weft::character
