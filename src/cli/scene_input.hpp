@@ -19,7 +19,7 @@ std::string mistakes_text(const scene::LoadResult& loaded);
 
 render::Settings render_settings(const scene::Scene& scene, const SceneOptions& options);
 
-/// "1 cloth, 2 obstacles, 2091 particles, 126 frames at 25 fps".
-std::string describe_scene(const scene::Scene& scene);
+/// "1 cloth, 2 obstacles, 2091 particles, 126 frames at 25 fps"; `particles`: of all cloths.
+std::string describe_scene(const scene::Scene& scene, std::size_t particles);
 
 }  // namespace weft::cli
