@@ -49,18 +49,6 @@ std::size_t place_of(const std::vector<double>& values, double value) {
 
 }  // namespace
 
-std::string_view name_of(scene::Integrator integrator) {
-  switch (integrator) {
-    case scene::Integrator::implicit_euler:
-      return "implicit_euler";
-    case scene::Integrator::implicit_midpoint:
-      return "implicit_midpoint";
-    case scene::Integrator::bdf2:
-      return "bdf2";
-  }
-  return "unknown";
-}
-
 std::string csv(const Table& table) {
   std::string text;
   for (const auto& row : table) {

@@ -12,9 +12,6 @@ namespace weft::bench {
 /// Rows of equal length, the first one being the header.
 using Table = std::vector<std::vector<std::string>>;
 
-/// As scenes name it.
-std::string_view name_of(scene::Integrator integrator);
-
 /// Comma separated; fields with a comma, quote or line feed in quotes (RFC 4180).
 std::string csv(const Table& table);
 std::string markdown(const Table& table);

@@ -1,11 +1,17 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/table.hpp"
+#include "core/error.hpp"
 #include "core/log.hpp"
+#include "environment/environment.hpp"
+#include "garment/pattern.hpp"
 #include "scene/loader.hpp"
 #include "simulation/simulation.hpp"
 
@@ -22,19 +28,70 @@ std::string plan_table(const scene::Scene& scene) {
   return format_table(rows, "lll", 2);
 }
 
+/// Everything that is wrong with one scene: exit code and lines.
+struct Mistakes {
+  ExitCode code = ExitCode::ok;
+  std::string lines;
+
+  void add(ExitCode of, const std::string& text) {
+    if (code != ExitCode::scene_invalid) code = of;
+    lines += (lines.empty() ? "" : "\n") + text;
+  }
+};
+
+/// The patterns that a scene names are looked at even where it has mistakes itself.
+void check_patterns(const scene::Scene& scene, Mistakes& mistakes) {
+  std::set<std::filesystem::path> files;
+  for (const scene::Cloth& cloth : scene.cloths)
+    if (cloth.shape == scene::ClothShape::pattern && !cloth.file.empty()) files.insert(cloth.file);
+  for (const std::filesystem::path& file : files) {
+    const garment::ReadPattern read = garment::read_pattern(file);
+    if (!read.mistakes.empty())
+      mistakes.add(read.only_in_drawings ? ExitCode::asset_unreadable : ExitCode::scene_invalid,
+                   fmt::format("{}", fmt::join(read.mistakes, "\n")));
+  }
+}
+
+/// Particles of all cloths; those that a file holds or a pattern gives are counted by making them.
+std::size_t count_particles(const scene::Scene& scene, Mistakes& mistakes) {
+  std::size_t particles = 0;
+  for (const scene::Cloth& cloth : scene.cloths) try {
+      const auto known = static_cast<std::size_t>(rectangle_particles(cloth));
+      particles += known > 0 ? known : environment::make_cloth(scene, cloth).mesh.positions.size();
+    } catch (const Error& error) {
+      mistakes.add(error.code(), error.what());
+    }
+  return particles;
+}
+
+ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& options) {
+  const scene::LoadResult loaded = scene::load(file, options.overrides);
+  Mistakes mistakes;
+  if (!loaded.ok()) mistakes.add(ExitCode::scene_invalid, mistakes_text(loaded));
+  check_patterns(loaded.scene, mistakes);
+  const std::size_t particles = mistakes.lines.empty() ? count_particles(loaded.scene, mistakes) : 0;
+  if (!mistakes.lines.empty()) {
+    log::info(mistakes.lines);
+    return mistakes.code;
+  }
+  fmt::print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
+  if (options.plan) fmt::print("{}", plan_table(loaded.scene));
+  return ExitCode::ok;
+}
+
 }  // namespace
 
 ExitCode check(const CheckOptions& options) {
   ExitCode code = ExitCode::ok;
   for (const std::filesystem::path& file : options.scenes) {
-    const scene::LoadResult loaded = scene::load(file, options.overrides);
-    if (!loaded.ok()) {
-      log::info(mistakes_text(loaded));
-      code = ExitCode::scene_invalid;
-      continue;
+    ExitCode of_scene = ExitCode::ok;
+    try {
+      of_scene = check_scene(file, options);
+    } catch (const Error& error) {
+      log::info(error.what());
+      of_scene = error.code();
     }
-    fmt::print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene));
-    if (options.plan) fmt::print("{}", plan_table(loaded.scene));
+    if (code == ExitCode::ok || of_scene == ExitCode::scene_invalid) code = of_scene;
   }
   if (std::fflush(stdout) != 0) throw Error(ExitCode::output_failed, "standard output cannot be written");
   return code;

@@ -79,11 +79,7 @@ cache::Manifest manifest_of(const scene::Scene& scene, const render::Settings& s
   return manifest;
 }
 
-std::string describe_scene(const scene::Scene& scene) {
-  std::size_t particles = 0;
-  for (const scene::Cloth& cloth : scene.cloths) {
-    particles += static_cast<std::size_t>(rectangle_particles(cloth));
-  }
+std::string describe_scene(const scene::Scene& scene, std::size_t particles) {
   std::string bodies = counted(scene.obstacles.size(), "obstacle", "obstacles");
   if (!scene.characters.empty()) bodies += ", " + counted(scene.characters.size(), "character", "characters");
   return fmt::format("{}, {}, {}, {} at {:.4g} fps", counted(scene.cloths.size(), "cloth", "cloths"), bodies,

@@ -123,6 +123,8 @@ mesh::Mesh load_sheet(const scene::Cloth& cloth, const std::string& where) {
   return mesh;
 }
 
+}  // namespace
+
 ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth) {
   ClothObject object;
   object.name = cloth.name;
@@ -153,6 +155,8 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth) {
                    std::vector<Vec3>(n, Vec3::Zero())};
   return object;
 }
+
+namespace {
 
 /// Makes the mesh of any shape in the body's own coordinates. A box has its sizes along the scene's axes and a file its
 /// own orientation; the others follow the up axis.

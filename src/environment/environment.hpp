@@ -44,9 +44,13 @@ struct BodyObject {
 /// Rest places of the particles of a rectangle of cloth.
 mesh::Grid grid_of(const scene::Cloth& cloth);
 
+/// A cloth as it starts. Throws Error(asset_unreadable, scene_invalid) for what its file holds, naming the scene's
+/// line.
+ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth);
+
 class Environment {
  public:
-  /// Makes meshes and the state at time 0. Throws Error(asset_unreadable) naming file and scene line.
+  /// Makes meshes and the state at time 0. Throws Error(asset_unreadable, scene_invalid) naming file and scene line.
   explicit Environment(const scene::Scene& scene);
 
   /// Puts the moving bodies where they are at time t [s], with exact velocities and accelerations. Linear in the
@@ -55,6 +59,11 @@ class Environment {
 
   /// Pose of an obstacle at any time [s], whatever the last move_to was.
   PoseSample pose(std::size_t obstacle, double t) const { return std::get<Track>(movers_[obstacle]).at(t); }
+
+  /// The same of one vertex of a character.
+  VertexMotion vertex(std::size_t character, std::size_t vertex, double t) const {
+    return std::get<KeyFrames>(movers_[character]).at(t, vertex);
+  }
 
   std::vector<ClothObject> cloths;
   std::vector<BodyObject> bodies;  ///< in the order of scene.obstacles, then of scene.characters

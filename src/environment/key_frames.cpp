@@ -49,26 +49,36 @@ void KeyFrames::bend(bool from_rest) {
   });
 }
 
-void KeyFrames::at(double t, Motion& motion) const {
+KeyFrames::Piece KeyFrames::piece(double t) const {
   const double place = (t - first_time_) / interval_;
   const auto last = static_cast<double>(keys_.size() - 1);
   const bool stands = !(place >= 0) || place >= last;
   const auto i = static_cast<std::size_t>(std::clamp(std::floor(place), 0.0, last));
-  const double h = interval_, s = stands ? 0 : t - first_time_ - static_cast<double>(i) * h;
+  return {i, stands ? 0 : t - first_time_ - static_cast<double>(i) * interval_, stands};
+}
+
+VertexMotion KeyFrames::at(const Piece& piece, std::size_t v) const {
+  const auto& [i, s, stands] = piece;
+  if (stands) return {keys_[i][v], Vec3::Zero(), Vec3::Zero()};
+  const double h = interval_;
+  Vec3 slope = (keys_[i + 1][v] - keys_[i][v]) / h, bend = Vec3::Zero(), jerk = Vec3::Zero();
+  if (!bends_.empty()) {
+    bend = bends_[i][v];
+    jerk = (bends_[i + 1][v] - bend) / h;
+    slope -= h / 6 * (2 * bend + bends_[i + 1][v]);
+  }
+  return {keys_[i][v] + s * (slope + s * (bend / 2 + s / 6 * jerk)), slope + s * (bend + s / 2 * jerk),
+          bend + s * jerk};
+}
+
+void KeyFrames::at(double t, Motion& motion) const {
+  const Piece now = piece(t);
   parallel_for(motion.positions.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      motion.positions[v] = keys_[i][v];
-      motion.velocities[v] = motion.accelerations[v] = Vec3::Zero();
-      if (stands) continue;
-      Vec3 slope = (keys_[i + 1][v] - keys_[i][v]) / h, bend = Vec3::Zero(), jerk = Vec3::Zero();
-      if (!bends_.empty()) {
-        bend = bends_[i][v];
-        jerk = (bends_[i + 1][v] - bend) / h;
-        slope -= h / 6 * (2 * bend + bends_[i + 1][v]);
-      }
-      motion.positions[v] += s * (slope + s * (bend / 2 + s / 6 * jerk));
-      motion.velocities[v] = slope + s * (bend + s / 2 * jerk);
-      motion.accelerations[v] = bend + s * jerk;
+      const VertexMotion vertex = at(now, v);
+      motion.positions[v] = vertex.position;
+      motion.velocities[v] = vertex.velocity;
+      motion.accelerations[v] = vertex.acceleration;
     }
   });
 }

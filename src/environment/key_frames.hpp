@@ -17,6 +17,11 @@ struct Motion {
   std::vector<Vec3> accelerations;  ///< [m/s²]
 };
 
+/// State of one vertex, likewise.
+struct VertexMotion {
+  Vec3 position, velocity, acceleration;
+};
+
 /// Vertices through equally spaced key frames, as Spline does it: along straight lines, or along cubic splines that are
 /// twice continuously differentiable. Before the first key the body stands, after the last one it stands again.
 class KeyFrames {
@@ -30,10 +35,21 @@ class KeyFrames {
   /// vertices, allocates nothing.
   void at(double t, Motion& motion) const;
 
+  /// The same of a single vertex.
+  VertexMotion at(double t, std::size_t vertex) const { return at(piece(t), vertex); }
+
   bool moving() const { return keys_.size() > 1; }
   std::size_t bytes() const;
 
  private:
+  /// Where a time is among the keys: `s` [s] after key i; standing before the first and after the last.
+  struct Piece {
+    std::size_t i;
+    double s;
+    bool stands;
+  };
+  Piece piece(double t) const;
+  VertexMotion at(const Piece& piece, std::size_t vertex) const;
   void bend(bool from_rest);
 
   double first_time_, interval_;  // [s]

@@ -3,7 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -124,22 +124,33 @@ std::vector<PanelEdge> joined(const Outline& outline, const std::vector<std::str
   return edges;
 }
 
+/// The outline of a panel that is right; else what is wrong goes to the findings, or to the mistakes of drawings.
+std::optional<Outline> outline_of(const Panel& panel, const std::string& path, Findings& findings,
+                                  std::vector<std::string>& in_drawings) {
+  if (panel.path.empty()) try {
+      return load_svg_outline(panel.file, panel.id);
+    } catch (const Error& error) {
+      // Panels of one drawing that cannot be read all say the same.
+      if (std::ranges::find(in_drawings, error.what()) == in_drawings.end()) in_drawings.emplace_back(error.what());
+      return std::nullopt;
+    }
+  ParsedPath parsed = parse_path(panel.path);
+  if (parsed.mistake.empty()) return std::move(parsed.outline);
+  findings.report(path + ".path", parsed.mistake);
+  return std::nullopt;
+}
+
 /// Finds the edges of a panel from its outline, and what is wrong with it.
-void draw_panel(Panel& panel, const std::string& path, const std::string& where, Findings& findings) {
+void draw_panel(Panel& panel, const std::string& path, Findings& findings, std::vector<std::string>& in_drawings) {
   if (panel.path.empty() == panel.file.empty()) {
     if (!findings.faulty(path + ".path") && !findings.faulty(path + ".file"))
       findings.report(path, "expected an outline, as path or as file and id, got none");
     return;
   }
   const std::string key = panel.path.empty() ? path + ".file" : path + ".path";
-  Outline outline;
-  if (panel.path.empty()) {
-    outline = load_svg_outline(panel.file, panel.id, fmt::format("{}: {}", where, path));
-  } else {
-    ParsedPath parsed = parse_path(panel.path);
-    if (!parsed.mistake.empty()) return findings.report(key, parsed.mistake);
-    outline = std::move(parsed.outline);
-  }
+  std::optional<Outline> drawn = outline_of(panel, path, findings, in_drawings);
+  if (!drawn) return;
+  Outline& outline = *drawn;
   std::vector<std::string> names;
   if (const std::string mistake = name_curves(panel.edge_names, outline, names); !mistake.empty())
     return findings.report(path + ".edges", mistake);
@@ -196,11 +207,11 @@ class EdgeNames {
   bool undrawn_ = false;
 };
 
-void check(Pattern& pattern, const std::string& where, Findings& findings) {
+void check(Pattern& pattern, Findings& findings, std::vector<std::string>& in_drawings) {
   if (pattern.panels.empty() && !findings.has("panel"))
     findings.report("", "expected at least one [[panel]], got none");
   for (std::size_t i = 0; i < pattern.panels.size(); ++i)
-    draw_panel(pattern.panels[i], findings.entry("panel", i), where, findings);
+    draw_panel(pattern.panels[i], findings.entry("panel", i), findings, in_drawings);
   EdgeNames names(pattern, findings);
   for (std::size_t i = 0; i < pattern.seams.size(); ++i) {
     names.check_sewn_once(pattern.seams[i].a, findings.entry("seam", i) + ".a");
@@ -221,22 +232,31 @@ std::pair<std::size_t, std::size_t> Pattern::find(const std::string& name) const
   throw Error(ExitCode::internal, "pattern {}: no edge {}", file.string(), name);
 }
 
-Pattern load_pattern(const std::filesystem::path& file, const std::string& where) {
+ReadPattern read_pattern(const std::filesystem::path& file) {
   Findings findings;
-  Pattern pattern;
-  pattern.file = file;
+  ReadPattern read;
+  std::vector<std::string> in_drawings;
+  read.pattern.file = file;
   if (const auto text = scene::read_file(file, findings))
     if (const auto document = scene::parse(*text, findings)) {
-      scene::Reader(findings, file.parent_path()).read(*document, pattern_rules(), &pattern, "");
-      check(pattern, where, findings);
+      scene::Reader(findings, file.parent_path()).read(*document, pattern_rules(), &read.pattern, "");
+      check(read.pattern, findings, in_drawings);
     }
   scene::LoadResult result;
   result.file = file;
   result.mistakes = findings.take_mistakes();
-  if (result.ok()) return pattern;
-  std::string text = result.describe();
-  text.pop_back();
-  throw Error(ExitCode::scene_invalid, "{}: its pattern has mistakes:\n{}", where, text);
+  std::istringstream lines(result.describe());
+  for (std::string line; std::getline(lines, line);) read.mistakes.push_back(line);
+  read.only_in_drawings = read.mistakes.empty() && !in_drawings.empty();
+  read.mistakes.insert(read.mistakes.end(), in_drawings.begin(), in_drawings.end());
+  return read;
+}
+
+Pattern load_pattern(const std::filesystem::path& file, const std::string& where) {
+  ReadPattern read = read_pattern(file);
+  if (read.mistakes.empty()) return std::move(read.pattern);
+  throw Error(read.only_in_drawings ? ExitCode::asset_unreadable : ExitCode::scene_invalid,
+              "{}: its pattern has mistakes:\n{}", where, fmt::join(read.mistakes, "\n"));
 }
 
 }  // namespace weft::garment

@@ -69,8 +69,19 @@ struct Pattern {
   std::pair<std::size_t, std::size_t> find(const std::string& name) const;
 };
 
-/// Reads and checks a pattern file (TOML). Throws Error(scene_invalid) with one line for each mistake, as those of
-/// scenes, after `where`, which names what refers to the file; Error(asset_unreadable) for drawings.
+/// A pattern as far as it could be read.
+struct ReadPattern {
+  Pattern pattern;  ///< meaningful only if there are no mistakes
+  /// One line each, file:line:column first, those of the pattern file before those of its drawings.
+  std::vector<std::string> mistakes;
+  bool only_in_drawings = false;  ///< they are all in drawings
+};
+
+/// Reads and checks a pattern file (TOML) and the drawings that it names. Never throws for what they can hold.
+ReadPattern read_pattern(const std::filesystem::path& file);
+
+/// The same for use. Throws Error with all mistakes after `where`, which names what refers to the file: scene_invalid,
+/// or asset_unreadable where only drawings have them.
 Pattern load_pattern(const std::filesystem::path& file, const std::string& where);
 
 }  // namespace weft::garment

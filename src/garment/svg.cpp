@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <fstream>
+#include <iterator>
 #include <numbers>
 #include <optional>
 #include <pugixml.hpp>
@@ -25,7 +26,7 @@ using Affine = Eigen::Affine2d;
 /// A drawing, and what its errors say.
 class Drawing {
  public:
-  Drawing(const std::filesystem::path& file, const std::string& where) : file_(file), where_(where) {
+  explicit Drawing(const std::filesystem::path& file) : file_(file) {
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(file, error);
     if (error || !std::filesystem::is_regular_file(file)) refuse(0, "expected a file, got none that can be read");
@@ -38,8 +39,9 @@ class Drawing {
 
   [[noreturn]] void refuse(std::ptrdiff_t offset, const std::string& text) const {
     const auto end = text_.begin() + std::clamp<std::ptrdiff_t>(offset, 0, static_cast<std::ptrdiff_t>(text_.size()));
-    throw Error(ExitCode::asset_unreadable, "{}: {}:{}: {}", where_, file_.string(),
-                1 + std::count(text_.begin(), end, '\n'), text);
+    const auto line = std::find(std::reverse_iterator(end), text_.rend(), '\n').base();
+    throw Error(ExitCode::asset_unreadable, "{}:{}:{}: {}", file_.string(), 1 + std::count(text_.begin(), end, '\n'),
+                1 + (end - line), text);
   }
   [[noreturn]] void refuse(const pugi::xml_node& node, const std::string& text) const {
     refuse(node.offset_debug(), fmt::format("{}{}: {}", node.name(), id_of(node), text));
@@ -60,7 +62,7 @@ class Drawing {
   }
 
   std::filesystem::path file_;
-  std::string where_, text_;
+  std::string text_;
   pugi::xml_document document_;
 };
 
@@ -175,8 +177,8 @@ Outline outline_of(const Drawing& drawing, const pugi::xml_node& node) {
 
 }  // namespace
 
-Outline load_svg_outline(const std::filesystem::path& file, const std::string& id, const std::string& where) {
-  const Drawing drawing(file, where);
+Outline load_svg_outline(const std::filesystem::path& file, const std::string& id) {
+  const Drawing drawing(file);
   const pugi::xml_node element = drawing.find(id);
   Outline outline = outline_of(drawing, element);
   Affine transform = Affine::Identity();

@@ -2,12 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <fstream>
-
+#include "scene/dependencies.hpp"
 #include "scene/loader.hpp"
 #include "scene/rule.hpp"
-#include "scene/sequence_files.hpp"
 
 namespace weft::scene {
 
@@ -117,30 +114,21 @@ std::string effective_scene(const Scene& scene) {
 
 std::uint64_t hash_of(const Scene& scene) {
   Fnv1a hash;
+  for_each_dependency(scene, [&](std::string_view content) {
+    hash.add(fmt::format("{} ", content.size()));  // so that where one file ends counts
+    hash.add(content);
+  });
+  // The content of files counts, and not their folder.
   Scene copy = scene;
-  // The content of mesh files counts, and not their folder.
-  const auto add_file = [&](std::filesystem::path& path) {
-    std::ifstream file(path, std::ios::binary);
-    std::array<char, 1 << 16> block;
-    while (file.read(block.data(), block.size()) || file.gcount() > 0) {
-      hash.add({block.data(), static_cast<std::size_t>(file.gcount())});
-    }
-    path = path.filename();
-  };
+  const auto strip = [](std::filesystem::path& path) { path = path.filename(); };
   for (Obstacle& obstacle : copy.obstacles)
-    if (auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) add_file(mesh->path);
-  for (Cloth& cloth : copy.cloths)
-    if (!cloth.file.empty()) add_file(cloth.file);
+    if (auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) strip(mesh->path);
+  for (Cloth& cloth : copy.cloths) strip(cloth.file);
   for (Character& character : copy.characters) {
-    if (auto* file = std::get_if<CharacterFile>(&character.source)) {
-      add_file(file->path);
-      if (file->motion) add_file(*file->motion);
-    } else if (auto* mannequin = std::get_if<Mannequin>(&character.source)) {
-      if (mannequin->motion) add_file(*mannequin->motion);
-    } else if (auto* sequence = std::get_if<MeshSequence>(&character.source)) {
-      for (std::filesystem::path path : sequence_files(sequence->files)) add_file(path);
+    if (auto* file = std::get_if<CharacterFile>(&character.source)) strip(file->path);
+    if (Acting* acting = acting_of(character); acting != nullptr && acting->motion) strip(*acting->motion);
+    if (auto* sequence = std::get_if<MeshSequence>(&character.source))
       sequence->files = std::filesystem::path(sequence->files).filename().string();
-    }
   }
   hash.add(effective_scene(copy));
   return hash.value();

@@ -9,8 +9,9 @@
 
 namespace weft::scene {
 
-/// 64-bit FNV-1a of everything that decides what a scene shows: its checked values and the bytes of its mesh files, but
-/// not the folders they are in. Equal for scenes that differ in comments, order, spelling of numbers or given defaults.
+/// 64-bit FNV-1a of everything that decides what a scene shows: its checked values and the bytes of the files it
+/// depends on, but not the folders they are in. Equal for scenes that differ in comments, order, spelling of numbers or
+/// given defaults.
 std::uint64_t hash_of(const Scene& scene);
 
 }  // namespace weft::scene

@@ -48,7 +48,7 @@ const Table& time_rules() {
           .by_default("none; steps are those of step")
           .excludes("step")
           .choice(
-              "integrator", &Time::integrator, {"implicit_euler", "implicit_midpoint", "bdf2"},
+              "integrator", &Time::integrator, kIntegratorNames,
               "method of time integration; the midpoint rule damps nothing and is no choice for scenes with contact")
           .build();
   return kTable;
@@ -127,7 +127,9 @@ const Table& pin_rules() {
   static const Table kTable =
       TableBuilder<Pin>("Particles held in place, or moved.")
           .with(part_rows<Pin>)
-          .plain(Type::text, "follow", &Pin::follow, "name of the obstacle whose motion the particles share")
+          .plain(Type::text, "follow", &Pin::follow,
+                 "name of the obstacle whose motion the particles share, or of the character, at whose nearest places "
+                 "they stay")
           .by_default("none")
           .excludes("keys")
           .number("release", &Pin::release, within(-1, 1e5), "s", "time at which they are let go; negative: never")

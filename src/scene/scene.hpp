@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -15,6 +16,13 @@ namespace weft::scene {
 
 enum class UpAxis { y, z };
 enum class Integrator { implicit_euler, implicit_midpoint, bdf2 };
+
+/// What scenes and reports call them, in their order.
+inline const std::vector<std::string> kIntegratorNames = {"implicit_euler", "implicit_midpoint", "bdf2"};
+inline const std::string& name_of(Integrator integrator) {
+  return kIntegratorNames[static_cast<std::size_t>(integrator)];
+}
+
 enum class Interpolation { linear, cubic };
 enum class HeatQuantity { none, strain, speed };
 enum class Response { springs, velocity_constraints };
@@ -282,6 +290,9 @@ struct Character {
 inline const Acting* acting_of(const Character& character) {
   if (const auto* file = std::get_if<CharacterFile>(&character.source)) return file;
   return std::get_if<Mannequin>(&character.source);
+}
+inline Acting* acting_of(Character& character) {
+  return const_cast<Acting*>(acting_of(std::as_const(character)));
 }
 
 struct CameraKey {

@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <array>
 #include <cstddef>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -11,6 +13,7 @@
 #include "assets/small_files.hpp"
 #include "core/error.hpp"
 #include "mesh/geometry.hpp"
+#include "mesh/ply.hpp"
 
 namespace weft::assets {
 namespace {
@@ -73,6 +76,21 @@ TEST_F(MeshFiles, OfQuadsAloneStayQuadsAndLoseTheirSeams) {
   EXPECT_TRUE(inspected(cube).watertight());
   EXPECT_NEAR(volume(cube), 1, 1e-15);
   EXPECT_TRUE(cube.mesh.uv.empty());
+}
+
+// The data of a binary file may begin with any byte, also with those that end lines and part words in its header.
+TEST_F(MeshFiles, OfOurOwnAreReadWhateverByteTheirDataBeginWith) {
+  for (const unsigned char first : {9, 10, 13, 32})
+    for (const unsigned char second : {10, 13, 32}) {
+      std::vector<Vec3> positions{{0.1, 0.2, 0.3}, {1, 0, 0}, {0, 1, 0.5}};
+      std::memcpy(&positions[0].x(), std::array{first, second}.data(), 2);
+      mesh::write_ply(folder_ / "own.ply", positions, Triangles{{0, 1, 2}});
+      const LoadedMesh loaded = load_mesh(folder_ / "own.ply", 1, "here");
+      ASSERT_EQ(loaded.mesh.positions.size(), 3u) << int{first} << " " << int{second};
+      EXPECT_EQ(loaded.mesh.topology.triangles, (Triangles{{0, 1, 2}}));
+      for (std::size_t v = 0; v < 3; ++v)
+        EXPECT_LT((loaded.mesh.positions[v] - positions[v]).norm(), 1e-7) << int{first};  // in single precision
+    }
 }
 
 TEST_F(MeshFiles, KeepTheOrderInWhichFacesNameVertices) {

@@ -302,6 +302,68 @@ TEST_F(Program, CheckPrintsAllMistakesOfAllScenesAndExitsWith3) {
   EXPECT_EQ(outcome.out, "s.toml: ok: 1 cloth, 2 obstacles, 20 particles, 5 frames at 10 fps\n");
 }
 
+constexpr const char* kSack = R"(
+[[panel]]
+name = "front"
+path = "M -0.2 0 L 0.2 0 L 0.2 0.3 L -0.2 0.3 Z"
+edges = "hem right top left"
+[[panel]]
+name = "back"
+side = "back"
+file = "back.svg"
+id = "back"
+edges = "hem right top left"
+[[seam]]
+a = "front.left"
+b = "back.left"
+[[seam]]
+a = "front.right"
+b = "back.right"
+)";
+constexpr const char* kDrawing =
+    "<svg width='400mm' viewBox='-200 -300 400 300'>\n<path id='back' d='M-200 0H200V-300H-200Z'/></svg>";
+
+TEST_F(Program, CheckReadsPatternsAndTheirDrawings) {
+  const std::string cloth = "[[cloth]]\nname = 'sack'\nshape = 'pattern'\nfile = 'sack.toml'\nedge_length = 0.1\n";
+  const auto put = [&](const std::string& scene, const std::string& pattern, const std::string& drawing) {
+    support::write_bytes(folder_ / "dressed.toml", scene + "[time]\nduration = 1\nfps = 10\n");
+    support::write_bytes(folder_ / "sack.toml", pattern);
+    support::write_bytes(folder_ / "back.svg", drawing);
+  };
+  const auto damaged = [](std::string text, const std::string& good, const std::string& bad) {
+    return text.replace(text.find(good), good.size(), bad);
+  };
+  // Two panels of 5 by 4 points, and the 4 of each side are one.
+  put(cloth, kSack, kDrawing);
+  for (const bool plan : {false, true}) {
+    const Outcome good =
+        run_weft(plan ? Arguments{"check", "--plan", "dressed.toml"} : Arguments{"check", "dressed.toml"}, folder_);
+    EXPECT_EQ(good.exit_code, 0) << good.err;
+    EXPECT_TRUE(contains(good.out, "dressed.toml: ok: 1 cloth, 0 obstacles, 32 particles, 11 frames at 10 fps\n"))
+        << good.out;
+  }
+  // Mistakes of all three files at once.
+  const std::string pattern = damaged(kSack, "front.left", "front.lft") + "[[hem]]\nedge = 'front.hem'\nmass = -1\n";
+  put(damaged(cloth, "0.1", "-1"), pattern, damaged(kDrawing, "V-300", "W-300"));
+  const Outcome bad = run_weft({"check", "dressed.toml"}, folder_);
+  EXPECT_EQ(bad.exit_code, 3);
+  EXPECT_TRUE(contains(bad.err, "dressed.toml:5:15: cloth.sack.edge_length")) << bad.err;
+  EXPECT_TRUE(contains(bad.err, "sack.toml:21:8: hem.0.mass")) << bad.err;
+  EXPECT_TRUE(contains(bad.err, "back.svg:2:2: path \"back\": ")) << bad.err;
+  EXPECT_EQ(bad.out, "");
+  // With panels that can be drawn, names of edges are looked at too.
+  put(cloth, pattern, kDrawing);
+  EXPECT_TRUE(contains(run_weft({"check", "dressed.toml"}, folder_).err, "sack.toml:13:5: seam.0.a: expected an edge"));
+  // A drawing alone is an asset; what shows only in sewing is told too.
+  put(cloth, kSack, damaged(kDrawing, "'back'", "'bck'"));
+  EXPECT_EQ(run_weft({"check", "dressed.toml"}, folder_).exit_code, 4);
+  put(cloth, damaged(kSack, "side = \"back\"", "rotation = 180"), kDrawing);
+  const Outcome turned = run_weft({"check", "dressed.toml", "s.toml"}, folder_);
+  EXPECT_EQ(turned.exit_code, 3);
+  EXPECT_TRUE(contains(turned.err, "cloth.sack: pattern ")) << turned.err;
+  EXPECT_TRUE(contains(turned.out, "s.toml: ok")) << turned.out;
+}
+
 TEST_F(Program, PlanNamesWhatIsLeftOut) {
   const Outcome with = run_weft({"check", "--plan", "s.toml"}, folder_);
   const Outcome without = run_weft(

@@ -15,7 +15,7 @@ class Drawings : public support::TestFolder {
  protected:
   Outline load(const std::string& svg, const std::string& id = "p") {
     support::write_bytes(folder_ / "d.svg", svg);
-    return load_svg_outline(folder_ / "d.svg", id, "a.toml:3:1: panel.front");
+    return load_svg_outline(folder_ / "d.svg", id);
   }
   void expect_corners(const std::string& svg, const std::vector<Vec2>& corners) {
     const Outline outline = load(svg);
@@ -53,8 +53,8 @@ TEST_F(Drawings, TransformsOfElementAndGroupsApply) {
       {{0.007, -0.007}, {0.037, -0.007}, {0.077, -0.047}, {0.047, -0.047}});
 }
 
-TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineAndElement) {
-  expect_refused("<svg>\n<path id='p' d='M0 0L1 x'/></svg>", "d.svg:2: path \"p\": expected a number, got \"x\"");
+TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineColumnAndElement) {
+  expect_refused("<svg>\n  <path id='p' d='M0 0L1 x'/></svg>", "d.svg:2:4: path \"p\": expected a number, got \"x\"");
   expect_refused("<svg>\n\n<path id='q' d='M0 0L1 1L0 1Z'/></svg>", "the id \"p\"");
   expect_refused("<svg><circle id='p' r='1'/></svg>", "path, polygon or rect");
   expect_refused("<svg viewBox='0 0 0 1' width='1mm'><path id='p' d='M0 0L1 1L0 1Z'/></svg>", "viewBox");
@@ -63,7 +63,7 @@ TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineAndElement) {
   expect_refused("", "expected XML");
   expect_refused("<svg><rect id='p' width='a' height='1'/></svg>", "numbers");
   support::expect_error(ExitCode::asset_unreadable, "none that can be read",
-                        [&] { load_svg_outline(folder_ / "absent.svg", "p", "here"); });
+                        [&] { load_svg_outline(folder_ / "absent.svg", "p"); });
 }
 
 TEST_F(Drawings, DamagedFilesAreRefusedOrRead) {

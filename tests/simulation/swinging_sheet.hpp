@@ -24,18 +24,6 @@ inline scene::Scene swinging_sheet(int particles, double stretch, double shear, 
   return scene;
 }
 
-inline const char* name_of(scene::Integrator integrator) {
-  switch (integrator) {
-    case scene::Integrator::implicit_euler:
-      return "implicit_euler";
-    case scene::Integrator::implicit_midpoint:
-      return "implicit_midpoint";
-    case scene::Integrator::bdf2:
-      return "bdf2";
-  }
-  return "";
-}
-
 struct SwingEnd {
   std::vector<Vec3> x;
   double estimate = 0;  ///< sum of the local errors as estimated [m]

@@ -9,8 +9,8 @@
 namespace weft::simulation {
 namespace {
 
+using scene::name_of;
 using testing::kIntegrators;
-using testing::name_of;
 using testing::rms_distance;
 using testing::SwingEnd;
 
@@ -66,8 +66,8 @@ TEST_F(SwingingSheet, ConvergesWithTheOrderOfEachMethodWhereStepsAreFixed) {
     for (int rate : {200, 400, 800, 1600}) {
       const SwingEnd end = swing_with_step(integrator, 1.0 / rate);
       const double error = rms_distance(end.x, exact.x), order = before > 0 ? std::log2(before / error) : 0;
-      std::printf("%-18s   1/%-4d %10.2e %6.2f %10.2e %10.2f\n", name_of(integrator), rate, error, order, end.estimate,
-                  end.estimate / error);
+      std::printf("%-18s   1/%-4d %10.2e %6.2f %10.2e %10.2f\n", name_of(integrator).c_str(), rate, error, order,
+                  end.estimate, end.estimate / error);
       // Measured 0.90, 0.93, 0.96 for Euler, whose next term is a few per cent, and 1.99 to 2.03 for the others.
       if (before > 0) {
         EXPECT_NEAR(order, order_of(integrator), integrator == scene::Integrator::implicit_euler ? 0.12 : 0.06);
@@ -92,7 +92,7 @@ TEST_F(SwingingSheet, KeepsTheSecondOrderInAir) {
   const auto exact = end(scene::Integrator::implicit_midpoint, 6400);
   for (scene::Integrator integrator : {scene::Integrator::implicit_midpoint, scene::Integrator::bdf2}) {
     const double coarse = rms_distance(end(integrator, 400), exact), fine = rms_distance(end(integrator, 800), exact);
-    std::printf("%-18s in air, step 1/800: error %.2e m, order %.2f\n", name_of(integrator), fine,
+    std::printf("%-18s in air, step 1/800: error %.2e m, order %.2f\n", name_of(integrator).c_str(), fine,
                 std::log2(coarse / fine));
     // Measured 2.01 and 2.00; 1.1 with drag as a mean over the step, and 9 to 34 times the error.
     EXPECT_NEAR(std::log2(coarse / fine), 2, 0.1) << name_of(integrator);
@@ -109,8 +109,8 @@ TEST_F(SwingingSheet, ErrorFollowsTheToleranceWithTheExponentOfEachMethod) {
     for (double tolerance : {1.6e-5, 8e-6, 4e-6, 2e-6, 1e-6, 5e-7, 2.5e-7}) {
       const SwingEnd end = swing_with_tolerance(integrator, tolerance);
       const double error = rms_distance(end.x, exact.x);
-      std::printf("%-18s %11.2e %6d %8d %10.2e %8.2f %10.2f\n", name_of(integrator), tolerance, end.steps, end.rejected,
-                  error, before > 0 ? std::log2(before / error) : 0, end.estimate / error);
+      std::printf("%-18s %11.2e %6d %8d %10.2e %8.2f %10.2f\n", name_of(integrator).c_str(), tolerance, end.steps,
+                  end.rejected, error, before > 0 ? std::log2(before / error) : 0, end.estimate / error);
       // A step stays as it is while it is right within a tenth, so that one halving may come out a fifth off.
       if (before > 0) {
         EXPECT_LT(error, before);
@@ -124,7 +124,7 @@ TEST_F(SwingingSheet, ErrorFollowsTheToleranceWithTheExponentOfEachMethod) {
     }
     // Over all six halvings.
     const double measured = std::log(first / before) / std::log(64.0);
-    std::printf("%-18s exponent %.3f, expected %.3f\n", name_of(integrator), measured, exponent);
+    std::printf("%-18s exponent %.3f, expected %.3f\n", name_of(integrator).c_str(), measured, exponent);
     EXPECT_NEAR(measured, exponent, 0.05);
   }
 }

@@ -1,0 +1,124 @@
+#include "scene/dependencies.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cstdint>
+#include <fstream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <system_error>
+#include <vector>
+
+#include "scene/sequence_files.hpp"
+
+namespace weft::scene {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Larger files are left out: no reader takes them.
+constexpr std::uintmax_t kLargestFile = std::uintmax_t{256} << 20;
+
+/// Names that are longer are none of files: those end at 255 bytes, with some folders before.
+constexpr std::size_t kLongestName = 1024;
+
+bool is_alphanumeric(char c) {
+  return std::isalnum(static_cast<unsigned char>(c)) != 0;
+}
+
+/// Whether a text ends as names of files do: a dot, then 2 to 12 letters and digits, not digits alone.
+bool has_ending(std::string_view text) {
+  const std::size_t dot = text.rfind('.');
+  if (dot == std::string_view::npos || dot == 0 || text.size() > kLongestName) return false;
+  const std::string_view ending = text.substr(dot + 1);
+  return ending.size() >= 2 && ending.size() <= 12 && std::ranges::all_of(ending, is_alphanumeric) &&
+         !std::ranges::all_of(ending, [](char c) { return c >= '0' && c <= '9'; });
+}
+
+/// %20 and the like, which addresses in glTF and Collada files have for blanks.
+std::string without_escapes(std::string_view text) {
+  std::string plain;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    unsigned char byte = 0;
+    if (text[i] == '%' && i + 2 < text.size() &&
+        std::from_chars(&text[i + 1], &text[i + 3], byte, 16).ptr == &text[i + 3]) {
+      plain += static_cast<char>(byte);
+      i += 2;
+    } else {
+      plain += text[i] == '\\' ? '/' : text[i];
+    }
+  }
+  return plain;
+}
+
+/// What may be names of files in text or binary content: whatever stands between quotes, brackets, commas, equals signs
+/// and control characters, and its pieces between blanks.
+std::set<std::string> possible_names(std::string_view content) {
+  std::set<std::string> names;
+  const auto add = [&](std::string_view text) {
+    if (has_ending(text)) names.insert(without_escapes(text));
+  };
+  const auto split = [](std::string_view text, const auto& is_end, const auto& use) {
+    for (std::size_t begin = 0; begin < text.size();) {
+      std::size_t end = begin;
+      while (end < text.size() && !is_end(text[end])) ++end;
+      if (end > begin) use(text.substr(begin, end - begin));
+      begin = end + 1;
+    }
+  };
+  const auto ends_text = [](char c) {
+    return (static_cast<unsigned char>(c) < 0x20) ||
+           std::string_view("\"'<>(),=|\x7F").find(c) != std::string_view::npos;
+  };
+  split(content, ends_text, [&](std::string_view text) {
+    const std::size_t first = text.find_first_not_of(' ');
+    if (first == std::string_view::npos || text.find('.') == std::string_view::npos) return;
+    text = text.substr(first, text.find_last_not_of(' ') + 1 - first);
+    add(text);
+    if (text.find(' ') != std::string_view::npos)
+      split(
+          text, [](char c) { return c == ' '; }, add);
+  });
+  return names;
+}
+
+class Walk {
+ public:
+  explicit Walk(const std::function<void(std::string_view)>& each) : each_(each) {}
+
+  void visit(const fs::path& file) {
+    std::error_code error;
+    if (!fs::is_regular_file(file, error) || !visited_.insert(fs::weakly_canonical(file, error)).second) return;
+    if (fs::file_size(file, error) > kLargestFile) return;
+    std::ifstream in(file, std::ios::binary);
+    const std::string content(std::istreambuf_iterator<char>(in), {});
+    each_(content);
+    for (const std::string& name : possible_names(content)) visit(file.parent_path() / name);
+    // The one format whose readers find the motion by the name of the mesh.
+    if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"));
+  }
+
+ private:
+  const std::function<void(std::string_view)>& each_;
+  std::set<fs::path> visited_;
+};
+
+}  // namespace
+
+void for_each_dependency(const Scene& scene, const std::function<void(std::string_view content)>& each) {
+  Walk walk(each);
+  for (const Obstacle& obstacle : scene.obstacles)
+    if (const auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) walk.visit(mesh->path);
+  for (const Cloth& cloth : scene.cloths)
+    if (!cloth.file.empty()) walk.visit(cloth.file);
+  for (const Character& character : scene.characters) {
+    if (const auto* file = std::get_if<CharacterFile>(&character.source)) walk.visit(file->path);
+    if (const Acting* acting = acting_of(character); acting != nullptr && acting->motion) walk.visit(*acting->motion);
+    if (const auto* sequence = std::get_if<MeshSequence>(&character.source))
+      for (const fs::path& file : sequence_files(sequence->files)) walk.visit(file);
+  }
+}
+
+}  // namespace weft::scene

@@ -1,0 +1,93 @@
+// The scene's hash knows every file that the result depends on.
+#include "scene/dependencies.hpp"
+
+#include <gtest/gtest.h>
+
+#include "scene/loader.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::scene {
+namespace {
+
+class Dependencies : public support::TestFolder {
+ protected:
+  void put(const std::string& file, const std::string& content) {
+    std::filesystem::create_directories((folder_ / file).parent_path());
+    support::write_bytes(folder_ / file, content);
+  }
+  std::uint64_t hash_of(const std::string& scene) {
+    const LoadResult result = load_text(scene, folder_ / "s.toml");
+    EXPECT_EQ(result.describe(), "");
+    return result.scene.hash;
+  }
+  /// Another byte in this file gives another hash; a file beside it that nobody names changes nothing.
+  void expect_counts(const std::string& scene, const std::string& file) {
+    const auto before = hash_of(scene);
+    const std::string content = support::read_bytes(folder_ / file);
+    put("bystander.bin", content);
+    EXPECT_EQ(hash_of(scene), before) << scene;
+    put("bystander.bin", content + "x");
+    EXPECT_EQ(hash_of(scene), before) << scene;
+    put(file, content + "\n");
+    EXPECT_NE(hash_of(scene), before) << file << " of " << scene;
+    put(file, content);
+    EXPECT_EQ(hash_of(scene), before) << scene;
+  }
+};
+
+TEST_F(Dependencies, MeshesOfObstaclesAndCloths) {
+  put("m.obj", "v 0 0 0\n");
+  expect_counts("obstacle = [{ name = 'm', shape = 'mesh', file = 'm.obj' }]\n", "m.obj");
+  expect_counts("cloth = [{ name = 'm', shape = 'mesh', file = 'm.obj' }]\n", "m.obj");
+}
+
+TEST_F(Dependencies, PatternsAndTheirDrawings) {
+  put("p/skirt.toml", "[[panel]]\nname = 'front'\nfile = 'drawn/my front.svg'\nid = 'front'\n");
+  put("p/drawn/my front.svg", "<svg/>");
+  const std::string scene = "cloth = [{ name = 'c', shape = 'pattern', file = 'p/skirt.toml' }]\n";
+  expect_counts(scene, "p/skirt.toml");
+  expect_counts(scene, "p/drawn/my front.svg");
+}
+
+TEST_F(Dependencies, CharactersMotionsAndWhatTheyName) {
+  put("man.gltf", R"({ "buffers": [{ "uri": "data/man%20mesh.bin", "byteLength": 4 }] })");
+  put("data/man mesh.bin", "1234");
+  put("guard.md5mesh", "MD5Version 10");
+  put("guard.md5anim", "MD5Version 10");
+  put("walk.bvh", "HIERARCHY");
+  const std::string man = "character = [{ name = 'm', source = 'file', file = 'man.gltf', motion = 'walk.bvh' }]\n";
+  for (const char* file : {"man.gltf", "data/man mesh.bin", "walk.bvh"}) expect_counts(man, file);
+  expect_counts("character = [{ name = 'g', source = 'file', file = 'guard.md5mesh' }]\n", "guard.md5anim");
+  expect_counts("character = [{ name = 'm', source = 'mannequin', motion = 'walk.bvh' }]\n", "walk.bvh");
+}
+
+TEST_F(Dependencies, FilesOfASequence) {
+  for (const char* file : {"run/a_1.obj", "run/a_2.obj", "run/a_3.obj"}) put(file, "v 0 0 0\n");
+  const std::string scene = "character = [{ name = 'r', source = 'sequence', files = 'run' }]\n";
+  expect_counts(scene, "run/a_1.obj");
+  expect_counts(scene, "run/a_3.obj");
+}
+
+// A byte that moves from the end of one file to the start of the next is a change.
+TEST_F(Dependencies, WhereOneFileEndsCounts) {
+  const std::string scene =
+      "obstacle = [{ name = 'a', shape = 'mesh', file = 'a.obj' }, { name = 'b', shape = 'mesh', file = 'b.obj' }]\n";
+  put("a.obj", "v 0 0 0\n"), put("b.obj", "\nv 1 0 0\n");
+  const auto before = hash_of(scene);
+  put("a.obj", "v 0 0 0\n\n"), put("b.obj", "v 1 0 0\n");
+  EXPECT_NE(hash_of(scene), before);
+}
+
+// Files that name each other, or themselves, are read once.
+TEST_F(Dependencies, EachFileIsReadOnce) {
+  put("a.obj", "mtllib a.obj b.mtl\n");
+  put("b.mtl", "map_Kd a.obj\n");
+  const LoadResult result =
+      load_text("obstacle = [{ name = 'a', shape = 'mesh', file = 'a.obj' }]\n", folder_ / "s.toml");
+  int count = 0;
+  for_each_dependency(result.scene, [&](std::string_view) { ++count; });
+  EXPECT_EQ(count, 2);
+}
+
+}  // namespace
+}  // namespace weft::scene
