@@ -113,12 +113,16 @@ Writer::Writer(const Lock& lock, Manifest manifest, std::string_view scene_text)
 void Writer::add(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report) {
   if (snapshot.frame == 0) {
     surfaces_ = surfaces_of(snapshot);
-    write(kSurfacesFile, pack({Kind::surfaces, 0, manifest_.scene_hash}, encode_surfaces(*surfaces_)));
+    const std::string content = pack({Kind::surfaces, 0, manifest_.scene_hash}, encode_surfaces(*surfaces_));
+    write(kSurfacesFile, content);
+    bytes_added_ += content.size();
   } else if (!surfaces_) {
     surfaces_ = surfaces_of(*Reader(folder_).snapshot(0));
   }
-  write(frame_file(snapshot.frame),
-        pack({Kind::frame, snapshot.frame, manifest_.scene_hash}, encode_frame(snapshot, report, *surfaces_)));
+  const std::string content =
+      pack({Kind::frame, snapshot.frame, manifest_.scene_hash}, encode_frame(snapshot, report, *surfaces_));
+  write(frame_file(snapshot.frame), content);
+  bytes_added_ += content.size();
 }
 
 void Writer::save_state(int frame, std::string_view bytes) {
@@ -128,7 +132,6 @@ void Writer::save_state(int frame, std::string_view bytes) {
 void Writer::write(const std::string& name, const std::string& content) {
   // Readers find out by the checksum where the machine died before the disk had it all.
   write_file(folder_ / name, content, Flush::no);
-  bytes_written_ += content.size();
 }
 
 }  // namespace weft::cache

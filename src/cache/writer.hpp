@@ -48,7 +48,8 @@ class Writer {
   /// The state of `frame`, in place of an earlier one. All frames up to it have been added.
   void save_state(int frame, std::string_view bytes);
 
-  std::uintmax_t bytes_written() const { return bytes_written_; }
+  /// Size of all frames that were added, and of what they share.
+  std::uintmax_t bytes_added() const { return bytes_added_; }
 
  private:
   void write(const std::string& name, const std::string& content);
@@ -56,7 +57,7 @@ class Writer {
   std::filesystem::path folder_;
   Manifest manifest_;
   std::optional<Surfaces> surfaces_;
-  std::uintmax_t bytes_written_ = 0;
+  std::uintmax_t bytes_added_ = 0;
 };
 
 }  // namespace weft::cache

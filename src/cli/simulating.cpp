@@ -43,7 +43,7 @@ void SimulatingJob::conclude(RunReport& report) {
 
 std::string SimulatingJob::way_on(ExitCode code) const {
   // A simulation that cannot go on will not be able to again.
-  if (code == ExitCode::simulation_failed || !store_->writes()) return "";
+  if (code == ExitCode::simulation_failed || !store_->can_resume()) return "";
   return "the same command with --resume goes on from there";
 }
 

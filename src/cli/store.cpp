@@ -1,5 +1,6 @@
 #include "cli/store.hpp"
 
+#include <system_error>
 #include <utility>
 
 #include "core/error.hpp"
@@ -11,22 +12,6 @@ namespace {
 // Of the time in which it would be simulated again. States take some times the place of a frame, and most are replaced
 // unused.
 constexpr double kSaveShare = 0.01;
-
-template <class Simulation>
-void save_state(const Simulation& simulation, std::string& bytes) {
-  if constexpr (requires { simulation.save(bytes); }) simulation.save(bytes);
-}
-
-// Where a simulation cannot be restored, the way to the frame is gone again.
-template <class Simulation>
-void restore_state(Simulation& simulation, int frame, const std::string& bytes) {
-  if constexpr (requires { simulation.restore(bytes); }) {
-    simulation.restore(bytes);
-  } else if (frame >= 0) {
-    simulation.run_preroll();
-    for (int k = 0; k < frame; ++k) simulation.advance();
-  }
-}
 
 }  // namespace
 
@@ -76,6 +61,13 @@ void Store::find_start() {
   }
 }
 
+// What is there stays: the output may fail for the same reason, and then nothing but this is left of the work.
+void Store::give_up(const std::string& reason) {
+  log::warn(reason + "; the run goes on, but from here on it would have to be simulated again if it is interrupted");
+  writer_.reset();
+  if (!can_resume()) lock_.clear();
+}
+
 template <class Write>
 void Store::attempt(const Write& write) {
   if (!writer_) return;
@@ -85,9 +77,7 @@ void Store::attempt(const Write& write) {
     write();
   } catch (const Error& error) {
     if (need_ == Need::required) throw;
-    log::warn(fmt::format("{}; the run goes on, but could not be resumed", error.what()));
-    writer_.reset();
-    lock_.clear();
+    give_up(error.what());
   }
   time_ += {wall.seconds(), thread_cpu_seconds() - cpu};
 }
@@ -98,13 +88,18 @@ void Store::open(std::vector<frame::ObjectInfo> objects) {
     writer_ = std::make_unique<cache::Writer>(lock_, manifest_, scene_text_);
   } catch (const Error& error) {
     if (need_ == Need::required) throw;
-    log::warn(fmt::format("{}; the run goes on, but could not be resumed", error.what()));
-    lock_.clear();
+    give_up(error.what());
   }
 }
 
 void Store::add(const SimulatedFrame& frame) {
-  attempt([&] { writer_->add(*frame.snapshot, frame.report); });
+  attempt([&] {
+    std::error_code error;
+    const std::filesystem::space_info space = std::filesystem::space(folder(), error);
+    if (need_ == Need::helpful && !error && space.available < bytes())
+      return give_up(fmt::format("{}: the rest of the disk is left to the output", folder().string()));
+    writer_->add(*frame.snapshot, frame.report);
+  });
 }
 
 void Store::save_if_cheap(const simulation::Simulation& simulation, int frame) {
@@ -116,7 +111,7 @@ void Store::save(const simulation::Simulation& simulation, int frame) {
   attempt([&] {
     const WallTimer timer;
     state_.clear();
-    save_state(simulation, state_);
+    simulation.save(state_);
     writer_->save_state(frame, state_);
     saved_frame_ = frame;
     save_seconds_ = timer.seconds();
@@ -183,7 +178,7 @@ void StoredSimulation::prepare_simulation() {
   simulation_ = std::make_unique<simulation::Simulation>(scene_);
   if (!store_.resumes()) return;
   try {
-    restore_state(*simulation_, store_.start().frame, store_.start().bytes);
+    simulation_->restore(store_.start().bytes);
   } catch (const std::runtime_error& error) {
     throw Error(ExitCode::asset_unreadable, "{}: the state of the solver is broken: {}; leave --resume away",
                 store_.folder().string(), error.what());

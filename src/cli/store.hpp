@@ -21,7 +21,7 @@ class Store {
  public:
   enum class Need {
     required,  ///< what cannot be kept ends the run
-    helpful,   ///< what cannot be kept is given up with a warning: the run has another output
+    helpful,   ///< what cannot be kept, or takes the room of the other output, is given up with a warning
   };
 
   /// Nobody else writes to `folder` from now on. Throws Error(output_failed).
@@ -59,12 +59,13 @@ class Store {
   /// Not while frames are added.
   void remove();
   const std::vector<frame::ObjectInfo>& objects() const { return manifest_.objects; }
-  /// False once keeping frames was given up.
-  bool writes() const { return writer_ != nullptr; }
+  /// A state is there.
+  bool can_resume() const { return saved_frame_ || reader_; }
   StageTime time() const { return time_; }
-  std::uintmax_t bytes() const { return writer_ ? writer_->bytes_written() : 0; }
+  std::uintmax_t bytes() const { return writer_ ? writer_->bytes_added() : 0; }
 
  private:
+  void give_up(const std::string& reason);
   template <class Write>
   void attempt(const Write& write);
 

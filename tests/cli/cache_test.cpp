@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "cache/reader.hpp"
 #include "cache/writer.hpp"
 #include "cli/cached_run.hpp"
 #include "cli/video_probe.hpp"
@@ -86,7 +87,6 @@ TEST_F(CachedRun, SimulationGoesOnWithTheSameBitsFromAnyFrame) {
 }
 
 TEST_F(CachedRun, SimulationGoesOnFromTheMiddleOfItsPreroll) {
-  const Arguments scene{"s.toml", "--set", "time.preroll=0.4"};
   const auto simulate = [&](Arguments more) {
     more.insert(more.begin(), {"simulate", "s.toml", "--set", "time.preroll=0.4"});
     return more;
@@ -263,7 +263,7 @@ TEST_F(CachedRun, FullDiskEndsASimulationButOnlyTheCacheOfARun) {
   // Pictures of a few kilobytes fit where states do not.
   const Outcome run = limited({"run", "s.toml", "-o", std::string("p/") + kPictures}, 8000);
   EXPECT_EQ(run.exit_code, 0) << run.err;
-  EXPECT_TRUE(contains(run.err, "the run goes on, but could not be resumed")) << run.err;
+  EXPECT_TRUE(contains(run.err, "the run goes on, but")) << run.err;
   EXPECT_EQ(contents("p", ".png").size(), static_cast<std::size_t>(kFrames));
   EXPECT_FALSE(fs::exists(folder_ / "p/.s.weft-cache"));
 }
