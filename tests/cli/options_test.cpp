@@ -100,13 +100,14 @@ TEST(Options, MisspeltOptionsAndCommandsNameTheNearest) {
             "weft run: unknown option --sise; did you mean --size?; see weft run --help");
   EXPECT_EQ(refusal({"thumbnial", "a.toml"}),
             "unknown command thumbnial; did you mean thumbnail?; the commands are run, check, thumbnail, schema, "
-            "doctor, bench");
+            "doctor, bench, diff, accept");
   EXPECT_EQ(refusal({"frobnicate"}),
-            "unknown command frobnicate; the commands are run, check, thumbnail, schema, doctor, bench");
+            "unknown command frobnicate; the commands are run, check, thumbnail, schema, doctor, bench, diff, accept");
   EXPECT_EQ(refusal({"a.toml"}), "expected a command before a.toml; did you mean weft run a.toml?");
   EXPECT_EQ(refusal({"--versoin"}),
             "unknown option --versoin before the command; did you mean --version?; see weft --help");
-  EXPECT_EQ(refusal({}), "expected a command: run, check, thumbnail, schema, doctor, bench, diff, accept; see weft --help");
+  EXPECT_EQ(refusal({}),
+            "expected a command: run, check, thumbnail, schema, doctor, bench, diff, accept; see weft --help");
 }
 
 TEST(Options, MissingOrSurplusArgumentsAreRefused) {
