@@ -1,0 +1,86 @@
+// OpenImageIO's idiff as an independent judge: the same counts of pixels and the same verdicts.
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdio>
+#include <regex>
+
+#include "compare/files.hpp"
+#include "compare/pictures.hpp"
+#include "image/png.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::compare {
+namespace {
+
+struct Judgement {
+  bool passed = false;
+  std::int64_t pixels_over = 0;
+};
+
+class Idiff : public support::TestFolder {
+ protected:
+  void SetUp() override {
+    TestFolder::SetUp();
+    // The shell says 127 for what it does not find.
+    const int status = std::system("idiff --version >/dev/null 2>&1");
+    if (WEXITSTATUS(status) == 127) GTEST_SKIP() << "idiff is not here: apt-get install openimageio-tools";
+  }
+
+  // Half a level above the tolerance, so that rounding of floating point decides nothing; no warnings.
+  Judgement ask(int tolerance, double budget) const {
+    const std::string command =
+        fmt::format("idiff -warn 2 -fail {:.9f} -failpercent {:.9f} '{}' '{}' 2>&1", (tolerance + 0.5) / 255,
+                    100 * budget, (folder_ / "a.png").string(), (folder_ / "b.png").string());
+    Judgement judgement;
+    std::string text;
+    std::FILE* pipe = ::popen(command.c_str(), "r");
+    EXPECT_NE(pipe, nullptr);
+    for (int c; (c = std::fgetc(pipe)) != EOF;) text += static_cast<char>(c);
+    judgement.passed = WEXITSTATUS(::pclose(pipe)) == 0;
+    // "  34811 pixels (60.4%) over 0.0177", after a line like it for the warnings, and only where it fails.
+    const std::regex line(R"((\d+) pixels \()");
+    std::smatch match;
+    for (; std::regex_search(text, match, line); text = match.suffix()) judgement.pixels_over = std::stoll(match[1]);
+    return judgement;
+  }
+
+  void expect_same(const image::Image& a, const image::Image& b) const {
+    image::write_png(folder_ / "a.png", a);
+    image::write_png(folder_ / "b.png", b);
+    for (const int tolerance : {0, 4}) {
+      constexpr double kBudget = 0.0125;
+      const FileComparison result = compare_files(folder_ / "a.png", folder_ / "b.png", {tolerance, kBudget, 1});
+      Judgement judgement = ask(tolerance, kBudget);
+      EXPECT_EQ(judgement.passed, result.good()) << tolerance;
+      if (judgement.passed) judgement = ask(tolerance, 0);
+      EXPECT_EQ(judgement.pixels_over, result.worst.figures.pixels_over) << tolerance;
+    }
+  }
+};
+
+TEST_F(Idiff, AgreesOnNoiseOfEveryAmount) {
+  const image::Image picture = textured(80, 60, 1);
+  for (const int count : {0, 1, 60, 900}) expect_same(picture, with_noise(picture, count, 6, 11));
+  expect_same(picture, with_noise(picture, 60, 80, 11));
+}
+
+TEST_F(Idiff, AgreesAtTheToleranceAndAtTheBudget) {
+  const image::Image picture = plain(80, 60, 100, 100, 100);
+  image::Image changed = picture;
+  // 60 of 4800 pixels, just the budget above; one half by the tolerance, the other by one more.
+  for (int x = 0; x < 60; ++x) changed.pixel(x, 7)[x % 3] = static_cast<std::uint8_t>(x < 30 ? 104 : 95);
+  expect_same(picture, changed);
+  for (int x = 0; x < 60; ++x) changed.pixel(x, 7)[x % 3] = 95;
+  expect_same(picture, changed);
+  changed.pixel(70, 50)[0] = 95;
+  expect_same(picture, changed);
+}
+
+TEST_F(Idiff, AgreesOnOtherPictures) {
+  expect_same(textured(80, 60, 1), textured(80, 60, 2));
+  expect_same(textured(80, 60, 1), plain(80, 60, 255, 0, 128));
+}
+
+}  // namespace
+}  // namespace weft::compare
