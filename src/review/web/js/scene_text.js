@@ -47,7 +47,10 @@
     search() {
       const wanted = this.input.value.trim().toLowerCase();
       this.found = wanted ? this.rows.filter((_, i) => this.lines[i].toLowerCase().includes(wanted)) : [];
-      for (const row of this.rows) row.classList.toggle("hit", this.found.includes(row));
+      for (const row of this.rows) {
+        row.classList.toggle("hit", this.found.includes(row));
+        row.classList.remove("current");
+      }
       this.at = -1;
       this.count.textContent = wanted ? plural(this.found.length, "line") : "";
       if (this.found.length > 0) this.show(0);

@@ -135,7 +135,8 @@
 
     followPointer() {
       const move = (event) => {
-        if (this.mode !== "slider" || event.target === this.split || (event.type === "pointermove" && event.buttons === 0)) return;
+        if (this.mode !== "slider" || event.target === this.split || event.buttons === 0) return;
+        if (event.type === "pointerdown") this.stage.setPointerCapture(event.pointerId); // also past the edges
         const box = this.blend.getBoundingClientRect();
         this.setSplit((100 * (event.clientX - box.left)) / box.width);
       };

@@ -1,0 +1,291 @@
+"""The review page in headless Chromium, driven as a reader would. Usage: browser_test.py WEFT SOURCE_FOLDER"""
+
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+import unittest
+import zlib
+
+import webdriver
+
+WEFT, SOURCE = sys.argv[1:3]
+SKIPPED = 77  # told to ctest
+HOSTILE = "<img src=x onerror=alert(1)> & 'co'"
+FRAMES, STEP = 40, 4  # drawn: frames 0, 4, 8 up to 36, in which a falling band differs clearly
+PICTURES = FRAMES // STEP
+SIZE = (192, 108)
+
+
+def weft(folder, *arguments):
+    subprocess.run([WEFT, *arguments], cwd=folder, check=True, capture_output=True)
+
+
+def simulate(folder, output, *settings):
+    name = pathlib.Path(output).name.split("_{")[0].removesuffix(".mp4")
+    weft(folder, "run", f"{SOURCE}/scenes/falling_band.toml", "-o", output, "--stats",
+         str(pathlib.Path(output).parent / f"{name}.json"), "--frames", f"0:{FRAMES}:{STEP}", "--quality", "draft",
+         "--size", f"{SIZE[0]}x{SIZE[1]}", "--progress", "none", *settings)
+
+
+def read_png(content):
+    """Rows of bytes, three for each pixel, of an 8-bit RGB or RGBA picture."""
+    place, data = 8, b""
+    while place < len(content):
+        length, kind = struct.unpack(">I4s", content[place:place + 8])
+        chunk = content[place + 8:place + 8 + length]
+        if kind == b"IHDR":
+            width, height, depth, color = struct.unpack(">IIBB", chunk[:10])
+            assert depth == 8 and color in (2, 6)
+            pixel = 3 if color == 2 else 4
+        data += chunk if kind == b"IDAT" else b""
+        place += 12 + length
+    data, rows, above = zlib.decompress(data), [], bytes(width * pixel)
+    for y in range(height):
+        start = y * (width * pixel + 1)
+        row = bytearray(data[start + 1:start + 1 + width * pixel])
+        for i, value in enumerate(row):
+            a, b, c = (row[i - pixel] if i >= pixel else 0), above[i], (above[i - pixel] if i >= pixel else 0)
+            p = a + b - c
+            paeth = min((abs(p - a), 0, a), (abs(p - b), 1, b), (abs(p - c), 2, c))[2]
+            row[i] = (value + (0, a, b, (a + b) // 2, paeth)[data[start]]) % 256
+        rows.append(bytes(row))
+        above = row
+    return [bytes(v for i, v in enumerate(row) if i % pixel < 3) for row in rows]
+
+
+def distance(a, b):
+    return sum(abs(x - y) for row, other in zip(a, b) for x, y in zip(row, other)) / (len(a) * len(a[0]))
+
+
+class Page(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.scratch = tempfile.TemporaryDirectory(prefix="weft_review_")
+        folder = cls.folder = pathlib.Path(cls.scratch.name)
+        simulate(folder, "in/plain.mp4")
+        simulate(folder, "in/soft/plain.mp4", "--set", "cloth.band.material.stretch=300")
+        simulate(folder, "in/stills/plain_{frame:03}.png")
+        (folder / "in" / f"{HOSTILE}.mp4").write_bytes((folder / "in/plain.mp4").read_bytes())
+        (folder / "ref").mkdir()
+        (folder / "ref/plain.mp4").write_bytes((folder / "in/plain.mp4").read_bytes())
+        weft(folder, "review", "in", "--reference", "ref", "-o", "page")
+        cls.stills = [read_png((folder / f"in/stills/plain_{STEP * k:03}.png").read_bytes()) for k in range(PICTURES)]
+        cls.browser = webdriver.Browser(1280, 800)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.browser.close()
+        cls.scratch.cleanup()
+
+    def tearDown(self):
+        self.assertEqual(self.browser.complaints(), [])
+        elsewhere = [url for url in self.browser.requests() if not url.startswith(("file:", "data:", "about:"))]
+        self.assertEqual(elsewhere, [])
+
+    def open(self, address="", width=1280, height=800, dark=False):
+        self.browser.resize(width, height)
+        self.browser.prefer(dark)
+        self.browser.open("about:blank")
+        self.browser.open((self.folder / "page/index.html").as_uri() + address)
+        self.browser.wait("return document.querySelector('#content > *')")
+
+    def open_run(self, run, more=""):
+        self.open(f"#run=runs/{run}{more}")
+        self.settled()
+
+    def settled(self):
+        """Waits until every picture on screen is the one that the controls name; returns the frame."""
+        return int(self.browser.wait("""
+            const viewer = document.querySelector('.viewer'), wanted = viewer.querySelector('.scrubber').value;
+            const media = [...viewer.querySelectorAll('video, .layer img')];
+            return media.length > 0 && media.every((m) => m.dataset.picture === wanted) && viewer.dataset.frame;"""))
+
+    def shown(self, selector=".blend", size=SIZE):
+        """What is on screen, at the size of the video."""
+        import base64
+        box = self.browser.run("const b = document.querySelector(arguments[0]).getBoundingClientRect();"
+                               "return {x: b.x + scrollX, y: b.y + scrollY, width: b.width, height: b.height}", selector)
+        clip = {**box, "scale": size[0] / box["width"]}
+        picture = self.browser.devtools("Page.captureScreenshot", {"clip": clip})["data"]
+        return read_png(base64.b64decode(picture))
+
+    def picture_on_screen(self):
+        """The number of the still that the screen resembles most."""
+        screen = self.shown()
+        return min(range(PICTURES), key=lambda k: distance(screen, self.stills[k]))
+
+    def text(self, selector):
+        return self.browser.run("return document.querySelector(arguments[0]).textContent", selector)
+
+    def overflow(self):
+        return self.browser.run("""
+            const width = document.documentElement.clientWidth;
+            return [...document.querySelectorAll('body *')].filter((e) => !e.closest('.table-frame, .sheet, .scene-lines, .hidden, .skip') &&
+              e.getBoundingClientRect().right > width + 1).map((e) => e.className || e.tagName).slice(0, 5)""")
+
+    def test_overview_lists_every_run_and_shows_names_as_text(self):
+        self.open()
+        names = self.browser.run("return [...document.querySelectorAll('.runs .name a')].map((a) => a.textContent)")
+        self.assertCountEqual(names, ["plain", "soft/plain", "stills/plain", HOSTILE])
+        self.assertEqual(self.browser.run("return document.querySelectorAll('img[src=x]').length"), 0)
+
+    def test_runs_are_filtered_and_sorted(self):
+        self.open()
+        self.browser.press("/", *"soft")
+        shown = "return [...document.querySelectorAll('.runs tbody tr:not([hidden])')].map((tr) => tr.dataset.run)"
+        self.assertEqual(self.browser.run(shown), ["runs/soft-plain"])
+        self.open()
+        self.browser.run("[...document.querySelectorAll('.runs thead button')].find((b) => b.textContent === 'Largest strain').click()")
+        order = self.browser.run(shown)
+        self.assertEqual((order[-2:]), ["runs/soft-plain", f"runs/img-src-x-onerror-alert-1-co"])
+
+    def test_keyboard_alone_chooses_and_compares_runs(self):
+        self.open()
+        self.browser.press("j", "j", "x", "j", "x", "c")
+        self.browser.wait("return document.querySelector('.compare-page')")
+        self.assertEqual(self.browser.run("return document.querySelectorAll('.members li').length"), 2)
+
+    def test_every_frame_that_is_asked_for_is_on_screen(self):
+        self.open_run("soft-plain")
+        self.open_run("plain", "&with=")
+        for k in (0, 7, 3, 9, 8, 1, 2):
+            self.browser.run("const s = document.querySelector('.scrubber'); s.value = arguments[0]; s.dispatchEvent(new Event('input'))", k)
+            self.assertEqual(self.settled(), STEP * k)
+            self.assertEqual(self.picture_on_screen(), k)
+
+    def test_stills_are_shown_as_videos_are(self):
+        self.open_run("stills-plain", "&with=")
+        self.browser.press("End")
+        self.assertEqual(self.settled(), FRAMES - STEP)
+        self.assertEqual(self.picture_on_screen(), PICTURES - 1)
+        self.browser.press("Home", "Space")
+        self.browser.wait(f"return document.querySelector('.viewer').dataset.frame === '{FRAMES - STEP}'")
+
+    def test_keys_step_through_the_frames(self):
+        self.open_run("plain")
+        for keys, frame in (["ArrowRight"], STEP), (["."] * 2, 3 * STEP), (["ArrowLeft"], 2 * STEP), (["End"], FRAMES - STEP), \
+                (["ArrowRight"], FRAMES - STEP), (["Shift+ArrowLeft"], 0), (["g", "2", "0", "Enter"], 20):
+            self.browser.press(*keys)
+            self.assertEqual(self.settled(), frame, keys)
+
+    def test_playing_ends_on_the_last_frame(self):
+        self.open_run("plain")
+        self.browser.press("Space")
+        self.browser.wait(f"return document.querySelector('.viewer').dataset.frame === '{FRAMES - STEP}'")
+        self.settled()
+        self.assertEqual(self.browser.run("return [...document.querySelectorAll('video')].map((v) => v.paused)"), [True, True])
+
+    def test_address_leads_back_to_the_frame(self):
+        self.open_run("plain", "&frame=24&view=blink")
+        self.assertEqual(self.settled(), 24)
+        self.assertEqual(self.text("[data-mode][aria-pressed=true]"), "Blink")
+        self.browser.press("ArrowRight")
+        self.settled()
+        self.assertIn("frame=28", self.browser.run("return location.hash"))
+
+    def test_line_in_the_plots_stands_at_the_frame_and_a_click_leads_there(self):
+        self.open_run("plain")
+        self.browser.press("End")
+        self.settled()
+        place = """const over = document.querySelector('[data-plot=strain] .u-over').getBoundingClientRect();
+                   const line = document.querySelector('[data-plot=strain] .playhead').getBoundingClientRect();
+                   return [over.left, over.top, over.width, line.left + 1 - over.left]"""
+        left, top, width, line = self.browser.run(place)
+        self.assertAlmostEqual(line, width, delta=1.5)  # the last picture is the last frame
+        self.browser.drag([(left + width / 2, top + 20)] * 2)
+        frame = self.settled()
+        self.assertAlmostEqual(frame, (FRAMES - STEP) / 2, delta=STEP / 2)
+        self.assertAlmostEqual(self.browser.run(place)[3], width * frame / (FRAMES - STEP), delta=1.5)
+
+    def test_slider_follows_the_mouse_and_shows_both(self):
+        self.open_run("soft-plain", "&with=runs/stills-plain&frame=36")
+        box = self.browser.run("const b = document.querySelector('.blend').getBoundingClientRect(); return [b.left, b.top, b.width]")
+        for percent in (100, 0):
+            self.browser.drag([(box[0] + box[2] / 2, box[1] + 50), (box[0] + box[2] * percent / 100, box[1] + 50)])
+            share = self.browser.run("return document.querySelector('.stage').style.getPropertyValue('--split')")
+            self.assertAlmostEqual(float(share.rstrip("%")), percent, delta=0.5)
+            # The reference, all of it, where the slider is at the left end.
+            self.assertEqual(distance(self.shown(), self.stills[9]) < 3, percent == 0)
+        self.browser.press("]", "]")
+        self.assertEqual(self.browser.run("return document.querySelector('.split').value"), "10")
+
+    def test_difference_of_equal_videos_is_dark_and_of_others_is_not(self):
+        brightest = lambda: max(max(row) for row in self.shown())
+        self.open_run("plain", "&view=difference&frame=36")
+        self.browser.run("document.querySelector('.names').hidden = true")
+        self.assertLess(brightest(), 24)  # the dark end of the heat colours has a blue of 8
+        self.open_run("soft-plain", "&view=difference&frame=36")
+        self.browser.run("document.querySelector('.names').hidden = true")
+        self.assertGreater(brightest(), 150)
+
+    def test_blink_shows_one_then_the_other(self):
+        self.open_run("plain", "&view=slider")
+        self.browser.press("4")
+        visible = "return getComputedStyle(document.querySelector('.layer-b')).visibility"
+        self.browser.wait(visible + " === 'visible'")
+        self.browser.wait(visible + " === 'hidden'")
+        self.browser.press("b")
+        self.assertEqual(self.browser.run(visible), "visible")
+        self.browser.press("b")
+        self.assertEqual(self.browser.run(visible), "hidden")
+
+    def test_differences_of_scenes_are_just_those_that_were_set(self):
+        self.open("#compare=runs/plain&compare=runs/soft-plain")
+        self.assertEqual(self.browser.run("return [...document.querySelectorAll('.scenes tbody th')].map((e) => e.textContent)"),
+                         ["cloth.band.material.stretch"])
+
+    def test_scene_is_searched(self):
+        self.open_run("plain")
+        self.browser.press("/", *"stretch", "Enter")
+        self.assertRegex(self.text(".scene-search .found"), r"^\d+ of \d+ lines$")
+        self.assertIn("stretch", self.text(".scene-lines .current"))
+
+    def test_dark_and_light_follow_the_system_until_one_is_chosen(self):
+        ground = "return getComputedStyle(document.body).backgroundColor"
+        self.open(dark=True)
+        dark = self.browser.run(ground)
+        self.browser.prefer(False)
+        light = self.browser.run(ground)
+        self.assertNotEqual(dark, light)
+        self.browser.press("t", "t")  # auto, light, dark
+        self.assertEqual(self.browser.run(ground), dark)
+        self.open()
+        self.assertEqual(self.browser.run(ground), dark, "the choice is kept")
+        self.browser.press("t")
+        self.assertEqual(self.browser.run(ground), light)
+
+    def test_help_explains_the_keys_of_the_page(self):
+        self.open_run("plain")
+        self.browser.press("?")
+        self.assertTrue(self.browser.run("return document.querySelector('#help').open"))
+        self.assertIn("one frame back", self.text("#help"))
+        self.browser.press("Escape")
+        self.assertFalse(self.browser.run("return document.querySelector('#help').open"))
+
+    def test_focus_is_seen(self):
+        self.open()
+        for _ in range(6):
+            self.browser.press("Tab")
+            self.assertNotEqual(self.browser.run("return getComputedStyle(document.activeElement).outlineStyle"), "none")
+
+    def test_nothing_is_wider_than_the_window(self):
+        for width in (1280, 390):
+            for address in ("", "#run=runs/plain", "#run=runs/img-src-x-onerror-alert-1-co",
+                            "#compare=runs/plain&compare=runs/soft-plain&compare=runs/stills-plain"):
+                self.open(address, width=width)
+                self.assertEqual(self.overflow(), [], (width, address))
+                self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), width)
+
+    def test_pages_without_statistics_pictures_or_scene_say_so(self):
+        self.open_run("img-src-x-onerror-alert-1-co")
+        self.assertIn("no statistics", self.text(".notes"))
+        self.assertIn("No effective scene", self.text("#content"))
+
+
+if __name__ == "__main__":
+    if webdriver.missing():
+        print(f"skipped: the page is tested in a browser, which is not here: apt-get install {' '.join(webdriver.missing())}")
+        sys.exit(SKIPPED)
+    unittest.main(argv=sys.argv[:1] + sys.argv[3:], verbosity=2)
