@@ -113,7 +113,7 @@ void add_picture(CLI::App& command, SceneOptions& options) {
             [&](const std::string& text) { options.size = parse_size(text); });
   add_value(command, "--camera", "NAME", "A camera of the scene [its choice, or automatic framing]",
             [&](const std::string& text) { options.camera = text; });
-  const char* quality = options.quality == render::Quality::draft ? "draft" : "final";
+  const char* quality = options.quality == render::Quality::preview ? "preview" : "final";
   add_value(command, "--quality", "draft|preview|final", fmt::format("Care taken in drawing [{}]", quality).c_str(),
             [&](const std::string& text) { options.quality = parse_choice("--quality", text, kQualities); });
   add_backend(command, options.backend);

@@ -67,7 +67,7 @@ struct SheetOptions {
   int count = 12;                ///< pictures at most
   std::optional<int> columns;
 
-  SheetOptions() { common.quality = render::Quality::draft; }
+  SheetOptions() { common.quality = render::Quality::preview; }
 };
 
 struct SchemaOptions {};
