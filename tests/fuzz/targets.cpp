@@ -3,10 +3,12 @@
 #include <png.h>
 #include <sys/mman.h>
 #include <unistd.h>
+#include <xxhash.h>
 #include <zlib.h>
 
 #include <array>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -14,6 +16,10 @@
 
 #include "assets/character_reader.hpp"
 #include "assets/soup.hpp"
+#include "cache/codec.hpp"
+#include "cache/container.hpp"
+#include "cache/manifest.hpp"
+#include "cache/sample.hpp"
 #include "core/error.hpp"
 #include "garment/outline.hpp"
 #include "garment/pattern.hpp"
@@ -144,6 +150,55 @@ void read_answer(Bytes bytes) {
   }
 }
 
+// Sizes and check sum of the header are made right, so that damage is met by more than the check.
+void read_container(Bytes bytes) {
+  constexpr std::size_t kStoredSizeAt = 40, kSumAt = 48, kHeaderSize = 56;
+  std::string file(text_of(bytes));
+  if (file.size() >= kHeaderSize) {
+    const std::uint64_t stored_size = file.size() - kHeaderSize;
+    std::memcpy(&file[kStoredSizeAt], &stored_size, sizeof stored_size);
+    std::string summed = file.substr(0, kSumAt) + file.substr(kHeaderSize);
+    const std::uint64_t sum = XXH3_64bits(summed.data(), summed.size());
+    std::memcpy(&file[kSumAt], &sum, sizeof sum);
+  }
+  try {
+    const cache::Content content = cache::unpack(file);
+    require(cache::unpack(cache::pack(content.label, content.payload)).payload == content.payload,
+            "what was unpacked can be packed");
+  } catch (const std::runtime_error&) {
+  }
+}
+
+void read_surfaces(Bytes bytes) {
+  try {
+    const cache::Surfaces surfaces = cache::decode_surfaces(text_of(bytes));
+    require(cache::encode_surfaces(surfaces) == text_of(bytes), "what was read is what was written");
+  } catch (const std::runtime_error&) {
+  }
+}
+
+void read_frame(Bytes bytes) {
+  static const cache::Surfaces kSurfaces = cache::surfaces_of(*cache::Sample().snapshot(0));
+  try {
+    const cache::CachedFrame read = cache::decode_frame(text_of(bytes), 1, kSurfaces);
+    const std::string written = cache::encode_frame(*read.snapshot, read.report, kSurfaces);
+    require(
+        cache::encode_frame(*cache::decode_frame(written, 1, kSurfaces).snapshot, read.report, kSurfaces) == written,
+        "what was read can be written");
+  } catch (const std::runtime_error&) {
+  }
+}
+
+void read_manifest(Bytes bytes) {
+  std::string written;
+  try {
+    written = cache::manifest_text(cache::parse_manifest(text_of(bytes)));
+  } catch (const std::runtime_error&) {
+    return;
+  }
+  require(cache::manifest_text(cache::parse_manifest(written)) == written, "what was read can be written");
+}
+
 constexpr std::array kTargets{Target{"scene", read_scene},
                               Target{"pattern", read_pattern},
                               Target{"svg", read_svg},
@@ -151,7 +206,11 @@ constexpr std::array kTargets{Target{"scene", read_scene},
                               Target{"image", read_image},
                               Target{"ply", read_ply},
                               Target{"character", read_answer<assets::character_from_bytes>},
-                              Target{"mesh", read_answer<assets::from_bytes>}};
+                              Target{"mesh", read_answer<assets::from_bytes>},
+                              Target{"container", read_container},
+                              Target{"surfaces", read_surfaces},
+                              Target{"frame", read_frame},
+                              Target{"manifest", read_manifest}};
 
 }  // namespace
 
