@@ -19,7 +19,11 @@ ExitCode render(const RenderOptions& options);
 /// Mistakes go to standard error, good scenes and plans to standard output.
 ExitCode check(const CheckOptions& options);
 
+/// One still: the frame that is asked for, or the one that tells most.
 ExitCode thumbnail(const ThumbnailOptions& options);
+
+/// Evenly spaced frames on one picture, with their numbers and times.
+ExitCode sheet(const SheetOptions& options);
 
 /// Prints what this machine offers and tries it.
 ExitCode doctor(const DoctorOptions& options);

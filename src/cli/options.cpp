@@ -113,7 +113,8 @@ void add_picture(CLI::App& command, SceneOptions& options) {
             [&](const std::string& text) { options.size = parse_size(text); });
   add_value(command, "--camera", "NAME", "A camera of the scene [its choice, or automatic framing]",
             [&](const std::string& text) { options.camera = text; });
-  add_value(command, "--quality", "draft|preview|final", "Care taken in drawing [final]",
+  const char* quality = options.quality == render::Quality::preview ? "preview" : "final";
+  add_value(command, "--quality", "draft|preview|final", fmt::format("Care taken in drawing [{}]", quality).c_str(),
             [&](const std::string& text) { options.quality = parse_choice("--quality", text, kQualities); });
   add_backend(command, options.backend);
 }
@@ -162,6 +163,7 @@ struct Parser {
   RenderOptions render;
   CheckOptions check;
   ThumbnailOptions thumbnail;
+  SheetOptions sheet;
   SchemaOptions schema;
   DoctorOptions doctor;
   BenchOptions bench;
@@ -187,6 +189,7 @@ struct Parser {
     add_render();
     add_check();
     add_thumbnail();
+    add_sheet();
     add_schema();
     add_doctor();
     add_bench();
@@ -257,10 +260,24 @@ struct Parser {
     CLI::App& command = *app.add_subcommand("thumbnail", "Draw one still of a scene");
     add_value(command, "-o,--output", "FILE.png", "The picture [output/<scene>.png]",
               [this](const std::string& text) { thumbnail.output = text; });
-    add_value(command, "--frame", "N", "Which frame, counted from 0 [the middle one]",
+    add_value(command, "--frame", "N", "Which frame, counted from 0 [the one that tells most]",
               [this](const std::string& text) { thumbnail.frame = parse_integer("--frame", text, 0, 1'000'000'000); });
     add_common(command, thumbnail.common);
     command.footer("\nExample:\n  weft thumbnail scenes/falling_band.toml -o band.png --frame 60 --quality draft");
+  }
+
+  void add_sheet() {
+    CLI::App& command = *app.add_subcommand("sheet", "Draw evenly spaced frames of a scene on one picture");
+    add_value(command, "-o,--output", "FILE.png", "The picture [output/<scene>.sheet.png]",
+              [this](const std::string& text) { sheet.output = text; });
+    add_value(command, "--count", "N", "How many frames, the first and the last among them [12]",
+              [this](const std::string& text) { sheet.count = parse_integer("--count", text, 1, 400); });
+    add_value(command, "--columns", "N", "How many side by side [4]",
+              [this](const std::string& text) { sheet.columns = parse_integer("--columns", text, 1, 40); });
+    add_common(command, sheet.common);
+    command.footer(
+        "\nExample:\n  weft sheet scenes/falling_band.toml -o sheet.png --count 20 --columns 5\n"
+        "\n--size is that of each small picture [400 wide].");
   }
 
   void add_schema() {
@@ -452,6 +469,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "render") return parser.render;
   if (name == "check") return parser.check;
   if (name == "thumbnail") return parser.thumbnail;
+  if (name == "sheet") return parser.sheet;
   if (name == "schema") return parser.schema;
   if (name == "bench") return parser.bench;
   if (name == "diff") return parser.diff;

@@ -58,7 +58,16 @@ struct CheckOptions {
 struct ThumbnailOptions {
   SceneOptions common;
   std::filesystem::path output;  ///< empty: output/<scene>.png
-  std::optional<int> frame;      ///< else the middle one
+  std::optional<int> frame;      ///< else the one that tells most
+};
+
+struct SheetOptions {
+  SceneOptions common;           ///< the size is that of each picture
+  std::filesystem::path output;  ///< empty: output/<scene>.sheet.png
+  int count = 12;                ///< pictures at most
+  std::optional<int> columns;
+
+  SheetOptions() { common.quality = render::Quality::preview; }
 };
 
 struct SchemaOptions {};
@@ -100,8 +109,9 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SchemaOptions,
-                             DoctorOptions, BenchOptions, DiffOptions, AcceptOptions, ReviewOptions, PrintText>;
+using Command =
+    std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SheetOptions,
+                 SchemaOptions, DoctorOptions, BenchOptions, DiffOptions, AcceptOptions, ReviewOptions, PrintText>;
 
 /// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
 Command parse_command_line(const std::vector<std::string>& arguments);

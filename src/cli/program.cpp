@@ -27,6 +27,7 @@ struct Dispatch {
   ExitCode operator()(const RenderOptions& options) const { return render(options); }
   ExitCode operator()(const CheckOptions& options) const { return check(options); }
   ExitCode operator()(const ThumbnailOptions& options) const { return thumbnail(options); }
+  ExitCode operator()(const SheetOptions& options) const { return sheet(options); }
   ExitCode operator()(const SchemaOptions&) const { return print(scene::json_schema() + "\n"); }
   ExitCode operator()(const DoctorOptions& options) const { return doctor(options); }
   ExitCode operator()(const BenchOptions& options) const { return bench(options); }

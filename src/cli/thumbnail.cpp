@@ -1,72 +1,74 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "cli/commands.hpp"
-#include "cli/output_target.hpp"
-#include "cli/scene_input.hpp"
-#include "cli/signals.hpp"
-#include "cli/stages.hpp"
+#include "cli/stills.hpp"
 #include "core/log.hpp"
 #include "core/parallel.hpp"
 #include "image/png.hpp"
-#include "simulation/simulation.hpp"
+#include "render/telling.hpp"
 
 namespace weft::cli {
 namespace {
 
-std::filesystem::path picture_file(const ThumbnailOptions& options, const scene::Scene& scene) {
-  const auto file = options.output.empty() ? std::filesystem::path("output") / (scene.name + ".png") : options.output;
-  if (file.extension() != ".png") {
-    throw Error(ExitCode::usage, "-o: expected a name ending in .png, got {}", file.string());
-  }
-  return file;
+void check_frame(int frame, const std::vector<int>& frames) {
+  if (std::binary_search(frames.begin(), frames.end(), frame)) return;
+  throw Error(ExitCode::usage, "--frame: expected one of the {} frames from {} to {}, got {}", frames.size(),
+              frames.front(), frames.back(), frame);
 }
 
-int chosen_frame(const ThumbnailOptions& options, const scene::Scene& scene) {
-  const int count = scene.frame_count();
-  const int frame = options.frame.value_or(count / 2);
-  if (frame < count) return frame;
-  throw Error(ExitCode::usage, "--frame: expected 0 to {}, the frames of this scene, got {}", count - 1, frame);
+struct Choice {
+  frame::SnapshotPtr snapshot;
+  render::Telling telling;
+};
+
+/// The first of the frames that tell most.
+Choice most_telling(Stills& stills, const std::vector<int>& frames, Progress& progress) {
+  const render::Settings settings = stills.settings();
+  const double aspect = static_cast<double>(settings.width) / settings.height;
+  Choice best;
+  frame::SnapshotPtr previous;
+  for (const int k : frames) {
+    const frame::SnapshotPtr snapshot = stills.at(k, progress);
+    const double seconds = previous ? (k - previous->frame) / stills.fps() : 0;
+    const render::Telling telling = render::how_telling(*snapshot, previous.get(), seconds, settings.camera, aspect);
+    if (!best.snapshot || telling.score() > best.telling.score()) best = {snapshot, telling};
+    previous = snapshot;
+  }
+  if (best.telling.coverage == 0)
+    log::warn("no frame shows any cloth: does the camera look at the scene? The first frame is drawn");
+  return best;
 }
 
-// The scene at frame k. Each frame needs all those before it.
-frame::SnapshotPtr simulate_to(const scene::Scene& scene, int frame, Progress& progress) {
-  const StopSignals signals;
-  simulation::Simulation simulation(scene);
-  const auto proceed = [&] {
-    progress.advance(Stage::simulate);
-    return !signals.requested();
-  };
-  if (!simulation.run_preroll(proceed)) throw Error(ExitCode::interrupted, "interrupted before frame 0; no picture");
-  progress.advance(Stage::simulate);
-  for (int k = 1; k <= frame; ++k) {
-    if (signals.requested()) throw Error(ExitCode::interrupted, "interrupted before frame {}; no picture", k);
-    simulation.advance();
-    progress.advance(Stage::simulate);
-  }
-  return simulation.snapshot();
+std::string describe_choice(const render::Telling& telling, std::size_t count) {
+  return fmt::format(", the most telling of {}: cloth covers {:.0f} % of the picture, folding {:.2f}, motion {:.2f}",
+                     count, 100 * telling.coverage, telling.folding, telling.motion);
 }
 
 }  // namespace
 
 ExitCode thumbnail(const ThumbnailOptions& options) {
   set_thread_count(options.common.threads);
-  const scene::Scene scene = load_scene(options.common);
-  const std::filesystem::path file = picture_file(options, scene);
-  const int frame = chosen_frame(options, scene);
-  check_absent(file, options.common.overwrite);
-  check_writable(file);
+  const std::unique_ptr<Stills> stills = open_stills(options.common);
+  const std::vector<int> frames = stills->frames();
+  if (options.frame) check_frame(*options.frame, frames);
+  const std::filesystem::path file = still_file(options.output, stills->name() + ".png", options.common.overwrite);
+  std::string text;
   {
-    Progress progress(options.common.progress, {scene.preroll_frames() + frame + 1, 1, 1});
-    const frame::SnapshotPtr snapshot = simulate_to(scene, frame, progress);
-    const render::Settings settings = render_settings(scene, options.common);
-    const std::unique_ptr<FramePainter> painter = make_gl_painter(settings);
-    const image::Image image = painter->draw(*snapshot);
+    Progress progress(options.common.progress, {stills->cost(options.frame.value_or(frames.back())), 1, 1});
+    const Choice choice =
+        options.frame ? Choice{stills->at(*options.frame, progress), {}} : most_telling(*stills, frames, progress);
+    const frame::FrameSnapshot& snapshot = *choice.snapshot;
+    const std::unique_ptr<FramePainter> painter = make_gl_painter(stills->settings());
+    const image::Image image = painter->draw(snapshot);
     progress.advance(Stage::draw);
     image::write_png(file, image,
-                     describe_still(describe_pictures(manifest_of(scene, settings), settings, painter->description()),
-                                    frame, snapshot->time));
+                     describe_still(stills->describe(painter->description()), snapshot.frame, snapshot.time));
+    text = fmt::format("{}: frame {} (t = {:.4g} s)", file.string(), snapshot.frame, snapshot.time);
+    if (!options.frame) text += describe_choice(choice.telling, frames.size());
   }
-  log::info(fmt::format("{}: frame {} (t = {:.4g} s)", file.string(), frame, frame / scene.time.fps));
+  log::info(text);
   return ExitCode::ok;
 }
 

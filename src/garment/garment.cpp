@@ -125,7 +125,7 @@ class Sewing {
       const auto [q, f] = pattern_.find(seam.b);
       const std::vector<Index> a = chain(p, e);
       std::vector<Index> b = chain(q, f);
-      const auto apart = [&] {
+      const auto apart = [&, p = p, q = q] {
         return (placed_point(p, a.front()) - placed_point(q, b.front())).norm() +
                (placed_point(p, a.back()) - placed_point(q, b.back())).norm();
       };

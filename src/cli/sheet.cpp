@@ -1,0 +1,77 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "cli/commands.hpp"
+#include "cli/stills.hpp"
+#include "core/log.hpp"
+#include "core/parallel.hpp"
+#include "core/timer.hpp"
+#include "image/contact_sheet.hpp"
+#include "image/png.hpp"
+
+namespace weft::cli {
+namespace {
+
+constexpr int kPictureWidth = 400;  // pixels: four beside each other fill a screen
+constexpr int kColumns = 4;
+
+/// Pictures as wide as that, in the shape of the scene's own.
+PictureSize small_size(const render::Settings& settings) {
+  const double height = static_cast<double>(kPictureWidth) * settings.height / settings.width;
+  return {kPictureWidth, std::max(1, static_cast<int>(std::lround(height)))};
+}
+
+/// `count` of the frames, the first and the last among them, the others at equal distances as far as frames allow.
+std::vector<int> evenly_spaced(const std::vector<int>& frames, int count) {
+  const auto all = static_cast<int>(frames.size());
+  if (count >= all) return frames;
+  if (count == 1) return {frames[static_cast<std::size_t>(all / 2)]};
+  std::vector<int> chosen;
+  for (int i = 0; i < count; ++i) {
+    const double share = static_cast<double>(i) / (count - 1);
+    chosen.push_back(frames[static_cast<std::size_t>(std::lround(share * (all - 1)))]);
+  }
+  return chosen;
+}
+
+std::string heading(const Stills& stills, const std::vector<int>& frames) {
+  return fmt::format("{}   {} of {} frames at {:.4g} fps", stills.name(), frames.size(), stills.frames().size(),
+                     stills.fps());
+}
+
+}  // namespace
+
+ExitCode sheet(const SheetOptions& options) {
+  const WallTimer timer;
+  set_thread_count(options.common.threads);
+  const std::unique_ptr<Stills> stills = open_stills(options.common);
+  render::Settings settings = stills->settings();
+  const PictureSize size = options.common.size.value_or(small_size(settings));
+  settings.width = size.width;
+  settings.height = size.height;
+  const std::vector<int> frames = evenly_spaced(stills->frames(), options.count);
+  const auto file = still_file(options.output, stills->name() + ".sheet.png", options.common.overwrite);
+  {
+    const auto count = static_cast<int>(frames.size());
+    Progress progress(options.common.progress, {stills->cost(frames.back()), count, 1});
+    const std::unique_ptr<FramePainter> painter = make_gl_painter(settings);
+    std::vector<image::SheetPicture> pictures;
+    for (const int k : frames) {
+      const frame::SnapshotPtr snapshot = stills->at(k, progress);
+      pictures.push_back(
+          {painter->draw(*snapshot), fmt::format("frame {}", k), fmt::format("{:.2f} s", snapshot->time)});
+      progress.advance(Stage::draw);
+    }
+    Metadata metadata = stills->describe(painter->description());
+    metadata["frames"] = fmt::format("{}", fmt::join(frames, " "));
+    image::write_png(file, image::contact_sheet(pictures, options.columns.value_or(kColumns), heading(*stills, frames)),
+                     metadata);
+  }
+  log::info(fmt::format("{}: {} of {} frames in {}", file.string(), frames.size(), stills->frames().size(),
+                        format_duration(timer.seconds())));
+  return ExitCode::ok;
+}
+
+}  // namespace weft::cli

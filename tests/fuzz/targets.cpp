@@ -1,0 +1,221 @@
+#include "fuzz/targets.hpp"
+
+#include <png.h>
+#include <sys/mman.h>
+#include <unistd.h>
+#include <xxhash.h>
+#include <zlib.h>
+
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "assets/character_reader.hpp"
+#include "assets/soup.hpp"
+#include "cache/codec.hpp"
+#include "cache/container.hpp"
+#include "cache/manifest.hpp"
+#include "cache/sample.hpp"
+#include "core/error.hpp"
+#include "garment/outline.hpp"
+#include "garment/pattern.hpp"
+#include "garment/svg.hpp"
+#include "image/png.hpp"
+#include "mesh/ply.hpp"
+#include "scene/loader.hpp"
+
+namespace weft::fuzz {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+void require(bool promise, const char* text) {
+  if (!promise) throw std::logic_error(text);
+}
+
+std::string_view text_of(Bytes bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// A file in memory only, for readers that take a name: a million files a minute would wear a disk.
+class MemoryFile {
+ public:
+  explicit MemoryFile(Bytes bytes) : descriptor_(::memfd_create("fuzz", MFD_CLOEXEC)) {
+    require(descriptor_ >= 0, "no file in memory");
+    while (!bytes.empty()) {
+      const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+      require(written > 0, "file in memory cannot be written");
+      bytes = bytes.subspan(static_cast<std::size_t>(written));
+    }
+  }
+  ~MemoryFile() { ::close(descriptor_); }
+  MemoryFile(const MemoryFile&) = delete;
+  MemoryFile& operator=(const MemoryFile&) = delete;
+
+  std::filesystem::path path() const { return "/proc/self/fd/" + std::to_string(descriptor_); }
+
+ private:
+  int descriptor_;
+};
+
+/// Refusing is well where it is one of `codes`.
+template <class Read>
+void may_refuse(std::initializer_list<ExitCode> codes, const Read& read) {
+  try {
+    read();
+  } catch (const Error& error) {
+    for (const ExitCode code : codes)
+      if (error.code() == code) return;
+    throw std::logic_error(std::string("refused as something else: ") + error.what());
+  }
+}
+
+// Beside the files that the scenes of the corpus refer to.
+constexpr const char* kSceneFile = WEFT_SOURCE_DIR "/tests/scene/fuzz.toml";
+
+void read_scene(Bytes bytes) {
+  const scene::LoadResult loaded = scene::load_text(text_of(bytes), kSceneFile);
+  require(loaded.ok() == loaded.describe().empty(), "mistakes are described");
+  if (!loaded.ok()) return;
+  const scene::LoadResult again = scene::load_text(scene::effective_scene(loaded.scene), kSceneFile);
+  if (!again.ok()) throw std::logic_error("the effective scene is refused: " + again.describe());
+}
+
+void read_pattern(Bytes bytes) {
+  may_refuse({ExitCode::scene_invalid, ExitCode::asset_unreadable},
+             [&] { (void)garment::load_pattern(MemoryFile(bytes).path(), "fuzz"); });
+}
+
+void check_outline(const garment::Outline& outline) {
+  require(!outline.empty(), "an outline has curves");
+  for (std::size_t i = 0; i < outline.size(); ++i) {
+    for (const Vec2& point : outline[i].control) require(point.allFinite(), "an outline is finite");
+    require(outline[i].start() == outline[(i + outline.size() - 1) % outline.size()].end(), "an outline is closed");
+  }
+}
+
+// The element has the name that all drawings of the corpus give it.
+void read_svg(Bytes bytes) {
+  may_refuse({ExitCode::asset_unreadable},
+             [&] { check_outline(garment::load_svg_outline(MemoryFile(bytes).path(), "front", "fuzz")); });
+}
+
+void read_outline(Bytes bytes) {
+  const garment::ParsedPath parsed = garment::parse_path(text_of(bytes));
+  if (!parsed.mistake.empty()) return;
+  check_outline(parsed.outline);
+  require(garment::Arclength(parsed.outline).length() >= 0, "a length is no less than zero");
+}
+
+/// A PNG file whose check sums are right, so that damage is met by more than the check.
+std::vector<std::uint8_t> with_right_sums(Bytes bytes) {
+  std::vector<std::uint8_t> mended(bytes.begin(), bytes.end());
+  for (std::size_t chunk = 8; chunk + 12 <= mended.size();) {
+    const std::size_t length = png_get_uint_32(&mended[chunk]);
+    if (length > mended.size() - chunk - 12) break;
+    uLong sum = crc32(0, &mended[chunk + 4], static_cast<uInt>(length + 4));
+    for (std::size_t i = 4; i-- > 0; sum >>= 8) mended[chunk + 8 + length + i] = static_cast<std::uint8_t>(sum);
+    chunk += length + 12;
+  }
+  return mended;
+}
+
+void read_image(Bytes bytes) {
+  may_refuse({ExitCode::asset_unreadable}, [&] {
+    image::Metadata metadata;
+    const image::Image image = image::read_png(MemoryFile(with_right_sums(bytes)).path(), &metadata);
+    require(image.rgb.size() == 3 * std::size_t(image.width) * std::size_t(image.height), "an image is whole");
+  });
+}
+
+void read_ply(Bytes bytes) {
+  may_refuse({ExitCode::asset_unreadable}, [&] {
+    const mesh::PlyMesh read = mesh::read_ply(MemoryFile(bytes).path());
+    for (const auto& triangle : read.triangles)
+      for (const Index v : triangle)
+        require(v >= 0 && static_cast<std::size_t>(v) < read.positions.size(), "vertices of faces exist");
+  });
+}
+
+// What a process of our own sends back after it has read a file; it may have been damaged by that file.
+template <auto decode>
+void read_answer(Bytes bytes) {
+  try {
+    (void)decode(text_of(bytes));
+  } catch (const std::runtime_error&) {
+  }
+}
+
+// Sizes and check sum of the header are made right, so that damage is met by more than the check.
+void read_container(Bytes bytes) {
+  constexpr std::size_t kStoredSizeAt = 40, kSumAt = 48, kHeaderSize = 56;
+  std::string file(text_of(bytes));
+  if (file.size() >= kHeaderSize) {
+    const std::uint64_t stored_size = file.size() - kHeaderSize;
+    std::memcpy(&file[kStoredSizeAt], &stored_size, sizeof stored_size);
+    std::string summed = file.substr(0, kSumAt) + file.substr(kHeaderSize);
+    const std::uint64_t sum = XXH3_64bits(summed.data(), summed.size());
+    std::memcpy(&file[kSumAt], &sum, sizeof sum);
+  }
+  try {
+    const cache::Content content = cache::unpack(file);
+    require(cache::unpack(cache::pack(content.label, content.payload)).payload == content.payload,
+            "what was unpacked can be packed");
+  } catch (const std::runtime_error&) {
+  }
+}
+
+void read_surfaces(Bytes bytes) {
+  try {
+    const cache::Surfaces surfaces = cache::decode_surfaces(text_of(bytes));
+    require(cache::encode_surfaces(surfaces) == text_of(bytes), "what was read is what was written");
+  } catch (const std::runtime_error&) {
+  }
+}
+
+void read_frame(Bytes bytes) {
+  static const cache::Surfaces kSurfaces = cache::surfaces_of(*cache::Sample().snapshot(0));
+  try {
+    const cache::CachedFrame read = cache::decode_frame(text_of(bytes), 1, kSurfaces);
+    const std::string written = cache::encode_frame(*read.snapshot, read.report, kSurfaces);
+    require(
+        cache::encode_frame(*cache::decode_frame(written, 1, kSurfaces).snapshot, read.report, kSurfaces) == written,
+        "what was read can be written");
+  } catch (const std::runtime_error&) {
+  }
+}
+
+void read_manifest(Bytes bytes) {
+  std::string written;
+  try {
+    written = cache::manifest_text(cache::parse_manifest(text_of(bytes)));
+  } catch (const std::runtime_error&) {
+    return;
+  }
+  require(cache::manifest_text(cache::parse_manifest(written)) == written, "what was read can be written");
+}
+
+constexpr std::array kTargets{Target{"scene", read_scene},
+                              Target{"pattern", read_pattern},
+                              Target{"svg", read_svg},
+                              Target{"outline", read_outline},
+                              Target{"image", read_image},
+                              Target{"ply", read_ply},
+                              Target{"character", read_answer<assets::character_from_bytes>},
+                              Target{"mesh", read_answer<assets::from_bytes>},
+                              Target{"container", read_container},
+                              Target{"surfaces", read_surfaces},
+                              Target{"frame", read_frame},
+                              Target{"manifest", read_manifest}};
+
+}  // namespace
+
+std::span<const Target> targets() {
+  return kTargets;
+}
+
+}  // namespace weft::fuzz
