@@ -127,8 +127,8 @@ void add_process(CLI::App& command, SceneOptions& options) {
   command.add_flag("--overwrite", options.overwrite, "Replace files that exist already");
 }
 
-void add_common(CLI::App& command, SceneOptions& options) {
-  command.add_option("SCENE", options.scene, "The scene, a TOML file")->required()->type_name("");
+void add_common(CLI::App& command, SceneOptions& options, const char* what = "The scene, a TOML file") {
+  command.add_option("SCENE", options.scene, what)->required()->type_name("");
   add_value(command, "--fps", "N", "Frames a second [the scene's]",
             [&](const std::string& text) { options.fps = parse_fps(text); });
   add_overrides(command, options.overrides);
@@ -154,6 +154,8 @@ void add_side_files(CLI::App& command, RunOptions& options) {
   add_value(command, "--log-json", "FILE|-", "Also write events as JSON lines (-: standard output)",
             [&](const std::string& text) { options.log_json = text; });
 }
+
+constexpr const char* kSceneOrCache = "The scene, a TOML file, or the folder of a cache";
 
 // The program's commands and the values that CLI11 writes into while parsing.
 struct Parser {
@@ -257,24 +259,24 @@ struct Parser {
   }
 
   void add_thumbnail() {
-    CLI::App& command = *app.add_subcommand("thumbnail", "Draw one still of a scene");
+    CLI::App& command = *app.add_subcommand("thumbnail", "Draw one still of a scene or a cache");
     add_value(command, "-o,--output", "FILE.png", "The picture [output/<scene>.png]",
               [this](const std::string& text) { thumbnail.output = text; });
     add_value(command, "--frame", "N", "Which frame, counted from 0 [the one that tells most]",
               [this](const std::string& text) { thumbnail.frame = parse_integer("--frame", text, 0, 1'000'000'000); });
-    add_common(command, thumbnail.common);
+    add_common(command, thumbnail.common, kSceneOrCache);
     command.footer("\nExample:\n  weft thumbnail scenes/falling_band.toml -o band.png --frame 60 --quality draft");
   }
 
   void add_sheet() {
-    CLI::App& command = *app.add_subcommand("sheet", "Draw evenly spaced frames of a scene on one picture");
+    CLI::App& command = *app.add_subcommand("sheet", "Draw evenly spaced frames of a scene or a cache on one picture");
     add_value(command, "-o,--output", "FILE.png", "The picture [output/<scene>.sheet.png]",
               [this](const std::string& text) { sheet.output = text; });
     add_value(command, "--count", "N", "How many frames, the first and the last among them [12]",
               [this](const std::string& text) { sheet.count = parse_integer("--count", text, 1, 400); });
     add_value(command, "--columns", "N", "How many side by side [4]",
               [this](const std::string& text) { sheet.columns = parse_integer("--columns", text, 1, 40); });
-    add_common(command, sheet.common);
+    add_common(command, sheet.common, kSceneOrCache);
     command.footer(
         "\nExample:\n  weft sheet scenes/falling_band.toml -o sheet.png --count 20 --columns 5\n"
         "\n--size is that of each small picture [400 wide].");

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "cli/commands.hpp"
+#include "cli/stages.hpp"
 #include "cli/stills.hpp"
 #include "core/log.hpp"
 #include "core/parallel.hpp"
@@ -37,8 +38,8 @@ std::vector<int> evenly_spaced(const std::vector<int>& frames, int count) {
 }
 
 std::string heading(const Stills& stills, const std::vector<int>& frames) {
-  return fmt::format("{}   {} of {} frames at {:.4g} fps", stills.name(), frames.size(), stills.frames().size(),
-                     stills.fps());
+  return fmt::format("{}   {} of {} frames at {:.4g} fps", stills.scene().scene, frames.size(),
+                     stills.scene().frame_count, stills.scene().fps);
 }
 
 }  // namespace
@@ -52,7 +53,7 @@ ExitCode sheet(const SheetOptions& options) {
   settings.width = size.width;
   settings.height = size.height;
   const std::vector<int> frames = evenly_spaced(stills->frames(), options.count);
-  const auto file = still_file(options.output, stills->name() + ".sheet.png", options.common.overwrite);
+  const auto file = still_file(options.output, stills->scene().scene + ".sheet.png", options.common.overwrite);
   {
     const auto count = static_cast<int>(frames.size());
     Progress progress(options.common.progress, {stills->cost(frames.back()), count, 1});
@@ -64,12 +65,12 @@ ExitCode sheet(const SheetOptions& options) {
           {painter->draw(*snapshot), fmt::format("frame {}", k), fmt::format("{:.2f} s", snapshot->time)});
       progress.advance(Stage::draw);
     }
-    Metadata metadata = stills->describe(painter->description());
+    Metadata metadata = describe_pictures(stills->scene(), settings, painter->description());
     metadata["frames"] = fmt::format("{}", fmt::join(frames, " "));
     image::write_png(file, image::contact_sheet(pictures, options.columns.value_or(kColumns), heading(*stills, frames)),
                      metadata);
   }
-  log::info(fmt::format("{}: {} of {} frames in {}", file.string(), frames.size(), stills->frames().size(),
+  log::info(fmt::format("{}: {} of {} frames in {}", file.string(), frames.size(), stills->scene().frame_count,
                         format_duration(timer.seconds())));
   return ExitCode::ok;
 }

@@ -2,8 +2,8 @@
 
 #include <numeric>
 #include <optional>
-#include <utility>
 
+#include "cache/reader.hpp"
 #include "cli/output_target.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/signals.hpp"
@@ -16,24 +16,19 @@ namespace {
 /// Simulates what it is asked for: each frame needs all those before it.
 class SceneStills : public Stills {
  public:
-  explicit SceneStills(const SceneOptions& options)
-      : scene_(load_scene(options)), settings_(render_settings(scene_, options)) {}
-
-  std::string name() const override { return scene_.name; }
-  double fps() const override { return scene_.time.fps; }
-  std::vector<int> frames() const override {
-    std::vector<int> all(static_cast<std::size_t>(scene_.frame_count()));
-    std::iota(all.begin(), all.end(), 0);
-    return all;
+  explicit SceneStills(const SceneOptions& options) : input_(load_scene(options)) {
+    settings_ = render_settings(input_, options);
+    scene_ = manifest_of(input_, settings_);
+    frames_.resize(static_cast<std::size_t>(input_.frame_count()));
+    std::iota(frames_.begin(), frames_.end(), 0);
   }
-  render::Settings settings() const override { return settings_; }
-  Metadata describe(const std::string& gl) const override { return describe_pictures(scene_, settings_, gl); }
-  int cost(int last) const override { return scene_.preroll_frames() + last + 1; }
+
+  int cost(int last) const override { return input_.preroll_frames() + last + 1; }
 
   frame::SnapshotPtr at(int frame, Progress& progress) override {
     if (!simulation_) start(progress);
     for (; frame_ < frame; ++frame_) {
-      if (signals_.requested()) throw Error(ExitCode::interrupted, "interrupted at frame {}; no picture", frame_);
+      check_signals();
       simulation_->advance();
       progress.advance(Stage::simulate);
     }
@@ -42,26 +37,54 @@ class SceneStills : public Stills {
 
  private:
   void start(Progress& progress) {
-    simulation_.emplace(scene_);
+    simulation_.emplace(input_);
     const auto proceed = [&] {
       progress.advance(Stage::simulate);
-      return !signals_.requested();
+      check_signals();
+      return true;
     };
-    if (!simulation_->run_preroll(proceed))
-      throw Error(ExitCode::interrupted, "interrupted before frame 0; no picture");
+    simulation_->run_preroll(proceed);
     progress.advance(Stage::simulate);
   }
 
+  void check_signals() const {
+    if (signals_.requested()) throw Error(ExitCode::interrupted, "interrupted at frame {}; no picture", frame_);
+  }
+
   const StopSignals signals_;
-  const scene::Scene scene_;
-  const render::Settings settings_;
+  const scene::Scene input_;
   std::optional<simulation::Simulation> simulation_;
   int frame_ = 0;  // of the simulation
+};
+
+class CacheStills : public Stills {
+ public:
+  explicit CacheStills(const SceneOptions& options) : reader_(options.scene) {
+    if (!options.overrides.empty() || options.fps)
+      throw Error(ExitCode::usage, "--set, --fps: expected a scene, got the cache {}, which is simulated already",
+                  options.scene.string());
+    scene_ = reader_.manifest();
+    if (!options.camera.empty()) check_camera(scene_.cameras, options.camera);
+    settings_ = render_settings({scene_.width, scene_.height}, scene_.camera, options);
+    frames_ = reader_.frames();
+    if (frames_.empty()) throw Error(ExitCode::asset_unreadable, "{}: holds no frame yet", options.scene.string());
+  }
+
+  int cost(int) const override { return 0; }
+  frame::SnapshotPtr at(int frame, Progress&) override {
+    if (signals_.requested()) throw Error(ExitCode::interrupted, "interrupted at frame {}; no picture", frame);
+    return reader_.snapshot(frame);
+  }
+
+ private:
+  const StopSignals signals_;
+  const cache::Reader reader_;
 };
 
 }  // namespace
 
 std::unique_ptr<Stills> open_stills(const SceneOptions& options) {
+  if (std::filesystem::is_directory(options.scene)) return std::make_unique<CacheStills>(options);
   return std::make_unique<SceneStills>(options);
 }
 

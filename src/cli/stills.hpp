@@ -1,12 +1,13 @@
-// Frames of a scene, for commands that draw few of them.
+// Frames of a scene or of a cache, for commands that draw few of them.
 #pragma once
 
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include "cache/manifest.hpp"
 #include "cli/options.hpp"
-#include "cli/stages.hpp"
 #include "core/progress.hpp"
 #include "frame/frame_snapshot.hpp"
 #include "render/renderer.hpp"
@@ -17,24 +18,28 @@ class Stills {
  public:
   virtual ~Stills() = default;
 
-  virtual std::string name() const = 0;
-  virtual double fps() const = 0;
-  /// The frames that can be had, ascending.
-  virtual std::vector<int> frames() const = 0;
-  virtual render::Settings settings() const = 0;
-  virtual Metadata describe(const std::string& gl) const = 0;
+  /// What scene it is, and how it is drawn where the options say nothing.
+  const cache::Manifest& scene() const { return scene_; }
+  const render::Settings& settings() const { return settings_; }
+  /// The frames that can be had, ascending; one at least.
+  const std::vector<int>& frames() const { return frames_; }
 
   /// Frames to simulate before `last` can be had.
   virtual int cost(int last) const = 0;
   /// To be called with ascending numbers. Throws Error(interrupted) once SIGINT or the like asked for it.
   virtual frame::SnapshotPtr at(int frame, Progress& progress) = 0;
+
+ protected:
+  cache::Manifest scene_;
+  render::Settings settings_;
+  std::vector<int> frames_;
 };
 
-/// Reads what `options.scene` names. Throws as load_scene() does.
+/// Reads what `options.scene` names: a scene, or the folder of a cache. Throws as load_scene() and cache::Reader do.
 std::unique_ptr<Stills> open_stills(const SceneOptions& options);
 
-/// The file that `-o` names, or output/<name><ending>, checked before any work is done. Throws Error(usage) where it
-/// is no PNG, Error(output_failed) where it cannot be written.
+/// The file that `-o` names, or output/<default_name>, checked before any work is done. Throws Error(usage) where it is
+/// no PNG, Error(output_failed) where it cannot be written.
 std::filesystem::path still_file(const std::filesystem::path& output, const std::string& default_name, bool overwrite);
 
 }  // namespace weft::cli

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "cli/commands.hpp"
+#include "cli/stages.hpp"
 #include "cli/stills.hpp"
 #include "core/log.hpp"
 #include "core/parallel.hpp"
@@ -25,13 +26,13 @@ struct Choice {
 
 /// The first of the frames that tell most.
 Choice most_telling(Stills& stills, const std::vector<int>& frames, Progress& progress) {
-  const render::Settings settings = stills.settings();
+  const render::Settings& settings = stills.settings();
   const double aspect = static_cast<double>(settings.width) / settings.height;
   Choice best;
   frame::SnapshotPtr previous;
   for (const int k : frames) {
     const frame::SnapshotPtr snapshot = stills.at(k, progress);
-    const double seconds = previous ? (k - previous->frame) / stills.fps() : 0;
+    const double seconds = previous ? (k - previous->frame) / stills.scene().fps : 0;
     const render::Telling telling = render::how_telling(*snapshot, previous.get(), seconds, settings.camera, aspect);
     if (!best.snapshot || telling.score() > best.telling.score()) best = {snapshot, telling};
     previous = snapshot;
@@ -51,9 +52,10 @@ std::string describe_choice(const render::Telling& telling, std::size_t count) {
 ExitCode thumbnail(const ThumbnailOptions& options) {
   set_thread_count(options.common.threads);
   const std::unique_ptr<Stills> stills = open_stills(options.common);
-  const std::vector<int> frames = stills->frames();
+  const std::vector<int>& frames = stills->frames();
   if (options.frame) check_frame(*options.frame, frames);
-  const std::filesystem::path file = still_file(options.output, stills->name() + ".png", options.common.overwrite);
+  const std::filesystem::path file =
+      still_file(options.output, stills->scene().scene + ".png", options.common.overwrite);
   std::string text;
   {
     Progress progress(options.common.progress, {stills->cost(options.frame.value_or(frames.back())), 1, 1});
@@ -63,8 +65,8 @@ ExitCode thumbnail(const ThumbnailOptions& options) {
     const std::unique_ptr<FramePainter> painter = make_gl_painter(stills->settings());
     const image::Image image = painter->draw(snapshot);
     progress.advance(Stage::draw);
-    image::write_png(file, image,
-                     describe_still(stills->describe(painter->description()), snapshot.frame, snapshot.time));
+    const Metadata about = describe_pictures(stills->scene(), stills->settings(), painter->description());
+    image::write_png(file, image, describe_still(about, snapshot.frame, snapshot.time));
     text = fmt::format("{}: frame {} (t = {:.4g} s)", file.string(), snapshot.frame, snapshot.time);
     if (!options.frame) text += describe_choice(choice.telling, frames.size());
   }

@@ -186,6 +186,20 @@ Metadata metadata_of(const Reader& reader) {
   throw Error(ExitCode::output_failed, "{}: cannot be written: {}", file.string(), words);
 }
 
+// libpng asks for the memory that a chunk promises to fill, up to 2 GB, before it finds out that the file ends.
+void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax_t file_size) {
+  constexpr std::uintmax_t kSignature = 8, kAround = 12;  // bytes of length, name and checksum
+  std::array<png_byte, 4> length{};
+  for (std::uintmax_t chunk = kSignature; chunk + kAround <= file_size;
+       chunk += kAround + png_get_uint_32(length.data())) {
+    const bool read = std::fseek(in, static_cast<long>(chunk), SEEK_SET) == 0 &&
+                      std::fread(length.data(), 1, length.size(), in) == length.size();
+    if (!read) fail_to_read(file, std::strerror(errno));
+    if (png_get_uint_32(length.data()) > file_size - chunk - kAround) fail_to_read(file, "the file ends too early");
+  }
+  std::rewind(in);
+}
+
 }  // namespace
 
 void write_png(const std::filesystem::path& file, const Image& image, const Metadata& metadata) {
@@ -213,6 +227,11 @@ void write_png(const std::filesystem::path& file, const Image& image, const Meta
 Image read_png(const std::filesystem::path& file, Metadata* metadata) {
   const File in(std::fopen(file.c_str(), "rbe"), std::fclose);
   if (!in) fail_to_read(file, std::strerror(errno));
+  std::error_code error;
+  const std::uintmax_t file_size = std::filesystem::file_size(file, error);
+  if (error) fail_to_read(file, error.message());
+  check_chunks(file, in.get(), file_size);
+
   Complaint complaint;
   const Reader reader(&complaint);
   if (!reader.info) fail_to_read(file, "libpng could not start");
@@ -221,10 +240,7 @@ Image read_png(const std::filesystem::path& file, Metadata* metadata) {
   // Hold the claimed size against the size of the file before asking for memory.
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
-  std::error_code error;
-  const std::uintmax_t file_size = std::filesystem::file_size(file, error);
   const std::uintmax_t packed_size = std::uintmax_t{height} * png_get_rowbytes(reader.png, reader.info);
-  if (error) fail_to_read(file, error.message());
   if (packed_size > kMaxDeflateRatio * file_size) {
     fail_to_read(file, fmt::format("{} bytes cannot hold {}x{} pixels", file_size, width, height));
   }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <png.h>
+#include <sys/resource.h>
 
 #include <cstdint>
 #include <string>
@@ -145,6 +146,20 @@ TEST_F(PngTest, HugeSizesInTheHeaderAreRefusedBeforeMemoryIsTaken) {
   write_bytes(folder_ / "huge.png", bytes);
   expect_error(ExitCode::asset_unreadable, "41 bytes cannot hold 16000x16000 pixels",
                [&] { read_png(folder_ / "huge.png"); });
+}
+
+// 2 GB for a text, in a file of a hundred bytes; the largest length that PNG allows.
+TEST_F(PngTest, PromisedLengthOfAChunkIsRefusedBeforeMemoryIsTaken) {
+  write_png(folder_ / "a.png", Image(2, 2), {{"key", "text"}});
+  std::string bytes = read_bytes(folder_ / "a.png");
+  const std::size_t length = bytes.find("tEXt") - 4;
+  bytes.replace(length, 4, "\x7F\xFF\xFF\xFF");
+  write_bytes(folder_ / "b.png", bytes);
+  rusage before{}, after{};
+  ::getrusage(RUSAGE_SELF, &before);
+  expect_error(ExitCode::asset_unreadable, "the file ends too early", [&] { read_png(folder_ / "b.png"); });
+  ::getrusage(RUSAGE_SELF, &after);
+  EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 10'000) << "KB taken";
 }
 
 TEST_F(PngTest, ReadingSaysWhatTheSystemSaid) {

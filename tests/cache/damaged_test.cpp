@@ -1,0 +1,116 @@
+// Caches cut short and with bytes changed: each is refused with the name of the file, or read as it was.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "cache/codec.hpp"
+#include "cache/container.hpp"
+#include "cache/names.hpp"
+#include "cache/reader.hpp"
+#include "cache/sample.hpp"
+#include "cache/writer.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::cache {
+namespace {
+
+namespace fs = std::filesystem;
+
+class DamagedCache : public support::TestFolder {
+ protected:
+  void SetUp() override {
+    support::TestFolder::SetUp();
+    const Lock lock(folder_ / "c");
+    Writer writer(lock, sample_.manifest(), "[time]\n");
+    for (const int k : {0, 1}) writer.add(*sample_.snapshot(k), sample_.report(k));
+    writer.save_state(1, std::string(500, 's'));
+  }
+
+  /// Everything that a reader can be asked for. True if it was all there, false if it was refused by name.
+  bool read(const std::string& broken_file) const {
+    try {
+      const Reader reader(folder_ / "c");
+      bool same = reader.frames().size() == 2 && reader.state() && reader.state()->bytes == std::string(500, 's');
+      for (const int k : reader.frames()) {
+        reader.verify(k);
+        const CachedFrame cached = reader.read(k);
+        for (std::size_t s = 0; s < 2; ++s)
+          same = same && same_bits(cached.snapshot->states[s].positions, sample_.snapshot(k)->states[s].positions);
+      }
+      EXPECT_TRUE(same) << broken_file << " was read as something else";
+      return true;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::asset_unreadable) << error.what();
+      EXPECT_NE(std::string_view(error.what()).find(broken_file), std::string_view::npos) << error.what();
+      return false;
+    }
+  }
+
+  const Sample sample_;
+  const std::vector<std::string> binary_files_{kSurfacesFile, frame_file(0), frame_file(1), kStateFile};
+};
+
+TEST_F(DamagedCache, CutShortAnywhereIsRefusedByName) {
+  ASSERT_TRUE(read(""));
+  for (const std::string& name : binary_files_) {
+    const std::string whole = support::read_bytes(folder_ / "c" / name);
+    for (std::size_t length = 0; length < whole.size(); ++length) {
+      support::write_bytes(folder_ / "c" / name, whole.substr(0, length));
+      EXPECT_FALSE(read(name)) << name << " cut to " << length;
+    }
+    support::write_bytes(folder_ / "c" / name, whole);
+  }
+}
+
+TEST_F(DamagedCache, ManifestCutShortAnywhereIsRefusedByName) {
+  const std::string whole = support::read_bytes(folder_ / "c" / kManifestFile);
+  for (std::size_t length = 0; length + 2 < whole.size(); ++length) {  // the last two bytes are "}\n"
+    support::write_bytes(folder_ / "c" / kManifestFile, whole.substr(0, length));
+    EXPECT_FALSE(read(kManifestFile)) << "cut to " << length;
+  }
+}
+
+/// One to four bytes of a text are others now.
+std::string with_bytes_changed(std::string bytes, std::mt19937& random) {
+  const std::string before = bytes;
+  for (std::size_t changes = 1 + random() % 4; changes > 0 || bytes == before; --changes)
+    bytes[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
+  return bytes;
+}
+
+template <class Read>
+bool is_refused(const Read& read) {
+  try {
+    read();
+    return false;
+  } catch (const std::runtime_error&) {
+    return true;
+  }
+}
+
+TEST_F(DamagedCache, NoneOfAHundredThousandChangesOfBytesIsMissed) {
+  std::vector<std::string> whole;
+  for (const std::string& name : binary_files_) whole.push_back(support::read_bytes(folder_ / "c" / name));
+  std::mt19937 random(20261121);
+  for (int trial = 0; trial < 100'000; ++trial) {
+    const std::string broken = with_bytes_changed(whole[static_cast<std::size_t>(trial % 4)], random);
+    ASSERT_TRUE(is_refused([&] { unpack(broken); })) << "trial " << trial;
+  }
+}
+
+// As if the checksum were right: what a faulty writer, or someone who means it, could put into a cache.
+TEST_F(DamagedCache, ContentThatIsWrongUnderARightChecksumIsReadOrRefused) {
+  const Surfaces surfaces = surfaces_of(*sample_.snapshot(0));
+  const std::string frame = encode_frame(*sample_.snapshot(1), sample_.report(1), surfaces);
+  const std::string shared = encode_surfaces(surfaces);
+  std::mt19937 random(7);
+  int refused = 0;
+  for (int trial = 0; trial < 50'000; ++trial) {
+    refused += is_refused([&] { decode_frame(with_bytes_changed(frame, random), 1, surfaces); }) ? 1 : 0;
+    refused += is_refused([&] { decode_surfaces(with_bytes_changed(shared, random)); }) ? 1 : 0;
+  }
+  EXPECT_GT(refused, 0);
+}
+
+}  // namespace
+}  // namespace weft::cache

@@ -1,0 +1,92 @@
+// Thumbnails and sheets, from scenes and from caches.
+#include <gtest/gtest.h>
+
+#include "cache/names.hpp"
+#include "cli/cached_run.hpp"
+#include "image/png.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Stills : public CachedRun {
+ protected:
+  image::Metadata about(const char* picture) const {
+    image::Metadata metadata;
+    image::read_png(folder_ / picture, &metadata);
+    return metadata;
+  }
+  std::vector<std::uint8_t> pixels(const char* picture) const { return image::read_png(folder_ / picture).rgb; }
+};
+
+TEST_F(Stills, SheetShowsEvenlySpacedFramesFromTheFirstToTheLast) {
+  expect_well({"sheet", "s.toml", "--count", "5", "--columns", "3"});
+  EXPECT_EQ(about("output/s.sheet.png").at("frames"), "0 5 10 15 20");
+  EXPECT_EQ(about("output/s.sheet.png").at("scene"), "s");
+  const image::Image three = image::read_png(folder_ / "output/s.sheet.png");
+  EXPECT_GT(three.width, 3 * 64);
+  EXPECT_LT(three.width, 4 * 64);
+  EXPECT_GT(three.height, 2 * 36);
+  expect_well({"sheet", "s.toml", "-o", "one.png", "--count", "1"});
+  EXPECT_EQ(about("one.png").at("frames"), "10");
+  expect_well({"sheet", "s.toml", "-o", "few.png", "--set", "time.duration=0.08"});
+  EXPECT_EQ(about("few.png").at("frames"), "0 1 2") << "a scene of three frames has no more";
+}
+
+TEST_F(Stills, FromACacheAreThoseFromTheScene) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  for (const char* input : {"s.toml", "c"}) {
+    const std::string name = fs::path(input).stem();
+    expect_well({"sheet", input, "-o", name + "_sheet.png", "--count", "4"});
+    expect_well({"thumbnail", input, "-o", name + "_chosen.png"});
+    expect_well({"thumbnail", input, "-o", name + "_7.png", "--frame", "7"});
+  }
+  EXPECT_EQ(pixels("s_sheet.png"), pixels("c_sheet.png"));
+  EXPECT_EQ(pixels("s_chosen.png"), pixels("c_chosen.png"));
+  EXPECT_EQ(pixels("s_7.png"), pixels("c_7.png"));
+  EXPECT_NE(pixels("s_7.png"), pixels("s_chosen.png"));
+  EXPECT_EQ(about("s_chosen.png"), about("c_chosen.png"));
+}
+
+TEST_F(Stills, OfAnUnfinishedCacheShowWhatIsThere) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
+  fs::remove(folder_ / "c" / cache::frame_file(3));
+  expect_well({"sheet", "c", "-o", "sheet.png"});
+  EXPECT_EQ(about("sheet.png").at("frames"), "0 1 2 4 5 6 7");
+  EXPECT_EQ(weft({"thumbnail", "c", "-o", "t.png", "--frame", "7"}).exit_code, 0);
+  const Outcome missing = weft({"thumbnail", "c", "-o", "x.png", "--frame", "3"});
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_NE(missing.err.find("--frame: expected one of the 7 frames from 0 to 7, got 3"), std::string::npos)
+      << missing.err;
+}
+
+// The cloth falls flat at first and lies on the ball in the end; in between it wraps round it.
+TEST_F(Stills, ThumbnailShowsTheClothAtWorkNotFlatInTheAir) {
+  const Outcome outcome = weft({"thumbnail", "s.toml", "-o", "t.png"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("the most telling of 21"), std::string::npos) << outcome.err;
+  EXPECT_GT(std::stoi(about("t.png").at("frame")), 6) << "the cloth meets the ball at frame 6";
+}
+
+TEST_F(Stills, SceneWhoseClothIsNeverSeenIsDrawnWithAWarning) {
+  const Outcome outcome = weft({"thumbnail", "s.toml", "-o", "t.png", "--set", "cloth.cloth.position=[0,0,-3]", "--set",
+                                "camera=[{name='up',position=[0,0,1],target=[0,0,5]}]"});
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("no frame shows any cloth"), std::string::npos) << outcome.err;
+}
+
+TEST_F(Stills, WhatCannotBeIsRefusedBeforeSimulating) {
+  EXPECT_EQ(weft({"sheet", "s.toml", "-o", "a.jpg"}).exit_code, 2);
+  EXPECT_EQ(weft({"sheet", "s.toml", "--count", "0"}).exit_code, 2);
+  EXPECT_EQ(weft({"sheet", "none.toml"}).exit_code, 3);
+  EXPECT_EQ(weft({"sheet", "."}).exit_code, 4) << "a folder that is no cache";
+  support::write_bytes(folder_ / "a.png", "precious");
+  EXPECT_EQ(weft({"sheet", "s.toml", "-o", "a.png"}).exit_code, 6);
+  EXPECT_EQ(support::read_bytes(folder_ / "a.png"), "precious");
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":2"});
+  EXPECT_EQ(weft({"sheet", "c", "-o", "b.png", "--set", "time.fps=9"}).exit_code, 2);
+}
+
+}  // namespace
+}  // namespace weft::cli
