@@ -64,6 +64,7 @@ void Job::describe() {
   report_.fps = plan_.scene.fps;
   report_.output = plan_.target.text;
   report_.wanted = plan_.wanted;
+  report_.replayed = plan_.simulated == 0;
   log_.write("scene_loaded", {{"scene", report_.scene},
                               {"scene_file", report_.scene_file},
                               {"scene_hash", fmt::format("{:016x}", report_.scene_hash)},

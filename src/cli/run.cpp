@@ -5,6 +5,7 @@
 #include "cli/simulating.hpp"
 #include "cli/stages.hpp"
 #include "core/log.hpp"
+#include "video/encoder.hpp"
 
 namespace weft::cli {
 namespace {
@@ -47,7 +48,7 @@ class Run : public SimulatingJob {
                         store_->leftover_frames()));
       store_->clear();
     }
-    std::set<std::string> pictures, meshes;
+    std::set<std::string> pictures{video::partial_name(plan.target.file(0)).filename().string()}, meshes;
     for (int frame = plan.wanted.begin; frame < plan.wanted.end; frame += plan.wanted.step) {
       pictures.insert(plan.target.file(frame).filename().string());
       if (options_.meshes.empty()) continue;

@@ -23,6 +23,7 @@ struct RunReport {
   double fps = 0;
   std::string output;               ///< as the user named it
   std::uintmax_t output_bytes = 0;  ///< of a video; 0 for pictures or none
+  bool replayed = false;            ///< frames were read, not simulated
   FrameRange wanted;
   std::vector<FrameRecord> frames;  ///< those simulated or read
   int written = 0;

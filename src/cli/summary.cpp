@@ -44,7 +44,7 @@ std::string times_table(const RunReport& report) {
   const int simulated = std::max(0, static_cast<int>(report.frames.size()) - 1);
   std::vector<Row> rows{{"", "wall", "CPU", "CPU a frame"},
                         stage_row("set up", report.setup, 0),
-                        stage_row("simulate", totals.simulate, simulated),
+                        stage_row(report.replayed ? "simulated before" : "simulate", totals.simulate, simulated),
                         stage_row("  collisions", totals.collide, simulated)};
   if (report.cache.wall_s > 0) rows.push_back(stage_row("cache", report.cache, static_cast<int>(report.frames.size())));
   if (report.width > 0) {

@@ -50,12 +50,6 @@ void check_settings(const std::filesystem::path& file, const Settings& settings)
   }
 }
 
-// Where the fragments go, and the name under which they stay if the finished file cannot be made of them.
-std::filesystem::path rescue_name(const std::filesystem::path& file) {
-  std::filesystem::path rescue = file;
-  return rescue.replace_filename(file.stem().string() + ".partial.mp4");
-}
-
 CodecPtr open_codec(const std::filesystem::path& file, const Settings& settings, const AVFrame& format,
                     AVRational rate) {
   const AVCodec* codec = avcodec_find_encoder_by_name(kCodecName);
@@ -108,7 +102,7 @@ Encoder::Impl::Impl(const std::filesystem::path& f, const Settings& s)
       settings(s),
       rate(frame_rate(s.fps)),
       whole(f),
-      fragments(std::in_place, rescue_name(f)),
+      fragments(std::in_place, partial_name(f)),
       converter(s.width, s.height, f),
       frame(converter.make_frame()),
       packet(check_allocated(PacketPtr(av_packet_alloc()), f)),
@@ -179,12 +173,16 @@ void Encoder::finish() {
     // The copy needs its own room on the disk. The fragments are whole and play, so they are not thrown away.
     self.fragments->commit();
     throw Error(error.code(), "{}; all {} frames are kept in {}", error.what(), self.frames,
-                rescue_name(self.file).string());
+                partial_name(self.file).string());
   }
 }
 
 int Encoder::frames() const {
   return impl_->frames;
+}
+
+std::filesystem::path partial_name(const std::filesystem::path& file) {
+  return std::filesystem::path(file).replace_filename(file.stem().string() + ".partial.mp4");
 }
 
 std::string encoder_description() {

@@ -45,6 +45,9 @@ class Encoder {
   std::unique_ptr<Impl> impl_;
 };
 
+/// `<name>.partial.mp4`: where the frames go first, under a temporary name, and stay if no finished file can be made.
+std::filesystem::path partial_name(const std::filesystem::path& file);
+
 /// Name and version of the encoder that would be used, for `weft doctor`.
 std::string encoder_description();
 

@@ -92,15 +92,15 @@ TEST_F(CachedRun, SimulationGoesOnFromTheMiddleOfItsPreroll) {
     return more;
   };
   expect_well(simulate({"--cache", "whole"}));
-  Subprocess weft(simulate({"--cache", "c", "--set", "time.step=1e-4", "--progress", "none"}), folder_);
+  Subprocess weft(simulate({"--cache", "c", "--set", "time.step=2.5e-4", "--progress", "none"}), folder_);
   // Not before the first state is there.
-  for (int i = 0; i < 600 && !fs::exists(folder_ / "c/state.weft"); ++i) usleep(100'000);
+  for (int i = 0; i < 3000 && !fs::exists(folder_ / "c/state.weft"); ++i) usleep(20'000);
   weft.send(SIGTERM);
   EXPECT_EQ(weft.wait().exit_code, 75);
   EXPECT_LT(cache::Reader(folder_ / "c").state()->frame, 0);
   EXPECT_TRUE(cache::Reader(folder_ / "c").frames().empty());
-  expect_well(simulate({"--cache", "c", "--set", "time.step=1e-4", "--resume", "--frames", ":3"}));
-  expect_well(simulate({"--cache", "once", "--set", "time.step=1e-4", "--frames", ":3"}));
+  expect_well(simulate({"--cache", "c", "--set", "time.step=2.5e-4", "--resume", "--frames", ":3"}));
+  expect_well(simulate({"--cache", "once", "--set", "time.step=2.5e-4", "--frames", ":3"}));
   EXPECT_EQ(hash_of_frames("c", 3), hash_of_frames("once", 3));
 }
 
