@@ -19,7 +19,7 @@ namespace {
 
 using namespace weft;
 
-constexpr double kPixelsPerMetre = 900, kGap = 0.06;  // between panels [m]
+constexpr double kPixelsPerMetre = 1000, kGap = 0.06;  // between panels [m]
 constexpr std::array kSeamColours{"#d55e00", "#0072b2", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"};
 
 std::array<Vec2, 3> corners_of(const garment::Garment& garment, std::size_t t) {
@@ -71,7 +71,7 @@ std::string picture(const garment::Pattern& pattern, const garment::Garment& gar
         for (const Vec2& c : corners_of(garment, t)) low = low.cwiseMin(c), high = high.cwiseMax(c);
     if (p % 2 == 0) left = kGap, top += height + (p > 0 ? kGap : 0), height = 0;  // two in a row
     const auto place = [&](const Vec2& c) {
-      return fmt::format("{:.1f} {:.1f}", kPixelsPerMetre * (left + c.x() - low.x()),
+      return fmt::format("{:.0f} {:.0f}", kPixelsPerMetre * (left + c.x() - low.x()),
                          kPixelsPerMetre * (top + kGap + high.y() - c.y()));
     };
     std::string mesh, seams;
@@ -96,7 +96,7 @@ std::string picture(const garment::Pattern& pattern, const garment::Garment& gar
     height = std::max(height, high.y() - low.y() + kGap);
   }
   return fmt::format(
-      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0:.0f} {1:.0f}' font-family='sans-serif' font-size='26'>\n"
+      "<svg xmlns='http://www.w3.org/2000/svg' viewBox='0 0 {0:.0f} {1:.0f}' font-family='sans-serif' font-size='30'>\n"
       "<rect width='{0:.0f}' height='{1:.0f}' fill='white'/>\n{2}</svg>\n",
       kPixelsPerMetre * width, kPixelsPerMetre * (top + height + kGap), body);
 }
