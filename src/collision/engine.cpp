@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/archive.hpp"
+#include "mesh/geometry.hpp"
 
 namespace weft::collision {
 namespace {
@@ -359,6 +360,13 @@ std::optional<CornerPair> Engine::first_fresh(const PinchedPairs& pinched) const
   return std::nullopt;
 }
 
+// How far the pinching obstacle's faces that look this way are from the place; infinite where none do.
+double Engine::distance_facing(const Pinch& pinch, const Vec3& way, std::span<const Vec3> x) const {
+  const SurfacePoint point = nearest_point(pinch.place, surfaces_[pinch.obstacle].triangles, x, way);
+  const bool faces = mesh::area_vector(point.face, x).dot(way) > 0;
+  return faces ? std::abs(point.height) : std::numeric_limits<double>::infinity();
+}
+
 std::vector<Pinch> Engine::pinches(std::span<const Vec3> x) const {
   std::vector<Pinch> found;
   for (const auto& [key, origin] : pinched_.origins()) {
@@ -372,6 +380,11 @@ std::vector<Pinch> Engine::pinches(std::span<const Vec3> x) const {
       const double distance = std::abs(nearest_point(pinch.place, surfaces_[b].triangles, x).height);
       if (distance < nearest) nearest = distance, found.back().other = b;
     }
+    // Parts of one body pinch too, as arm and side do: it looks at the cloth from both sides, hardly further off on one
+    // than on the other.
+    const Vec3 up = mesh::area_vector(key.cloth, x).normalized();
+    const auto [near, far] = std::minmax({distance_facing(pinch, up, x), distance_facing(pinch, -up, x)});
+    if (far < std::min(nearest, 2 * (near + reach_))) found.back().other = pinch.obstacle;
   }
   return found;
 }

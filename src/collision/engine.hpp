@@ -40,7 +40,7 @@ struct PairFriction {
 /// Cloth that is in an obstacle because it has no room.
 struct Pinch {
   std::size_t cloth = 0, obstacle = 0;
-  std::optional<std::size_t> other;  ///< the other obstacle nearest to it, if there is one
+  std::optional<std::size_t> other;  ///< the other obstacle nearest to it, if there is one; the same: parts of it pinch
   Vec3 place;                        ///< of a particle [m]
 };
 
@@ -128,6 +128,7 @@ class Engine {
   bool constrain(const Touch& touch, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   bool constrain_corners(const CornerPair& pair, const Touch& touch, std::span<const Vec3> x_t0,
                          std::span<const Vec3> x_t1);
+  double distance_facing(const Pinch& pinch, const Vec3& way, std::span<const Vec3> x) const;
   bool near_start(std::span<const Vec3> x) const;
   bool inside_bounds(std::span<const Vec3> x) const;
   template <class Archive>

@@ -69,7 +69,9 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
 
 void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std::string& path, Findings& findings) {
   check_times(pin.motion.keys, path, findings);
-  check_reference(pin.follow, names_of(scene.obstacles), "an obstacle", path + ".follow", findings);
+  std::vector<std::string> bodies = names_of(scene.obstacles);
+  for (const std::string& name : names_of(scene.characters)) bodies.push_back(name);
+  check_reference(pin.follow, bodies, "an obstacle or character", path + ".follow", findings);
   check_part(cloth, pin, path, findings);
 }
 

@@ -192,9 +192,11 @@ std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, 
 }
 
 std::string CollisionStage::describe(const collision::Pinch& pinch) const {
-  const std::string between = pinch.other
-                                  ? fmt::format("between '{}' and '{}'", names_[pinch.obstacle], names_[*pinch.other])
-                                  : fmt::format("before '{}'", names_[pinch.obstacle]);
+  const std::string& obstacle = names_[pinch.obstacle];
+  const std::string between = !pinch.other ? fmt::format("before '{}'", obstacle)
+                              : *pinch.other == pinch.obstacle
+                                  ? fmt::format("between parts of '{}'", obstacle)
+                                  : fmt::format("between '{}' and '{}'", obstacle, names_[*pinch.other]);
   return fmt::format("'{}' has no room {} near ({:.4g}, {:.4g}, {:.4g}) m", names_[pinch.cloth], between,
                      pinch.place.x(), pinch.place.y(), pinch.place.z());
 }

@@ -3,10 +3,36 @@
 #include <algorithm>
 #include <numeric>
 
+#include "collision/response/pinch.hpp"
+
 namespace weft::simulation {
 namespace {
 
-int obstacle_named(const environment::Environment& environment, const std::string& name) {
+/// A place and its velocity.
+struct Moving {
+  Vec3 x, v;
+};
+
+/// Unit vector along u, which changes by u_rate, and its own rate of change.
+Moving unit(const Vec3& u, const Vec3& u_rate) {
+  const double length = u.norm();
+  const Vec3 along = u / length;
+  return {along, (u_rate - along.dot(u_rate) * along) / length};
+}
+
+/// Axes of a triangle: along its first side, its normal, and at right angles to both; with their rates of change.
+struct TriangleAxes {
+  Mat3 axes, rates;
+
+  TriangleAxes(const Moving& a, const Moving& b, const Moving& c) {
+    const Vec3 p = b.x - a.x, q = c.x - a.x, p_rate = b.v - a.v, q_rate = c.v - a.v;
+    const Moving side = unit(p, p_rate), normal = unit(p.cross(q), p_rate.cross(q) + p.cross(q_rate));
+    axes << side.x, normal.x, side.x.cross(normal.x);
+    rates << side.v, normal.v, side.v.cross(normal.x) + side.x.cross(normal.v);
+  }
+};
+
+int body_named(const environment::Environment& environment, const std::string& name) {
   const auto found = std::find_if(environment.bodies.begin(), environment.bodies.end(),
                                   [&](const environment::BodyObject& body) { return body.name == name; });
   return found == environment.bodies.end() ? -1 : static_cast<int>(found - environment.bodies.begin());
@@ -23,6 +49,7 @@ std::vector<Index> particles_of(const scene::ClothPart& part, const environment:
 
 Pins::Pins(const scene::Scene& scene, const environment::Environment& environment,
            const std::vector<Index>& first_particle) {
+  const double start_time = -scene.preroll_frames() / scene.time.fps;
   std::vector<Index> taken;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const environment::ClothObject& cloth = environment.cloths[c];
@@ -39,9 +66,13 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
         return cloth.motion.positions[static_cast<std::size_t>(particle - first_particle[c])];
       };
       group.release = pin.release;
-      group.follow = pin.follow.empty() ? -1 : obstacle_named(environment, pin.follow);
-      if (group.follow >= 0) {
-        const environment::PoseSample pose = environment.pose(static_cast<std::size_t>(group.follow), 0);
+      group.follow = pin.follow.empty() ? -1 : body_named(environment, pin.follow);
+      if (group.follow >= 0 && environment.bodies[static_cast<std::size_t>(group.follow)].character) {
+        std::vector<Vec3> places;
+        for (Index particle : group.particles) places.push_back(start(particle));
+        group.anchors = anchor(environment, static_cast<std::size_t>(group.follow), start_time, places);
+      } else if (group.follow >= 0) {
+        const environment::PoseSample pose = environment.pose(static_cast<std::size_t>(group.follow), start_time);
         for (Index particle : group.particles)
           group.arms.push_back(pose.rotation.conjugate() * (start(particle) - pose.position));
       } else {
@@ -56,11 +87,52 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
   }
 }
 
+std::vector<Pins::Anchor> Pins::anchor(const environment::Environment& environment, std::size_t character, double t,
+                                       std::span<const Vec3> places) {
+  const mesh::Mesh& skin = environment.bodies[character].mesh;
+  std::vector<Moving> vertices;
+  std::vector<Vec3> x;
+  for (std::size_t v = 0; v < skin.positions.size(); ++v) {
+    vertices.push_back({environment.vertex(character, v, t).position, Vec3::Zero()});
+    x.push_back(vertices.back().x);
+  }
+  std::vector<Anchor> anchors;
+  for (const Vec3& place : places) {
+    const collision::SurfacePoint nearest = collision::nearest_point(place, skin.topology.triangles, x);
+    Anchor& anchor = anchors.emplace_back();
+    Vec3 foot = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      anchor.corners[k] = static_cast<std::size_t>(nearest.face[k]);
+      anchor.weights[k] = nearest.weights[k];
+      foot += nearest.weights[k] * x[anchor.corners[k]];
+    }
+    const auto& [a, b, c] = anchor.corners;
+    anchor.arm = TriangleAxes(vertices[a], vertices[b], vertices[c]).axes.transpose() * (place - foot);
+  }
+  return anchors;
+}
+
 void Pins::held_at(double t, const environment::Environment& environment,
                    std::vector<integrator::HeldParticle>& held) const {
   held.clear();
   for (const Group& group : groups_) {
     if (group.release >= 0 && t > group.release) continue;
+    for (std::size_t p = 0; p < group.anchors.size(); ++p) {
+      const Anchor& anchor = group.anchors[p];
+      std::array<Moving, 3> corners;
+      Moving place{Vec3::Zero(), Vec3::Zero()};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto vertex = environment.vertex(static_cast<std::size_t>(group.follow), anchor.corners[k], t);
+        corners[k] = {vertex.position, vertex.velocity};
+        place.x += anchor.weights[k] * vertex.position;
+        place.v += anchor.weights[k] * vertex.velocity;
+      }
+      const TriangleAxes triangle(corners[0], corners[1], corners[2]);
+      held.push_back({{group.particles[p], Mat3::Zero()},
+                      place.x + triangle.axes * anchor.arm,
+                      place.v + triangle.rates * anchor.arm});
+    }
+    if (!group.anchors.empty()) continue;
     environment::PoseSample pose;
     if (group.follow >= 0) {
       pose = environment.pose(static_cast<std::size_t>(group.follow), t);

@@ -1,7 +1,9 @@
 // Particles that the scene holds or moves.
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "environment/environment.hpp"
@@ -28,12 +30,21 @@ class Pins {
                std::vector<integrator::HeldParticle>& held) const;
 
  private:
+  /// A place beside a triangle of a character's skin, that moves with it as if it were rigid.
+  struct Anchor {
+    std::array<std::size_t, 3> corners;
+    std::array<double, 3> weights;  // of the point of the triangle that was nearest at the start
+    Vec3 arm;                       // from there, along the triangle's axes [m]
+  };
+  static std::vector<Anchor> anchor(const environment::Environment& environment, std::size_t character, double t,
+                                    std::span<const Vec3> places);
   /// Particles that share one motion.
   struct Group {
     std::vector<Index> particles;
-    std::vector<Vec3> arms;  // from the motion's origin at time 0, in its own directions [m]
-    double release = -1;     // [s]; negative: never
-    int follow = -1;         // obstacle, or −1 for `track`
+    std::vector<Vec3> arms;       // from the motion's origin at the start, in its own directions [m]
+    double release = -1;          // [s]; negative: never
+    int follow = -1;              // obstacle or character, or −1 for `track`
+    std::vector<Anchor> anchors;  // on a character, instead of arms
     std::optional<environment::Track> track;
     Vec3 origin;  // of the particles at the start, about which `track` turns [m]
   };

@@ -348,7 +348,7 @@ TEST_F(Program, CheckReadsPatternsAndTheirDrawings) {
   const Outcome bad = run_weft({"check", "dressed.toml"}, folder_);
   EXPECT_EQ(bad.exit_code, 3);
   EXPECT_TRUE(contains(bad.err, "dressed.toml:5:15: cloth.sack.edge_length")) << bad.err;
-  EXPECT_TRUE(contains(bad.err, "sack.toml:21:8: hem.0.mass")) << bad.err;
+  EXPECT_TRUE(contains(bad.err, "sack.toml:20:8: hem.0.mass")) << bad.err;
   EXPECT_TRUE(contains(bad.err, "back.svg:2:2: path \"back\": ")) << bad.err;
   EXPECT_EQ(bad.out, "");
   // With panels that can be drawn, names of edges are looked at too.

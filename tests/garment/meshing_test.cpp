@@ -74,6 +74,13 @@ TEST(PanelMeshes, AreDelaunay) {
   }
 }
 
+// 0.3 / 0.1 is less than 3 in floating point; a row less would leave strips of one and a half spacings.
+TEST(PanelMeshes, OfWholeSquaresAreSquaresUpToTheOutline) {
+  const FlatMesh mesh = mesh_panel(cut({{-0.2, 0}, {0.2, 0}, {0.2, 0.3}, {-0.2, 0.3}}, 0.1), {0, 1}, 0.1);
+  EXPECT_EQ(mesh.points.size(), 5U * 4U);
+  for (const mesh::Triangle& t : mesh.triangles) EXPECT_NEAR(smallest_angle(t, mesh.points), 45, 1e-9);
+}
+
 TEST(PanelMeshes, InnerLatticePointsHaveSixNeighbours) {
   const FlatMesh mesh = mesh_panel(cut({{0, 0}, {1, 0}, {1, 1}, {0, 1}}, 0.05), {0, 1}, 0.05);
   std::map<Index, int> degree;

@@ -203,14 +203,15 @@ TEST_F(SewingText, WhatCannotBeSewnIsRefused) {
   std::string turned = kDart + kDartSeams;
   turned.replace(turned.find("grain = 90"), 10, "rotation = 180");
   expect_mistake(turned, "whose triangles face both ways");
-  // A quarter of a ring, sewn along its straight sides: they meet only if what is between folds over. With three
-  // quarters the gap between them closes as a dart does.
+  // A quarter of a ring, sewn along its straight sides: they meet only if what is between folds over. With eleven
+  // twelfths the gap between them closes as a dart does.
   const std::string ring =
       "[[seam]]\na = 'hat.a'\nb = 'hat.b'\n[[panel]]\nname = 'hat'\nedges = 'a low b top'\npath = ";
   expect_mistake(ring + "'M 0.1 0 L 0.3 0 A 0.3 0.3 0 0 1 0 0.3 L 0 0.1 A 0.1 0.1 0 0 0 0.1 0 Z'\n",
                  "panel hat: expected a position, rotation and scale at which its seams close without folding it, "
                  "got a fold near (");
-  const Garment hat = sew_text(ring + "'M 0.1 0 L 0.3 0 A 0.3 0.3 0 1 1 0 -0.3 L 0 -0.1 A 0.1 0.1 0 1 0 0.1 0 Z'\n");
+  const Garment hat =
+      sew_text(ring + "'M 0.1 0 L 0.3 0 A 0.3 0.3 0 1 1 0.26 -0.15 L 0.0867 -0.05 A 0.1 0.1 0 1 0 0.1 0 Z'\n");
   EXPECT_EQ(euler_characteristic(hat.sheet), 0);
   support::expect_error(ExitCode::scene_invalid, "expected an edge_length of at least",
                         [&] { sew_text(kDart + kDartSeams, 1e-4); });

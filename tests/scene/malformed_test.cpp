@@ -180,7 +180,8 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:3:14: time.integrator: expected implicit_euler, implicit_midpoint or bdf2, got \"bdf3\"; did you mean "
      "bdf2?\n"},
     {"FollowsNothing", kFloor + "[[cloth]]\nname = 'a'\npin = [{ follow = 'flor' }]\n",
-     "s.toml:4:19: cloth.a.pin.0.follow: expected the name of an obstacle, got \"flor\"; did you mean floor?\n"},
+     "s.toml:4:19: cloth.a.pin.0.follow: expected the name of an obstacle or character, got \"flor\"; did you mean "
+     "floor?\n"},
     {"UnknownCamera", kFloor + "[render]\ncamera = 'main'\n",
      "s.toml:3:10: render.camera: expected the name of a camera, got \"main\"\n"},
     {"KeysOutOfOrder",

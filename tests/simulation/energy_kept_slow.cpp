@@ -62,7 +62,7 @@ TEST(PinnedSheet, OfSecondOrderMethodsKeepMoreEnergyThanEuler) {
     FrameReport report;
     for (int k = 0; k < 10; ++k) report = simulation.advance();
     const double end = energy.above_rest(simulation, report);
-    std::printf("%-18s step 1/%-5d %7.4f J of %7.4f J: %6.2f %%\n", testing::name_of(integrator), rate, end, start,
+    std::printf("%-18s step 1/%-5d %7.4f J of %7.4f J: %6.2f %%\n", name_of(integrator).c_str(), rate, end, start,
                 100 * end / start);
     std::fflush(stdout);
     return end / start;

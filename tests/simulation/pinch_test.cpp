@@ -2,9 +2,11 @@
 // and once the bodies have parted nothing intersects.
 #include "collision/response/pinch.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -12,6 +14,7 @@
 #include "mesh/shapes.hpp"
 #include "support/intersections.hpp"
 #include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -256,6 +259,55 @@ INSTANTIATE_TEST_SUITE_P(By, PinchedCloth,
                          [](const auto& pinch) {
                            return std::string(pinch.param.name) + (pinch.param.step > 0.02 ? "_x4" : "_x1");
                          });
+
+/// Two boxes 0.2 m wide with a gap between them along y, as one OBJ file.
+std::string jaws_file(double gap) {
+  std::string vertices, faces;
+  for (int jaw = 0; jaw < 2; ++jaw) {
+    const mesh::Mesh box = mesh::make_box(Vec3(0.2, 0.2, 0.2), 0, 2);
+    const double y = (jaw == 0 ? -1 : 1) * (0.1 + 0.5 * gap);
+    for (const Vec3& x : box.positions) vertices += fmt::format("v {} {} {}\n", x.x(), x.y() + y, x.z());
+    const auto first = static_cast<Index>(jaw * static_cast<int>(box.positions.size()) + 1);
+    for (const auto& [a, b, c] : box.topology.triangles)
+      faces += fmt::format("f {} {} {}\n", a + first, b + first, c + first);
+  }
+  return vertices + faces;
+}
+
+class PinchBetweenParts : public support::TestFolder {
+ protected:
+  /// The reports of a sheet that hangs in jaws which close to this gap and part again.
+  std::vector<std::string> reports(double least_gap, const std::string& more) {
+    const std::array<double, 9> gaps{0.1, 0.1, 0.05, least_gap, least_gap, least_gap, 0.05, 0.1, 0.1};
+    for (std::size_t k = 0; k < gaps.size(); ++k)
+      support::write_bytes(folder_ / fmt::format("jaws_{}.obj", k), jaws_file(gaps[k]));
+    const scene::Scene scene = support::scene_of_text(
+        "[time]\nduration = 0.7\n[[character]]\nname = 'jaws'\nsource = 'sequence'\nfps = 10\nup = 'z'\n"
+        "interpolation = 'linear'\nfiles = '" +
+        (folder_ / "jaws_*.obj").string() +
+        "'\n[[cloth]]\nname = 'sheet'\nsize = [0.3, 0.3]\nparticles = [13, 13]\nposition = [0.004, 0, 0.053]\n"
+        "rotation = [90, 0, 0]\npin = [{ low = [0, 1], high = [1, 1] }]\n" +
+        more);
+    Simulation simulation(scene);
+    std::vector<std::string> pinches;
+    for (int k = 1; k < scene.frame_count(); ++k) {
+      const FrameReport report = simulation.advance();
+      pinches.insert(pinches.end(), report.pinches.begin(), report.pinches.end());
+    }
+    return pinches;
+  }
+};
+
+// A floor lies below; it is not what pinches. A board behind the jaws is further off than their own other part.
+TEST_F(PinchBetweenParts, IsSaidToBeBetweenPartsOfThatBody) {
+  const auto pinches =
+      reports(-0.01,
+              "[[obstacle]]\nname = 'floor'\nshape = 'plane'\nposition = [0, 0, -0.2]\n"
+              "[[obstacle]]\nname = 'board'\nshape = 'box'\nsize = [0.01, 1, 1]\nposition = [0.2, 0, 0]\n");
+  ASSERT_FALSE(pinches.empty());
+  for (const std::string& text : pinches)
+    EXPECT_NE(text.find("'sheet' has no room between parts of 'jaws' near"), std::string::npos) << text;
+}
 
 // Of a box the signed distance is known: outside that to the nearest point of the box, inside minus the least depth.
 TEST(NearestPoint, TellsTheSignedDistanceToABox) {

@@ -1,6 +1,7 @@
 // The garments that ship, sewn and worn by a stand-in body: they fit, and nothing ever intersects.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <fstream>
@@ -134,6 +135,96 @@ TEST_F(Worn, TheTShirtFits) {
 TEST_F(Worn, TheDressFits) {
   wear("dress");
 }
+
+/// Positions of the points of a panel's edge at equal shares of its length, told by where they are in the flat panel:
+/// nothing is asked of the seams that the mesh was made with.
+std::vector<Vec3> places_along(const garment::Pattern& pattern, const garment::Garment& garment,
+                               const std::string& edge, std::size_t segments, const std::vector<Vec3>& x) {
+  const auto [p, e] = pattern.find(edge);
+  const garment::Panel& panel = pattern.panels[p];
+  const garment::Arclength along(panel.edges[e].curves);
+  std::vector<Vec3> places;
+  for (std::size_t k = 0; k <= segments; ++k) {
+    Vec2 flat = Eigen::Rotation2Dd(-panel.grain * std::numbers::pi / 180) *
+                along.at(static_cast<double>(k) / static_cast<double>(segments));
+    if (panel.side == garment::Side::back) flat.x() = -flat.x();
+    for (std::size_t t = 0; t < garment.panel_of.size() && places.size() == k; ++t)
+      for (std::size_t c = 0; c < 3 && places.size() == k; ++c)
+        if (garment.panel_of[t] == static_cast<Index>(p) && (garment.sheet.material[t][c] - flat).norm() < 1e-9)
+          places.push_back(x[static_cast<std::size_t>(garment.sheet.triangles[t][c])]);
+    EXPECT_EQ(places.size(), k + 1) << edge << " has no point at " << flat.transpose();
+    if (places.size() != k + 1) break;
+  }
+  return places;
+}
+
+/// Largest distance of the two sides of a seam [m].
+double opening(const garment::Pattern& pattern, const garment::Garment& garment, std::size_t seam,
+               const std::vector<Vec3>& x) {
+  const std::size_t segments = garment.seams[seam].vertices.size() - 1;
+  const std::vector<Vec3> a = places_along(pattern, garment, pattern.seams[seam].a, segments, x);
+  std::vector<Vec3> b = places_along(pattern, garment, pattern.seams[seam].b, segments, x);
+  const auto widest = [&] {
+    double distance = 0;
+    for (std::size_t k = 0; k < std::min(a.size(), b.size()); ++k) distance = std::max(distance, (a[k] - b[k]).norm());
+    return distance;
+  };
+  const double one_way = widest();
+  std::ranges::reverse(b);
+  return std::min(one_way, widest());
+}
+
+// On the mannequin, and coarse: 30 mm in the cloth, 25 mm in the body.
+class OnTheMannequin : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(OnTheMannequin, FitsAtRestWithItsSeamsClosed) {
+  constexpr double kSpacing = 0.03;
+  const scene::Scene scene = support::scene_of_text(
+      "[time]\nduration = 3\n[[character]]\nname = 'model'\nsource = 'mannequin'\nstance = 'rest'\nblend = 1\n"
+      "edge_length = 0.025\n[[cloth]]\nname = 'garment'\nshape = 'pattern'\nfile = '" +
+      std::string(WEFT_SOURCE_DIR) + "/scenes/patterns/" + GetParam() + ".toml'\nedge_length = 0.03\n");
+  const auto frames = support::run_scene(scene);
+  for (const auto& frame : frames)
+    EXPECT_EQ(frame.pairs, 0U) << "frame " << frame.report.frame << ": " << frame.between;
+  EXPECT_LT(frames.back().rms_speed, 0.05);
+
+  const garment::Pattern pattern = garment::load_pattern(scene.cloths[0].file, "a test");
+  const garment::Garment garment = garment::sew(pattern, kSpacing, "a test");
+  const std::vector<Vec3>& x = frames.back().cloths[0];
+  const auto at = [&](Index i) -> const Vec3& { return x[static_cast<std::size_t>(i)]; };
+  std::vector<double> areas(pattern.panels.size()), flat(pattern.panels.size());
+  for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
+    const auto& [a, b, c] = garment.sheet.triangles[t];
+    const auto panel = static_cast<std::size_t>(garment.panel_of[t]);
+    areas[panel] += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();
+    flat[panel] += mesh::rest_area(garment.sheet, t);
+  }
+  double worst_area = 0, worst_seam = 0, widest = 0;
+  for (std::size_t p = 0; p < areas.size(); ++p) worst_area = std::max(worst_area, std::abs(areas[p] / flat[p] - 1));
+  for (std::size_t s = 0; s < garment.seams.size(); ++s) {
+    const garment::SewnSeam& seam = garment.seams[s];
+    double length = 0;
+    for (std::size_t k = 1; k < seam.vertices.size(); ++k)
+      length += (at(seam.vertices[k]) - at(seam.vertices[k - 1])).norm();
+    worst_seam = std::max(worst_seam, std::abs(2 * length / (seam.length_a + seam.length_b) - 1));
+    widest = std::max(widest, opening(pattern, garment, s, x));
+  }
+  std::printf(
+      "%s: %zu particles, panels off by %.2f %%, seams by %.2f %% at most, open by %.3f mm, strain %.3f, "
+      "rms %.1f mm/s\n",
+      GetParam(), x.size(), 100 * worst_area, 100 * worst_seam, 1e3 * widest, frames.back().report.max_strain,
+      1e3 * frames.back().rms_speed);
+  EXPECT_LT(worst_area, 0.01);
+  EXPECT_LT(worst_seam, 0.01);
+  EXPECT_LT(widest, 1e-4);
+  // It is worn and has not slipped down.
+  double mean = 0;
+  for (const Vec3& p : x) mean += p.z() / static_cast<double>(x.size());
+  EXPECT_GT(mean, 0.6);
+}
+
+INSTANTIATE_TEST_SUITE_P(Worn, OnTheMannequin, ::testing::Values("skirt", "tshirt", "dress"),
+                         [](const auto& garment) { return std::string(garment.param); });
 
 }  // namespace
 }  // namespace weft::simulation

@@ -1,0 +1,139 @@
+// Cloth held at places of a character's skin.
+#include "simulation/pins.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+
+#include "mesh/shapes.hpp"
+#include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::simulation {
+namespace {
+
+constexpr int kFiles = 9;
+constexpr double kRate = 20;  // files a second
+
+/// Where a point of the body is at a time [s].
+using Deformation = std::function<Vec3(const Vec3&, double)>;
+
+class PinsOnACharacter : public support::TestFolder {
+ protected:
+  /// A body of boxes, moved through files, and a sheet beside it with one side held.
+  scene::Scene scene_of(const Deformation& moved, const std::string& more = "") {
+    const mesh::Mesh box = mesh::make_box(Vec3(0.6, 0.4, 0.2), 0, 1);
+    for (int k = 0; k < kFiles; ++k) {
+      std::string text;
+      for (const Vec3& x : box.positions) {
+        const Vec3 y = moved(x, k / kRate);
+        text += fmt::format("v {} {} {}\n", y.x(), y.y(), y.z());
+      }
+      for (const auto& [a, b, c] : box.topology.triangles) text += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
+      support::write_bytes(folder_ / fmt::format("body_{}.obj", k), text);
+    }
+    return support::scene_of_text(
+        "[time]\nduration = 0.4\n[[character]]\nname = 'body'\nsource = 'sequence'\nup = 'z'\nfps = 20\nfiles = '" +
+        (folder_ / "body_*.obj").string() +
+        "'\n[[cloth]]\nname = 'cape'\nsize = [0.4, 0.3]\nparticles = [9, 7]\nposition = [0.03, -0.01, 1.11]\n"
+        "pin = [{ low = [0, 1], high = [1, 1], follow = 'body' }]\n" +
+        more);
+  }
+};
+
+const Deformation kRigid = [](const Vec3& x, double t) -> Vec3 {
+  const double angle = 3 * t * t;
+  return Vec3(0.5 * t, 0.2 * std::sin(4 * t), 1 - t) +
+         Eigen::AngleAxisd(angle, Vec3(0.48, 0.6, 0.64)).toRotationMatrix() * x;
+};
+const Deformation kBent = [](const Vec3& x, double t) -> Vec3 {
+  return kRigid({x.x() * (1 + t), x.y(), x.z() + 0.5 * t * x.x() * x.x() + t * x.x() * x.y()}, t);
+};
+
+/// A scene with its pins.
+struct Pinned {
+  environment::Environment environment;
+  Pins pins;
+  explicit Pinned(const scene::Scene& scene) : environment(scene), pins(scene, environment, {0}) {}
+
+  std::vector<integrator::HeldParticle> at(double t) const {
+    std::vector<integrator::HeldParticle> held;
+    pins.held_at(t, environment, held);
+    return held;
+  }
+  const Vec3& start(const integrator::HeldParticle& held) const {
+    return environment.cloths[0].motion.positions[static_cast<std::size_t>(held.constraint.particle)];
+  }
+};
+
+// Where the body moves as one, so does what is held: at the key frames, where its vertices are exact.
+TEST_F(PinsOnACharacter, MoveAsOneWithABodyThatDoes) {
+  const Pinned pinned(scene_of(kRigid));
+  ASSERT_EQ(pinned.at(0).size(), 9u);
+  for (int k = 0; k < kFiles - 1; ++k)
+    for (const auto& held : pinned.at(k / kRate)) {
+      const Vec3 in_body = pinned.start(held) - kRigid(Vec3::Zero(), 0);  // it is not turned at time 0
+      // Files are read in single precision: 1e-7 m, on levers of about a side.
+      EXPECT_LT((held.x_end - kRigid(in_body, k / kRate)).norm(), 1e-6) << k;
+    }
+}
+
+// Also between key frames, on skin that stretches, bends and shears.
+TEST_F(PinsOnACharacter, HaveTheVelocityOfTheirPlaces) {
+  const Pinned pinned(scene_of(kBent));
+  const double t = 0.1337, d = 1e-5;
+  const auto before = pinned.at(t - d), now = pinned.at(t), after = pinned.at(t + d);
+  for (std::size_t p = 0; p < now.size(); ++p) {
+    const Vec3 difference = (after[p].x_end - before[p].x_end) / (2 * d);
+    // d² times a third derivative of some hundred m/s³, and rounding of 1e-16 / d.
+    EXPECT_LT((difference - now[p].v_end).norm(), 1e-7);
+    EXPECT_GT(now[p].v_end.norm(), 0.5);
+  }
+}
+
+// On skin that bends, a particle keeps its distance to the surface: 10 mm above the box.
+TEST_F(PinsOnACharacter, KeepTheirDistanceFromTheSkin) {
+  const Pinned pinned(scene_of(kBent));
+  for (int k = 0; k < kFiles - 1; ++k)
+    for (const auto& held : pinned.at(k / kRate)) {
+      double least = 1;  // off the 10 mm, of all faces
+      for (const auto& t : pinned.environment.bodies[0].mesh.topology.triangles) {
+        const auto at = [&](std::size_t c) {
+          return pinned.environment.vertex(0, static_cast<std::size_t>(t[c]), k / kRate).position;
+        };
+        const Vec3 n = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
+        least = std::min(least, std::abs(n.dot(held.x_end - at(0)) - 0.01));
+      }
+      EXPECT_LT(least, 1e-6) << k;
+    }
+}
+
+// The cape goes where the body goes.
+TEST_F(PinsOnACharacter, CarryCloth) {
+  const scene::Scene scene = scene_of(kRigid, "[contact]\nobstacles = false\n");
+  const std::vector<Vec3> last = support::run_scene(scene, {.judged = false}).back().cloths[0];
+  const Pinned pinned(scene);
+  for (const auto& held : pinned.at(scene.time.duration)) {
+    EXPECT_EQ(last[static_cast<std::size_t>(held.constraint.particle)], held.x_end);
+    EXPECT_GT((held.x_end - pinned.start(held)).norm(), 0.1);
+  }
+}
+
+TEST_F(PinsOnACharacter, AreRefusedForWhatIsNoObjectOfTheScene) {
+  try {
+    support::scene_of_text(
+        "cloth = [{ name = 'a', pin = [{ follow = 'bdy' }] }]\n"
+        "character = [{ name = 'body', source = 'mannequin' }]\n");
+    FAIL();
+  } catch (const std::invalid_argument& error) {
+    EXPECT_NE(std::string(error.what())
+                  .find("expected the name of an obstacle or character, got \"bdy\"; did you mean body?"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+}  // namespace
+}  // namespace weft::simulation
