@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 
@@ -85,12 +86,17 @@ ExitCode exit_code(const std::vector<FileComparison>& results) {
   return code;
 }
 
+// Each figure that is past its limit says so.
 std::string describe_figures(const FileComparison& result, const compare::Limits& limits) {
   const compare::Figures& f = result.worst.figures;
+  const auto limit = [](double figure, double most) { return figure > most ? fmt::format(" (limit {:g})", most) : ""; };
+  const double pixels = static_cast<double>(f.width) * f.height;
   return fmt::format(
-      "{} of {} pixels differ, {} by more than {} levels; at most {} at ({}, {}); SSIM {:.5f}, FLIP {:.2g}{}",
-      f.pixels_changed, std::int64_t{f.width} * f.height, f.pixels_over, limits.pixel_tolerance, f.largest, f.largest_x,
-      f.largest_y, f.ssim, f.flip, f.flip > limits.flip ? fmt::format(" (limit {:g})", limits.flip) : "");
+      "{} of {} pixels differ, {} by more than {} levels{}; at most {} at ({}, {}); FLIP {:.2g}{}, at most {:.2g}{}; "
+      "SSIM {:.5f}",
+      f.pixels_changed, pixels, f.pixels_over, limits.pixel_tolerance,
+      limit(static_cast<double>(f.pixels_over), std::floor(limits.pixel_budget * pixels)), f.largest, f.largest_x,
+      f.largest_y, f.flip, limit(f.flip, limits.flip), f.spot, limit(f.spot, limits.spot), f.ssim);
 }
 
 std::string describe(const FileComparison& result, const compare::Limits& limits) {
@@ -136,6 +142,7 @@ Json describe_json(const FileComparison& result, const fs::path& heatmap) {
   json["largest_at"] = {f.largest_x, f.largest_y};
   json["ssim"] = f.ssim;
   json["flip"] = f.flip;
+  json["spot"] = f.spot;
   if (!heatmap.empty()) json["heatmap"] = heatmap.string();
   return json;
 }
@@ -161,7 +168,8 @@ ExitCode diff(const DiffOptions& options) {
             {"limits",
              {{"pixel_tolerance", options.limits.pixel_tolerance},
               {"pixel_budget", options.limits.pixel_budget},
-              {"flip", options.limits.flip}}},
+              {"flip", options.limits.flip},
+              {"spot", options.limits.spot}}},
             {"results", Json::array()}};
   std::string text;
   for (const FileComparison& result : results) {

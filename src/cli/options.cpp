@@ -328,6 +328,8 @@ struct Parser {
               [this](const std::string& text) { diff.limits.pixel_budget = parse_share("--pixel-budget", text); });
     add_value(command, "--max-flip", "X", with_usual("Largest mean of FLIP, 0 (looks the same) to 1", usual.flip),
               [this](const std::string& text) { diff.limits.flip = parse_share("--max-flip", text); });
+    add_value(command, "--max-spot", "X", with_usual("Largest value of FLIP at any pixel", usual.spot),
+              [this](const std::string& text) { diff.limits.spot = parse_share("--max-spot", text); });
     add_value(command, "--heatmap", "FILE.png|DIR", "Also paint where it differs; a video's worst frame",
               [this](const std::string& text) { diff.heatmap = text; });
     command.add_flag("--json", diff.json, "Print JSON instead of text");

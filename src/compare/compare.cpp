@@ -57,12 +57,14 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
   result.figures.ssim = structural_similarity(reference, test);
   result.flip = flip_map(reference, test);
   result.figures.flip = mean(result.flip);
+  result.figures.spot = static_cast<double>(*std::max_element(result.flip.values.begin(), result.flip.values.end()));
   return result;
 }
 
 Verdict verdict(const Figures& figures, const Limits& limits) {
   if (figures.pixels_changed == 0) return Verdict::same;
-  const bool within = figures.share_over() <= limits.pixel_budget && figures.flip <= limits.flip;
+  const bool within =
+      figures.share_over() <= limits.pixel_budget && figures.flip <= limits.flip && figures.spot <= limits.spot;
   return within ? Verdict::within : Verdict::differs;
 }
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 
 #include "compare/pictures.hpp"
@@ -44,13 +45,18 @@ TEST(Compare, EachLimitDecidesByItself) {
   Limits limits;
   limits.pixel_budget = 0.01;
   limits.flip = 0.1;
+  limits.spot = 0.4;
   figures.pixels_over = 100;
   figures.flip = 0.1;
+  figures.spot = 0.4;
   EXPECT_EQ(verdict(figures, limits), Verdict::within);
   figures.pixels_over = 101;
   EXPECT_EQ(verdict(figures, limits), Verdict::differs);
   figures.pixels_over = 0;
   figures.flip = 0.1001;
+  EXPECT_EQ(verdict(figures, limits), Verdict::differs);
+  figures.flip = 0;
+  figures.spot = 0.4001;
   EXPECT_EQ(verdict(figures, limits), Verdict::differs);
 }
 
@@ -59,13 +65,42 @@ TEST(Compare, ImagesOfDifferentSizeAreNotForThisFunction) {
                         [] { compare(plain(20, 10, 0, 0, 0), plain(10, 20, 0, 0, 0), 4); });
 }
 
-TEST(Compare, FigureIsTheMeanOfTheMap) {
+TEST(Compare, FiguresAreTheMeanAndTheLargestOfTheMap) {
   const image::Image a = textured(90, 70, 1);
   const Comparison result = compare(a, with_noise(a, 900, 40, 7), 4);
   double sum = 0;
   for (const float value : result.flip.values) sum += static_cast<double>(value);
   EXPECT_NEAR(result.figures.flip, sum / 6300, 1e-12);
   EXPECT_GT(result.figures.flip, 0);
+  EXPECT_EQ(result.figures.spot, *std::max_element(result.flip.values.begin(), result.flip.values.end()));
+}
+
+// A square of `size` pixels, `levels` brighter than its flat surroundings, in a picture of 320x180.
+Verdict verdict_of_speck(int size, int levels) {
+  const image::Image flat = plain(320, 180, 110, 110, 110);
+  image::Image speck = flat;
+  for (int y = 0; y < size; ++y)
+    std::fill_n(speck.pixel(100, 90 + y), 3 * size, static_cast<std::uint8_t>(110 + levels));
+  return verdict(compare(flat, speck, Limits{}.pixel_tolerance).figures, {});
+}
+
+TEST(Compare, DefaultsPassOneSampleOfOnePixelAndNoSpeckOfSeveral) {
+  EXPECT_EQ(verdict_of_speck(1, 64), Verdict::within);
+  EXPECT_EQ(verdict_of_speck(2, 32), Verdict::differs);
+  EXPECT_EQ(verdict_of_speck(3, 8), Verdict::differs);
+  EXPECT_EQ(verdict_of_speck(1, 120), Verdict::differs);
+}
+
+// What another processor changed in four pictures of our scenes.
+TEST(Compare, DefaultsPassTheNoiseOfProcessors) {
+  const image::Image picture = textured(320, 180, 1);
+  EXPECT_EQ(verdict(compare(picture, with_noise(picture, 60, 1, 5), 4).figures, {}), Verdict::within);
+}
+
+// One level is not seen by itself, but it is a changed light, and the mean tells it from noise.
+TEST(Compare, DefaultsCatchOneLevelEverywhere) {
+  EXPECT_EQ(verdict(compare(plain(320, 180, 150, 150, 150), plain(320, 180, 151, 151, 151), 4).figures, {}),
+            Verdict::differs);
 }
 
 TEST(Compare, HeatMapShowsTheSquareRootOfTheMapOnTheHeatScale) {
