@@ -99,7 +99,7 @@
     buildModes() {
       this.modeButtons = this.modes.map(({ id, name, key }) =>
         h("button", { type: "button", title: `${name} (${key})`, "data-mode": id, onclick: () => this.setMode(id) }, name));
-      this.gainSelect = h("select", { "aria-label": "Gain of the difference", onchange: () => this.setGain(Number(this.gainSelect.value)) },
+      this.gainSelect = h("select", { "aria-label": "Gain of the difference", title: "Mean of the three channels, in levels of 255", onchange: () => this.setGain(Number(this.gainSelect.value)) },
         GAINS.map((gain) => h("option", { value: gain }, `× ${gain}`)));
       this.legend = h("span.heat-legend", {}, "0 ", h("i", { style: { background:
         `linear-gradient(90deg, ${HEAT.map((color) => `rgb(${color.map((part) => Math.round(255 * part)).join(" ")})`).join(", ")})` } }), " ", h("b"));
@@ -188,7 +188,7 @@
       this.blend.style.setProperty("--heat", `url(#heat-${gain})`);
       if (!this.hasPair) return;
       this.gainSelect.value = gain;
-      this.legend.lastChild.textContent = `${Math.round(255 / gain)} of 255 levels`;
+      this.legend.lastChild.textContent = `${Math.round(255 / gain)} levels`;
     }
     setSplit(percent) {
       const value = Math.max(0, Math.min(100, percent));
