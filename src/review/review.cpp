@@ -11,7 +11,9 @@
 #include "core/error.hpp"
 #include "core/version.hpp"
 #include "embedded_review.hpp"
+#include "image/png.hpp"
 #include "review/output_folder.hpp"
+#include "review/pictures.hpp"
 #include "review/run_data.hpp"
 
 namespace weft::review {
@@ -56,6 +58,20 @@ const RunFiles* find_reference(const std::vector<RunFiles>& references, const st
   return found;
 }
 
+Json pair_json(const PairComparison& pair) {
+  constexpr const char* kVerdicts[] = {"same", "within", "differs"};
+  const compare::Figures& figures = pair.figures;
+  return {{"picture", pair.picture},
+          {"reference", pair.reference},
+          {"verdict", kVerdicts[static_cast<int>(pair.verdict)]},
+          {"flip", figures.flip},
+          {"ssim", figures.ssim},
+          {"share_over", figures.share_over()},
+          {"largest", figures.largest},
+          {"largest_x", figures.largest_x},
+          {"largest_y", figures.largest_y}};
+}
+
 void copy_into(const fs::path& from, const fs::path& to) {
   std::error_code error;
   fs::create_directories(to.parent_path(), error);
@@ -80,20 +96,20 @@ class Page {
     const std::vector<RunFiles> runs = wanted_runs();
     const std::vector<RunFiles> references = wanted_references();
     Json data{{"version", kVersion}, {"runs", Json::array()}, {"references", Json::array()}};
-    std::map<const RunFiles*, std::string> reference_ids;
+    std::map<const RunFiles*, Entry> added_references;
     for (const RunFiles& run : runs) {
-      Json json = add(run, "runs");
+      Entry entry = add(run, "runs");
       const RunFiles* reference = find_reference(references, run.name);
-      if (reference != nullptr && !reference_ids.contains(reference)) {
-        data["references"].push_back(add(*reference, "references"));
-        reference_ids[reference] = data["references"].back()["id"];
+      if (reference != nullptr) {
+        if (!added_references.contains(reference)) added_references[reference] = add(*reference, "references");
+        compare(entry, added_references[reference]);
+      } else if (!request_.reference.empty()) {
+        entry.problem(fmt::format("no reference of this name in {}", request_.reference.string()));
       }
-      if (reference != nullptr) json["reference"] = reference_ids[reference];
-      if (reference == nullptr && !request_.reference.empty())
-        json["problems"].push_back(fmt::format("no reference of this name in {}", request_.reference.string()));
-      outcome_.incomplete += json["problems"].empty() ? 0 : 1;
-      data["runs"].push_back(std::move(json));
+      outcome_.incomplete += entry.json["problems"].empty() ? 0 : 1;
+      data["runs"].push_back(std::move(entry.json));
     }
+    for (auto& [files, entry] : added_references) data["references"].push_back(std::move(entry.json));
     write_web_files(data);
     folder_.commit();
     outcome_.runs = static_cast<int>(runs.size());
@@ -132,27 +148,102 @@ class Page {
     return references;
   }
 
+  // A run that is in the page's folder.
+  struct Entry {
+    const RunFiles* run = nullptr;
+    Json json;
+    std::string place;  // its folder below the page's, with a slash at the end
+    PictureTimes times;
+    std::vector<long long> tiles;
+
+    void problem(const std::string& text) { json["problems"].push_back(text); }
+  };
+
   // Copies the files of a run and describes it.
-  Json add(const RunFiles& run, const char* kind) {
+  Entry add(const RunFiles& run, const char* kind) {
     if (request_.stop()) throw Error(ExitCode::interrupted, "interrupted; no page was written");
-    Json json = run_data(run);
-    const std::string id = unique(slug(run.name), ids_[kind]);
-    const std::string place = fmt::format("{}/{}/", kind, id);
-    json["id"] = fmt::format("{}/{}", kind, id);
+    Entry entry{&run, run_data(run), {}, picture_times(run), {}};
+    const std::string id = fmt::format("{}/{}", kind, unique(slug(run.name), ids_[kind]));
+    entry.place = id + "/";
+    entry.json["id"] = id;
+    if (!run.stats.empty()) copy_into(run.stats, folder_.path() / entry.place / "stats.json");
+    if (!run.effective.empty()) copy_into(run.effective, folder_.path() / entry.place / "scene.toml");
+    add_pictures(entry);
+    try {
+      add_tiles(entry);
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::asset_unreadable) throw;
+      entry.problem(error.what());
+    }
+    Json& pictures = entry.json["pictures"];
+    pictures["first"] = entry.times.first;
+    pictures["step"] = entry.times.step;
+    pictures["count"] = entry.times.count;
+    pictures["fps"] = entry.times.fps;
+    return entry;
+  }
+
+  void add_pictures(Entry& entry) const {
+    const RunFiles& run = *entry.run;
     Json files = Json::array();
     if (!run.video.empty()) {
-      copy_into(run.video, folder_.path() / place / "video.mp4");
-      files.push_back(place + "video.mp4");
+      files.push_back(entry.place + "video.mp4");
+      copy_into(run.video, folder_.path() / entry.place / "video.mp4");
     }
     for (const fs::path& picture : run.pictures) {
-      files.push_back(fmt::format("{}{:05}.png", place, picture_number(picture)));
+      files.push_back(fmt::format("{}picture_{:05}.png", entry.place, files.size()));
       copy_into(picture, folder_.path() / files.back().get<std::string>());
     }
-    json["pictures"]["kind"] = files.empty() ? "none" : !run.video.empty() ? "video" : "stills";
-    json["pictures"]["files"] = std::move(files);
-    if (!run.stats.empty()) copy_into(run.stats, folder_.path() / place / "stats.json");
-    if (!run.effective.empty()) copy_into(run.effective, folder_.path() / place / "scene.toml");
-    return json;
+    entry.json["pictures"] = {{"kind", files.empty() ? "none" : !run.video.empty() ? "video" : "stills"}};
+    entry.json["pictures"]["files"] = std::move(files);
+  }
+
+  // Contact sheet and poster, and what the pictures themselves tell of their number and rate.
+  void add_tiles(Entry& entry) const {
+    if (entry.json["pictures"]["kind"] == "none") return;
+    const Survey found = survey(*entry.run);
+    if (!entry.run->stats.empty() && found.count != entry.times.count) {
+      entry.problem(fmt::format("{} picture{} can be read, the statistics name {}", found.count,
+                                found.count == 1 ? "" : "s", entry.times.count));
+    }
+    entry.times.count = found.count;
+    if (found.fps > 0) entry.times.fps = found.fps;
+    entry.json["pictures"]["width"] = found.width;
+    entry.json["pictures"]["height"] = found.height;
+    Json& sheet = entry.json["sheet"] = Json::array();
+    for (const Tile& tile : found.tiles) {
+      const std::string file = fmt::format("{}tile_{:05}.png", entry.place, tile.picture);
+      image::write_png(folder_.path() / file, tile.image);
+      sheet.push_back({{"picture", tile.picture}, {"file", file}});
+      entry.tiles.push_back(tile.picture);
+    }
+    if (!sheet.empty()) entry.json["poster"] = sheet[sheet.size() / 2]["file"];
+  }
+
+  // At the pictures of the contact sheet.
+  void compare(Entry& entry, const Entry& reference) {
+    entry.json["reference"] = reference.json["id"];
+    if (reference.tiles.empty()) entry.problem("the reference has no pictures that can be read");
+    if (entry.tiles.empty() || reference.tiles.empty()) return;
+    try {
+      Json& pairs = entry.json["comparison"] = Json::array();
+      bool differs = false;
+      for (const PairComparison& pair :
+           compare_with_reference(*entry.run, entry.times, *reference.run, reference.times, entry.tiles)) {
+        pairs.push_back(pair_json(pair));
+        differs = differs || pair.verdict == compare::Verdict::differs;
+        if (pair.heat.width == 0) continue;
+        pairs.back()["heat"] = fmt::format("{}heat_{:05}.png", entry.place, pair.picture);
+        image::write_png(folder_.path() / pairs.back()["heat"].get<std::string>(), pair.heat);
+      }
+      outcome_.differing += differs ? 1 : 0;
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::asset_unreadable) throw;
+      entry.problem(error.what());
+    }
+    if (entry.times.count != reference.times.count) {
+      entry.problem(fmt::format("{} pictures, the reference has {}", entry.times.count, reference.times.count));
+    }
   }
 
   void write_web_files(const Json& data) const {

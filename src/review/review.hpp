@@ -22,6 +22,7 @@ struct Outcome {
   std::filesystem::path page;
   int runs = 0;
   int incomplete = 0;  ///< of them, with something missing
+  int differing = 0;   ///< of them, whose pictures differ from the reference past the limits of weft diff
 };
 
 /// Writes the page. Throws Error: asset_unreadable for folders without runs, reference_missing for a reference that is

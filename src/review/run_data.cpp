@@ -134,14 +134,15 @@ Json run_data(const RunFiles& run) {
   if (run.video.empty() && run.pictures.empty()) problems.push_back("no video or pictures beside the statistics");
   if (run.stats.empty() && problems.empty())
     problems.push_back("no statistics: weft run --stats FILE.json writes them, for figures and plots");
-  const PictureTimes times = picture_times(run);
   Json stats = run.stats_json.is_object() ? run.stats_json : Json::object();
   Json columns = frame_columns(stats.value("frames", Json::array()));
   stats.erase("frames");
   Json effective = effective_json(run, problems);
-  Json pictures{{"first", times.first}, {"step", times.step}, {"count", times.count}, {"fps", times.fps}};
-  return {{"name", run.name},     {"problems", problems},          {"stats", std::move(stats)},
-          {"pictures", pictures}, {"columns", std::move(columns)}, {"effective", std::move(effective)}};
+  return {{"name", run.name},
+          {"problems", problems},
+          {"stats", std::move(stats)},
+          {"columns", std::move(columns)},
+          {"effective", std::move(effective)}};
 }
 
 }  // namespace weft::review

@@ -17,13 +17,15 @@ struct PictureTimes {
   long long first = 0, step = 1, count = 0;
   double fps = 0;  ///< pictures a second; 0 where nothing tells
 };
+
+/// As the statistics or the names of the pictures tell.
 PictureTimes picture_times(const RunFiles& run);
 
 /// Each value of an effective scene by its path as --set takes it: {"cloth.band.material.stretch": "1000000.0"}. Throws
 /// Error(asset_unreadable) for what is no TOML.
 Json scene_values(const std::string& toml, const std::string& file);
 
-/// All that the page shows of a run, but for the places of its copied files. What is missing is named in "problems".
+/// All that the page shows of a run, but for its pictures. What is missing is named in "problems".
 Json run_data(const RunFiles& run);
 
 }  // namespace weft::review

@@ -5,8 +5,10 @@
 
 #include <string>
 
+#include "image/png.hpp"
 #include "review/find_runs.hpp"
 #include "support/test_folder.hpp"
+#include "video/encoder.hpp"
 
 namespace weft::review {
 
@@ -23,6 +25,27 @@ class MadeRuns : public support::TestFolder {
                           {{"frame": 0, "written": true, "max_strain": 0}},
                           {{"frame": 1, "written": true, "max_strain": 0.0123456789}}]}})",
                        output, more);
+  }
+
+  /// A picture with a gray square on black, which moves to the right by two pixels from one frame to the next.
+  static image::Image picture(int frame, int gray = 200, int width = 64) {
+    image::Image image(width, 36);
+    for (int y = 12; y < 24; ++y) {
+      for (int x = 2 * frame; x < std::min(2 * frame + 12, width); ++x) {
+        for (int channel = 0; channel < 3; ++channel) image.pixel(x, y)[channel] = static_cast<std::uint8_t>(gray);
+      }
+    }
+    return image;
+  }
+
+  void write_video(const std::string& file, int frames, int gray = 200, int width = 64, double fps = 50) {
+    video::Settings settings;
+    settings.width = width;
+    settings.height = 36;
+    settings.fps = fps;
+    video::Encoder encoder(folder_ / file, settings);
+    for (int frame = 0; frame < frames; ++frame) encoder.add(picture(frame, gray, width));
+    encoder.finish();
   }
 
   /// Name, file names of video, pictures, statistics and effective scene of each run found: one line each.

@@ -15,7 +15,7 @@ class Review : public MadeRuns {
  protected:
   void SetUp() override {
     MadeRuns::SetUp();
-    write("in/a.mp4", "video");
+    write_video("in/a.mp4", 2);
     write("in/a.json", statistics("a.mp4"));
     write("in/a.effective.toml", "a = 1\n");
   }
@@ -62,7 +62,8 @@ TEST_F(Review, PageHoldsTheRunAndItsFiles) {
   EXPECT_EQ(run.at("name"), "a");
   EXPECT_EQ(run.at("id"), "runs/a");
   EXPECT_EQ(run.at("pictures").at("files"), Json::parse(R"(["runs/a/video.mp4"])"));
-  EXPECT_EQ(support::read_bytes(folder_ / "page/runs/a/video.mp4"), "video");
+  EXPECT_EQ(run.at("problems"), Json::array());
+  EXPECT_EQ(support::read_bytes(folder_ / "page/runs/a/video.mp4"), support::read_bytes(folder_ / "in/a.mp4"));
   EXPECT_EQ(support::read_bytes(folder_ / "page/runs/a/scene.toml"), "a = 1\n");
   EXPECT_EQ(support::read_bytes(folder_ / "page/runs/a/stats.json"), statistics("a.mp4"));
   EXPECT_TRUE(is_review_page(folder_ / "page"));
@@ -115,7 +116,7 @@ TEST_F(Review, ReferenceIsTheRunOfTheSamePathElseTheOnlyOneOfItsName) {
   write("ref/z/e.mp4");
   Request with = request();
   with.reference = folder_ / "ref";
-  EXPECT_EQ(write_review(with).incomplete, 3);
+  EXPECT_EQ(write_review(with).incomplete, 4);
   const Json page = data();
   EXPECT_EQ(page.at("references").size(), 2u);
   EXPECT_EQ(page.at("runs").at(0).at("reference"), "references/a");
@@ -126,6 +127,39 @@ TEST_F(Review, ReferenceIsTheRunOfTheSamePathElseTheOnlyOneOfItsName) {
     EXPECT_NE(run.at("problems").dump().find("no reference of this name"), std::string::npos) << run.at("problems");
   }
   EXPECT_TRUE(fs::exists(folder_ / "page/references/a/video.mp4"));
+}
+
+TEST_F(Review, PicturesAreComparedWithThoseOfTheReference) {
+  write_video("in/b.mp4", 2);
+  write_video("in/c.mp4", 2, 200, 48);
+  write_video("ref/a.mp4", 2, 120);
+  write_video("ref/b.mp4", 2);
+  write_video("ref/c.mp4", 2);
+  Request with = request();
+  with.reference = folder_ / "ref";
+  EXPECT_EQ(write_review(with).differing, 1);
+  const Json page = data();
+  const Json &a = page.at("runs").at(0), &b = page.at("runs").at(1), &c = page.at("runs").at(2);
+  ASSERT_EQ(a.at("comparison").size(), 2u);
+  EXPECT_EQ(a.at("comparison").at(1).at("verdict"), "differs");
+  const image::Image heat = image::read_png(folder_ / "page" / a.at("comparison").at(1).at("heat").get<std::string>());
+  EXPECT_EQ(heat.width, 64);
+  ASSERT_EQ(b.at("comparison").size(), 2u);
+  EXPECT_EQ(b.at("comparison").at(1).at("verdict"), "same");
+  EXPECT_FALSE(b.at("comparison").at(1).contains("heat"));
+  EXPECT_EQ(c.at("comparison"), Json::array());
+  EXPECT_NE(c.at("problems").dump().find("48x36 pixels, those of the reference 64x36"), std::string::npos) << c;
+}
+
+TEST_F(Review, VideoAgainstItsStatistics) {
+  write_video("in/a.mp4", 3);
+  write_video("in/b.mp4", 5, 200, 64, 30);
+  write_review(request());
+  const Json page = data();
+  EXPECT_EQ(page.at("runs").at(0).at("problems"), Json::parse(R"(["3 pictures can be read, the statistics name 2"])"));
+  const Json& pictures = page.at("runs").at(1).at("pictures");
+  EXPECT_EQ(pictures.at("count"), 5) << "without statistics, the video tells";
+  EXPECT_EQ(pictures.at("fps"), 30);
 }
 
 TEST_F(Review, NothingToShowIsRefusedBeforeAnythingIsWritten) {

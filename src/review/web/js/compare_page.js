@@ -109,7 +109,7 @@
       return names.map((name) => {
         const texts = this.runs.map((_, i) => textOf(name, i));
         if (texts.every((text) => text === texts[0])) return null;
-        return h("tr", {}, h("th", { scope: "row" }, name),
+        return h("tr", {}, h("th", { scope: "row" }, review.breakable(name)),
           texts.map((text) => h(text === texts[0] ? "td" : "td.differs", {}, text === undefined ? dash : String(text))));
       }).filter(Boolean);
     }

@@ -17,6 +17,13 @@
   };
   const largest = (name) => extreme(name, (a, b) => a > b);
   const smallest = (name) => extreme(name, (a, b) => a < b);
+  // Of the pictures compared with the reference.
+  const worst = (name, sign) => (run) => {
+    const [first, ...rest] = run.comparison;
+    if (!first) return {};
+    const pair = rest.reduce((found, other) => (sign * other[name] > sign * found[name] ? other : found), first);
+    return { value: pair[name], frame: pair.verdict === "same" ? undefined : run.frameOf(pair.picture) };
+  };
   const last = (name) => (run) => ({ value: run.column(name)?.findLast(known) });
   const total = (name) => (run) => ({ value: run.totals[name] });
   const perFrame = (name) => (run) => {
@@ -49,6 +56,8 @@
     figure("render", "Render, CPU", perFrame("render_cpu"), milliseconds, "per frame"),
     figure("encode", "Encode, CPU", perFrame("encode_cpu"), milliseconds, "per frame"),
     figure("wall", "Wall time", total("wall"), seconds),
+    figure("flip", "Largest FLIP", worst("flip", 1), (value) => review.format.number(value, 3), "mean of the FLIP map against the reference: 0 looks the same"),
+    figure("ssim", "Smallest SSIM", worst("ssim", -1), (value) => review.format.number(value, 4), "structural similarity with the reference: 1 is the same"),
     figure("memory", "Peak memory", (run) => ({ value: run.stats.peak_memory_bytes }), bytes),
   ];
   review.figure = Object.fromEntries(review.figures.map((entry) => [entry.key, entry]));

@@ -21,7 +21,7 @@
       this.sheet = data.sheet ?? [];
       this.poster = data.poster ?? null;
       this.referenceId = data.reference ?? null;
-      this.comparison = data.comparison ?? null;
+      this.comparison = data.comparison ?? []; // with the reference, at the pictures of the contact sheet
       this.isReference = data.id.startsWith("references/");
       this.rows = new Map((this.column("frame") ?? []).map((frame, row) => [frame, row]));
     }
@@ -36,7 +36,8 @@
       return review.model.find(this.referenceId);
     }
     get aspect() {
-      return known(this.stats.width) && known(this.stats.height) ? this.stats.width / this.stats.height : 16 / 9;
+      const { width, height } = this.pictures;
+      return known(width) && known(height) ? width / height : 16 / 9;
     }
 
     // Pictures a second as shown.
@@ -67,6 +68,19 @@
     }
     valueAt(name, frame) {
       return this.columns[name]?.[this.rows.get(frame)];
+    }
+
+    /** Of all compared pictures: {level, text, note}, or null where none was. */
+    get likeness() {
+      if (this.comparison.length === 0) return null;
+      const differing = this.comparison.filter(({ verdict }) => verdict === "differs").length;
+      if (differing > 0) return { level: "bad", text: "differs", note: "from the reference, past the limits of weft diff" };
+      const same = this.comparison.every(({ verdict }) => verdict === "same");
+      return { level: "good", text: same ? "same" : "like reference", note: "compared with the reference" };
+    }
+    comparedNear(picture) {
+      const distance = (pair) => Math.abs(pair.picture - picture);
+      return this.comparison.reduce((nearest, pair) => (distance(pair) < distance(nearest) ? pair : nearest));
     }
 
     get warnings() {

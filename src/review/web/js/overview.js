@@ -7,7 +7,7 @@
   const STAGES = ["simulate_cpu", "collide_cpu", "render_cpu", "encode_cpu"];
   const LEVELS = ["bad", "warn", "unknown", "good"];
 
-  review.chip = ({ level, text }) => h(`span.chip.${level}`, {}, text);
+  review.chip = ({ level, text, note }) => h(`span.chip.${level}`, { title: note }, text);
 
   review.posterOf = (run) => {
     if (run.poster) return h("img", { src: run.poster, alt: "", loading: "lazy" });
@@ -48,10 +48,12 @@
     buildHead() {
       const { runs } = review.model;
       const counts = LEVELS.map((level) => [level, runs.filter((run) => run.verdict.level === level).length]).filter(([, count]) => count > 0);
+      const differing = runs.filter((run) => run.likeness?.level === "bad").length;
       const words = { bad: "failed", warn: "with warnings", unknown: "without statistics", good: "well" };
       return h("div.page-head", {},
         h("h1", {}, plural(runs.length, "run")),
-        h("p.counts", {}, counts.map(([level, count]) => review.chip({ level, text: `${count} ${words[level]}` }))),
+        h("p.counts", {}, counts.map(([level, count]) => review.chip({ level, text: `${count} ${words[level]}` })),
+          differing > 0 && review.chip({ level: "bad", text: `${differing} differing from the reference` })),
         h("div.page-tools", {}, this.filter, this.count, this.compare));
     }
     nothing() {
@@ -82,9 +84,9 @@
         h("td.choose", {}, h("label", {}, box)),
         h("td.poster", {}, h("a", { href: address, tabindex: -1, "aria-hidden": "true" }, review.posterOf(run))),
         h("td.name", {}, h("a", { href: address }, review.breakable(run.name)),
-          h("small", {}, run.scene === run.name ? "" : run.scene),
-          run.reference && h("small", {}, "has a reference")),
-        h("td.verdict", {}, review.chip(run.verdict), run.problems.length > 0 && review.chip({ level: "unknown", text: "incomplete" }),
+          h("small", {}, run.scene === run.name ? "" : run.scene)),
+        h("td.verdict", {}, review.chip(run.verdict), run.likeness && review.chip(run.likeness),
+          run.problems.length > 0 && review.chip({ level: "unknown", text: "incomplete" }),
           notes.length > 0 && h("small", { title: notes.join("\n") }, notes[0])),
         figures);
       return { run, box, element };
@@ -115,7 +117,7 @@
       const wanted = this.filter.value.trim().toLowerCase();
       let shown = 0;
       for (const { run, element } of this.rows) {
-        const text = [run.name, run.scene, run.verdict.text, ...run.warnings, ...run.problems].join(" ").toLowerCase();
+        const text = [run.name, run.scene, run.verdict.text, run.likeness?.text, ...run.warnings, ...run.problems].join(" ").toLowerCase();
         element.hidden = !text.includes(wanted);
         shown += element.hidden ? 0 : 1;
       }

@@ -88,8 +88,10 @@
     }
     play(rate, onPicture, onEnd) {
       if (!onPicture) return; // a follower is shown each picture by stayNear
-      const [first, start] = [this.wanted, performance.now()];
+      const first = this.wanted;
+      let start = null;
       const tick = (now) => {
+        start ??= now;
         const picture = first + Math.floor(((now - start) / 1e3) * this.run.fps * rate);
         if (picture >= this.run.pictures.count) return onEnd();
         if (picture !== this.wanted) {

@@ -2,7 +2,7 @@
 "use strict";
 {
   const { h } = review;
-  const { known, dash, plural } = review.format;
+  const { known, dash, number, percent, plural } = review.format;
 
   review.notesOf = (run) => {
     const note = (level, text) => h(`li.${level}`, {}, text);
@@ -49,7 +49,7 @@
         location.hash = this.address.toString();
       } }, choices.map(([id, label]) => h("option", { value: id, selected: id === (this.other?.id ?? "") }, label)));
       return h("div.page-head", {},
-        h("h1", {}, this.run.label), h("p.counts", {}, review.chip(this.run.verdict), this.run.scene !== this.run.name && h("span.muted", {}, this.run.scene)),
+        h("h1", {}, this.run.label), h("p.counts", {}, review.chip(this.run.verdict), this.run.likeness && review.chip(this.run.likeness), this.run.scene !== this.run.name && h("span.muted", {}, this.run.scene)),
         h("div.page-tools", {}, others.length > 0 && h("label", {}, "compare with ", select)));
     }
 
@@ -79,8 +79,25 @@
       if (rows.length === 0) return null;
       return review.section("Figures", h("table.figures", {}, h("tbody", {}, rows)));
     }
+    // What weft diff would say of each compared picture; a click shows its map.
     buildComparison() {
-      return null;
+      const { comparison } = this.run;
+      if (comparison.length === 0 || this.other !== this.run.reference) return null;
+      const levels = { same: "good", within: "good", differs: "bad" };
+      const show = (pair) => {
+        this.viewer.player.go(pair.picture);
+        this.viewer.setMode("heat");
+      };
+      const rows = comparison.map((pair) => h("tr", {},
+        h("td", {}, h("button.at", { type: "button", onclick: () => show(pair) }, `frame ${this.run.frameOf(pair.picture)}`)),
+        h("td", {}, review.chip({ level: levels[pair.verdict], text: pair.verdict })),
+        h("td", {}, number(pair.flip, 3)), h("td", {}, number(pair.ssim, 4)), h("td", {}, percent(pair.share_over)), h("td", {}, pair.largest)));
+      const differing = comparison.filter(({ verdict }) => verdict === "differs").length;
+      return h("details.panel", {},
+        h("summary", {}, h("h2", {}, "Against the reference"), h("span", {}, ` ${differing} of ${plural(comparison.length, "picture")} past the limits of weft diff`)),
+        h("div.table-frame", { tabindex: 0, "aria-label": "Compared pictures" }, h("table.objects.compared", {},
+          h("thead", {}, h("tr", {}, ["", "", "FLIP", "SSIM", "pixels past 4 levels", "largest, of 255"].map((title) => h("th", { scope: "col" }, title)))),
+          h("tbody", {}, rows))));
     }
     buildEnvironment() {
       const pairs = review.environment(this.run);

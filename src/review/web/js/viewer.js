@@ -2,7 +2,7 @@
 "use strict";
 {
   const { h, svg } = review;
-  const { time, plural } = review.format;
+  const { number, time, plural } = review.format;
 
   const MODES = [
     { id: "single", name: "Single", key: "1" },
@@ -10,6 +10,7 @@
     { id: "slider", name: "Slider", key: "3" },
     { id: "blink", name: "Blink", key: "4" },
     { id: "difference", name: "Difference", key: "5" },
+    { id: "heat", name: "Heat map", key: "6" }, // of FLIP, only of pictures that were compared with the reference
   ];
   const RATES = [0.1, 0.25, 0.5, 1, 2];
   const GAINS = [1, 4, 16];
@@ -72,16 +73,23 @@
     get hasPair() {
       return this.runs.length > 1;
     }
+    get modes() {
+      if (!this.hasPair) return MODES.slice(0, 1);
+      const [lead, other] = this.runs;
+      return lead.comparison.length > 0 && other === lead.reference ? MODES : MODES.slice(0, -1);
+    }
 
     build() {
       this.layers = this.player.tracks.map((track, i) =>
         h(`div.layer.layer-${"ab"[i]}`, {}, track.element));
       this.split = h("input.split", { type: "range", min: 0, max: 100, step: 0.5, "aria-label": "Position of the slider",
         oninput: () => this.setSplit(Number(this.split.value)) });
+      this.heat = h("img.heat", { alt: "" });
+      this.heatNote = h("p.heat-note");
       this.blend = h("div.blend", { style: { "aspect-ratio": this.runs[0].aspect } }, this.layers);
       this.message = h("p.stage-message", { role: "alert", hidden: true });
       this.names = h("div.names", { "aria-hidden": "true" }, this.runs.map((run, i) => h(`span.name-${"ab"[i]}`, {}, run.label)));
-      this.stage = h("div.stage", {}, this.blend, this.hasPair && [h("div.split-line"), this.split, this.names], this.message);
+      this.stage = h("div.stage", {}, this.blend, this.hasPair && [h("div.split-line"), this.split, this.names, this.heat, this.heatNote], this.message);
       this.followPointer();
       this.element = h("section.viewer", { "aria-label": "Pictures" },
         svg("svg", { width: 0, height: 0, "aria-hidden": "true", class: "filters" }, GAINS.map(heatFilter)),
@@ -89,9 +97,9 @@
     }
 
     buildModes() {
-      this.modeButtons = MODES.map(({ id, name, key }) =>
+      this.modeButtons = this.modes.map(({ id, name, key }) =>
         h("button", { type: "button", title: `${name} (${key})`, "data-mode": id, onclick: () => this.setMode(id) }, name));
-      this.gainSelect = h("select", { "aria-label": "Gain of the difference", onchange: () => this.setGain(Number(this.gainSelect.value)) },
+      this.gainSelect = h("select", { "aria-label": "Gain of the difference", title: "Mean of the three channels, in levels of 255", onchange: () => this.setGain(Number(this.gainSelect.value)) },
         GAINS.map((gain) => h("option", { value: gain }, `× ${gain}`)));
       this.legend = h("span.heat-legend", {}, "0 ", h("i", { style: { background:
         `linear-gradient(90deg, ${HEAT.map((color) => `rgb(${color.map((part) => Math.round(255 * part)).join(" ")})`).join(", ")})` } }), " ", h("b"));
@@ -129,8 +137,15 @@
       const lead = this.runs[0];
       this.tiles = lead.sheet.map(({ picture, file }) =>
         h("button.tile", { type: "button", "data-picture": picture, title: `Frame ${lead.frameOf(picture)}, ${time(lead.timeOf(picture))}`, onclick: () => this.player.go(picture) },
-          h("img", { src: file, alt: "", loading: "lazy" }), h("span", {}, lead.frameOf(picture))));
+          h("img", { src: file, alt: "", loading: "lazy" }), h("span", {}, lead.frameOf(picture)), this.likenessMark(picture)));
       return this.tiles.length > 0 && h("div.sheet", { role: "group", "aria-label": "Contact sheet" }, this.tiles);
+    }
+
+    // Below a tile, whether its picture is like the reference.
+    likenessMark(picture) {
+      const [lead, other] = this.runs;
+      const pair = other && other === lead.reference && lead.comparison.find((entry) => entry.picture === picture);
+      return pair && h(`i.${pair.verdict}`, { title: `${pair.verdict}: FLIP ${number(pair.flip, 3)}, SSIM ${number(pair.ssim, 4)}` });
     }
 
     followPointer() {
@@ -145,8 +160,8 @@
     }
 
     setMode(mode) {
-      if (!MODES.some(({ id }) => id === mode)) mode = "slider";
-      this.mode = this.hasPair ? mode : "single";
+      const { modes } = this;
+      this.mode = (modes.find(({ id }) => id === mode) ?? modes.find(({ id }) => id === "slider") ?? modes[0]).id;
       this.stage.dataset.mode = this.mode;
       clearInterval(this.blinking);
       delete this.stage.dataset.blink;
@@ -154,16 +169,26 @@
       if (!this.hasPair) return;
       for (const button of this.modeButtons) button.setAttribute("aria-pressed", button.dataset.mode === this.mode);
       this.gainTools.hidden = this.mode !== "difference";
+      if (this.mode === "heat") this.showHeat();
       this.onMode(this.mode);
     }
     blinkOnce() {
       this.stage.dataset.blink = this.stage.dataset.blink === "b" ? "a" : "b";
     }
+    // The map of the compared picture nearest to the one that is shown.
+    showHeat() {
+      const lead = this.runs[0];
+      const pair = lead.comparedNear(this.player.picture);
+      this.heat.hidden = !pair.heat;
+      if (pair.heat) this.heat.src = pair.heat;
+      const figures = pair.heat ? `FLIP ${number(pair.flip, 3)}, SSIM ${number(pair.ssim, 4)}, largest difference ${pair.largest} of 255` : "equal in every pixel";
+      this.heatNote.textContent = `frame ${lead.frameOf(pair.picture)}: ${figures}`;
+    }
     setGain(gain) {
       this.blend.style.setProperty("--heat", `url(#heat-${gain})`);
       if (!this.hasPair) return;
       this.gainSelect.value = gain;
-      this.legend.lastChild.textContent = `${Math.round(255 / gain)} of 255 levels`;
+      this.legend.lastChild.textContent = `${Math.round(255 / gain)} levels`;
     }
     setSplit(percent) {
       const value = Math.max(0, Math.min(100, percent));
@@ -185,6 +210,7 @@
         if (Number(tile.dataset.picture) <= player.picture) current = tile;
       }
       current?.setAttribute("aria-current", "true");
+      if (this.mode === "heat") this.showHeat();
       this.element.dataset.frame = player.frame;
     }
     updateState() {
@@ -216,7 +242,7 @@
     get keys() {
       const { player } = this;
       const keys = (list, does, action) => ({ keys: list, does, action });
-      const modes = MODES.map(({ id, name, key }) => keys([key], name, () => this.setMode(id)));
+      const modes = this.modes.map(({ id, name, key }) => keys([key], name, () => this.setMode(id)));
       return [
         keys([" ", "k"], "play or pause", () => player.toggle()),
         keys(["ArrowLeft", ","], "one frame back", () => player.step(-1)),

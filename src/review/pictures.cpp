@@ -1,0 +1,143 @@
+#include "review/pictures.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <utility>
+
+#include "core/error.hpp"
+#include "image/png.hpp"
+#include "video/decoder.hpp"
+
+namespace weft::review {
+namespace {
+
+constexpr std::size_t kMaxTiles = 16;
+constexpr int kTileWidth = 320;  // pixels; a poster of the overview on a screen of two pixels a point
+constexpr int kHeatWidth = 640;  // pixels at most; what is finer than two pixels of a picture keeps its largest value
+
+// One picture after the other, whatever they are kept in.
+class Reader {
+ public:
+  explicit Reader(const RunFiles& run) : run_(run) {
+    if (!run.video.empty()) decoder_.emplace(run.video);
+  }
+
+  std::optional<image::Image> next() {
+    const auto at = static_cast<std::size_t>(next_++);
+    if (decoder_) return decoder_->next();
+    if (at >= run_.pictures.size()) return std::nullopt;
+    return image::read_png(run_.pictures[at]);
+  }
+
+  /// The picture of this number, from the next one on; none if there are not so many.
+  std::optional<image::Image> skip_to(long long picture) {
+    if (!decoder_) next_ = picture;
+    while (next_ < picture) {
+      if (!next()) return std::nullopt;
+    }
+    return next();
+  }
+
+  double fps() const { return decoder_ ? decoder_->fps() : 0; }
+
+ private:
+  const RunFiles& run_;
+  std::optional<video::Decoder> decoder_;
+  long long next_ = 0;
+};
+
+// The largest value of each square of pixels, so that a thin line stays as bright as it is.
+compare::Plane<float> shrink_to_largest(const compare::Plane<float>& plane, int width) {
+  const int side = (plane.width + width - 1) / width;
+  compare::Plane<float> small((plane.width + side - 1) / side, (plane.height + side - 1) / side);
+  for (int y = 0; y < plane.height; ++y) {
+    for (int x = 0; x < plane.width; ++x) {
+      float& value = small.row(y / side)[x / side];
+      value = std::max(value, plane.row(y)[x]);
+    }
+  }
+  return small;
+}
+
+}  // namespace
+
+image::Image shrink(const image::Image& image, int width) {
+  if (image.width <= width) return image;
+  const int height =
+      std::max(1, static_cast<int>(std::lround(static_cast<double>(image.height) * width / image.width)));
+  image::Image small(width, height);
+  for (int y = 0; y < height; ++y) {
+    const int top = static_cast<int>(static_cast<long long>(y) * image.height / height);
+    const int bottom = std::max(top + 1, static_cast<int>(static_cast<long long>(y + 1) * image.height / height));
+    for (int x = 0; x < width; ++x) {
+      const int left = static_cast<int>(static_cast<long long>(x) * image.width / width);
+      const int right = static_cast<int>(static_cast<long long>(x + 1) * image.width / width);
+      for (int channel = 0; channel < 3; ++channel) {
+        int sum = 0;
+        for (int j = top; j < bottom; ++j) {
+          for (int i = left; i < right; ++i) sum += image.pixel(i, j)[channel];
+        }
+        const int count = (bottom - top) * (right - left);
+        small.pixel(x, y)[channel] = static_cast<std::uint8_t>((sum + count / 2) / count);
+      }
+    }
+  }
+  return small;
+}
+
+Survey survey(const RunFiles& run) {
+  Survey found;
+  Reader reader(run);
+  found.fps = reader.fps();
+  // Every stride-th picture, twice the stride where they become too many: the number need not be known before.
+  long long stride = 1;
+  while (const std::optional<image::Image> image = reader.next()) {
+    if (found.count == 0) {
+      found.width = image->width;
+      found.height = image->height;
+    }
+    if (found.count % stride == 0) found.tiles.push_back({found.count, shrink(*image, kTileWidth)});
+    if (found.tiles.size() == kMaxTiles) {
+      stride *= 2;
+      std::erase_if(found.tiles, [stride](const Tile& tile) { return tile.picture % stride != 0; });
+    }
+    ++found.count;
+  }
+  return found;
+}
+
+long long same_moment(long long k, const PictureTimes& from, const PictureTimes& to) {
+  if (!(from.fps > 0 && to.fps > 0)) return k;
+  const auto step = static_cast<double>(from.step), other_step = static_cast<double>(to.step);
+  const double time = (static_cast<double>(from.first) / step + static_cast<double>(k)) / from.fps;
+  return std::llround(time * to.fps - static_cast<double>(to.first) / other_step);
+}
+
+std::vector<PairComparison> compare_with_reference(const RunFiles& run, const PictureTimes& times,
+                                                   const RunFiles& reference, const PictureTimes& reference_times,
+                                                   const std::vector<long long>& at) {
+  const compare::Limits limits;
+  std::vector<PairComparison> pairs;
+  Reader ours(run), theirs(reference);
+  long long last = -1;
+  for (const long long picture : at) {
+    const long long other = same_moment(picture, times, reference_times);
+    if (other <= last) continue;  // before the reference begins, or compared already
+    last = other;
+    const std::optional<image::Image> b = theirs.skip_to(other), a = b ? ours.skip_to(picture) : std::nullopt;
+    if (!a) break;
+    if (a->width != b->width || a->height != b->height) {
+      throw Error(ExitCode::asset_unreadable, "the pictures have {}x{} pixels, those of the reference {}x{}", a->width,
+                  a->height, b->width, b->height);
+    }
+    const compare::Comparison found = compare::compare(*b, *a, limits.pixel_tolerance);
+    PairComparison pair{picture, other, found.figures, compare::verdict(found.figures, limits), {}};
+    if (pair.verdict != compare::Verdict::same)
+      pair.heat = compare::heat_map(shrink_to_largest(found.flip, kHeatWidth));
+    pairs.push_back(std::move(pair));
+  }
+  return pairs;
+}
+
+}  // namespace weft::review
