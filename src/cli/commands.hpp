@@ -40,4 +40,7 @@ ExitCode accept(const AcceptOptions& options);
 /// Writes the page for looking at runs.
 ExitCode review(const ReviewOptions& options);
 
+/// Writes what a frame cache holds as files for other programs.
+ExitCode export_frames(const ExportOptions& options);
+
 }  // namespace weft::cli

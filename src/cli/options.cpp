@@ -29,6 +29,9 @@ constexpr std::array kQualities{Choice<render::Quality>{"draft", render::Quality
 constexpr std::array kBackends{Choice<render::Backend>{"auto", render::Backend::automatic},
                                Choice<render::Backend>{"osmesa", render::Backend::osmesa},
                                Choice<render::Backend>{"egl", render::Backend::egl}};
+constexpr std::array kFormats{
+    Choice<exporter::Format>{"ply", exporter::Format::ply}, Choice<exporter::Format>{"obj", exporter::Format::obj},
+    Choice<exporter::Format>{"pc2", exporter::Format::pc2}, Choice<exporter::Format>{"gltf", exporter::Format::gltf}};
 constexpr std::array kProgressStyles{
     Choice<Progress::Style>{"auto", Progress::Style::automatic}, Choice<Progress::Style>{"bar", Progress::Style::bar},
     Choice<Progress::Style>{"plain", Progress::Style::plain}, Choice<Progress::Style>{"none", Progress::Style::none}};
@@ -172,6 +175,7 @@ struct Parser {
   DiffOptions diff;
   AcceptOptions accept;
   ReviewOptions review;
+  ExportOptions exported;
 
   Parser() {
     app.set_version_flag("--version", fmt::format("weft {}", kVersion), "Print the version");
@@ -198,6 +202,7 @@ struct Parser {
     add_diff();
     add_accept();
     add_review();
+    add_export();
   }
 
   void add_run() {
@@ -375,6 +380,23 @@ struct Parser {
         "\nOpen page/index.html; the folder needs no server and loads nothing from elsewhere.");
   }
 
+  void add_export() {
+    CLI::App& command = *app.add_subcommand("export", "Write the frames of a cache as files for other programs");
+    command.add_option("CACHE", exported.cache, "Folder of weft simulate --cache")->required()->type_name("");
+    add_value(command, "--format", "ply|obj|pc2|gltf", "Form of the files [gltf]",
+              [this](const std::string& text) { exported.format = parse_choice("--format", text, kFormats); });
+    command.add_option("-o,--output", exported.output, "Folder of the files")->required()->type_name("DIR");
+    add_value(command, "--frames", "A:B[:STEP]", "Frames A up to but without B, counted from 0 [all]",
+              [this](const std::string& text) { exported.frames = parse_frames(text); });
+    command.add_flag("--overwrite", exported.overwrite, "Replace files that exist already");
+    command.footer(
+        "\nExamples:\n"
+        "  weft export band.cache --format gltf -o band\n"
+        "  weft export band.cache --format ply -o band --frames 0:126:25\n"
+        "\nply, obj: a file for each object and frame; pc2: for each object an OBJ file and a point cache that moves\n"
+        "its vertices; gltf: one file with all that is visible, its colours and its motion (morph targets).");
+  }
+
   std::vector<std::string> command_names() const {
     std::vector<std::string> names;
     for (const CLI::App* command : app.get_subcommands(nullptr)) names.push_back(command->get_name());
@@ -479,6 +501,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "diff") return parser.diff;
   if (name == "accept") return parser.accept;
   if (name == "review") return parser.review;
+  if (name == "export") return parser.exported;
   return parser.doctor;
 }
 

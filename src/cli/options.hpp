@@ -10,6 +10,7 @@
 #include "cli/frame_range.hpp"
 #include "compare/compare.hpp"
 #include "core/progress.hpp"
+#include "export/export.hpp"
 #include "render/renderer.hpp"
 
 namespace weft::cli {
@@ -104,14 +105,21 @@ struct ReviewOptions {
   bool overwrite = false;
 };
 
+struct ExportOptions {
+  std::filesystem::path cache, output;  ///< folders
+  exporter::Format format = exporter::Format::gltf;
+  FrameSelection frames;
+  bool overwrite = false;
+};
+
 /// Help or version: to be printed on standard output, and that was all.
 struct PrintText {
   std::string text;
 };
 
-using Command =
-    std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SheetOptions,
-                 SchemaOptions, DoctorOptions, BenchOptions, DiffOptions, AcceptOptions, ReviewOptions, PrintText>;
+using Command = std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SheetOptions,
+                             SchemaOptions, DoctorOptions, BenchOptions, DiffOptions, AcceptOptions, ReviewOptions,
+                             ExportOptions, PrintText>;
 
 /// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
 Command parse_command_line(const std::vector<std::string>& arguments);

@@ -34,6 +34,7 @@ struct Dispatch {
   ExitCode operator()(const DiffOptions& options) const { return diff(options); }
   ExitCode operator()(const AcceptOptions& options) const { return accept(options); }
   ExitCode operator()(const ReviewOptions& options) const { return review(options); }
+  ExitCode operator()(const ExportOptions& options) const { return export_frames(options); }
   ExitCode operator()(const PrintText& text) const { return print(text.text); }
 };
 

@@ -1,8 +1,8 @@
-#include <algorithm>
 #include <optional>
 #include <utility>
 
 #include "cache/reader.hpp"
+#include "cli/cached_frames.hpp"
 #include "cli/commands.hpp"
 #include "cli/job.hpp"
 #include "cli/scene_input.hpp"
@@ -44,7 +44,7 @@ class Render : public Job {
     plan.scene_text = reader_->scene_text();
     if (!options_.common.camera.empty()) check_camera(plan.scene.cameras, options_.common.camera);
     plan.settings = render_settings({plan.scene.width, plan.scene.height}, plan.scene.camera, options_.common);
-    plan.wanted = wanted_frames(plan.scene);
+    plan.wanted = cached_frames(*reader_, options_.frames);
     plan.made = plan.wanted;
     plan.target = parse_output(options_.output, plan.scene.scene);
     prepare_output(plan.target, plan.wanted, options_.common.overwrite);
@@ -52,26 +52,6 @@ class Render : public Job {
     for (const frame::ObjectInfo& object : plan.scene.objects) names.push_back(object.name);
     prepare_meshes(names, plan.wanted, options_.common.overwrite);
     return plan;
-  }
-
-  // Those that were asked for, which must be there; else all that are.
-  FrameRange wanted_frames(const cache::Manifest& manifest) const {
-    const std::vector<int> there = reader_->frames();
-    int whole = 0;
-    while (whole < static_cast<int>(there.size()) && there[static_cast<std::size_t>(whole)] == whole) ++whole;
-    FrameSelection selection = options_.frames;
-    if (!selection.end && whole < manifest.frame_count) {
-      log::warn(fmt::format("{} holds {} of {} frames; weft simulate --resume makes the others",
-                            reader_->folder().string(), whole, manifest.frame_count));
-      selection.end = std::max(whole, 1);
-    }
-    const FrameRange wanted = resolve_frames(selection, manifest.frame_count);
-    for (int frame = wanted.begin; frame < wanted.end; frame += wanted.step) {
-      if (std::binary_search(there.begin(), there.end(), frame)) continue;
-      throw Error(ExitCode::asset_unreadable, "{}: frame {} is not there; weft simulate --resume makes what is missing",
-                  reader_->folder().string(), frame);
-    }
-    return wanted;
   }
 
   std::unique_ptr<FrameSource> make_source(std::function<bool()>) override {

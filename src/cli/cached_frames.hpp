@@ -1,0 +1,12 @@
+// Which frames of a cache a command takes.
+#pragma once
+
+#include "cache/reader.hpp"
+#include "cli/frame_range.hpp"
+
+namespace weft::cli {
+
+/// Those that were asked for, which must be there; else all that are. Throws Error(usage, asset_unreadable).
+FrameRange cached_frames(const cache::Reader& reader, FrameSelection selection);
+
+}  // namespace weft::cli

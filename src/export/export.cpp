@@ -1,0 +1,119 @@
+#include "export/export.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <optional>
+
+#include "export/gltf.hpp"
+#include "export/obj.hpp"
+#include "export/pc2.hpp"
+#include "mesh/ply.hpp"
+
+namespace weft::exporter {
+namespace {
+
+using Path = std::filesystem::path;
+
+Path frame_file(const Request& request, const std::string& object, int frame) {
+  return request.folder / fmt::format("{}_{:05}.{}", object, frame, request.format == Format::ply ? "ply" : "obj");
+}
+Path shape_file(const Request& request, const std::string& object) {
+  return request.folder / (object + ".obj");
+}
+Path cache_file(const Request& request, const std::string& object) {
+  return request.folder / (object + ".pc2");
+}
+Path gltf_file(const Request& request) {
+  return request.folder / (request.name + ".glb");
+}
+
+void write_meshes(const Request& request, const frame::FrameSnapshot& snapshot) {
+  for (std::size_t s = 0; s < snapshot.surfaces.size(); ++s) {
+    const frame::Surface& surface = *snapshot.surfaces[s];
+    const Path file = frame_file(request, surface.name, snapshot.frame);
+    if (request.format == Format::ply)
+      mesh::write_ply(file, snapshot.states[s].positions, surface.triangles);
+    else
+      write_obj(file, surface, snapshot.states[s].positions);
+  }
+}
+
+/// Takes the frames one after the other.
+class Sink {
+ public:
+  explicit Sink(const Request& request) : request_(request) {}
+
+  void add(const frame::FrameSnapshot& snapshot) {
+    switch (request_.format) {
+      case Format::ply:
+      case Format::obj:
+        return write_meshes(request_, snapshot);
+      case Format::pc2:
+        return add_to_caches(snapshot);
+      case Format::gltf:
+        return add_to_gltf(snapshot);
+    }
+  }
+
+  void finish() {
+    for (const auto& cache : caches_) cache->commit();
+    if (gltf_) gltf_->write(gltf_file(request_), request_.name);
+  }
+
+ private:
+  void add_to_caches(const frame::FrameSnapshot& snapshot) {
+    const bool first = caches_.empty();
+    const int step = request_.frames.size() > 1 ? request_.frames[1] - request_.frames[0] : 1;
+    for (std::size_t s = 0; s < snapshot.surfaces.size(); ++s) {
+      const frame::Surface& surface = *snapshot.surfaces[s];
+      const std::vector<Vec3>& positions = snapshot.states[s].positions;
+      if (first) {
+        write_obj(shape_file(request_, surface.name), surface, positions);
+        caches_.push_back(std::make_unique<PointCache>(cache_file(request_, surface.name), positions.size(),
+                                                       snapshot.frame, step, request_.frames.size()));
+      }
+      caches_[s]->add(positions);
+    }
+  }
+
+  void add_to_gltf(const frame::FrameSnapshot& snapshot) {
+    if (gltf_)
+      gltf_->add(snapshot, (snapshot.frame - request_.frames.front()) / request_.fps);
+    else
+      gltf_.emplace(snapshot);
+  }
+
+  const Request& request_;
+  std::vector<std::unique_ptr<PointCache>> caches_;  // by object
+  std::optional<GltfFile> gltf_;
+};
+
+}  // namespace
+
+std::vector<Path> files(const Request& request, const frame::FrameSnapshot& first) {
+  if (request.format == Format::gltf) return {gltf_file(request)};
+  std::vector<Path> result;
+  for (const auto& surface : first.surfaces) {
+    if (request.format == Format::pc2) {
+      result.push_back(shape_file(request, surface->name));
+      result.push_back(cache_file(request, surface->name));
+      continue;
+    }
+    for (int frame : request.frames) result.push_back(frame_file(request, surface->name, frame));
+  }
+  return result;
+}
+
+bool write(const Request& request, const std::function<frame::SnapshotPtr(int)>& read,
+           const std::function<bool()>& stop) {
+  Sink sink(request);
+  for (int frame : request.frames) {
+    if (stop()) return false;
+    sink.add(*read(frame));
+  }
+  sink.finish();
+  return true;
+}
+
+}  // namespace weft::exporter

@@ -1,0 +1,37 @@
+// Frames as files for other programs.
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "frame/frame_snapshot.hpp"
+
+namespace weft::exporter {
+
+enum class Format {
+  ply,   ///< a file for each object and frame: triangles, positions as double
+  obj,   ///< likewise: faces as simulated, with weft and warp as texture coordinates
+  pc2,   ///< a point cache for each object, and the object in the first frame as OBJ, which it applies to
+  gltf,  ///< one file with all visible objects, their colours and their motion
+};
+
+struct Request {
+  Format format = Format::gltf;
+  std::filesystem::path folder;
+  std::string name;         ///< of the scene, which names the file of all objects
+  double fps = 25;          ///< of the scene
+  std::vector<int> frames;  ///< ascending, at least one, all as far apart
+};
+
+/// All files that will be written; `first` is the first frame asked for.
+std::vector<std::filesystem::path> files(const Request& request, const frame::FrameSnapshot& first);
+
+/// Reads each frame once, in order, and asks `stop` before each; returns whether all were written. Each file appears
+/// under its name when it is whole. Throws Error(output_failed), and what `read` throws.
+bool write(
+    const Request& request, const std::function<frame::SnapshotPtr(int)>& read,
+    const std::function<bool()>& stop = [] { return false; });
+
+}  // namespace weft::exporter

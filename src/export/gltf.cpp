@@ -1,0 +1,212 @@
+#include "export/gltf.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
+#include <limits>
+#include <string_view>
+
+#include "core/error.hpp"
+#include "core/temporary_file.hpp"
+#include "core/version.hpp"
+#include "image/color.hpp"
+
+namespace weft::exporter {
+namespace {
+
+// Numbers are copied as they lie in memory.
+static_assert(std::endian::native == std::endian::little);
+
+using nlohmann::json;
+
+// Numbers that the specification gives to things.
+constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963, kTriangles = 4;
+
+json material_of(const frame::Surface& surface) {
+  const frame::Appearance& look = surface.appearance;
+  const Vec3 color = image::linear_from_srgb(look.color);
+  return {{"name", surface.name},
+          {"doubleSided", surface.kind == frame::ObjectKind::cloth},
+          {"pbrMetallicRoughness",
+           {{"baseColorFactor", {color.x(), color.y(), color.z(), 1}},
+            {"metallicFactor", 0},
+            {"roughnessFactor", look.roughness}}}};
+}
+
+void append_number(std::string& bytes, std::uint32_t number) {
+  bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
+}
+
+// Chunks are filled up to a multiple of four bytes.
+void append_chunk(std::string& bytes, const char* kind, std::string_view content, char filler) {
+  const std::size_t fillers = (4 - content.size() % 4) % 4;
+  append_number(bytes, static_cast<std::uint32_t>(content.size() + fillers));
+  bytes.append(kind, 4);
+  bytes.append(content).append(fillers, filler);
+}
+
+}  // namespace
+
+GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z() > 0.5), frames_{first.frame} {
+  document_ = {{"asset", {{"version", "2.0"}, {"generator", fmt::format("Weft {}", kVersion)}}}, {"scene", 0}};
+  for (const char* list : {"nodes", "meshes", "materials", "accessors", "bufferViews"}) document_[list] = json::array();
+  for (std::size_t s = 0; s < first.surfaces.size(); ++s) {
+    const frame::Surface& surface = *first.surfaces[s];
+    if (!surface.visible) continue;
+    objects_.push_back({s, turned(first.states[s].positions), {}});
+    document_["materials"].push_back(material_of(surface));
+    document_["meshes"].push_back(
+        {{"name", surface.name}, {"primitives", {primitive(surface, objects_.back().start)}}});
+  }
+}
+
+std::vector<float> GltfFile::turned(const std::vector<Vec3>& positions) const {
+  std::vector<float> result;
+  result.reserve(3 * positions.size());
+  for (const Vec3& x : positions) {
+    const Vec3 y_up = z_up_ ? Vec3(x.x(), x.z(), -x.y()) : x;
+    for (int axis = 0; axis < 3; ++axis) result.push_back(static_cast<float>(y_up[axis]));
+  }
+  return result;
+}
+
+// Returns the number of the view.
+int GltfFile::append(const void* data, std::size_t size, int target) {
+  json view{{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", size}};
+  if (target != 0) view["target"] = target;
+  document_["bufferViews"].push_back(std::move(view));
+  bytes_.append(static_cast<const char*>(data), size);
+  return static_cast<int>(document_["bufferViews"].size()) - 1;
+}
+
+// Returns the number of the accessor, as the others do.
+int GltfFile::add_positions(const std::vector<float>& positions) {
+  std::array<float, 3> low, high;
+  low.fill(std::numeric_limits<float>::max());
+  high.fill(std::numeric_limits<float>::lowest());
+  for (std::size_t i = 0; i < positions.size(); ++i) {
+    low[i % 3] = std::min(low[i % 3], positions[i]);
+    high[i % 3] = std::max(high[i % 3], positions[i]);
+  }
+  document_["accessors"].push_back({{"bufferView", append(positions.data(), 4 * positions.size(), kVertices)},
+                                    {"componentType", kFloat},
+                                    {"count", positions.size() / 3},
+                                    {"type", "VEC3"},
+                                    {"min", low},
+                                    {"max", high}});
+  return static_cast<int>(document_["accessors"].size()) - 1;
+}
+
+int GltfFile::add_scalars(const std::vector<float>& values, bool with_bounds) {
+  json accessor{{"bufferView", append(values.data(), 4 * values.size(), 0)},
+                {"componentType", kFloat},
+                {"count", values.size()},
+                {"type", "SCALAR"}};
+  if (with_bounds) {
+    accessor["min"] = {values.front()};
+    accessor["max"] = {values.back()};
+  }
+  document_["accessors"].push_back(std::move(accessor));
+  return static_cast<int>(document_["accessors"].size()) - 1;
+}
+
+json GltfFile::primitive(const frame::Surface& surface, const std::vector<float>& start) {
+  json attributes{{"POSITION", add_positions(start)}};
+  json& accessors = document_["accessors"];
+  if (!surface.uv.empty()) {
+    std::vector<float> uv;
+    for (const Vec2& place : surface.uv) {  // v goes down there
+      uv.push_back(static_cast<float>(place.x()));
+      uv.push_back(static_cast<float>(1 - place.y()));
+    }
+    attributes["TEXCOORD_0"] = accessors.size();
+    accessors.push_back({{"bufferView", append(uv.data(), 4 * uv.size(), kVertices)},
+                         {"componentType", kFloat},
+                         {"count", surface.uv.size()},
+                         {"type", "VEC2"}});
+  }
+  const std::size_t corners = 3 * surface.triangles.size();
+  accessors.push_back({{"bufferView", append(surface.triangles.data(), 4 * corners, kIndices)},
+                       {"componentType", kUnsignedInt},
+                       {"count", corners},
+                       {"type", "SCALAR"}});
+  return {{"attributes", attributes},
+          {"indices", accessors.size() - 1},
+          {"material", document_["materials"].size() - 1},
+          {"mode", kTriangles}};
+}
+
+void GltfFile::add(const frame::FrameSnapshot& snapshot, double time) {
+  times_.push_back(static_cast<float>(time));
+  frames_.push_back(snapshot.frame);
+  for (Object& object : objects_) {
+    std::vector<float> displacement = turned(snapshot.states[object.surface].positions);
+    const bool moved = displacement != object.start;
+    for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] -= object.start[i];
+    object.targets.push_back(moved ? add_positions(displacement) : -1);
+  }
+}
+
+void GltfFile::add_targets(Object& object, json& mesh) {
+  int still = -1;  // one for all frames that are as the first
+  json targets = json::array(), names = json::array();
+  for (std::size_t k = 0; k < object.targets.size(); ++k) {
+    if (object.targets[k] < 0 && still < 0) still = add_positions(std::vector<float>(object.start.size(), 0.0F));
+    targets.push_back({{"POSITION", object.targets[k] < 0 ? still : object.targets[k]}});
+    names.push_back(fmt::format("frame_{:05}", frames_[k + 1]));
+  }
+  mesh["primitives"][0]["targets"] = std::move(targets);
+  mesh["weights"] = std::vector<int>(object.targets.size(), 0);
+  mesh["extras"] = {{"targetNames", std::move(names)}};
+}
+
+// All that moves shares its times and weights.
+void GltfFile::animate(const std::vector<int>& nodes, const std::string& name) {
+  if (nodes.empty()) return;
+  const std::size_t targets = times_.size() - 1;
+  std::vector<float> weights(times_.size() * targets, 0.0F);
+  for (std::size_t k = 0; k < targets; ++k) weights[(k + 1) * targets + k] = 1;
+  const int input = add_scalars(times_, true), output = add_scalars(weights, false);
+  json channels = json::array();
+  for (int node : nodes) channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
+  document_["animations"] = {{{"name", name},
+                              {"samplers", {{{"input", input}, {"output", output}, {"interpolation", "LINEAR"}}}},
+                              {"channels", std::move(channels)}}};
+}
+
+void GltfFile::write(const std::filesystem::path& file, const std::string& animation_name) {
+  std::vector<int> all, moving;
+  for (std::size_t o = 0; o < objects_.size(); ++o) {
+    json& mesh = document_["meshes"][o];
+    document_["nodes"].push_back({{"name", mesh["name"]}, {"mesh", o}});
+    all.push_back(static_cast<int>(o));
+    if (std::ranges::all_of(objects_[o].targets, [](int target) { return target < 0; })) continue;
+    add_targets(objects_[o], mesh);
+    moving.push_back(static_cast<int>(o));
+  }
+  document_["scenes"] = {{{"nodes", all}}};
+  animate(moving, animation_name);
+  document_["buffers"] = {{{"byteLength", bytes_.size()}}};
+
+  const std::string text = document_.dump();
+  const std::size_t most = text.size() + bytes_.size() + 64;  // with heads and fillers
+  if (most > std::numeric_limits<std::uint32_t>::max())
+    throw Error(ExitCode::output_failed,
+                "{}: glTF files end at 4 GiB, and this would be one of {:.3g} GB; export fewer frames with --frames",
+                file.string(), 1e-9 * static_cast<double>(bytes_.size()));
+  std::string whole = "glTF";
+  whole.reserve(most);
+  append_number(whole, 2);
+  append_number(whole, 0);  // the length of it all, once it is known
+  append_chunk(whole, "JSON", text, ' ');
+  append_chunk(whole, "BIN", bytes_, '\0');
+  const auto length = static_cast<std::uint32_t>(whole.size());
+  std::memcpy(whole.data() + 8, &length, sizeof length);
+  write_file(file, whole, Flush::no);
+}
+
+}  // namespace weft::exporter

@@ -1,0 +1,54 @@
+// Animated glTF 2.0 in one binary file (Khronos Group, "glTF 2.0 Specification", 2021).
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "frame/frame_snapshot.hpp"
+
+namespace weft::exporter {
+
+/// Every object is a mesh whose vertices are those of the first frame, with one morph target for each later frame. At
+/// the time of frame k the weight of its target is 1 and all others are 0, and between frames they go over linearly:
+/// positions do then too. That is the one way of moving vertices at will that the standard has, and readers know it
+/// (assimp, Blender, three.js). Objects that never move have no targets.
+///
+/// y is up in glTF: where z is up in the scene, (x, y, z) becomes (x, z, -y), which Blender turns back. Normals are
+/// left out: readers then take those of the faces as they are at any time, while given ones would need targets of
+/// their own.
+class GltfFile {
+ public:
+  /// Of the visible objects of the first frame.
+  explicit GltfFile(const frame::FrameSnapshot& first);
+
+  /// The next frame, at `time` [s] from the first.
+  void add(const frame::FrameSnapshot& snapshot, double time);
+
+  /// Throws Error(output_failed), also where it would be more than the format can hold.
+  void write(const std::filesystem::path& file, const std::string& animation_name);
+
+ private:
+  struct Object {
+    std::size_t surface;
+    std::vector<float> start;  // as written
+    std::vector<int> targets;  // accessors, one per later frame; −1 where it is as in the first
+  };
+  int append(const void* data, std::size_t size, int target);
+  int add_positions(const std::vector<float>& positions);
+  int add_scalars(const std::vector<float>& values, bool with_bounds);
+  nlohmann::json primitive(const frame::Surface& surface, const std::vector<float>& start);
+  void add_targets(Object& object, nlohmann::json& mesh);
+  void animate(const std::vector<int>& nodes, const std::string& name);
+  std::vector<float> turned(const std::vector<Vec3>& positions) const;
+
+  bool z_up_;
+  std::vector<Object> objects_;
+  std::vector<float> times_{0};
+  std::vector<int> frames_;
+  nlohmann::json document_;
+  std::string bytes_;
+};
+
+}  // namespace weft::exporter

@@ -1,0 +1,44 @@
+#include "export/pc2.hpp"
+
+#include <bit>
+#include <cerrno>
+#include <cstdint>
+#include <cstring>
+
+#include "core/error.hpp"
+
+namespace weft::exporter {
+
+// Numbers are copied as they lie in memory.
+static_assert(std::endian::native == std::endian::little);
+
+PointCache::PointCache(const std::filesystem::path& file, std::size_t points, int first_frame, int step,
+                       std::size_t samples)
+    : name_(file), file_(file), out_(file_.path(), std::ios::binary) {
+  put("POINTCACHE2", 12);
+  const std::int32_t version = 1, point_count = static_cast<std::int32_t>(points),
+                     sample_count = static_cast<std::int32_t>(samples);
+  const float start = static_cast<float>(first_frame), rate = static_cast<float>(step);
+  put(&version, 4), put(&point_count, 4), put(&start, 4), put(&rate, 4), put(&sample_count, 4);
+}
+
+void PointCache::put(const void* data, std::size_t size) {
+  out_.write(static_cast<const char*>(data), static_cast<std::streamsize>(size));
+  if (!out_) throw Error(ExitCode::output_failed, "{}: cannot be written: {}", name_.string(), std::strerror(errno));
+}
+
+void PointCache::add(const std::vector<Vec3>& positions) {
+  std::vector<float> sample;
+  sample.reserve(3 * positions.size());
+  for (const Vec3& x : positions)
+    for (int axis = 0; axis < 3; ++axis) sample.push_back(static_cast<float>(x[axis]));
+  put(sample.data(), sample.size() * sizeof(float));
+}
+
+void PointCache::commit() {
+  out_.close();
+  if (!out_) throw Error(ExitCode::output_failed, "{}: cannot be written: {}", name_.string(), std::strerror(errno));
+  file_.commit(Flush::no);
+}
+
+}  // namespace weft::exporter

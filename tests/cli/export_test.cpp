@@ -1,0 +1,44 @@
+// weft export, as a shell starts it.
+#include <gtest/gtest.h>
+
+#include "cli/cached_run.hpp"
+
+namespace weft::cli {
+namespace {
+
+class ExportCommand : public CachedRun {};
+
+TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--meshes", "meshes"});
+  expect_well({"export", "c", "--format", "ply", "-o", "ply"});
+  expect_same("meshes", "ply", ".ply", 3 * kFrames);
+  expect_well({"export", "c", "--format", "obj", "-o", "obj", "--frames", "2:21:6"});
+  EXPECT_EQ(contents("obj", ".obj").size(), 3U * 4);
+  expect_well({"export", "c", "--format", "pc2", "-o", "pc2"});
+  EXPECT_EQ(contents("pc2", ".pc2").size(), 3U);
+  expect_well({"export", "c", "--format", "gltf", "-o", "gltf"});
+  EXPECT_EQ(contents("gltf", ".glb").size(), 1U);
+}
+
+TEST_F(ExportCommand, RefusesWithTheCodesOfTheContract) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", "0:3"});
+  const auto gltf = [&](const Arguments& more) {
+    Arguments arguments{"export", "c", "--format", "gltf", "-o", "out"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return weft(arguments);
+  };
+  EXPECT_EQ(gltf({}).exit_code, 0);
+  const auto first = contents("out", ".glb");
+  const Outcome again = gltf({});
+  EXPECT_EQ(again.exit_code, 6);
+  EXPECT_NE(again.err.find("exists already"), std::string::npos) << again.err;
+  EXPECT_EQ(gltf({"--overwrite"}).exit_code, 0);
+  EXPECT_EQ(contents("out", ".glb"), first);
+  EXPECT_EQ(gltf({"--overwrite", "--frames", "0:9"}).exit_code, 4) << "frames that are not there";
+  EXPECT_EQ(weft({"export", "c", "--format", "fbx", "-o", "out"}).exit_code, 2);
+  EXPECT_EQ(weft({"export", "c", "--format", "ply"}).exit_code, 2);
+  EXPECT_EQ(weft({"export", "s.toml", "--format", "ply", "-o", "out"}).exit_code, 4);
+}
+
+}  // namespace
+}  // namespace weft::cli

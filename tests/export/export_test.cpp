@@ -1,0 +1,272 @@
+// What other programs read in exported files is what the frames show: assimp for meshes and animations, a small reader
+// of its own for point caches.
+#include "export/export.hpp"
+
+#include <assimp/postprocess.h>
+#include <assimp/scene.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstring>
+
+#include "assets/mesh_file.hpp"
+#include "image/color.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::exporter {
+namespace {
+
+// A sheet of two quads that flutters, a still floor, and something that is not to be seen; z is up.
+class Exported : public support::TestFolder {
+ protected:
+  void SetUp() override {
+    TestFolder::SetUp();
+    frame::Surface cloth;
+    cloth.name = "cloth";
+    cloth.quads = {{0, 1, 4, 3}, {1, 2, 5, 4}};
+    cloth.triangles = {{0, 1, 4}, {0, 4, 3}, {1, 2, 5}, {1, 5, 4}};
+    for (int i = 0; i < 6; ++i) cloth.uv.emplace_back(0.1 * (i % 3), 0.1 * (i / 3));
+    cloth.appearance.color = {0.8, 0.2, 0.1};
+    cloth.appearance.roughness = 0.7;
+    frame::Surface floor;
+    floor.name = "floor";
+    floor.kind = frame::ObjectKind::obstacle;
+    floor.triangles = {{0, 1, 2}};
+    frame::Surface hidden = floor;
+    hidden.name = "hidden";
+    hidden.visible = false;
+    for (const auto& surface : {cloth, floor, hidden}) surfaces_.push_back(std::make_shared<frame::Surface>(surface));
+    request_.folder = folder_ / "out";
+    request_.name = "flutter";
+    request_.fps = 20;
+  }
+
+  // In frame 4 all is as in frame 2.
+  frame::SnapshotPtr snapshot(int k) const {
+    auto snapshot = std::make_shared<frame::FrameSnapshot>();
+    snapshot->frame = k;
+    snapshot->time = k / request_.fps;
+    snapshot->stage = stage_;
+    snapshot->surfaces = surfaces_;
+    std::vector<Vec3> cloth;
+    const int phase = k == 4 ? 2 : k;
+    for (int i = 0; i < 6; ++i)
+      cloth.emplace_back(0.1 * (i % 3) + 1.0 / 3, 0.1 * (i / 3) - 0.7, 0.05 * std::sin(0.9 * i + phase));
+    const std::vector<Vec3> still{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}};
+    snapshot->states = {{cloth, {}}, {still, {}}, {still, {}}};
+    return snapshot;
+  }
+
+  void write(Format format, std::vector<int> frames) {
+    request_.format = format;
+    request_.frames = std::move(frames);
+    ASSERT_TRUE(exporter::write(request_, [&](int k) { return snapshot(k); }));
+    std::vector<std::string> expected;
+    for (const auto& file : exporter::files(request_, *snapshot(request_.frames.front()))) {
+      EXPECT_TRUE(std::filesystem::exists(file)) << file;
+      expected.push_back(file.filename().string());
+    }
+    std::size_t there = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(request_.folder)) there += entry.is_regular_file();
+    EXPECT_EQ(there, expected.size());
+  }
+  std::filesystem::path file(const std::string& name) const { return request_.folder / name; }
+
+  Request request_;
+  std::shared_ptr<const frame::Stage> stage_ = std::make_shared<frame::Stage>();
+  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
+};
+
+// To the last bit of single precision at a metre.
+constexpr double kSingle = 1.2e-7;
+
+void expect_points(const std::vector<Vec3>& expected, const aiVector3D* came, bool turned) {
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    const Vec3& x = expected[i];
+    const Vec3 there = turned ? Vec3(x.x(), x.z(), -x.y()) : x;
+    EXPECT_LT((Vec3(came[i].x, came[i].y, came[i].z) - there).cwiseAbs().maxCoeff(), kSingle) << "vertex " << i;
+  }
+}
+
+TEST_F(Exported, PlyFilesHoldEachObjectOfEachFrame) {
+  write(Format::ply, {0, 2, 4});
+  for (int k : request_.frames) {
+    const auto shown = snapshot(k);
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+      Assimp::Importer importer;
+      const auto name = file(fmt::format("{}_{:05}.ply", surfaces_[s]->name, k));
+      const aiScene* scene = importer.ReadFile(name.string(), 0);
+      ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+      const aiMesh& mesh = *scene->mMeshes[0];
+      ASSERT_EQ(mesh.mNumVertices, shown->states[s].positions.size());
+      EXPECT_EQ(mesh.mNumFaces, surfaces_[s]->triangles.size());
+      expect_points(shown->states[s].positions, mesh.mVertices, false);
+    }
+  }
+}
+
+TEST_F(Exported, ObjFilesHoldQuadsAndWeftAndWarpWithEveryDigit) {
+  write(Format::obj, {3});
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file("cloth_00003.obj").string(), 0);
+  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+  const aiMesh& mesh = *scene->mMeshes[0];
+  ASSERT_EQ(mesh.mNumFaces, 2u);
+  const frame::Surface& cloth = *surfaces_[0];
+  const std::vector<Vec3> positions = snapshot(3)->states[0].positions;
+  for (unsigned f = 0; f < 2; ++f) {
+    ASSERT_EQ(mesh.mFaces[f].mNumIndices, 4u);
+    for (unsigned c = 0; c < 4; ++c) {
+      const auto vertex = static_cast<std::size_t>(cloth.quads[f][c]);
+      const unsigned there = mesh.mFaces[f].mIndices[c];  // the reader numbers corners anew
+      expect_points({positions[vertex]}, mesh.mVertices + there, false);
+      EXPECT_NEAR(mesh.mTextureCoords[0][there].x, cloth.uv[vertex].x(), kSingle);
+      EXPECT_NEAR(mesh.mTextureCoords[0][there].y, cloth.uv[vertex].y(), kSingle);
+    }
+  }
+  // assimp reads single precision; the text itself gives back the doubles.
+  std::ifstream in(file("cloth_00003.obj"));
+  std::size_t vertex = 0;
+  for (std::string line; std::getline(in, line);) {
+    double x = 0, y = 0, z = 0;
+    if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) != 3) continue;
+    EXPECT_EQ(Vec3(x, y, z), positions[vertex++]);
+  }
+  EXPECT_EQ(vertex, positions.size());
+}
+
+template <class T>
+T take(std::string_view& bytes) {
+  T value;
+  if (bytes.size() < sizeof value) throw std::runtime_error("too short");
+  std::memcpy(&value, bytes.data(), sizeof value);
+  bytes.remove_prefix(sizeof value);
+  return value;
+}
+
+TEST_F(Exported, PointCachesMoveTheObjFilesBesideThem) {
+  write(Format::pc2, {1, 3, 5});
+  for (std::size_t s = 0; s < surfaces_.size(); ++s) {
+    std::ifstream in(file(surfaces_[s]->name + ".pc2"), std::ios::binary);
+    const std::string content{std::istreambuf_iterator<char>(in), {}};
+    std::string_view bytes = content;
+    EXPECT_EQ(std::string(bytes.substr(0, 12)), std::string("POINTCACHE2\0", 12));
+    bytes.remove_prefix(12);
+    EXPECT_EQ(take<std::int32_t>(bytes), 1);
+    const std::size_t points = snapshot(1)->states[s].positions.size();
+    EXPECT_EQ(take<std::int32_t>(bytes), static_cast<std::int32_t>(points));
+    EXPECT_EQ(take<float>(bytes), 1.0F);
+    EXPECT_EQ(take<float>(bytes), 2.0F);
+    EXPECT_EQ(take<std::int32_t>(bytes), 3);
+    for (int k : request_.frames) {
+      const auto shown = snapshot(k);
+      for (const Vec3& x : shown->states[s].positions)
+        for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(take<float>(bytes), static_cast<float>(x[axis]));
+    }
+    EXPECT_TRUE(bytes.empty());
+    // The points of the cache are the vertices of the mesh, in their order.
+    std::ifstream mesh(file(surfaces_[s]->name + ".obj"));
+    std::size_t vertices = 0;
+    for (std::string line; std::getline(mesh, line);) vertices += line.starts_with("v ");
+    EXPECT_EQ(vertices, points);
+  }
+}
+
+// The weights of an animated node at a time, by linear interpolation of its keys, as the file says.
+std::vector<double> weights_at(const aiMeshMorphAnim& channel, double time, std::size_t count) {
+  std::vector<double> weights(count, 0.0);
+  for (unsigned k = 0; k < channel.mNumKeys; ++k) {
+    const double here = channel.mKeys[k].mTime;
+    const double before = k > 0 ? channel.mKeys[k - 1].mTime : here - 1;
+    const double after = k + 1 < channel.mNumKeys ? channel.mKeys[k + 1].mTime : here + 1;
+    const double share =
+        std::max(0.0, time <= here ? 1 - (here - time) / (here - before) : 1 - (time - here) / (after - here));
+    for (unsigned v = 0; v < channel.mKeys[k].mNumValuesAndWeights; ++v)
+      weights[channel.mKeys[k].mValues[v]] += share * channel.mKeys[k].mWeights[v];
+  }
+  return weights;
+}
+
+// Positions that a reader comes to at a time.
+std::vector<Vec3> morphed(const aiMesh& mesh, const std::vector<double>& weights) {
+  std::vector<Vec3> x;
+  for (unsigned i = 0; i < mesh.mNumVertices; ++i) {
+    const auto at = [&](const aiVector3D* list) { return Vec3(list[i].x, list[i].y, list[i].z); };
+    const Vec3 start = at(mesh.mVertices);
+    x.push_back(start);
+    for (unsigned t = 0; t < mesh.mNumAnimMeshes; ++t)
+      x.back() += weights[t] * (at(mesh.mAnimMeshes[t]->mVertices) - start);
+  }
+  return x;
+}
+
+TEST_F(Exported, GltfAnimationGoesThroughEveryFrameAtItsTime) {
+  write(Format::gltf, {2, 3, 4, 5});
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file("flutter.glb").string(), 0);
+  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+  ASSERT_EQ(scene->mNumMeshes, 2u) << "what is not visible is left out";
+  const aiMesh &cloth = *scene->mMeshes[0], &floor = *scene->mMeshes[1];
+  EXPECT_EQ(std::string(cloth.mName.C_Str()), "cloth");
+  EXPECT_EQ(cloth.mNumFaces, 4u);
+  EXPECT_EQ(cloth.mNumAnimMeshes, 3u);
+  EXPECT_EQ(floor.mNumAnimMeshes, 0u);
+  expect_points(snapshot(2)->states[1].positions, floor.mVertices, true);
+  EXPECT_NEAR(cloth.mTextureCoords[0][5].x, 0.2, kSingle);
+
+  ASSERT_EQ(scene->mNumAnimations, 1u);
+  const aiAnimation& animation = *scene->mAnimations[0];
+  ASSERT_EQ(animation.mNumMorphMeshChannels, 1u);
+  const aiMeshMorphAnim& channel = *animation.mMorphMeshChannels[0];
+  EXPECT_EQ(std::string(channel.mName.C_Str()), "cloth");
+  const double ticks = animation.mTicksPerSecond > 0 ? animation.mTicksPerSecond : 1000;
+  for (int k = 2; k <= 5; ++k) {
+    const double time = ticks * (k - 2) / request_.fps;
+    const auto here = morphed(cloth, weights_at(channel, time, 3));
+    const auto half = morphed(cloth, weights_at(channel, time + 0.5 * ticks / request_.fps, 3));
+    const auto shown = snapshot(k)->states[0].positions, next = snapshot(std::min(k + 1, 5))->states[0].positions;
+    for (std::size_t i = 0; i < shown.size(); ++i) {
+      const auto turned = [](const Vec3& x) { return Vec3(x.x(), x.z(), -x.y()); };
+      // Three single-precision figures of half a metre and less.
+      EXPECT_LT((here[i] - turned(shown[i])).norm(), 3 * kSingle) << "frame " << k;
+      if (k < 5) {
+        EXPECT_LT((half[i] - turned(0.5 * (shown[i] + next[i]))).norm(), 3 * kSingle) << "after frame " << k;
+      }
+    }
+  }
+}
+
+TEST_F(Exported, GltfMaterialsHaveTheColoursInLinearLight) {
+  write(Format::gltf, {0});
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file("flutter.glb").string(), 0);
+  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+  const aiMaterial& material = *scene->mMaterials[scene->mMeshes[0]->mMaterialIndex];
+  aiColor4D color;
+  ASSERT_EQ(material.Get(AI_MATKEY_BASE_COLOR, color), aiReturn_SUCCESS);
+  const Vec3 expected = image::linear_from_srgb(surfaces_[0]->appearance.color);
+  EXPECT_NEAR(color.r, expected.x(), kSingle);
+  EXPECT_NEAR(color.g, expected.y(), kSingle);
+  EXPECT_NEAR(color.b, expected.z(), kSingle);
+  float roughness = 0;
+  ASSERT_EQ(material.Get(AI_MATKEY_ROUGHNESS_FACTOR, roughness), aiReturn_SUCCESS);
+  EXPECT_NEAR(roughness, 0.7, kSingle);
+  int two_sided = 0;
+  material.Get(AI_MATKEY_TWOSIDED, two_sided);
+  EXPECT_EQ(two_sided, 1);
+}
+
+TEST_F(Exported, AStopLeavesNothingHalf) {
+  request_.format = Format::pc2;
+  request_.frames = {0, 1, 2};
+  int asked = 0;
+  EXPECT_FALSE(exporter::write(
+      request_, [&](int k) { return snapshot(k); }, [&] { return ++asked > 2; }));
+  for (const auto& entry : std::filesystem::directory_iterator(request_.folder))
+    EXPECT_EQ(entry.path().extension(), ".obj") << "whole files only, no cache of two samples: " << entry.path();
+}
+
+}  // namespace
+}  // namespace weft::exporter
