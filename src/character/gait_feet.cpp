@@ -20,7 +20,7 @@ constexpr double kSoftRise = 0.002;   ///< [m] over which a heel begins to rise
 constexpr double kLater = 13;         ///< what is left of the bend of a knee for when the foot is in the air [degrees]
 constexpr double kToesFlat = 22, kToesRound = 16, kToesShare = 0.75;  ///< see toe_pitch [degrees]
 constexpr double kSteepest = 80;                                      ///< pitch of a foot on its toes [degrees]
-constexpr double kLift = 24;     ///< further bend of a knee in a step in place [degrees]
+constexpr double kLift = 32;     ///< further bend of a knee in a step in place [degrees]
 constexpr double kClear = 0.36;  ///< share of the fall of the toes at their leaving that is taken back in the air
 
 /// A value with its change and the change of that, per key.
@@ -54,6 +54,11 @@ double bump(double s) {
 /// The same, with its height earlier.
 double early_bump(double s) {
   return 119.2 * s * s * s * (1 - s) * (1 - s) * (1 - s) * (1 - s);
+}
+
+/// The same, with its height later: it ends with a jolt, so that a foot that is set down does not skim the floor.
+double late_bump(double s) {
+  return 28.9 * s * s * s * (1 - s) * (1 - s);
 }
 
 /// By how much a knee bends more in the air than the quintic between the ends of its curve [degrees].
@@ -201,7 +206,7 @@ FootState Feet::swinging(int side, std::size_t number, int key) const {
   off.bend[3] = 0;
   Values now = quintic(off, strike, span, s);
   const double size = std::min(to.size, 1.0);
-  now[0] += size * knee_in_the_air(s) + kLift * (1 - size) * bump(s);
+  now[0] += size * knee_in_the_air(s) + kLift * (1 - size) * late_bump(s);
   now[2] += (side == 0 ? 1 : -1) * to.aside * bump(s);
   now[3] -= kClear * off.rate[3] * span * early_bump(s);
   const double d = reach(now[0]), down = std::sqrt(d * d - now[2] * now[2]), yaw = track_.yaw_at(key);
