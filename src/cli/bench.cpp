@@ -89,11 +89,11 @@ class AccuracyProgress {
   void operator()(const bench::Run& run, double done) {
     remaining_.sample(timer_.seconds(), {static_cast<int>(done * kUnits), 0, 0});
     const auto left = remaining_.seconds();
-    log::info(fmt::format(
-        "accuracy: {:3.0f} %, {}, {:.3g} {}: {}{}", 100 * done, name_of(run.setting.integrator),
-        run.setting.tolerance ? 1e3 * *run.setting.tolerance : 1e3 * run.setting.step,
-        run.setting.tolerance ? "mm" : "ms", run.failed() ? run.failure : fmt::format("{:.2f} CPU s", run.cpu_s),
-        left ? fmt::format(", about {} left", format_duration(*left)) : ""));
+    log::info(fmt::format("accuracy: {:3.0f} %, {}, {:.3g} {}: {}{}", 100 * done, name_of(run.setting.integrator),
+                          run.setting.tolerance ? 1e3 * *run.setting.tolerance : 1e3 * run.setting.step,
+                          run.setting.tolerance ? "mm" : "ms",
+                          run.failed() ? run.failure : fmt::format("{:.2f} CPU s", run.cpu_s),
+                          left ? fmt::format(", about {} left", format_duration(*left)) : ""));
   }
 
  private:
