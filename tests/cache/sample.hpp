@@ -21,6 +21,9 @@ struct Sample {
   Sample() {
     frame::Stage a_stage;
     a_stage.up = {0, 1, 0};
+    a_stage.sky_color = {0.1, 0.2, 0.9};
+    a_stage.ground_color = {0.3, 0.2, 0.1};
+    a_stage.sky_intensity = 0.7;
     a_stage.heat = frame::Stage::Heat::strain;
     a_stage.heat_max = 0.25;
     stage = std::make_shared<frame::Stage>(a_stage);
@@ -31,6 +34,8 @@ struct Sample {
     cloth.uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     cloth.crease_angle = 180;
     cloth.appearance.color = {0.1, 0.2, 0.3};
+    cloth.appearance.back_color = {0.9, 0.7, 0.5};
+    cloth.appearance.roughness = 0.25;
     cloth.appearance.thread_spacing = 1e-3;
     frame::Surface floor;
     floor.name = "floor";
@@ -56,12 +61,18 @@ struct Sample {
     for (int i = 0; i < 4; ++i) cloth.heat.push_back(static_cast<float>(uniform(random)));
     floor.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
     snapshot->states = {cloth, floor};
-    frame::Camera camera{"front", {0.1 * k, -3, 1}, {0, 0, 1.0 / 3}, 35};
+    frame::Camera camera{"front", {0.1 * k, -3, 1}, {0, 0, 1.0 / 3}, 40};
     snapshot->cameras = {camera, frame::Camera{}};
     frame::Light light;
     light.name = "lamp";
     light.kind = frame::Light::Kind::spot;
+    light.direction = {0.1, 0.2, -0.3};
     light.position = {1, 2, 3.0 / 7 + k};
+    light.target = {0.5, 0.25, 0.125};
+    light.cone_angle = 50;
+    light.color = {1, 0.9, 0.8};
+    light.intensity = 0.6;
+    light.softness = 3;
     snapshot->lights = {light};
     return snapshot;
   }
@@ -70,9 +81,21 @@ struct Sample {
     frame::FrameReport report;
     report.frame = k;
     report.time = k / 25.0;
+    report.simulate_wall_s = 0.2;
     report.simulate_cpu_s = 0.1;
+    report.collide_wall_s = 0.04;
+    report.collide_cpu_s = 0.03;
     report.steps = 10 + k;
+    report.rejected_steps = 2;
+    report.inexact_steps = 1;
+    report.error_estimate = 1e-4;
     report.newton_iterations = 30;
+    report.linear_iterations = 300;
+    report.proximities = 40;
+    report.constraints = 20;
+    report.max_strain = 0.01;
+    report.kinetic_energy = 0.7;
+    report.potential_energy = -0.2;
     report.min_distance = std::numeric_limits<double>::infinity();
     report.elastic_energy = 1.0 / 3;
     report.pinched_pairs = 2;
