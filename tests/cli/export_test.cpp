@@ -6,26 +6,37 @@
 namespace weft::cli {
 namespace {
 
-class ExportCommand : public CachedRun {};
+class ExportCommand : public CachedRun {
+ protected:
+  Outcome exported(const Arguments& more) const {
+    Arguments arguments{"export"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_weft(arguments, folder_);
+  }
+  void expect_exported(const Arguments& more) const {
+    const Outcome outcome = exported(more);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+};
 
 TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--meshes", "meshes"});
-  expect_well({"export", "c", "--format", "ply", "-o", "ply"});
+  expect_exported({"c", "--format", "ply", "-o", "ply"});
   expect_same("meshes", "ply", ".ply", 3 * kFrames);
-  expect_well({"export", "c", "--format", "obj", "-o", "obj", "--frames", "2:21:6"});
+  expect_exported({"c", "--format", "obj", "-o", "obj", "--frames", "2:21:6"});
   EXPECT_EQ(contents("obj", ".obj").size(), 3U * 4);
-  expect_well({"export", "c", "--format", "pc2", "-o", "pc2"});
+  expect_exported({"c", "--format", "pc2", "-o", "pc2"});
   EXPECT_EQ(contents("pc2", ".pc2").size(), 3U);
-  expect_well({"export", "c", "--format", "gltf", "-o", "gltf"});
+  expect_exported({"c", "--format", "gltf", "-o", "gltf"});
   EXPECT_EQ(contents("gltf", ".glb").size(), 1U);
 }
 
 TEST_F(ExportCommand, RefusesWithTheCodesOfTheContract) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", "0:3"});
   const auto gltf = [&](const Arguments& more) {
-    Arguments arguments{"export", "c", "--format", "gltf", "-o", "out"};
+    Arguments arguments{"c", "--format", "gltf", "-o", "out"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    return weft(arguments);
+    return exported(arguments);
   };
   EXPECT_EQ(gltf({}).exit_code, 0);
   const auto first = contents("out", ".glb");
@@ -35,9 +46,9 @@ TEST_F(ExportCommand, RefusesWithTheCodesOfTheContract) {
   EXPECT_EQ(gltf({"--overwrite"}).exit_code, 0);
   EXPECT_EQ(contents("out", ".glb"), first);
   EXPECT_EQ(gltf({"--overwrite", "--frames", "0:9"}).exit_code, 4) << "frames that are not there";
-  EXPECT_EQ(weft({"export", "c", "--format", "fbx", "-o", "out"}).exit_code, 2);
-  EXPECT_EQ(weft({"export", "c", "--format", "ply"}).exit_code, 2);
-  EXPECT_EQ(weft({"export", "s.toml", "--format", "ply", "-o", "out"}).exit_code, 4);
+  EXPECT_EQ(exported({"c", "--format", "fbx", "-o", "out"}).exit_code, 2);
+  EXPECT_EQ(exported({"c", "--format", "ply"}).exit_code, 2);
+  EXPECT_EQ(exported({"s.toml", "--format", "ply", "-o", "out"}).exit_code, 4);
 }
 
 }  // namespace
