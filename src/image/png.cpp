@@ -186,11 +186,15 @@ Metadata metadata_of(const Reader& reader) {
   throw Error(ExitCode::output_failed, "{}: cannot be written: {}", file.string(), words);
 }
 
-// libpng asks for the memory that a chunk promises to fill, up to 2 GB, before it finds out that the file ends.
+// libpng asks for the memory that a chunk promises to fill, up to 2 GB, before it finds out that the file ends. What is
+// no PNG at all is left to it.
 void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax_t file_size) {
   constexpr std::uintmax_t kSignature = 8, kAround = 12;  // bytes of length, name and checksum
+  std::array<png_byte, kSignature> signature{};
+  const bool is_png = std::fread(signature.data(), 1, kSignature, in) == kSignature &&
+                      png_sig_cmp(signature.data(), 0, kSignature) == 0;
   std::array<png_byte, 4> length{};
-  for (std::uintmax_t chunk = kSignature; chunk + kAround <= file_size;
+  for (std::uintmax_t chunk = kSignature; is_png && chunk + kAround <= file_size;
        chunk += kAround + png_get_uint_32(length.data())) {
     const bool read = std::fseek(in, static_cast<long>(chunk), SEEK_SET) == 0 &&
                       std::fread(length.data(), 1, length.size(), in) == length.size();

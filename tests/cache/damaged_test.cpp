@@ -73,7 +73,8 @@ TEST_F(DamagedCache, ManifestCutShortAnywhereIsRefusedByName) {
 /// One to four bytes of a text are others now.
 std::string with_bytes_changed(std::string bytes, std::mt19937& random) {
   const std::string before = bytes;
-  for (std::size_t changes = 1 + random() % 4; changes > 0 || bytes == before; --changes)
+  const std::size_t changes = 1 + random() % 4;
+  for (std::size_t done = 0; done < changes || bytes == before; ++done)
     bytes[random() % bytes.size()] ^= static_cast<char>(1 + random() % 255);
   return bytes;
 }
