@@ -317,24 +317,18 @@ struct Parser {
 
   void add_diff() {
     CLI::App& command = *app.add_subcommand("diff", "Compare pictures, videos, or folders of them");
-    command.add_option("REFERENCE", diff.reference, "What it should look like: .png, video, or folder")
-        ->required()
-        ->type_name("");
-    command.add_option("TEST", diff.test, "What it looks like now: likewise")->required()->type_name("");
-    const compare::Limits usual;
-    const auto with_usual = [](const char* text, double value) { return fmt::format("{} [{}]", text, value); };
-    add_value(command, "--pixel-tolerance", "N",
-              with_usual("Levels of 255 by which a pixel may differ", usual.pixel_tolerance),
-              [this](const std::string& text) {
-                diff.limits.pixel_tolerance = parse_integer("--pixel-tolerance", text, 0, 255);
-              });
-    add_value(command, "--pixel-budget", "SHARE",
-              with_usual("Share of the pixels that may differ by more", usual.pixel_budget),
-              [this](const std::string& text) { diff.limits.pixel_budget = parse_share("--pixel-budget", text); });
-    add_value(command, "--max-flip", "X", with_usual("Largest mean of FLIP, 0 (looks the same) to 1", usual.flip),
-              [this](const std::string& text) { diff.limits.flip = parse_share("--max-flip", text); });
-    add_value(command, "--max-spot", "X", with_usual("Largest value of FLIP at any pixel", usual.spot),
-              [this](const std::string& text) { diff.limits.spot = parse_share("--max-spot", text); });
+    command.add_option("REFERENCE", diff.reference, "As it should be: .png, video, folder")->required()->type_name("");
+    command.add_option("TEST", diff.test, "As it is now: likewise")->required()->type_name("");
+    int& limit = diff.limits.pixel_tolerance;
+    add_value(command, "--pixel-tolerance", "N", fmt::format("Levels of 255 by which a pixel may differ [{}]", limit),
+              [&limit](const std::string& text) { limit = parse_integer("--pixel-tolerance", text, 0, 255); });
+    const auto add_share = [&](const char* name, double& most, const char* what) {
+      add_value(command, name, "X", fmt::format("{} [{}]", what, most),
+                [name, &most](const std::string& text) { most = parse_share(name, text); });
+    };
+    add_share("--pixel-budget", diff.limits.pixel_budget, "Share of the pixels that may differ by more");
+    add_share("--max-flip", diff.limits.flip, "Largest mean of FLIP, 0 (looks the same) to 1");
+    add_share("--max-spot", diff.limits.spot, "Largest value of FLIP at any pixel");
     add_value(command, "--heatmap", "FILE.png|DIR", "Also paint where it differs; a video's worst frame",
               [this](const std::string& text) { diff.heatmap = text; });
     command.add_flag("--json", diff.json, "Print JSON instead of text");
@@ -343,20 +337,16 @@ struct Parser {
         "  weft diff references/band.png band.png --heatmap difference.png\n"
         "  weft diff references output --heatmap output/differences\n"
         "  weft diff before.mp4 after.mp4\n"
-        "\nFolders are compared by name. A folder of references may hold one folder for each class of machines,\n"
-        "named as weft doctor says, and one named default for all others.\n"
+        "\nFolders are compared by name. References may lie in one folder for each class of machines, named as weft\n"
+        "doctor says, and one named default. "
         "Exit codes: 0 all within the limits, 7 something differs, 8 a reference is missing, 4 a file is unreadable.");
   }
 
   void add_accept() {
     CLI::App& command = *app.add_subcommand("accept", "Make pictures the new references, and record why");
-    command.add_option("REFERENCE", accept.reference, "The reference, or the folder of references")
-        ->required()
-        ->type_name("");
+    command.add_option("REFERENCE", accept.reference, "The reference, or its folder")->required()->type_name("");
     command.add_option("TEST", accept.tests, "The new pictures or videos, each by name")->required()->type_name("");
-    command.add_option("--reason", accept.reason, "Why: goes into accepted.md beside the references")
-        ->required()
-        ->type_name("TEXT");
+    command.add_option("--reason", accept.reason, "Why: kept in accepted.md")->required()->type_name("TEXT");
     command.footer(
         "\nExamples:\n"
         "  weft accept references output/band.png --reason \"floor is darker by design\"\n"

@@ -33,7 +33,7 @@ class Files : public support::TestFolder {
 TEST_F(Files, PicturesAreReadAndCompared) {
   const image::Image picture = textured(64, 48, 1);
   write("a.png", picture);
-  write("b.png", with_noise(picture, 30, 1, 3));
+  write("b.png", with_noise(picture, 4, 1, 3));
   write("c.png", with_noise(picture, 300, 50, 3));
   EXPECT_EQ(compare("a.png", "a.png").outcome, Outcome::same);
   EXPECT_EQ(compare("a.png", "b.png").outcome, Outcome::within);
