@@ -132,14 +132,15 @@ TEST(Gait, FeetNeitherSlideNorSink) {
   }
 }
 
-// Small steps too, and no foot skims the floor when it is set down: measured 2.5, 2.6, 1.8 mm.
+// Small steps too. Counted is also what skims the floor within a millimetre while it is set down: measured 5.1 mm at
+// most, where a foot that stands slides by 1.7.
 TEST(Gait, FeetDoNotSlideFromStandingThroughATurnToStanding) {
   for (const double speed : kSpeeds) {
     Walk walk = at_speed(speed);
     walk.distance = 2.5;
     walk.turn_back = true;
     const Contact worst = contact_of(make_walk(mannequin(), walk), 0);
-    EXPECT_LT(worst.slip, 0.005) << speed;
+    EXPECT_LT(worst.slip, 0.006) << speed;
     EXPECT_GT(worst.lowest, -0.003) << speed;
   }
 }
