@@ -19,26 +19,32 @@ BendDamping::BendDamping(const BendParameters& p) : viscosity_(p.viscosity), fri
   kept_curvature_ = std::max(kFlatCurvature, p.rigidity > 0 ? friction_ / p.rigidity : 0.0);
 }
 
-BendDamping::Terms BendDamping::terms(const Vec3& curvature, const Vec3& velocity) const {
-  Terms t;
-  const double c_sq = curvature.squaredNorm();
-  t.rate = curvature.dot(velocity);
+template <class Scalar>
+BendDamping::Terms<Scalar> BendDamping::terms(const Scalar& c_sq, const Scalar& rate) const {
+  using std::sqrt;
+  Terms<Scalar> t;
+  t.rate = rate;
   t.flat_sq = c_sq + kFlatCurvature * kFlatCurvature;
   t.kept_sq = c_sq + kept_curvature_ * kept_curvature_;
-  t.smooth_sq = t.rate * t.rate + kRestRate * kRestRate * t.kept_sq;
+  t.smooth_sq = rate * rate + kRestRate * kRestRate * t.kept_sq;
   t.viscous = viscosity_ / t.flat_sq;
-  t.dry = friction_ / std::sqrt(t.kept_sq * t.smooth_sq);
+  t.dry = friction_ / sqrt(t.kept_sq * t.smooth_sq);
   return t;
 }
 
 Vec3 BendDamping::moment(const Vec3& curvature, const Vec3& velocity) const {
-  const Terms t = terms(curvature, velocity);
+  const auto t = terms(curvature.squaredNorm(), curvature.dot(velocity));
   return (t.viscous + t.dry) * t.rate * curvature;
+}
+
+Eigen::Array4d BendDamping::secants(const Eigen::Array4d& c_sq, const Eigen::Array4d& rate) const {
+  const auto t = terms(c_sq, rate);
+  return t.viscous + t.dry;
 }
 
 BendDamping::Linearised BendDamping::linearised(const Vec3& curvature, const Vec3& velocity, double rate,
                                                 Linearisation linearisation) const {
-  const Terms t = terms(curvature, velocity);
+  const auto t = terms(curvature.squaredNorm(), curvature.dot(velocity));
   // The definite form takes the secant of friction: its tangent is definite too, but with it Newton's method jumps to
   // and fro over the kink at rest and takes half as many iterations more.
   Mat3 jacobian = rate * (t.viscous + t.dry) * curvature * curvature.transpose();

@@ -31,6 +31,8 @@ class BendDamping {
   bool any() const { return viscosity_ > 0 || friction_ > 0; }
   /// `velocity`: rate of the curvature vector.
   Vec3 moment(const Vec3& curvature, const Vec3& velocity) const;
+  /// What c (c·κ̇) is multiplied with, for four curvatures at once, from ‖c‖² and c·κ̇.
+  Eigen::Array4d secants(const Eigen::Array4d& c_sq, const Eigen::Array4d& rate) const;
 
   struct Linearised {
     Vec3 moment;
@@ -39,10 +41,13 @@ class BendDamping {
   Linearised linearised(const Vec3& curvature, const Vec3& velocity, double rate, Linearisation linearisation) const;
 
  private:
+  /// Scalar: double, or an array of them.
+  template <class Scalar>
   struct Terms {
-    double rate, flat_sq, kept_sq, smooth_sq, viscous, dry;
+    Scalar rate, flat_sq, kept_sq, smooth_sq, viscous, dry;
   };
-  Terms terms(const Vec3& curvature, const Vec3& velocity) const;
+  template <class Scalar>
+  Terms<Scalar> terms(const Scalar& c_sq, const Scalar& rate) const;
 
   double viscosity_, friction_;
   double kept_curvature_;  // below which friction fades [1/m]

@@ -36,6 +36,8 @@ class Force {
 
   /// Pairs of particles that the Jacobian couples.
   virtual void couple(std::vector<std::pair<Index, Index>>& pairs) const = 0;
+  /// Whether the blocks of these pairs are multiples of the unit matrix, but for Linearisation::exact.
+  virtual bool isotropic() const { return false; }
   /// Looks up where the blocks are; once, after the pattern is known.
   virtual void attach(const solver::BlockMatrix& matrix) = 0;
 

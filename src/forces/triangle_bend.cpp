@@ -1,16 +1,26 @@
 #include "forces/triangle_bend.hpp"
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <array>
 #include <cmath>
 
 namespace weft::forces {
+
 namespace {
 
 // 2 ‖s_uv‖²: the mixed derivative counts twice.
 const Vec3 kCount(1, 1, 2);
+const Eigen::Array4d kCounts(1, 1, 2, 0);
 // Rest curvature times the size of the triangle below which it is rounding.
 constexpr double kFlatRest = 1e-9;
+
+/// s_uu, s_vv and s_uv as columns.
+Mat3 columns_of(const std::array<Eigen::Array4d, 3>& curvature) {
+  Mat3 columns;
+  for (int d = 0; d < 3; ++d) columns.row(d) = curvature[static_cast<std::size_t>(d)].head<3>();
+  return columns;
+}
 
 /// The plane of a triangle: its unit normal and the gradients of the corners' weights.
 struct Plane {
@@ -18,7 +28,7 @@ struct Plane {
   std::array<Vec3, 3> gradients;  // [1/m]
 };
 
-Plane plane_of(const std::vector<Index>& particles, std::span<const Vec3> x) {
+Plane plane_of(std::span<const Index> particles, std::span<const Vec3> x) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(particles[k % 3])]; };
   const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
   const double size = normal.norm();  // twice the area
@@ -33,21 +43,26 @@ Plane plane_of(const std::vector<Index>& particles, std::span<const Vec3> x) {
 
 TriangleBend::TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters)
     : rigidity_(parameters.rigidity), damping_(parameters) {
+  std::size_t pairs = 0;
   const std::vector<CurvatureStencil> stencils = curvature_stencils(sheet);
   for (std::size_t t = 0; t < stencils.size(); ++t) {
-    Element element{stencils[t].vertices, stencils[t].weights, mesh::rest_area(sheet, t), Vec3::Zero(), {}};
-    if (!sheet.sewn) find_rest(element, sheet.material[t], sheet.rest);
-    for (Index& particle : element.particles) particle += first;
-    elements_.push_back(std::move(element));
+    const std::size_t begin = particles_.size(), count = stencils[t].vertices.size();
+    particles_.insert(particles_.end(), stencils[t].vertices.begin(), stencils[t].vertices.end());
+    for (const Vec3& weight : stencils[t].weights) weights_.emplace_back(weight.x(), weight.y(), weight.z(), 0);
+    elements_.push_back({begin, begin + count, pairs, mesh::rest_area(sheet, t)});
+    pairs += count * count;
+    if (!sheet.sewn) find_rest(elements_.back(), sheet.material[t], sheet.rest);
   }
+  for (Index& particle : particles_) particle += first;
 }
 
-// Signed curvature of the rest shape; what it has in the plane is taken out of the weights.
+// Signed curvature of the rest shape; what it has in the plane is taken out of the weights. Particles are still
+// numbered within the cloth.
 void TriangleBend::find_rest(Element& element, const std::array<Vec2, 3>& material, std::span<const Vec3> rest) {
-  const Mat3 curved = curvature(element, rest);
+  const Mat3 curved = columns_of(curvature(element, rest));
   if (curved.norm() * std::sqrt(element.area) < kFlatRest) return;
-  const Plane plane = plane_of(element.particles, rest);
-  element.rest = curved.transpose() * plane.normal;
+  const std::span<const Index> corners = particles(element);
+  element.rest = curved.transpose() * plane_of(corners, rest).normal;
   Eigen::Matrix2d sides;
   sides << material[1] - material[0], material[2] - material[0];
   const Eigen::Matrix2d inverse = sides.inverse();
@@ -56,69 +71,106 @@ void TriangleBend::find_rest(Element& element, const std::array<Vec2, 3>& materi
   std::array<Vec3, 2> tangents{Vec3::Zero(), Vec3::Zero()};  // s_u and s_v at rest
   for (std::size_t k = 0; k < 3; ++k)
     for (int axis = 0; axis < 2; ++axis)
-      tangents[static_cast<std::size_t>(axis)] +=
-          gradients[k][axis] * rest[static_cast<std::size_t>(element.particles[k])];
+      tangents[static_cast<std::size_t>(axis)] += gradients[k][axis] * rest[static_cast<std::size_t>(corners[k])];
   for (std::size_t k = 0; k < 3; ++k)
     for (int axis = 0; axis < 2; ++axis)
-      element.weights[k] -= gradients[k][axis] * (curved.transpose() * tangents[static_cast<std::size_t>(axis)]);
+      weights_[element.begin + k].head<3>() -=
+          gradients[k][axis] * (curved.transpose() * tangents[static_cast<std::size_t>(axis)]).array();
 }
 
-Mat3 TriangleBend::curvature(const Element& element, std::span<const Vec3> x) {
-  Mat3 sum = Mat3::Zero();
-  for (std::size_t k = 0; k < element.particles.size(); ++k)
-    sum += x[static_cast<std::size_t>(element.particles[k])] * element.weights[k].transpose();
-  return sum;
+TriangleBend::Curvature TriangleBend::curvature(const Element& element, std::span<const Vec3> x) const {
+  Lanes of_x = Lanes::Zero(), of_y = Lanes::Zero(), of_z = Lanes::Zero();
+  const Index* particle = particles_.data();
+  const Lanes* weight = weights_.data();
+  for (std::size_t k = element.begin; k < element.end; ++k) {
+    const Vec3& position = x[static_cast<std::size_t>(particle[k])];
+    of_x += position.x() * weight[k];
+    of_y += position.y() * weight[k];
+    of_z += position.z() * weight[k];
+  }
+  return {of_x, of_y, of_z};
 }
 
 void TriangleBend::couple(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Element& element : elements_)
-    for (std::size_t a = 0; a < element.particles.size(); ++a)
-      for (std::size_t b = a + 1; b < element.particles.size(); ++b)
-        pairs.emplace_back(element.particles[a], element.particles[b]);
+    for (std::size_t a = element.begin; a < element.end; ++a)
+      for (std::size_t b = a + 1; b < element.end; ++b) pairs.emplace_back(particles_[a], particles_[b]);
+}
+
+// But for the moments of rest curvature.
+bool TriangleBend::isotropic() const {
+  return std::ranges::all_of(elements_, [](const Element& element) { return element.rest.isZero(0); });
 }
 
 void TriangleBend::attach(const solver::BlockMatrix& matrix) {
-  for (Element& element : elements_) {
-    element.slots.clear();
-    for (Index a : element.particles)
-      for (Index b : element.particles) element.slots.push_back(matrix.slot(a, b));
-  }
+  slots_.clear();
+  for (const Element& element : elements_)
+    for (Index a : particles(element))
+      for (Index b : particles(element)) slots_.push_back(matrix.slot(a, b));
 }
 
 void TriangleBend::add(const Evaluation& at) const {
   for (const Element& element : elements_) {
-    const Mat3 curved = curvature(element, at.x);
-    Mat3 moment = rigidity_ * curved;
+    const Curvature curved = curvature(element, at.x);
+    Curvature moment{rigidity_ * curved[0], rigidity_ * curved[1], rigidity_ * curved[2]};
     if (damping_.any()) add_damping(element, curved, at, moment);
-    for (std::size_t k = 0; k < element.particles.size(); ++k)
-      at.force[static_cast<std::size_t>(element.particles[k])] -=
-          element.area * moment * kCount.cwiseProduct(element.weights[k]);
-    if (!element.rest.isZero(0)) add_rest_moment(element, curved, at);
+    // Moments against s_uu, s_vv and s_uv, each as (x, y, z, 0).
+    const auto moment_of = [&](int c) -> Lanes {
+      return element.area * kCounts[c] * Lanes(moment[0][c], moment[1][c], moment[2][c], 0);
+    };
+    const Lanes of_uu = moment_of(0), of_vv = moment_of(1), of_uv = moment_of(2);
+    for (std::size_t k = element.begin; k < element.end; ++k) {
+      const Lanes& w = weights_[k];
+      const Lanes force = w[0] * of_uu + w[1] * of_vv + w[2] * of_uv;
+      at.force[static_cast<std::size_t>(particles_[k])] -= force.head<3>().matrix();
+    }
+    if (!element.rest.isZero(0)) add_rest_moment(element, columns_of(curved), at);
   }
 }
 
 // moment += viscosity and friction; their Jacobian goes into the matrix, if there is one.
-void TriangleBend::add_damping(const Element& element, const Mat3& curved, const Evaluation& at, Mat3& moment) const {
-  const Mat3 velocity = curvature(element, at.v);
-  std::array<Mat3, 3> blocks;
-  for (int c = 0; c < 3; ++c) {
-    if (at.matrix == nullptr) {
-      moment.col(c) += damping_.moment(curved.col(c), velocity.col(c));
-      continue;
-    }
-    const auto linearised = damping_.linearised(curved.col(c), velocity.col(c), at.rate, at.linearisation);
-    moment.col(c) += linearised.moment;
-    blocks[static_cast<std::size_t>(c)] = element.area * kCount[c] * linearised.jacobian;
-  }
+void TriangleBend::add_damping(const Element& element, const Curvature& curved, const Evaluation& at,
+                               Curvature& moment) const {
+  const Curvature velocity = curvature(element, at.v);
+  const Lanes c_sq = curved[0] * curved[0] + curved[1] * curved[1] + curved[2] * curved[2];
+  const Lanes rate = curved[0] * velocity[0] + curved[1] * velocity[1] + curved[2] * velocity[2];
+  const Lanes secants = damping_.secants(c_sq, rate);
+  const Lanes size = secants * rate;
+  for (std::size_t d = 0; d < 3; ++d) moment[d] += size * curved[d];
   if (at.matrix == nullptr) return;
-  const std::size_t count = element.particles.size();
+  if (at.linearisation == Linearisation::exact)
+    add_exact_blocks(element, columns_of(curved), columns_of(velocity), at);
+  else
+    add_secants(element, element.area * at.rate * kCounts * secants * c_sq, *at.matrix);
+}
+
+// The definite form of BendDamping::linearised is a stiffness c cᵀ for each of the three; here ‖c‖² I. Curvature points
+// along the normal, where that is the same. Across it bending is stiffer than it is, where the membrane is much stiffer
+// still: the catwalk takes no more iterations, and all of bending is numbers in place of blocks.
+void TriangleBend::add_secants(const Element& element, const Lanes& stiffness, solver::BlockMatrix& matrix) const {
+  const std::size_t count = element.end - element.begin;
+  const solver::Slot* slots = slots_.data() + element.slots;
+  const Lanes* weights = weights_.data() + element.begin;
   for (std::size_t a = 0; a < count; ++a) {
-    const std::array<Mat3, 3> rows{element.weights[a][0] * blocks[0], element.weights[a][1] * blocks[1],
-                                   element.weights[a][2] * blocks[2]};
-    for (std::size_t b = 0; b < count; ++b) {
-      const Vec3& w = element.weights[b];
-      at.matrix->add(element.slots[a * count + b], w[0] * rows[0] + w[1] * rows[1] + w[2] * rows[2]);
+    const Lanes row = stiffness * weights[a];
+    for (std::size_t b = a; b < count; ++b) {
+      const double value = (row * weights[b]).sum();
+      matrix.add_scalar(slots[a * count + b], value);
+      if (b != a) matrix.add_scalar(slots[b * count + a], value);
     }
+  }
+}
+
+void TriangleBend::add_exact_blocks(const Element& element, const Mat3& curved, const Mat3& velocity,
+                                    const Evaluation& at) const {
+  const std::size_t count = element.end - element.begin;
+  for (int c = 0; c < 3; ++c) {
+    const Mat3 jacobian = damping_.linearised(curved.col(c), velocity.col(c), at.rate, at.linearisation).jacobian;
+    const Mat3 block = element.area * kCount[c] * jacobian;
+    for (std::size_t a = 0; a < count; ++a)
+      for (std::size_t b = 0; b < count; ++b)
+        at.matrix->add(slots_[element.slots + a * count + b],
+                       weights_[element.begin + a][c] * weights_[element.begin + b][c], block);
   }
 }
 
@@ -128,23 +180,23 @@ void TriangleBend::add_damping(const Element& element, const Mat3& curved, const
 // δg_k = −Σ_j g_j (g_k·δx_j) + n Σ_j (g_k·g_j)(n·δx_j). The definite form is that of Gauss and Newton for
 // ‖s_ab − κ_ab n‖², definite together with the constant part.
 void TriangleBend::add_rest_moment(const Element& element, const Mat3& curved, const Evaluation& at) const {
-  const auto [n, g] = plane_of(element.particles, at.x);
+  const auto [n, g] = plane_of(particles(element), at.x);
   const Vec3 rest = kCount.cwiseProduct(element.rest);
   const Vec3 m = curved * rest;
   const double size = rigidity_ * element.area;
-  const std::size_t count = element.particles.size();
-  for (std::size_t k = 0; k < count; ++k)
-    at.force[static_cast<std::size_t>(element.particles[k])] += size * rest.dot(element.weights[k]) * n;
-  for (std::size_t k = 0; k < 3; ++k)
-    at.force[static_cast<std::size_t>(element.particles[k])] -= size * m.dot(g[k]) * n;
+  const std::size_t count = element.end - element.begin;
+  const Index* particle = particles_.data() + element.begin;
+  const solver::Slot* slots = slots_.data() + element.slots;
+  const auto turned = [&](std::size_t k) { return rest.dot(weights_[element.begin + k].head<3>().matrix()); };
+  for (std::size_t k = 0; k < count; ++k) at.force[static_cast<std::size_t>(particle[k])] += size * turned(k) * n;
+  for (std::size_t k = 0; k < 3; ++k) at.force[static_cast<std::size_t>(particle[k])] -= size * m.dot(g[k]) * n;
   if (at.matrix == nullptr) return;
 
   for (std::size_t k = 0; k < 3; ++k) {
     const Mat3 turn = size * n * g[k].transpose();
     for (std::size_t j = 0; j < count; ++j) {
-      const double c = rest.dot(element.weights[j]);
-      at.matrix->add(element.slots[k * count + j], c * turn);
-      at.matrix->add(element.slots[j * count + k], c * turn.transpose());
+      at.matrix->add(slots[k * count + j], turned(j), turn);
+      at.matrix->add(slots[j * count + k], turned(j), turn.transpose());
     }
     for (std::size_t j = 0; j < 3; ++j) {
       Mat3 block;
@@ -153,26 +205,25 @@ void TriangleBend::add_rest_moment(const Element& element, const Mat3& curved, c
                 m.dot(g[k]) * g[j] * n.transpose();
       else
         block = rest.dot(element.rest) * g[k].dot(g[j]) * n * n.transpose();
-      at.matrix->add(element.slots[k * count + j], size * block);
+      at.matrix->add(slots[k * count + j], size * block);
     }
   }
 }
 
 void TriangleBend::add_constant_stiffness(solver::BlockMatrix& matrix) const {
   for (const Element& element : elements_) {
-    const std::size_t count = element.particles.size();
-    for (std::size_t a = 0; a < count; ++a)
-      for (std::size_t b = 0; b < count; ++b)
-        matrix.add_scalar(element.slots[a * count + b],
-                          rigidity_ * element.area * kCount.cwiseProduct(element.weights[a]).dot(element.weights[b]));
+    const solver::Slot* slot = slots_.data() + element.slots;
+    for (std::size_t a = element.begin; a < element.end; ++a)
+      for (std::size_t b = element.begin; b < element.end; ++b)
+        matrix.add_scalar(*slot++, rigidity_ * element.area * (kCounts * weights_[a] * weights_[b]).sum());
   }
 }
 
 double TriangleBend::energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (const Element& element : elements_) {
-    Mat3 change = curvature(element, x);
-    if (!element.rest.isZero(0)) change -= plane_of(element.particles, x).normal * element.rest.transpose();
+    Mat3 change = columns_of(curvature(element, x));
+    if (!element.rest.isZero(0)) change -= plane_of(particles(element), x).normal * element.rest.transpose();
     sum += 0.5 * rigidity_ * element.area * kCount.dot(change.colwise().squaredNorm().transpose());
   }
   return sum;

@@ -18,28 +18,41 @@ class TriangleBend final : public Force {
   TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  bool isotropic() const override;
   void attach(const solver::BlockMatrix& matrix) override;
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> x) const override;
   void add_constant_stiffness(solver::BlockMatrix& matrix) const override;
 
  private:
+  /// Of s_uu, s_vv, s_uv, and a fourth that is zero: they are worked on together.
+  using Lanes = Eigen::Array4d;
+  /// The curvature vectors by coordinate, x, y and z of all of them.
+  using Curvature = std::array<Lanes, 3>;
   struct Element {
-    std::vector<Index> particles;     // corners first
-    std::vector<Vec3> weights;        // of s_uu, s_vv and s_uv [1/m²]
-    double area;                      // [m²]
-    Vec3 rest = Vec3::Zero();         // κ_uu, κ_vv, κ_uv [1/m]
-    std::vector<solver::Slot> slots;  // row-major over pairs of particles
+    std::size_t begin, end;    // of its particles, corners first
+    std::size_t slots;         // the first of them, row-major over pairs of particles
+    double area;               // [m²]
+    Vec3 rest = Vec3::Zero();  // κ_uu, κ_vv, κ_uv [1/m]
   };
-  /// s_uu, s_vv, s_uv as columns.
-  static Mat3 curvature(const Element& element, std::span<const Vec3> x);
-  static void find_rest(Element& element, const std::array<Vec2, 3>& material, std::span<const Vec3> rest);
-  void add_damping(const Element& element, const Mat3& curvature, const Evaluation& at, Mat3& moment) const;
+  std::span<const Index> particles(const Element& e) const {
+    return std::span(particles_).subspan(e.begin, e.end - e.begin);
+  }
+  Curvature curvature(const Element& element, std::span<const Vec3> x) const;
+  void find_rest(Element& element, const std::array<Vec2, 3>& material, std::span<const Vec3> rest);
+  void add_damping(const Element& element, const Curvature& curvature, const Evaluation& at, Curvature& moment) const;
+  void add_secants(const Element& element, const Lanes& stiffness, solver::BlockMatrix& matrix) const;
+  void add_exact_blocks(const Element& element, const Mat3& curvature, const Mat3& velocity,
+                        const Evaluation& at) const;
   void add_rest_moment(const Element& element, const Mat3& curvature, const Evaluation& at) const;
 
   double rigidity_;
   BendDamping damping_;
   std::vector<Element> elements_;
+  // One after the other, of all elements.
+  std::vector<Index> particles_;
+  std::vector<Lanes> weights_;  // of s_uu, s_vv and s_uv [1/m²]
+  std::vector<solver::Slot> slots_;
 };
 
 }  // namespace weft::forces

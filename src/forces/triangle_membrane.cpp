@@ -5,6 +5,11 @@
 #include <cmath>
 
 namespace weft::forces {
+
+using solver::packed_outer;
+using solver::packed_scalar;
+using solver::PackedBlock;
+
 namespace {
 
 // Below this stretch a thread has no direction any more: it pulls nowhere, and the matrix stays finite.
@@ -106,29 +111,54 @@ void TriangleMembrane::add(const Evaluation& at) const {
           element.gradients[k].x() * along_u + element.gradients[k].y() * along_v;
     if (at.matrix == nullptr) continue;
 
-    Hessian h;
-    h.uu = stretch_hessian(stretch_.weft, s.u, rate.u, at);
-    h.vv = stretch_hessian(stretch_.warp, s.v, rate.v, at);
-    add_shear_hessian(s, rate, at, h);
-    for (std::size_t a = 0; a < 3; ++a) {
-      const Vec2 ga = element.area * element.gradients[a];
-      const Mat3 by_u = ga.x() * h.uu + ga.y() * h.vu, by_v = ga.x() * h.uv + ga.y() * h.vv;
-      for (std::size_t b = 0; b < 3; ++b)
-        at.matrix->add(slots_[e][3 * a + b], element.gradients[b].x() * by_u + element.gradients[b].y() * by_v);
-    }
+    add_blocks(element, slots_[e], hessian(s, rate, at), *at.matrix);
   }
 }
 
+TriangleMembrane::Hessian TriangleMembrane::hessian(const Gradient& s, const Gradient& rate,
+                                                    const Evaluation& at) const {
+  Hessian h;
+  h.uu = stretch_hessian(stretch_.weft, s.u, rate.u, at);
+  h.vv = stretch_hessian(stretch_.warp, s.v, rate.v, at);
+  add_shear_hessian(s, rate, at, h);
+  return h;
+}
+
+// Σ gradients[a] gradients[b] h over the pairs of corners. Those with the first corner follow from the others: where
+// all three move alike, nothing changes.
+void TriangleMembrane::add_blocks(const Element& element, const std::array<solver::Slot, 9>& slots, const Hessian& h,
+                                  solver::BlockMatrix& matrix) {
+  const Vec2 p = element.area * element.gradients[1], q = element.area * element.gradients[2];
+  const Vec2 &gp = element.gradients[1], &gq = element.gradients[2];
+  const PackedBlock p_u = p.x() * h.uu + p.y() * h.vu, p_v = p.x() * h.uv + p.y() * h.vv;
+  const PackedBlock q_u = q.x() * h.uu + q.y() * h.vu, q_v = q.x() * h.uv + q.y() * h.vv;
+  const PackedBlock pp = gp.x() * p_u + gp.y() * p_v, pq = gq.x() * p_u + gq.y() * p_v;
+  const PackedBlock qp = gp.x() * q_u + gp.y() * q_v, qq = gq.x() * q_u + gq.y() * q_v;
+  const PackedBlock op = -(pp + qp), oq = -(pq + qq), po = -(pp + pq), qo = -(qp + qq);
+  matrix.add(slots[0], -(op + oq));
+  matrix.add(slots[1], op);
+  matrix.add(slots[2], oq);
+  matrix.add(slots[3], po);
+  matrix.add(slots[4], pp);
+  matrix.add(slots[5], pq);
+  matrix.add(slots[6], qo);
+  matrix.add(slots[7], qp);
+  matrix.add(slots[8], qq);
+}
+
 // ∂/∂s + rate ∂/∂ṡ of the tension; see Stretch::stiffness, whose edge of unit length this is.
-Mat3 TriangleMembrane::stretch_hessian(double k, const Vec3& s, const Vec3& rate, const Evaluation& at) const {
+PackedBlock TriangleMembrane::stretch_hessian(double k, const Vec3& s, const Vec3& rate, const Evaluation& at) const {
   const double length = length_of(s);
   const Vec3 n = s / length;
-  const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
   double lateral = 1 - 1 / length;
-  if (at.linearisation != Linearisation::exact) lateral = std::max(lateral, 0.0);
-  Mat3 hessian = (k + at.rate * stretch_.viscosity) * along + (k * lateral) * across;
-  if (at.linearisation == Linearisation::exact && stretch_.viscosity > 0)
-    hessian += stretch_.viscosity / length * (n * (across * rate).transpose() + n.dot(rate) * across);
+  if (at.linearisation == Linearisation::definite) lateral = std::max(lateral, 0.0);
+  if (at.linearisation == Linearisation::cautious) lateral = std::min(std::abs(lateral), 1.0);
+  PackedBlock hessian =
+      packed_outer((k * (1 - lateral) + at.rate * stretch_.viscosity) * n, n) + packed_scalar(k * lateral);
+  if (at.linearisation == Linearisation::exact && stretch_.viscosity > 0) {
+    const double along = n.dot(rate), size = stretch_.viscosity / length;
+    hessian = hessian + packed_outer(size * n, rate - 2 * along * n) + packed_scalar(size * along);
+  }
   return hessian;
 }
 
@@ -138,25 +168,23 @@ void TriangleMembrane::add_shear_hessian(const Gradient& s, const Gradient& rate
                                          Hessian& h) const {
   const double outer = 0.5 * (shear_.modulus + at.rate * shear_.viscosity);
   const double elastic = 0.5 * shear_.modulus * s.u.dot(s.v);
-  h.uu += outer * s.v * s.v.transpose();
-  h.uv += outer * s.v * s.u.transpose();
-  h.vu += outer * s.u * s.v.transpose();
-  h.vv += outer * s.u * s.u.transpose();
+  h.uu = h.uu + packed_outer(outer * s.v, s.v);
+  h.uv = packed_outer(outer * s.v, s.u);
+  h.vu = packed_outer(outer * s.u, s.v);
+  h.vv = h.vv + packed_outer(outer * s.u, s.u);
   if (at.linearisation != Linearisation::exact) {
-    h.uu.diagonal().array() += 0.5 * std::abs(elastic);
-    h.vv.diagonal().array() += 0.5 * std::abs(elastic);
-    h.uv.diagonal().array() += 0.5 * elastic;
-    h.vu.diagonal().array() += 0.5 * elastic;
+    h.uu = h.uu + packed_scalar(0.5 * std::abs(elastic));
+    h.vv = h.vv + packed_scalar(0.5 * std::abs(elastic));
+    h.uv = h.uv + packed_scalar(0.5 * elastic);
+    h.vu = h.vu + packed_scalar(0.5 * elastic);
     return;
   }
   const double viscosity = 0.5 * shear_.viscosity;
   const double stress = elastic + viscosity * (rate.u.dot(s.v) + s.u.dot(rate.v));
-  h.uu += viscosity * s.v * rate.v.transpose();
-  h.uv += viscosity * s.v * rate.u.transpose();
-  h.vu += viscosity * s.u * rate.v.transpose();
-  h.vv += viscosity * s.u * rate.u.transpose();
-  h.uv.diagonal().array() += stress;
-  h.vu.diagonal().array() += stress;
+  h.uu = h.uu + packed_outer(viscosity * s.v, rate.v);
+  h.uv = h.uv + packed_outer(viscosity * s.v, rate.u) + packed_scalar(stress);
+  h.vu = h.vu + packed_outer(viscosity * s.u, rate.v) + packed_scalar(stress);
+  h.vv = h.vv + packed_outer(viscosity * s.u, rate.u);
 }
 
 double TriangleMembrane::energy(std::span<const Vec3> x) const {

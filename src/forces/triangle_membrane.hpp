@@ -44,13 +44,16 @@ class TriangleMembrane final : public Membrane {
   };
   /// Second derivatives of the energy density by s_u and s_v, and what stands for them.
   struct Hessian {
-    Mat3 uu = Mat3::Zero(), uv = Mat3::Zero(), vu = Mat3::Zero(), vv = Mat3::Zero();
+    solver::PackedBlock uu, uv, vu, vv;
   };
   static void use_rest(const Eigen::Matrix2d& inverse, Element& element);
   static Eigen::Matrix2d stretch_of(const Gradient& s);
   static Gradient gradient(const Element& element, std::span<const Vec3> x);
   double strain(const Element& element, std::span<const Vec3> x) const;
-  Mat3 stretch_hessian(double k, const Vec3& s, const Vec3& rate, const Evaluation& at) const;
+  static void add_blocks(const Element& element, const std::array<solver::Slot, 9>& slots, const Hessian& hessian,
+                         solver::BlockMatrix& matrix);
+  Hessian hessian(const Gradient& s, const Gradient& rate, const Evaluation& at) const;
+  solver::PackedBlock stretch_hessian(double k, const Vec3& s, const Vec3& rate, const Evaluation& at) const;
   void add_shear_hessian(const Gradient& s, const Gradient& rate, const Evaluation& at, Hessian& hessian) const;
 
   Index first_;

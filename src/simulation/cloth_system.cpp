@@ -100,10 +100,10 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   first_.push_back(first);
   cut_groups(environment);
 
-  std::vector<std::pair<Index, Index>> couplings;
+  solver::BlockMatrix::Couplings couplings, isotropic;
   for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->couple(couplings);
-  base_ = solver::BlockMatrix(first, std::move(couplings));
+    for (const auto& force : of_cloth) force->couple(force->isotropic() ? isotropic : couplings);
+  base_ = solver::BlockMatrix(first, std::move(couplings), std::move(isotropic));
   for (const auto& of_cloth : forces_)
     for (const auto& force : of_cloth) force->attach(base_);
   sew(0);

@@ -2,68 +2,105 @@
 
 #include <algorithm>
 #include <cassert>
+#include <iterator>
+#include <numeric>
 
 namespace weft::solver {
 
-BlockMatrix::BlockMatrix(Index rows, std::vector<std::pair<Index, Index>> couplings) {
+namespace {
+
+// Both directions of each, sorted, without repeats.
+void mirror(BlockMatrix::Couplings& couplings) {
   const std::size_t count = couplings.size();
-  couplings.reserve(2 * count + static_cast<std::size_t>(rows));
+  couplings.reserve(2 * count);
   for (std::size_t c = 0; c < count; ++c) couplings.emplace_back(couplings[c].second, couplings[c].first);
-  for (Index i = 0; i < rows; ++i) couplings.emplace_back(i, i);
   std::sort(couplings.begin(), couplings.end());
   couplings.erase(std::unique(couplings.begin(), couplings.end()), couplings.end());
+}
 
-  row_start_.assign(static_cast<std::size_t>(rows) + 1, 0);
-  diagonal_.resize(static_cast<std::size_t>(rows));
-  columns_.reserve(couplings.size());
-  for (const auto& [i, j] : couplings) {
+}  // namespace
+
+BlockMatrix::Pattern BlockMatrix::Pattern::of(Index rows, const Couplings& pairs) {
+  Pattern pattern;
+  pattern.start.assign(static_cast<std::size_t>(rows) + 1, 0);
+  pattern.columns.reserve(pairs.size());
+  for (const auto& [i, j] : pairs) {
     assert(i >= 0 && i < rows && j >= 0 && j < rows);
-    if (i == j) diagonal_[static_cast<std::size_t>(i)] = static_cast<Slot>(columns_.size());
-    columns_.push_back(j);
-    row_start_[static_cast<std::size_t>(i) + 1] = static_cast<Index>(columns_.size());
+    pattern.columns.push_back(j);
+    ++pattern.start[static_cast<std::size_t>(i) + 1];
   }
-  values_.assign(9 * columns_.size() + 3, 0.0);
+  std::partial_sum(pattern.start.begin(), pattern.start.end(), pattern.start.begin());
+  return pattern;
+}
+
+Index BlockMatrix::Pattern::find(Index row, Index column) const {
+  const auto begin = columns.begin() + start[static_cast<std::size_t>(row)];
+  const auto end = columns.begin() + start[static_cast<std::size_t>(row) + 1];
+  const auto found = std::lower_bound(begin, end, column);
+  return found != end && *found == column ? static_cast<Index>(found - columns.begin()) : -1;
+}
+
+BlockMatrix::BlockMatrix(Index rows, Couplings couplings, Couplings isotropic) {
+  for (Index i = 0; i < rows; ++i) couplings.emplace_back(i, i);
+  mirror(couplings);
+  mirror(isotropic);
+  Couplings others;
+  std::ranges::set_difference(isotropic, couplings, std::back_inserter(others));
+  blocks_ = Pattern::of(rows, couplings);
+  isotropic_ = Pattern::of(rows, others);
+  for (Index i = 0; i < rows; ++i) diagonal_.push_back(blocks_.find(i, i));
+  values_.assign(9 * couplings.size() + 3, 0.0);
+  scalars_.assign(others.size(), 0.0);
 }
 
 Slot BlockMatrix::slot(Index row, Index column) const {
-  const auto begin = columns_.begin() + row_start_[static_cast<std::size_t>(row)];
-  const auto end = columns_.begin() + row_start_[static_cast<std::size_t>(row) + 1];
-  const auto found = std::lower_bound(begin, end, column);
-  assert(found != end && *found == column);
-  return static_cast<Slot>(found - columns_.begin());
+  const Index full = blocks_.find(row, column);
+  if (full >= 0) return full;
+  const Index isotropic = isotropic_.find(row, column);
+  assert(isotropic >= 0);
+  return ~isotropic;
 }
 
 void BlockMatrix::set_zero() {
   std::fill(values_.begin(), values_.end(), 0.0);
+  std::fill(scalars_.begin(), scalars_.end(), 0.0);
 }
 
 void BlockMatrix::copy_rows(const BlockMatrix& other, Index begin, Index end) {
-  assert(values_.size() == other.values_.size());
-  const auto at = [&](Index row) { return 9 * static_cast<std::ptrdiff_t>(row_start_[static_cast<std::size_t>(row)]); };
-  std::copy(other.values_.begin() + at(begin), other.values_.begin() + at(end), values_.begin() + at(begin));
-}
-
-void BlockMatrix::add_scalar(Slot slot, double value) {
-  double* block = values_.data() + 9 * static_cast<std::size_t>(slot);
-  block[0] += value;
-  block[4] += value;
-  block[8] += value;
+  assert(values_.size() == other.values_.size() && scalars_.size() == other.scalars_.size());
+  const auto copy = [&](const Pattern& pattern, int size, const std::vector<double>& from, std::vector<double>& to) {
+    const auto at = [&](Index row) {
+      return size * static_cast<std::ptrdiff_t>(pattern.start[static_cast<std::size_t>(row)]);
+    };
+    std::copy(from.begin() + at(begin), from.begin() + at(end), to.begin() + at(begin));
+  };
+  copy(blocks_, 9, other.values_, values_);
+  copy(isotropic_, 1, other.scalars_, scalars_);
 }
 
 void BlockMatrix::multiply(std::span<const Vec3> x, std::span<Vec3> y, std::size_t begin, std::size_t end) const {
-  const double* value = values_.data() + 9 * static_cast<std::size_t>(row_start_[begin]);
+  const double* value = values_.data() + 9 * static_cast<std::size_t>(blocks_.start[begin]);
   const double* vector = x.data()->data();
+  const auto entry = [&](Index column) { return vector + 3 * static_cast<std::size_t>(column); };
   for (std::size_t row = begin; row < end; ++row) {
     // Lane 3 holds the first entry of the next column and is thrown away.
     Lanes sum0{}, sum1{}, sum2{};
-    for (Index s = row_start_[row]; s < row_start_[row + 1]; ++s, value += 9) {
-      const double* xj = vector + 3 * static_cast<std::size_t>(columns_[static_cast<std::size_t>(s)]);
-      sum0 += load(value) * xj[0];
-      sum1 += load(value + 3) * xj[1];
-      sum2 += load(value + 6) * xj[2];
+    for (Index s = blocks_.start[row]; s < blocks_.start[row + 1]; ++s, value += 9) {
+      const double* xj = entry(blocks_.columns[static_cast<std::size_t>(s)]);
+      sum0 += load_lanes(value) * xj[0];
+      sum1 += load_lanes(value + 3) * xj[1];
+      sum2 += load_lanes(value + 6) * xj[2];
     }
     const Lanes sum = sum0 + sum1 + sum2;
-    y[row] = {sum[0], sum[1], sum[2]};
+    double y0 = sum[0], y1 = sum[1], y2 = sum[2];
+    for (Index s = isotropic_.start[row]; s < isotropic_.start[row + 1]; ++s) {
+      const double* xj = entry(isotropic_.columns[static_cast<std::size_t>(s)]);
+      const double factor = scalars_[static_cast<std::size_t>(s)];
+      y0 += factor * xj[0];
+      y1 += factor * xj[1];
+      y2 += factor * xj[2];
+    }
+    y[row] = {y0, y1, y2};
   }
 }
 

@@ -164,6 +164,12 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
   const auto force = GetParam().make(kStiffness, 5);
   const Eigen::MatrixXd definite = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::definite);
   const Eigen::MatrixXd exact = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::exact);
+  if (GetParam().name == "bend_of_triangles") {
+    // Its damping is as stiff across the curvature as along it: it only adds.
+    const Eigen::MatrixXd added = definite - exact;
+    EXPECT_GT(added.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * added.cwiseAbs().maxCoeff());
+    return;
+  }
   // The shear is a rounding away from zero.
   EXPECT_LT((definite - exact).cwiseAbs().maxCoeff(), 1e-13 * exact.cwiseAbs().maxCoeff());
 }

@@ -38,6 +38,28 @@ std::vector<char> inside(const mesh::Sheet& sheet, int rings) {
   return result;
 }
 
+TEST(TriangleMembrane, CautiousFormStiffensAShortThreadByWhatCompressionSoftens) {
+  const mesh::Mesh mesh = mesh::make_triangle_sheet(mesh::Grid{3, 3, 0.1, 0.1}, mesh::Pattern::aligned);
+  TriangleMembrane membrane(mesh::make_sheet_of(mesh), 0, {1000, 0, 0}, {0, 0});
+  // Of a turn of the weft out of the plane, s_u = (stretch, 0, θ).
+  const auto across = [&](double stretch, Linearisation linearisation) {
+    const Positions x = mapped(mesh, [&](double u, double v) { return Vec3(stretch * u, v, 0); });
+    const Eigen::MatrixXd k = testing::stiffness_of(membrane, x, testing::zeros(x), 0, linearisation);
+    double sum = 0;
+    for (std::size_t a = 0; a < mesh.uv.size(); ++a)
+      for (std::size_t b = 0; b < mesh.uv.size(); ++b)
+        sum += mesh.uv[a].x() * mesh.uv[b].x() *
+               k(static_cast<Eigen::Index>(3 * a + 2), static_cast<Eigen::Index>(3 * b + 2));
+    return sum;
+  };
+  const double along = 1000 * 0.2 * 0.2;  // k A [N·m]
+  EXPECT_NEAR(across(0.8, Linearisation::exact), -0.25 * along, 1e-12 * along);
+  EXPECT_NEAR(across(0.8, Linearisation::cautious), 0.25 * along, 1e-12 * along);
+  EXPECT_NEAR(across(0.8, Linearisation::definite), 0, 1e-12 * along);
+  EXPECT_NEAR(across(0.1, Linearisation::exact), -9 * along, 1e-12 * along);
+  EXPECT_NEAR(across(0.1, Linearisation::cautious), along, 1e-12 * along);
+}
+
 TEST(TriangleMembrane, LinearMapHasTheEnergyAndTheStressOfTheContinuum) {
   const Vec3 su(1.05, 0.1, 0.02), sv(-0.04, 0.97, 0.1);
   const double weft = 1000, warp = 700, shear = 90;
