@@ -76,6 +76,7 @@ TEST(Summary, NamesTheFramesOfTheExtremes) {
 TEST(Summary, OfARunWithoutFramesSaysSo) {
   RunReport report;
   report.output = "a.mp4";
+  report.width = 64;  // without a size nothing was to be drawn
   EXPECT_EQ(summary(report).substr(0, 31), "a.mp4: no frame was written\n   ");
 }
 
