@@ -380,11 +380,11 @@ std::vector<Pinch> Engine::pinches(std::span<const Vec3> x) const {
       const double distance = std::abs(nearest_point(pinch.place, surfaces_[b].triangles, x).height);
       if (distance < nearest) nearest = distance, found.back().other = b;
     }
-    // Parts of one body pinch too, as arm and side do: it looks at the cloth from both sides, hardly further off on one
-    // than on the other.
+    // Parts of one body pinch too, as arm and side do: then it looks at the cloth from both sides, and from the far one
+    // from nearer than any other obstacle.
     const Vec3 up = mesh::area_vector(key.cloth, x).normalized();
-    const auto [near, far] = std::minmax({distance_facing(pinch, up, x), distance_facing(pinch, -up, x)});
-    if (far < std::min(nearest, 2 * (near + reach_))) found.back().other = pinch.obstacle;
+    const double far = std::max(distance_facing(pinch, up, x), distance_facing(pinch, -up, x));
+    if (far < nearest) found.back().other = pinch.obstacle;
   }
   return found;
 }
