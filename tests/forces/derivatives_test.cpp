@@ -174,6 +174,24 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
   EXPECT_LT((definite - exact).cwiseAbs().maxCoeff(), 1e-13 * exact.cwiseAbs().maxCoeff());
 }
 
+TEST(DefiniteJacobian, OfTriangleBendingIsTheExactOneAlongTheNormal) {
+  // Over a plane all curvature points up; what damps it there is the same in both.
+  const mesh::Sheet sheet = mesh::make_sheet_of(testing::delaunay_sheet(kGrid, 0.3, 3));
+  Positions x = sheet.rest;
+  for (Vec3& point : x) point.z() = 3 * point.x() * point.x() - 5 * point.x() * point.y();
+  TriangleBend force(sheet, 0, BendParameters{kStiffness, 5, 5000});
+  const Eigen::MatrixXd definite = testing::stiffness_of(force, x, testing::zeros(x), kRate, Linearisation::definite);
+  const Eigen::MatrixXd exact = testing::stiffness_of(force, x, testing::zeros(x), kRate, Linearisation::exact);
+  double largest = 0, off = 0;
+  for (Eigen::Index i = 2; i < exact.rows(); i += 3)
+    for (Eigen::Index j = 2; j < exact.cols(); j += 3) {
+      largest = std::max(largest, std::abs(exact(i, j)));
+      off = std::max(off, std::abs(definite(i, j) - exact(i, j)));
+    }
+  EXPECT_GT(largest, 0);
+  EXPECT_LT(off, 1e-12 * largest);  // sums of a few dozen roundings
+}
+
 TEST_P(Derivatives, DefiniteJacobianLeavesOutNothingButNegativeParts) {
   const auto force = GetParam().make(kStiffness, 0);
   const Positions x = testing::crumpled(GetParam().grid, 0.006, 4), still = testing::zeros(x);
