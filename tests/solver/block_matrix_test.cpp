@@ -56,6 +56,62 @@ TEST(BlockMatrix, ProductIsThatOfTheDenseMatrix) {
   EXPECT_EQ(pieces, y);
 }
 
+TEST(BlockMatrix, WithIsotropicBlocksIsTheDenseMatrix) {
+  Random random(4);
+  constexpr Index kRows = 9;
+  const BlockMatrix::Couplings full{{0, 3}, {4, 1}, {7, 8}, {2, 5}};
+  // One of them is a full block as well, and stays one.
+  const BlockMatrix::Couplings isotropic{{0, 2}, {3, 0}, {6, 1}, {8, 0}, {4, 5}, {2, 0}};
+  BlockMatrix matrix(kRows, full, isotropic);
+  EXPECT_EQ(matrix.blocks(), 9u + 2 * 4 + 2 * 4);
+  EXPECT_GE(matrix.slot(0, 3), 0);
+  EXPECT_LT(matrix.slot(0, 2), 0);
+
+  Eigen::MatrixXd expected = Eigen::MatrixXd::Zero(3 * kRows, 3 * kRows);
+  const auto add = [&](Index i, Index j, const Mat3& block) { expected.block<3, 3>(3 * i, 3 * j) += block; };
+  for (Index i = 0; i < kRows; ++i) {
+    matrix.add_scalar(matrix.slot(i, i), 2.0 + static_cast<double>(i));
+    add(i, i, (2.0 + static_cast<double>(i)) * Mat3::Identity());
+  }
+  for (const auto& [a, b] : full)
+    for (const auto& [i, j] : {std::pair(a, b), std::pair(b, a)}) {
+      Mat3 block;
+      block << random.vector(), random.vector(), random.vector();
+      matrix.add(matrix.slot(i, j), block);
+      add(i, j, block);
+    }
+  for (const auto& [i, j] : isotropic) {
+    const double value = random.vector().x();
+    matrix.add_scalar(matrix.slot(i, j), value);
+    add(i, j, value * Mat3::Identity());
+  }
+
+  // Read back row by row, columns ascending, and into a copy in two pieces.
+  BlockMatrix copy(kRows, full, isotropic);
+  copy.copy_rows(matrix, 0, 4);
+  copy.copy_rows(matrix, 4, kRows);
+  for (const BlockMatrix* of : {&matrix, &copy}) {
+    Eigen::MatrixXd read = Eigen::MatrixXd::Zero(3 * kRows, 3 * kRows);
+    std::pair<Index, Index> before(-1, -1);
+    of->for_each_block(0, kRows, [&](Index i, Index j, const auto& block) {
+      EXPECT_LT(before, std::pair(i, j));
+      before = {i, j};
+      read.block<3, 3>(3 * i, 3 * j) += block;
+    });
+    EXPECT_EQ(read, expected);
+  }
+  const auto x = random.vectors(kRows);
+  std::vector<Vec3> y(kRows), pieces(kRows);
+  matrix.multiply(x, y, 0, kRows);
+  // As above.
+  EXPECT_LT((testing::flat(y) - expected * testing::flat(x)).cwiseAbs().maxCoeff(), 2e-13);
+  matrix.multiply(x, pieces, 0, 5);
+  matrix.multiply(x, pieces, 5, kRows);
+  EXPECT_EQ(pieces, y);
+  matrix.set_zero();
+  EXPECT_TRUE(matrix.block(matrix.slot(0, 2)).isZero(0));
+}
+
 TEST(BlockMatrix, AddsSubtractsScalesAndClears) {
   BlockMatrix matrix(2, {{0, 1}}), other = matrix;
   Mat3 block;
