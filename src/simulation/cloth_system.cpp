@@ -208,7 +208,6 @@ void ClothSystem::explicit_forces(const integrator::State& at, double h, bool ex
 void ClothSystem::forces(const integrator::StagePoint& at, std::span<Vec3> force) const {
   for (std::size_t c = 0; c < forces_.size(); ++c) add_cloth_forces(c, at, force, nullptr);
   if (contacts_ != nullptr) contacts_->add_forces(at.x_end, force);
-  if (constraints_ != nullptr) constraints_->add_forces(at.x_end, force);
 }
 
 // force += the forces within a cloth; their Jacobian goes into the matrix, if there is one.
@@ -268,7 +267,6 @@ void ClothSystem::linearise(const integrator::StagePoint& at, std::span<Vec3> fo
   system.terms.clear();
   system.diagonal_terms.clear();
   if (contacts_ != nullptr) contacts_->linearise(at.x_end, at.end_rate, force, system);
-  if (constraints_ != nullptr) constraints_->linearise(at.x_end, at.end_rate, force, system);
 }
 
 // Whether a cloth has moved too far from where its rows of the matrix were put together.

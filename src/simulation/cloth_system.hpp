@@ -6,8 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "collision/response/contact_set.hpp"
-#include "collision/response/velocity_constraints.hpp"
+#include "collision/response/contact_response.hpp"
 #include "environment/environment.hpp"
 #include "forces/air.hpp"
 #include "forces/bands.hpp"
@@ -29,9 +28,7 @@ class ClothSystem final : public integrator::System {
   void linearise(const integrator::StagePoint& at, std::span<Vec3> force, solver::LinearSystem& system) const override;
 
   /// Contacts of the current step, or nullptr where the scene can have none. Must outlive the steps.
-  void use_contacts(collision::ContactSet* contacts) { contacts_ = contacts; }
-  /// Constraints whose sliding friction acts; likewise.
-  void use_constraints(const collision::VelocityConstraints* constraints) { constraints_ = constraints; }
+  void use_contacts(collision::ContactResponse* contacts) { contacts_ = contacts; }
 
   /// Gives cloths that are being sewn the rest shape that they have at time t [s].
   void sew(double t);
@@ -88,8 +85,7 @@ class ClothSystem final : public integrator::System {
   };
   std::vector<Sewing> sewing_;
   Vec3 gravity_;
-  collision::ContactSet* contacts_ = nullptr;
-  const collision::VelocityConstraints* constraints_ = nullptr;
+  collision::ContactResponse* contacts_ = nullptr;
   std::vector<solver::Grouping> groupings_;  // of the preconditioner
 
   // rate² M plus the constant part of the bending, kept as long as the step does not change.

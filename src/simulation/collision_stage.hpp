@@ -30,18 +30,15 @@ class CollisionStage {
   void begin_step(environment::Environment& environment, const integrator::State& now,
                   std::span<const integrator::HeldParticle> held, double t, double h);
 
-  collision::ContactSet& contacts() { return engine_.contacts(); }
-  const collision::ContactSet& contacts() const { return engine_.contacts(); }
-  const collision::VelocityConstraints& constraints() const { return engine_.constraints(); }
+  collision::ContactResponse& response() { return engine_.response(); }
+  const collision::ContactResponse& response() const { return engine_.response(); }
 
   /// Appends what the velocity constraints hold of the particles that no pin holds.
   void append_constraints(std::vector<integrator::HeldParticle>& held) const;
-  /// After a solve that led to `next`: sets and releases velocity constraints; returns how many have changed.
-  int revise_constraints(const integrator::State& next, const collision::VelocityConstraints::ForceOn& force_on) {
-    return engine_.constraints().revise(all_t0_, next.x, force_on);
+  /// After a solve that led to `next`: see ContactResponse::revise.
+  int revise(const integrator::State& next, const collision::VelocityConstraints::ForceOn& force_on) {
+    return engine_.response().revise(all_t0_, next.x, force_on);
   }
-  /// The step is done: its constraints are where the next one starts.
-  void accept_constraints() { engine_.constraints().accept(); }
 
   /// After the solve: whether nothing meets anything on the way to `next`.
   bool apart(const integrator::State& next);

@@ -21,11 +21,6 @@
 namespace weft::simulation {
 namespace {
 
-// Solves of one step with contacts added in between, before the rest is left to moving particles. A second one replaces
-// nearly all corrections where something fast arrives; a third found nothing more to do.
-constexpr int kContactRounds = 2;
-// Likewise where velocity constraints are set and released in between.
-constexpr int kConstraintRounds = 6;
 // Halvings of a step before cloth that cannot be kept out of an obstacle is taken for pinched: where there is room a
 // shorter step finds it, where there is none it only costs.
 constexpr int kHalvingsBeforePinch = 3;
@@ -116,7 +111,6 @@ struct Simulation::Impl {
   Rejection attempt(double t, double h, bool may_pinch, FrameReport& report);
   Rejection solve(double h, integrator::Stepper::Start start, FrameReport& report);
   void write_back();
-  bool constrained() const { return scene.contact.response == scene::Response::velocity_constraints; }
 
   scene::Scene scene;
   environment::Environment environment;
@@ -161,8 +155,7 @@ Simulation::Impl::Impl(const scene::Scene& s)
     now.v[static_cast<std::size_t>(particle.constraint.particle)] = particle.v_end;
   if (CollisionStage::needed(scene)) {
     collisions.emplace(scene, environment, system);
-    system.use_contacts(&collisions->contacts());
-    if (constrained()) system.use_constraints(&collisions->constraints());
+    system.use_contacts(&collisions->response());
   }
   current = make_snapshot();
   measure_energies(start_report);
@@ -192,19 +185,15 @@ Simulation::Impl::Rejection Simulation::Impl::attempt(double t, double h, bool m
     collisions->begin_step(environment, now, held, t, h);
   }
   const std::size_t pinned = held.size();
-  const int rounds = constrained() ? kConstraintRounds : kContactRounds;
+  const int rounds = collisions->response().most_solves();
   const auto revise = [&] {
-    return constrained()
-               ? collisions->revise_constraints(next,
-                                                [&](Index particle) {
-                                                  return stepper.constraint_force(
-                                                      particle, system.masses()[static_cast<std::size_t>(particle)]);
-                                                })
-               : 0;
+    return collisions->revise(next, [&](Index particle) {
+      return stepper.constraint_force(particle, system.masses()[static_cast<std::size_t>(particle)]);
+    });
   };
   for (int round = 1;; ++round) {
     held.resize(pinned);
-    if (constrained()) collisions->append_constraints(held);
+    collisions->append_constraints(held);
     const Start start = round == 1 ? Start::unchanged_velocity : Start::next;
     if (Rejection rejection = solve(h, start, report)) return rejection;
     const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
@@ -228,7 +217,7 @@ void Simulation::Impl::give_up(double t, double h, const std::string& reason) co
 // Makes `next`, reached over h, the state.
 void Simulation::Impl::accept(double h, FrameReport& report) {
   stepper.accept(now, h);
-  if (collisions && constrained()) collisions->accept_constraints();
+  if (collisions) collisions->response().accept();
   for (std::size_t i = 0; i < acceleration.size(); ++i) acceleration[i] = (next.v[i] - now.v[i]) / h;
   std::swap(now, next);
   ++report.steps;
@@ -345,7 +334,7 @@ void Simulation::Impl::measure(FrameReport& report) const {
   report.min_distance = std::numeric_limits<double>::infinity();
   if (!collisions) return;
   report.proximities = collisions->proximities();
-  report.constraints += collisions->contacts().active(now.x);
+  report.constraints += collisions->response().active(now.x);
   report.min_distance = collisions->min_distance();
 }
 
