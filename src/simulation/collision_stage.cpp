@@ -29,14 +29,6 @@ std::vector<std::size_t> colliding_bodies(const scene::Scene& scene, const envir
   return bodies;
 }
 
-// The triangles of a mesh with its vertices numbered from `first`.
-std::vector<collision::Triangle> shifted(const mesh::Mesh& mesh, Index first) {
-  std::vector<collision::Triangle> triangles = mesh.topology.triangles;
-  for (collision::Triangle& t : triangles)
-    for (Index& v : t) v += first;
-  return triangles;
-}
-
 // The engine's bodies are the cloths of the scene and then what else collides.
 std::vector<collision::PairFriction> friction_pairs(const scene::Scene& scene,
                                                     const environment::Environment& environment) {
@@ -71,30 +63,26 @@ collision::BroadPhaseOptions search_options(const scene::Search& search) {
 
 collision::EngineParameters engine_parameters(const scene::Scene& scene, const environment::Environment& environment) {
   const scene::Contact& contact = scene.contact;
-  return {.self = contact.self,
-          .obstacles = contact.obstacles,
-          .stiffness = contact.stiffness,
-          .friction = friction_pairs(scene, environment),
-          .search = search_options(contact.search),
-          .reuse = contact.search.reuse,
-          .velocity_constraints = contact.response == scene::Response::velocity_constraints};
+  const bool velocity = contact.response == scene::Response::velocity_constraints;
+  return {.search = {contact.self, contact.obstacles, contact.search.reuse, search_options(contact.search)},
+          .contact = {contact.stiffness, friction_pairs(scene, environment)},
+          .response = velocity ? collision::ResponseForm::velocity_constraints : collision::ResponseForm::springs};
 }
 
-std::vector<collision::Body> make_bodies(const scene::Scene& scene, const environment::Environment& environment) {
-  std::vector<collision::Body> bodies;
-  Index first = 0;
-  const auto add = [&](const mesh::Mesh& mesh, bool deformable, double thickness, double friction, bool moving = true) {
-    const auto count = static_cast<Index>(mesh.positions.size());
-    bodies.push_back({shifted(mesh, first), first, count, deformable, thickness, friction, moving});
-    first += count;
+collision::Bodies make_bodies(const scene::Scene& scene, const environment::Environment& environment) {
+  collision::Bodies bodies;
+  const auto add = [&](const mesh::Mesh& mesh, const collision::BodyTraits& traits) {
+    bodies.add(mesh.topology.triangles, static_cast<Index>(mesh.positions.size()), traits);
   };
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const scene::Material& material = scene.cloths[c].material;
-    add(environment.cloths[c].mesh, true,
-        std::min(material.thickness, kThicknessOfSpacing * environment.cloths[c].spacing), material.friction);
+    const double thickness = std::min(material.thickness, kThicknessOfSpacing * environment.cloths[c].spacing);
+    add(environment.cloths[c].mesh, {.deformable = true, .thickness = thickness, .friction = material.friction});
   }
-  for (std::size_t b : colliding_bodies(scene, environment))
-    add(environment.bodies[b].mesh, false, 0, environment.bodies[b].friction, environment.bodies[b].moving);
+  for (std::size_t b : colliding_bodies(scene, environment)) {
+    const environment::BodyObject& body = environment.bodies[b];
+    add(body.mesh, {.friction = body.friction, .moving = body.moving});
+  }
   return bodies;
 }
 
@@ -110,7 +98,7 @@ CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Env
       bodies_(colliding_bodies(scene, environment)),
       particles_(masses.size()),
       engine_(make_bodies(scene, environment), engine_parameters(scene, environment), append_bodies(start),
-              {masses.begin(), masses.end()}) {
+              masses) {
   for (const auto& cloth : environment.cloths) names_.push_back(cloth.name);
   for (std::size_t b : bodies_) names_.push_back(environment.bodies[b].name);
   if (const auto meeting = engine_.find_meeting(start.x))
@@ -143,10 +131,11 @@ void CollisionStage::place_bodies(double t, Moment& moment) const {
 
 // Which objects and triangles, and where.
 std::string CollisionStage::describe(const collision::CornerPair& pair, const Moment& moment) const {
-  const Vec3& at = moment.x[static_cast<std::size_t>(pair.a[0])];
+  const Vec3& at = moment.x[pair.a[0]];
+  const collision::Bodies& bodies = engine_.bodies();
   return fmt::format("'{}' (triangle {}) and '{}' (triangle {}) touching near ({:.4g}, {:.4g}, {:.4g}) m",
-                     names_[engine_.body_of(pair.a[0])], engine_.triangle_of(pair.a),
-                     names_[engine_.body_of(pair.b[0])], engine_.triangle_of(pair.b), at.x(), at.y(), at.z());
+                     names_[bodies.body_of(pair.a[0])], bodies.triangle_of(pair.a), names_[bodies.body_of(pair.b[0])],
+                     bodies.triangle_of(pair.b), at.x(), at.y(), at.z());
 }
 
 void CollisionStage::begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now,
@@ -208,7 +197,7 @@ CollisionStage::Pinches CollisionStage::take_pinches(const Moment& last_start) {
 template <class Archive>
 void CollisionStage::exchange(Archive& archive, double t, Moment& now) {
   place_bodies(t, now);
-  engine_.exchange(archive, now.x);
+  engine_.serialize(archive, now.x);
   std::vector<PinchingObjects> before(pinching_before_.begin(), pinching_before_.end());
   exchange_each(archive, before,
                 [&](PinchingObjects& objects) { exchange_values(archive, objects.first, objects.second); });

@@ -16,6 +16,8 @@ struct Contact {
   std::array<Index, 4> particles{0, 0, 0, 0};
   std::array<double, 4> weights{0, 0, 0, 0};  ///< of the particles; zero for vertices of obstacles
   Vec3 obstacle_end = Vec3::Zero();           ///< what the obstacle's vertices add at the end of the step [m]
+  Vec3 obstacle_start = Vec3::Zero();         ///< and at its start
+  bool against_obstacle = false;              ///< one side is of an obstacle
   Vec3 relative_start = Vec3::Zero();         ///< point a minus point b at the start of the step [m]
   Vec3 normal = Vec3::UnitZ();                ///< unit, from b to a at the start of the step
   double range = 0;                           ///< r: the spring acts below this distance [m]
