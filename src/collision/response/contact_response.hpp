@@ -43,8 +43,10 @@ class ContactResponse {
   void accept();
 
   /// As those of ContactSet.
-  void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
-  void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force, solver::LinearSystem& system);
+  void update(std::span<const Vec3> x_end, FrictionLag& lag) const { springs_.update(x_end, lag); }
+  void add_forces(std::span<const Vec3> x_end, const FrictionLag& lag, std::span<Vec3> force) const;
+  void linearise(std::span<const Vec3> x_end, double end_rate, const FrictionLag& lag, std::span<Vec3> force,
+                 solver::LinearSystem& system) const;
   int active(std::span<const Vec3> x_end) const { return springs_.active(x_end); }
 
   std::span<const Contact> springs() const { return springs_.contacts(); }
