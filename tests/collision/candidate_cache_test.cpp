@@ -7,6 +7,7 @@
 #include <set>
 
 #include "collision/proximity/closest_points.hpp"
+#include "collision/proximity/features.hpp"
 
 namespace weft::collision {
 namespace {

@@ -107,8 +107,8 @@ TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
 
 TEST(ContactBuilder, TheShareScalesTheStiffnessAndNoneMakesNoContact) {
   Scene scene;
-  const auto contacts = scene.contacts_of(
-      {edges(-0.5, -0.5, 0.5), edges(-0.5, -0.5, 0.05), edges(-0.5, -0.5, 0)}, {.stiffness = 1e9});
+  const auto contacts =
+      scene.contacts_of({edges(-0.5, -0.5, 0.5), edges(-0.5, -0.5, 0.05), edges(-0.5, -0.5, 0)}, {.stiffness = 1e9});
   ASSERT_EQ(contacts.size(), 2U);
   EXPECT_DOUBLE_EQ(contacts[0].stiffness, 1e9);
   EXPECT_NEAR(contacts[1].stiffness, 0.5e9, 1);

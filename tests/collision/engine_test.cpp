@@ -31,8 +31,7 @@ struct Sheet {
         triangles.push_back({a, b + 1, b});
       }
     masses.assign(x.size(), 1e-4);
-    bodies.add(triangles, static_cast<Index>(x.size()),
-               {.deformable = true, .thickness = kThickness, .friction = 0.3});
+    bodies.add(triangles, static_cast<Index>(x.size()), {.deformable = true, .thickness = kThickness, .friction = 0.3});
     add_plane(0);
     if (ceiling) add_plane(*ceiling);
   }

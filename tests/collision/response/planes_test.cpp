@@ -19,8 +19,7 @@ struct Pairs {
   explicit Pairs(int count) {
     for (Index p = 0; p < count; ++p) {
       const Vec3 apart = vector(0.08);
-      for (int k = 0; k < 6; ++k)
-        x.push_back(Vec3(p, 0, 0) + vector(0.05) + (k < 3 ? Vec3(Vec3::Zero()) : apart));
+      for (int k = 0; k < 6; ++k) x.push_back(Vec3(p, 0, 0) + vector(0.05) + (k < 3 ? Vec3(Vec3::Zero()) : apart));
       triangles.push_back({6 * p, 6 * p + 1, 6 * p + 2});
       triangles.push_back({6 * p + 3, 6 * p + 4, 6 * p + 5});
       if (find_certificate({triangles[2 * p], triangles[2 * p + 1]}, x, x)) pairs.push_back({2 * p, 2 * p + 1});
