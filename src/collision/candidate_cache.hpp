@@ -15,7 +15,7 @@ struct SearchParameters {
   bool self = true;       ///< cloth against itself and other cloth
   bool obstacles = true;  ///< cloth against obstacles
   bool reuse = true;      ///< of candidates while nothing has moved far
-  BroadPhaseOptions broad_phase;
+  BroadPhaseOptions broad_phase = {};
 };
 
 /// Pairs are collected for the way of all vertices from x_t0 to x_t1, with bounds enlarged by a margin. They hold for

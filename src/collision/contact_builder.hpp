@@ -25,8 +25,8 @@ struct PairFriction {
 };
 
 struct ContactParameters {
-  double stiffness = 100;              ///< least stiffness of a contact [N/m]
-  std::vector<PairFriction> friction;  ///< of pairs with coefficients of their own
+  double stiffness = 100;                   ///< least stiffness of a contact [N/m]
+  std::vector<PairFriction> friction = {};  ///< of pairs with coefficients of their own
 };
 
 /// The linear motion of all vertices over a step.
