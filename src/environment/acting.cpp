@@ -247,9 +247,8 @@ Actor act(const Cast& cast, const scene::MeshSequence& source) {
   assets::LoadedSequence loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
   const std::size_t vertices = loaded.mesh.positions.size();
   const KeyFrames files(cast.settings.interpolation, 0, 1 / source.fps, std::move(loaded.positions), false);
-  KeyFrames keys = sample(cast, key_times(cast, source.fps), vertices, [&](double t, std::vector<Vec3>& x) {
-    files.at(character::clip_time(cast.timing(), t), x);
-  });
+  KeyFrames keys = sample(cast, key_times(cast, source.fps), vertices,
+                          [&](double t, std::vector<Vec3>& x) { files.at(character::clip_time(cast.timing(), t), x); });
   keys.at(0, loaded.mesh.positions);
   return {std::move(loaded.mesh), std::move(keys), {}};
 }

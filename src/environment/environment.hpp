@@ -25,8 +25,8 @@ struct ClothObject {
   /// Least distance between particles of a grid [m]; of triangles √2 times the least height, which is the same for the
   /// two halves of a square.
   double spacing = 0;
-  std::vector<Vec3> start;   ///< positions of the particles [m]
-  Vec3 velocity{0, 0, 0};    ///< of all of them [m/s]
+  std::vector<Vec3> start;  ///< positions of the particles [m]
+  Vec3 velocity{0, 0, 0};   ///< of all of them [m/s]
 };
 
 /// A body that moves cloth and is not moved by it: an obstacle, still or moved as a rigid body, or a character.

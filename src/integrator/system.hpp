@@ -40,8 +40,8 @@ class System {
   virtual void forces(const StagePoint& at, std::span<Vec3> force) = 0;
 
   /// As `forces`, and fills the matrix of linear_system() with rate² M − ∂f/∂x − rate ∂f/∂v and its terms with what
-  /// stands beside it. `iteration`: of Newton's method, from 0 in each solve. Forces that lag behind the positions catch
-  /// up here, before they are added.
+  /// stands beside it. `iteration`: of Newton's method, from 0 in each solve. Forces that lag behind the positions
+  /// catch up here, before they are added.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
   /// What linearise() fills; its constraints are the integrator's.

@@ -97,8 +97,7 @@ CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Env
     : environment_(environment),
       bodies_(colliding_bodies(scene, environment)),
       particles_(masses.size()),
-      engine_(make_bodies(scene, environment), engine_parameters(scene, environment), append_bodies(start),
-              masses) {
+      engine_(make_bodies(scene, environment), engine_parameters(scene, environment), append_bodies(start), masses) {
   for (const auto& cloth : environment.cloths) names_.push_back(cloth.name);
   for (std::size_t b : bodies_) names_.push_back(environment.bodies[b].name);
   if (const auto meeting = engine_.find_meeting(start.x))
@@ -154,8 +153,7 @@ void CollisionStage::begin_step(double t, double h, std::span<const integrator::
 
 void CollisionStage::append_prescribed(std::vector<integrator::HeldParticle>& held) const {
   for (const collision::PrescribedParticle& particle : response().prescribed())
-    if (movable_[particle.constraint.particle])
-      held.push_back({particle.constraint, particle.x_end, particle.v_end});
+    if (movable_[particle.constraint.particle]) held.push_back({particle.constraint, particle.x_end, particle.v_end});
 }
 
 std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, const Moment& now, Moment& next) {

@@ -29,9 +29,10 @@ class CollisionStage {
   static bool needed(const scene::Scene& scene);
 
   /// Appends the bodies to the moment `start`, for its time. Throws Error(scene_invalid) where surfaces touch or cross
-  /// from the start: what begins apart is kept apart, and nothing else can be promised. The environment must outlive it.
-  CollisionStage(const scene::Scene& scene, const environment::Environment& environment,
-                 std::span<const double> masses, Moment& start);
+  /// from the start: what begins apart is kept apart, and nothing else can be promised. The environment must outlive
+  /// it.
+  CollisionStage(const scene::Scene& scene, const environment::Environment& environment, std::span<const double> masses,
+                 Moment& start);
 
   /// Before the solve: bodies go from where they are at t in `now` to where they are at t + h in `next`; contacts are
   /// found for the particles as they are now and would be, in `next`, with unchanged velocity.

@@ -65,8 +65,8 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
       cloth_(scene, environment),
       problem_(cloth_),
       pins_(scene, environment, first_particles(cloth_)),
-      progress_{start_of(environment, start),
-                integrator::Stepper(method_of(scene.time.integrator), newton_of(scene)), step_control_of(scene)} {
+      progress_{start_of(environment, start), integrator::Stepper(method_of(scene.time.integrator), newton_of(scene)),
+                step_control_of(scene)} {
   Moment& now = progress_.now;
   pins_.held_at(start, environment, held_);
   for (const integrator::HeldParticle& particle : held_) now.v[particle.constraint.particle] = particle.v_end;

@@ -27,8 +27,8 @@ class StepLoop {
   StepLoop(const StepLoop&) = delete;  // its parts know each other
   StepLoop& operator=(const StepLoop&) = delete;
 
-  /// Goes on from the time t_t0 of a frame to that of the next one [s], which is report.frame, and counts in the report.
-  /// Throws Error(simulation_failed) where no step is short enough.
+  /// Goes on from the time t_t0 of a frame to that of the next one [s], which is report.frame, and counts in the
+  /// report. Throws Error(simulation_failed) where no step is short enough.
   void advance(double t_t0, double t_t1, FrameReport& report);
 
   /// What the next step begins with, besides what follows from it.

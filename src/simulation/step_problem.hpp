@@ -12,17 +12,18 @@ namespace weft::simulation {
 
 /// All that evaluations leave behind for those that follow: with the same of it the same arguments give the same bits.
 struct SolveMemory {
-  // Changes with linearisations. Cloth at rest does with the rows of the matrix that it has; residuals are exact always.
+  // Changes with linearisations. Cloth at rest does with the rows of the matrix that it has; residuals are exact
+  // always.
   solver::LinearSystem system;
-  double rate = 0;                    ///< of `system` and `base` [1/s]; 0: of none
-  std::vector<Vec3> linearised_at;    ///< where each cloth's rows were put together; empty: nowhere
+  double rate = 0;                  ///< of `system` and `base` [1/s]; 0: of none
+  std::vector<Vec3> linearised_at;  ///< where each cloth's rows were put together; empty: nowhere
   collision::FrictionLag friction;
 
   // Saves time only. Of the forces within the cloths: most cloths of a scene are solved, and do not move, while one
   // goes on.
-  solver::BlockMatrix base;           ///< what all matrices of this rate begin with
-  std::vector<Vec3> x, v;             ///< where each cloth's forces were last evaluated; empty: nowhere
-  std::vector<Vec3> force;            ///< what they were [N]
+  solver::BlockMatrix base;  ///< what all matrices of this rate begin with
+  std::vector<Vec3> x, v;    ///< where each cloth's forces were last evaluated; empty: nowhere
+  std::vector<Vec3> force;   ///< what they were [N]
 };
 
 class StepProblem final : public integrator::System {

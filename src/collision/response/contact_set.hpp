@@ -43,9 +43,9 @@ class ContactSet {
   /// Slip speed below which friction is viscous and a contact counts as sticking [m/s]. Smaller creeps less and makes
   /// the system stiffer: 2 μ λ / (h · stick_speed) per contact of load λ.
   static constexpr double kStickSpeed = 2e-4;
-  /// Updates of a step, over all of its solves, in which friction follows the loads. From then on it keeps those it has:
-  /// that the load changes with the positions is not in the matrix, and where folds press on each other in steps below
-  /// a millisecond the two would go on chasing each other, however short the step.
+  /// Updates of a step, over all of its solves, in which friction follows the loads. From then on it keeps those it
+  /// has: that the load changes with the positions is not in the matrix, and where folds press on each other in steps
+  /// below a millisecond the two would go on chasing each other, however short the step.
   static constexpr int kLoadUpdates = 20;
 
   static constexpr double kStiffening = 10;
@@ -56,6 +56,7 @@ class ContactSet {
   void add(const Contact& contact);
   /// Before the first solve of a step over h [s].
   void set_step(double h) { stick_slip_ = kStickSpeed * h; }
+  std::span<const Contact> contacts() const { return contacts_; }
 
   std::span<const Contact> contacts() const { return contacts_; }
 
