@@ -58,8 +58,6 @@ class ContactSet {
   void set_step(double h) { stick_slip_ = kStickSpeed * h; }
   std::span<const Contact> contacts() const { return contacts_; }
 
-  std::span<const Contact> contacts() const { return contacts_; }
-
   /// Before each linearisation: friction goes by the loads at this x_end from here on. Within one Newton iteration they
   /// do not change, so that friction too has a potential. The first time, and for contacts that are new, they are the
   /// loads at the start of the step.
