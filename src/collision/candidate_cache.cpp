@@ -15,7 +15,9 @@ CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& par
     : bodies_(bodies),
       parameters_(parameters),
       reach_(reach),
-      broad_phase_(bodies.surfaces(), x, parameters.broad_phase) {}
+      broad_phase_(bodies.surfaces(), x, parameters.broad_phase),
+      from_(x.begin(), x.end()),
+      to_(from_) {}
 
 CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   double motion = 0;

@@ -90,14 +90,15 @@ TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
   EXPECT_EQ(stiffness_share(edges(-0.5, -0.5, 0.5)), 1);
   // Flat: the sum of the sines from 0.05 to 0.2.
   EXPECT_EQ(stiffness_share(edges(-0.025, -0.025, 0.5)), 0);
-  EXPECT_NEAR(stiffness_share(edges(0, -0.125, 0.5)), 0, 1e-12);  // at the edge of a wedge
-  // Outside of a wedge: from -0.1 to 0, and flat enough to be sharp.
-  EXPECT_NEAR(stiffness_share(edges(-0.05, -0.5, 0.5)), 0.5, 1e-12);
-  EXPECT_NEAR(stiffness_share(edges(-0.5, -0.05, 0.5)), 0.5, 1e-12);
-  EXPECT_EQ(stiffness_share(edges(-0.5, -0.1, 0.5)), 1);
-  EXPECT_EQ(stiffness_share(edges(-0.5, 0.01, 0.5)), 0);
-  // Flat and a wedge at once: (0.15 - 0.05) / 0.15 and 0.075 / 0.1.
-  EXPECT_NEAR(stiffness_share(edges(-0.075, -0.075, 0.5)), 2.0 / 3 * 0.75, 1e-12);
+  EXPECT_NEAR(stiffness_share(edges(0, -0.125, 0.5)), 0.5, 1e-12);
+  EXPECT_NEAR(stiffness_share(edges(-0.1, -0.1, 0.5)), 1, 1e-12);
+  // Outside of a wedge: down from 0 to 0.1, of either edge.
+  EXPECT_EQ(stiffness_share(edges(0, -0.5, 0.5)), 1);
+  EXPECT_NEAR(stiffness_share(edges(0.05, -0.5, 0.5)), 0.5, 1e-12);
+  EXPECT_NEAR(stiffness_share(edges(-0.5, 0.05, 0.5)), 0.5, 1e-12);
+  EXPECT_EQ(stiffness_share(edges(-0.5, 0.1, 0.5)), 0);
+  // Both at once.
+  EXPECT_NEAR(stiffness_share(edges(0.05, -0.175, 0.5)), 0.5 * 0.5, 1e-12);
   // Within a tenth of an end, of either.
   EXPECT_NEAR(stiffness_share(edges(-0.5, -0.5, 0.05)), 0.5, 1e-12);
   EXPECT_NEAR(stiffness_share(edges(-0.5, -0.5, 0.975)), 0.25, 1e-12);
