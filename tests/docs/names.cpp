@@ -28,7 +28,7 @@ class Tests {
  public:
   void read(const std::string& text) {
     static const std::regex kTest(R"(\b(TEST|TEST_F|TEST_P|TYPED_TEST|TYPED_TEST_P)\(\s*(\w+),\s*(\w+)\))");
-    static const std::regex kInstance(R"(\bINSTANTIATE_(?:TYPED_)?TEST_SUITE_P\(\s*(\w+),\s*(\w+),)");
+    static const std::regex kInstance(R"(\bINSTANTIATE_(?:TYPED_)?TEST_SUITE_P\(\s*(\w*),\s*(\w+),)");
     for (std::sregex_iterator match(text.begin(), text.end(), kTest), end; match != end; ++match)
       tests_.push_back({(*match)[1], (*match)[2], (*match)[3]});
     for (std::sregex_iterator match(text.begin(), text.end(), kInstance), end; match != end; ++match)
@@ -41,6 +41,7 @@ class Tests {
       if (kind == "TEST" || kind == "TEST_F") names.insert(suite + "." + name);
       if (kind == "TYPED_TEST") names.insert(suite + "/0." + name);
       if (!prefixes_.contains(suite)) continue;
+      if (kind == "TEST_P") names.insert(suite + "." + name);  // as tests/run -R takes it
       for (const std::string& prefix : prefixes_.at(suite))
         names.insert(kind == "TEST_P" ? fmt::format("{}/{}.{}/0", prefix, suite, name)
                                       : fmt::format("{}/{}/0.{}", prefix, suite, name));
@@ -63,10 +64,20 @@ bool is_test(const std::string& name, const Known& known) {
 }
 
 bool is_file(const std::string& name, const fs::path& root, const fs::path& page, const Known& known) {
-  if (name.find('/') == std::string::npos) return known.file_names.contains(name);
+  if (name.find('/') == std::string::npos) {
+    const bool written_by_a_run = name.ends_with(".toml") || name.ends_with(".txt");
+    return written_by_a_run || known.file_names.contains(name);
+  }
   const std::vector<fs::path> folders = {"", "src", "tests", page.parent_path()};
   return std::any_of(folders.begin(), folders.end(),
                      [&](const fs::path& folder) { return fs::exists(root / folder / name); });
+}
+
+// test_mesh is that of tests/mesh, test_mesh_slow of its slow files.
+bool is_test_program(const std::string& name, const fs::path& root) {
+  static const std::regex kProgram(R"(test_(\w+?)(?:_slow)?)");
+  std::smatch match;
+  return std::regex_match(name, match, kProgram) && fs::is_directory(root / "tests" / match[1].str());
 }
 
 }  // namespace
@@ -87,7 +98,7 @@ Known read_known(const fs::path& root) {
   for (const char* folder : {"src", "shaders", "scenes", "tests"}) {
     for (auto entry = fs::recursive_directory_iterator(root / folder); entry != fs::end(entry); ++entry) {
       const std::string name = entry->path().filename();
-      if (entry->is_directory() && (name == "docs" || name == "corpus")) entry.disable_recursion_pending();
+      if (entry->is_directory() && name == "corpus") entry.disable_recursion_pending();
       if (entry->is_regular_file()) read(entry->path());
     }
   }
@@ -111,7 +122,7 @@ std::string unknown_names(const fs::path& root, const fs::path& page, const Know
       // Plain words may be of any kind; what is written as only programs are must be in them.
       const std::string name = match[1];
       const bool plain = std::all_of(name.begin(), name.end(), [](char c) { return c >= 'a' && c <= 'z'; });
-      good = plain || known.words.contains(name);
+      good = plain || known.words.contains(name) || is_test_program(name, root);
     }
     if (!good) unknown += fmt::format("{}: {}\n", page.string(), code);
   }

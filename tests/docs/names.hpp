@@ -11,10 +11,10 @@ namespace weft::docs {
 struct Known {
   std::set<std::string> words;       ///< identifiers in sources, tests, shaders, scenes and scripts
   std::set<std::string> file_names;  ///< without their folders
-  std::set<std::string> tests;       ///< Suite.Name, as gtest lists them; parameters as 0
+  std::set<std::string> tests;       ///< Suite.Name, as gtest lists them (parameters as 0), and without their prefix
 };
 
-/// Reads all that we write under root, but for the tests of the documentation itself.
+/// Reads all that we write under root.
 Known read_known(const std::filesystem::path& root);
 
 /// "page: what is named and not there" for each code span of the page that looks like the name of a test, of a file or
