@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <span>
 #include <vector>
 
 #include "environment/environment.hpp"
@@ -16,9 +17,9 @@ class SnapshotMaker {
  public:
   SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// `heat`: one list per cloth, empty where none is asked for.
+  /// `particles`: of all cloths [m]; `heat`: one list per cloth, empty where none is asked for.
   frame::SnapshotPtr make(int frame, double time, const environment::Environment& environment,
-                          std::vector<std::vector<float>> heat) const;
+                          std::span<const Vec3> particles, std::vector<std::vector<float>> heat) const;
 
  private:
   std::vector<frame::Camera> cameras_at(double time) const;

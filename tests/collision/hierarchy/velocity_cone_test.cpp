@@ -1,8 +1,9 @@
 // Velocity cones against the motions they are made of.
+#include "collision/hierarchy/velocity_cone.hpp"
+
 #include <gtest/gtest.h>
 
-#include "collision/hierarchy/velocity_cone.hpp"
-#include "collision/hierarchy_meshes.hpp"
+#include "collision/hierarchy/test_meshes.hpp"
 
 namespace weft::collision {
 namespace {

@@ -5,7 +5,7 @@
 #include <set>
 #include <utility>
 
-#include "collision/separation_exact.hpp"
+#include "collision/response/separation_exact.hpp"
 
 namespace weft::collision {
 

@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "collision/hierarchy_meshes.hpp"
+#include "collision/hierarchy/test_meshes.hpp"
 
 namespace weft::collision::testing {
 

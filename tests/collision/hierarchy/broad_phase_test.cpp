@@ -1,11 +1,12 @@
 // The broad phase with each of its options against brute force over all pairs, as sets, while surfaces move.
+#include "collision/hierarchy/broad_phase.hpp"
+
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "collision/hierarchy/broad_phase.hpp"
 #include "collision/hierarchy/kdop.hpp"
-#include "collision/hierarchy_motions.hpp"
+#include "collision/hierarchy/test_motions.hpp"
 #include "collision/proximity/features.hpp"
 #include "core/error.hpp"
 

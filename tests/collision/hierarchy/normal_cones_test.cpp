@@ -1,11 +1,12 @@
 // What normal cones leave out against brute force over all features: nothing within reach, at any time of the step.
+#include "collision/hierarchy/normal_cones.hpp"
+
 #include <gtest/gtest.h>
 
 #include <set>
 
-#include "collision/hierarchy/normal_cones.hpp"
-#include "collision/hierarchy_feature_distance.hpp"
-#include "collision/hierarchy_motions.hpp"
+#include "collision/hierarchy/feature_distance.hpp"
+#include "collision/hierarchy/test_motions.hpp"
 
 namespace weft::collision {
 namespace {

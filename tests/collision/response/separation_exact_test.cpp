@@ -1,4 +1,4 @@
-#include "collision/separation_exact_meshes.hpp"
+#include "collision/response/separation_exact_meshes.hpp"
 
 namespace weft::collision {
 namespace {

@@ -1,11 +1,11 @@
 // Closed-form closest points against an exact minimisation in quadruple precision that tries every support.
+#include "collision/proximity/closest_points.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numeric>
 #include <random>
-
-#include "collision/proximity/closest_points.hpp"
 
 namespace weft::collision {
 namespace {

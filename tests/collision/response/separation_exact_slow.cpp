@@ -1,5 +1,5 @@
 // More than a million queries; separation_exact_test.cpp has the same in short.
-#include "collision/separation_exact_meshes.hpp"
+#include "collision/response/separation_exact_meshes.hpp"
 
 namespace weft::collision {
 namespace {

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "collision/hierarchy/split.hpp"
+#include "collision/hierarchy/test_meshes.hpp"
 #include "collision/hierarchy/traversal.hpp"
-#include "collision/hierarchy_meshes.hpp"
 #include "core/error.hpp"
 
 namespace weft::collision {

@@ -1,11 +1,12 @@
 // GJK against the closed forms over all features, with crossing found apart, for triangles and quads of all kinds.
+#include "collision/proximity/gjk.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "collision/hierarchy_meshes.hpp"
+#include "collision/hierarchy/test_meshes.hpp"
 #include "collision/proximity/closest_points.hpp"
-#include "collision/proximity/gjk.hpp"
 
 namespace weft::collision {
 namespace {

@@ -1,12 +1,13 @@
 // Kept detection results against brute force and against fresh searches, step by step.
+#include "collision/proximity/coherence.hpp"
+
 #include <gtest/gtest.h>
 
 #include <set>
 
 #include "collision/hierarchy/broad_phase.hpp"
-#include "collision/hierarchy_motions.hpp"
+#include "collision/hierarchy/test_motions.hpp"
 #include "collision/proximity/closest_points.hpp"
-#include "collision/proximity/coherence.hpp"
 
 namespace weft::collision {
 namespace {

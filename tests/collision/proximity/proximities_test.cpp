@@ -1,14 +1,15 @@
 // Proximities against brute force over all features, as sets.
+#include "collision/proximity/proximities.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <map>
 #include <set>
 
+#include "collision/hierarchy/test_meshes.hpp"
 #include "collision/hierarchy/traversal.hpp"
-#include "collision/hierarchy_meshes.hpp"
 #include "collision/proximity/closest_points.hpp"
-#include "collision/proximity/proximities.hpp"
 
 namespace weft::collision {
 namespace {
