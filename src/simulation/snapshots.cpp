@@ -162,16 +162,21 @@ SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Envir
 }
 
 frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const environment::Environment& environment,
-                                       std::vector<std::vector<float>> heat) const {
+                                       std::span<const Vec3> particles, std::vector<std::vector<float>> heat) const {
   auto snapshot = std::make_shared<frame::FrameSnapshot>();
   snapshot->frame = frame;
   snapshot->time = time;
   snapshot->surfaces = surfaces_;
-  for (const environment::ClothObject& cloth : environment.cloths)
-    snapshot->states.push_back({cloth.motion.positions, {}});
+  for (const environment::ClothObject& cloth : environment.cloths) {
+    const auto of_cloth = particles.first(cloth.start.size());
+    snapshot->states.push_back({{of_cloth.begin(), of_cloth.end()}, {}});
+    particles = particles.subspan(of_cloth.size());
+  }
   for (std::size_t c = 0; c < heat.size(); ++c) snapshot->states[c].heat = std::move(heat[c]);
-  for (const environment::BodyObject& body : environment.bodies)
-    snapshot->states.push_back({body.motion.positions, {}});
+  for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
+    snapshot->states.push_back({std::vector<Vec3>(environment.bodies[b].mesh.positions.size()), {}});
+    environment.place(b, time, snapshot->states.back().positions);
+  }
   looks_.surround(*snapshot);
   return snapshot;
 }

@@ -3,6 +3,7 @@
 
 #include <map>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -43,9 +44,9 @@ class SnapshotMaker {
  public:
   SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// `heat`: one list per cloth, empty where none is asked for.
+  /// `particles`: of all cloths [m]; `heat`: one list per cloth, empty where none is asked for.
   frame::SnapshotPtr make(int frame, double time, const environment::Environment& environment,
-                          std::vector<std::vector<float>> heat) const;
+                          std::span<const Vec3> particles, std::vector<std::vector<float>> heat) const;
 
  private:
   const Looks looks_;

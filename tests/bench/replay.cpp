@@ -6,9 +6,9 @@
 
 #include "bench/measure.hpp"
 #include "collision/hierarchy/broad_phase.hpp"
+#include "collision/hierarchy/feature_distance.hpp"
 #include "collision/hierarchy/normal_cones.hpp"
-#include "collision/hierarchy_feature_distance.hpp"
-#include "collision/hierarchy_motions.hpp"
+#include "collision/hierarchy/test_motions.hpp"
 #include "collision/proximity/coherence.hpp"
 #include "mesh/ply.hpp"
 

@@ -24,7 +24,7 @@ struct ConvexClosest {
 
 /// Triangles, convex quads (warped ones count as the tetrahedron of their corners), edges and points: 1 to 8 corners in
 /// any order. The distance is right to 5e-14 of the largest coordinate difference ("size") of the corners, needles
-/// included; the lower bound likewise, less 1e-15 size² / distance (tests/collision/proximity_gjk.cpp).
+/// included; the lower bound likewise, less 1e-15 size² / distance (tests/collision/proximity/gjk_test.cpp).
 ConvexClosest closest_convex(std::span<const Vec3> a, std::span<const Vec3> b);
 
 }  // namespace weft::collision

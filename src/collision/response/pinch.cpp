@@ -144,6 +144,14 @@ std::optional<std::array<double, 3>> find_crossing(const Triangle& a, const Tria
   return sum;
 }
 
+bool PinchedPairs::concern(const std::array<Index, 4>& vertices) const {
+  if (origins_.empty()) return false;
+  for (Index particle : vertices)
+    for (Index other : vertices)
+      if (touches(particle, body_of_[other])) return true;
+  return false;
+}
+
 void PinchedPairs::list_particles() {
   particles_.clear();
   for (const auto& [key, origin] : origins_) {
@@ -205,7 +213,7 @@ std::vector<PinchTouch> PinchedPairs::find_touches(std::span<const Surface> surf
 }
 
 template <class Archive>
-void PinchedPairs::exchange(Archive& archive) {
+void PinchedPairs::serialize(Archive& archive) {
   std::vector<std::pair<Key, Origin>> pinched(origins_.begin(), origins_.end());
   exchange_each(archive, pinched, [&](auto& pair) {
     auto& [key, origin] = pair;
@@ -223,7 +231,7 @@ void PinchedPairs::exchange(Archive& archive) {
   }
 }
 
-template void PinchedPairs::exchange(ByteWriter&);
-template void PinchedPairs::exchange(ByteReader&);
+template void PinchedPairs::serialize(ByteWriter&);
+template void PinchedPairs::serialize(ByteReader&);
 
 }  // namespace weft::collision

@@ -1,0 +1,173 @@
+// The broad phase with each of its options against brute force over all pairs, as sets, while surfaces move.
+#include "collision/hierarchy/broad_phase.hpp"
+
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "collision/hierarchy/kdop.hpp"
+#include "collision/hierarchy/test_motions.hpp"
+#include "collision/proximity/features.hpp"
+#include "core/error.hpp"
+
+namespace weft::collision {
+namespace {
+
+using testing::FoldingSlidingFlying;
+using testing::MovingScene;
+using Pairs = std::set<TrianglePair>;
+
+constexpr double kMargin = 0.01;
+constexpr int kSteps = 40;
+
+/// Pairs without and with one common vertex.
+using BothLists = std::array<Pairs, 2>;
+
+/// Common vertices; one that a triangle names twice counts once.
+int shared_count(const Triangle& a, const Triangle& b) {
+  const std::set<Index> of_a(a.begin(), a.end());
+  return static_cast<int>(std::count_if(of_a.begin(), of_a.end(), [&](Index v) { return has_vertex(b, v); }));
+}
+
+/// Every pair of triangles, of one surface or of two, whose k-DOPs overlap, without any hierarchy.
+template <int K>
+BothLists brute_force(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                      double margin = kMargin) {
+  std::vector<KDop<K>> bounds;
+  for (const Triangle& t : scene.triangles) {
+    const auto at = [&](std::size_t c) {
+      const auto v = static_cast<std::size_t>(t[c]);
+      return swept_point<K>(x_t0[v], x_t1[v], margin);
+    };
+    bounds.push_back(at(0));
+    bounds.back().join(at(1));
+    bounds.back().join(at(2));
+  }
+  BothLists found;
+  for (std::size_t a = 0; a < bounds.size(); ++a)
+    for (std::size_t b = a + 1; b < bounds.size(); ++b)
+      if (bounds[a].overlaps(bounds[b]))
+        if (const int shared = shared_count(scene.triangles[a], scene.triangles[b]); shared < 2)
+          found[static_cast<std::size_t>(shared)].insert({static_cast<Index>(a), static_cast<Index>(b)});
+  return found;
+}
+
+BothLists all_pairs(BroadPhase& broad_phase, std::size_t surfaces) {
+  CandidatePairs candidates;
+  for (std::size_t a = 0; a < surfaces; ++a) {
+    broad_phase.self_pairs(a, candidates);
+    for (std::size_t b = a + 1; b < surfaces; ++b) broad_phase.pairs(a, b, candidates);
+  }
+  const BothLists found{Pairs(candidates.apart.begin(), candidates.apart.end()),
+                        Pairs(candidates.one_shared.begin(), candidates.one_shared.end())};
+  EXPECT_EQ(found[0].size(), candidates.apart.size()) << "a pair is listed twice";
+  EXPECT_EQ(found[1].size(), candidates.one_shared.size()) << "a pair is listed twice";
+  return found;
+}
+
+/// All sampled settings that promise exactly the same pairs.
+std::vector<BroadPhaseOptions> exact_options(int directions) {
+  std::vector<BroadPhaseOptions> all;
+  for (const int children : {2, 4, 8})
+    for (const int leaf : {1, 3, 8})
+      for (const bool longer : {false, true})
+        for (const bool list : {false, true}) {
+          BroadPhaseOptions options;
+          options.directions = directions;
+          options.children = children;
+          options.leaf = leaf;
+          options.open_longer_side = longer;
+          options.separation_list = list;
+          all.push_back(options);
+        }
+  return all;
+}
+
+template <class K>
+class BroadPhasePairs : public ::testing::Test {};
+using AllK = ::testing::Types<std::integral_constant<int, 6>, std::integral_constant<int, 14>,
+                              std::integral_constant<int, 18>, std::integral_constant<int, 26>>;
+TYPED_TEST_SUITE(BroadPhasePairs, AllK);
+
+TYPED_TEST(BroadPhasePairs, OfMovingSurfacesEqualBruteForceAtEveryStepForAllTreesOrdersAndSeparationLists) {
+  const FoldingSlidingFlying motion(9);
+  const std::vector<Surface> surfaces = motion.scene().surfaces();
+  const std::vector<BroadPhaseOptions> settings = exact_options(TypeParam::value);
+  std::vector<BroadPhase> broad_phases;
+  for (const BroadPhaseOptions& options : settings) broad_phases.emplace_back(surfaces, motion.at(0), options);
+
+  std::size_t least = 1000000, most = 0;
+  for (int step = 0; step < kSteps; ++step) {
+    const std::vector<Vec3> x_t0 = motion.at(step), x_t1 = motion.at(step + 1);
+    const BothLists expected = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1);
+    least = std::min(least, expected[0].size());
+    most = std::max(most, expected[0].size());
+    for (std::size_t i = 0; i < settings.size(); ++i) {
+      for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phases[i].refit(s, x_t0, x_t1, kMargin);
+      EXPECT_EQ(all_pairs(broad_phases[i], surfaces.size()), expected)
+          << "step " << step << ", children " << settings[i].children << ", leaf " << settings[i].leaf << ", longer "
+          << settings[i].open_longer_side << ", list " << settings[i].separation_list;
+    }
+  }
+  // The scene comes and goes.
+  EXPECT_GT(most, 2 * least);
+}
+
+/// Pairs that are surely within reach whatever the rounding: bounds with a margin smaller by far more than float keeps.
+constexpr double kSurely = kMargin - 2e-6;
+
+TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
+  const FoldingSlidingFlying motion(9);
+  const std::vector<Surface> surfaces = motion.scene().surfaces();
+  for (const bool list : {false, true}) {
+    BroadPhaseOptions options;
+    options.directions = TypeParam::value;
+    options.children = list ? 8 : 4;
+    options.velocity_cones = true;
+    options.separation_list = list;
+    BroadPhase broad_phase(surfaces, motion.at(0), options);
+    std::size_t kept = 0;
+    for (int step = 0; step < kSteps; ++step) {
+      // Rests in every second stretch.
+      const auto at = [&](int s) { return motion.at(s % 8 < 4 ? s : s - s % 4); };
+      const std::vector<Vec3> x_t0 = at(step), x_t1 = at(step + 1);
+      for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, x_t0, x_t1, kMargin);
+      const BothLists least = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1, kSurely);
+      const BothLists most = brute_force<TypeParam::value>(motion.scene(), x_t0, x_t1, kMargin * 1.13);
+      const BothLists found = all_pairs(broad_phase, surfaces.size());
+      for (const std::size_t l : {0U, 1U}) {
+        EXPECT_TRUE(std::ranges::includes(found[l], least[l])) << step;
+        EXPECT_TRUE(std::ranges::includes(most[l], found[l])) << step;
+        kept += found[l].size() - least[l].size();
+      }
+    }
+    EXPECT_GT(kept, 0U) << "no bound was ever left as it was";
+  }
+}
+
+TEST(BroadPhase, WithASeparationListListsTheSamePairsAgainWhenAskedTwice) {
+  const FoldingSlidingFlying motion(9);
+  const std::vector<Surface> surfaces = motion.scene().surfaces();
+  BroadPhaseOptions options;
+  options.separation_list = true;
+  BroadPhase broad_phase(surfaces, motion.at(0), options);
+  const BothLists first = all_pairs(broad_phase, surfaces.size());
+  EXPECT_EQ(all_pairs(broad_phase, surfaces.size()), first);
+}
+
+TEST(BroadPhase, RefusesKindsOfTreesThatItDoesNotHave) {
+  const FoldingSlidingFlying motion(3);
+  const std::vector<Surface> surfaces = motion.scene().surfaces();
+  BroadPhaseOptions options;
+  options.directions = 8;
+  EXPECT_THROW(BroadPhase(surfaces, motion.at(0), options), Error);
+  options = {};
+  options.children = 3;
+  EXPECT_THROW(BroadPhase(surfaces, motion.at(0), options), Error);
+  options = {};
+  options.leaf = 9;
+  EXPECT_THROW(BroadPhase(surfaces, motion.at(0), options), Error);
+}
+
+}  // namespace
+}  // namespace weft::collision

@@ -1,0 +1,301 @@
+// Candidate pairs of the hierarchy against brute force over all pairs, as sets.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "collision/hierarchy/split.hpp"
+#include "collision/hierarchy/test_meshes.hpp"
+#include "collision/hierarchy/traversal.hpp"
+#include "core/error.hpp"
+
+namespace weft::collision {
+namespace {
+
+using testing::folded_sheet;
+using testing::random_vec;
+using testing::TestMesh;
+using testing::triangle_soup;
+using Pairs = std::set<TrianglePair>;
+
+/// One combination of template parameters and leaf capacity.
+template <int TestK, int TestArity, int TestCapacity>
+struct Setup {
+  static constexpr int K = TestK, kArity = TestArity, kCapacity = TestCapacity;
+  using TreeType = Tree<K, kArity>;
+};
+
+template <class S>
+class HierarchyPairs : public ::testing::Test {};
+
+using Setups = ::testing::Types<Setup<6, 2, 1>, Setup<6, 4, 3>, Setup<6, 8, 8>, Setup<6, 8, 1>, Setup<14, 2, 8>,
+                                Setup<14, 4, 1>, Setup<14, 8, 4>, Setup<18, 2, 4>, Setup<18, 4, 8>, Setup<18, 8, 2>,
+                                Setup<26, 2, 5>, Setup<26, 4, 4>, Setup<26, 8, 8>>;
+TYPED_TEST_SUITE(HierarchyPairs, Setups);
+
+/// Everything by definition and in double: the interval of a triangle's path along each direction.
+template <int K>
+class BruteForce {
+ public:
+  BruteForce(const TestMesh& mesh, std::span<const Vec3> x_t1, double margin)
+      : mesh_(mesh), x_t1_(x_t1), margin_(margin) {}
+
+  /// Largest gap over all directions [m], margins taken off; the bounds overlap where it is not positive.
+  double gap(const Triangle& a, const BruteForce& other, const Triangle& b) const {
+    double most = -1e300;
+    for (int d = 0; d < K; d += 2) {
+      const auto& dir = kDirections<K>;
+      const auto row = static_cast<std::size_t>(d);
+      const Vec3 axis = Vec3{dir.x[row], dir.y[row], dir.z[row]}.normalized();
+      const auto [a_low, a_high] = interval(a, axis);
+      const auto [b_low, b_high] = other.interval(b, axis);
+      most = std::max({most, a_low - b_high, b_low - a_high});
+    }
+    return most;
+  }
+
+ private:
+  std::pair<double, double> interval(const Triangle& t, const Vec3& axis) const {
+    double low = 1e300, high = -1e300;
+    for (const Index v : t) {
+      for (const Vec3& p : {mesh_.x[static_cast<std::size_t>(v)], x_t1_[static_cast<std::size_t>(v)]}) {
+        low = std::min(low, axis.dot(p));
+        high = std::max(high, axis.dot(p));
+      }
+    }
+    return {low - margin_, high + margin_};
+  }
+
+  const TestMesh& mesh_;
+  std::span<const Vec3> x_t1_;
+  double margin_;
+};
+
+std::size_t shared_count(const Triangle& a, const Triangle& b) {
+  const std::set<Index> of_a(a.begin(), a.end()), of_b(b.begin(), b.end());
+  return static_cast<std::size_t>(std::count_if(of_a.begin(), of_a.end(), [&](Index v) { return of_b.contains(v); }));
+}
+
+/// The list as a set; every pair must be there once.
+Pairs as_set(const PairList& list) {
+  const Pairs set(list.begin(), list.end());
+  EXPECT_EQ(set.size(), list.size()) << "a pair is listed twice";
+  return set;
+}
+
+/// Outward rounding to float may add pairs whose bounds miss each other by a few 1e-7 of the coordinates, none further.
+void expect_between(const Pairs& least, const Pairs& found, const Pairs& most) {
+  EXPECT_TRUE(std::includes(found.begin(), found.end(), least.begin(), least.end()));
+  EXPECT_TRUE(std::includes(most.begin(), most.end(), found.begin(), found.end()));
+}
+
+template <class S>
+void expect_self_pairs(const TestMesh& mesh, const typename S::TreeType& tree, std::span<const Vec3> x_t1,
+                       double margin) {
+  constexpr double kRounding = 1e-6;  // 4 roundings of 2^-23 at coordinates up to 2
+  const BruteForce<S::K> brute(mesh, x_t1, margin);
+  std::array<Pairs, 2> least, most;
+  for (std::size_t a = 0; a < mesh.triangles.size(); ++a) {
+    for (std::size_t b = a + 1; b < mesh.triangles.size(); ++b) {
+      const std::size_t shared = shared_count(mesh.triangles[a], mesh.triangles[b]);
+      if (shared > 1) continue;
+      const double gap = brute.gap(mesh.triangles[a], brute, mesh.triangles[b]);
+      const TrianglePair pair{static_cast<Index>(a), static_cast<Index>(b)};
+      if (gap <= 0) least[shared].insert(pair);
+      if (gap <= kRounding) most[shared].insert(pair);
+    }
+  }
+  CandidatePairs found;
+  self_pairs(tree, found);
+  expect_between(least[0], as_set(found.apart), most[0]);
+  expect_between(least[1], as_set(found.one_shared), most[1]);
+}
+
+TYPED_TEST(HierarchyPairs, OfASoupWithEqualAndDegenerateTrianglesEqualBruteForce) {
+  for (const unsigned seed : {1U, 2U, 3U}) {
+    const TestMesh mesh = triangle_soup(seed, 40, 300, seed == 1 ? 0.5 : 0.1);
+    const typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kCapacity);
+    expect_self_pairs<TypeParam>(mesh, tree, mesh.x, 0);
+  }
+}
+
+TYPED_TEST(HierarchyPairs, OfAMovingMeshEqualBruteForceAfterEachRefit) {
+  const TestMesh mesh = folded_sheet(11, 3, 0.02);
+  typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kCapacity);
+  std::mt19937 generator(5);
+  for (const double motion : {0.0, 0.03, 0.5}) {
+    std::vector<Vec3> x_t1 = mesh.x;
+    for (Vec3& p : x_t1) p += motion * random_vec(generator);
+    for (const double margin : {0.0, 0.01}) {
+      tree.refit(mesh.x, x_t1, margin);
+      expect_self_pairs<TypeParam>(mesh, tree, x_t1, margin);
+    }
+  }
+}
+
+TYPED_TEST(HierarchyPairs, OfTwoSurfacesEqualBruteForce) {
+  const TestMesh cloth = folded_sheet(13, 2, 0.05), body = triangle_soup(9, 30, 150, 0.2);
+  // One numbering for both: the vertices and triangles of the body follow those of the cloth.
+  TestMesh both = cloth;
+  const auto first_vertex = static_cast<Index>(cloth.x.size());
+  const auto first_triangle = static_cast<Index>(cloth.triangles.size());
+  both.x.insert(both.x.end(), body.x.begin(), body.x.end());
+  for (Triangle t : body.triangles) {
+    for (Index& v : t) v += first_vertex;
+    both.triangles.push_back(t);
+  }
+  const std::span<const Triangle> all = both.triangles;
+  const Surface a{all.first(cloth.triangles.size()), 0, 0, first_vertex};
+  const Surface b{all.subspan(cloth.triangles.size()), first_triangle, first_vertex, static_cast<Index>(body.x.size())};
+  std::vector<Vec3> x_t1 = both.x;
+  for (std::size_t v = 0; v < cloth.x.size(); ++v) x_t1[v] += Vec3{0.1, -0.2, 0.05};
+
+  typename TypeParam::TreeType tree_a(a, both.x, TypeParam::kCapacity), tree_b(b, both.x, TypeParam::kCapacity);
+  tree_a.refit(both.x, x_t1, 0.01);
+  tree_b.refit(both.x, x_t1, 0.02);
+  CandidatePairs found;
+  pairs(tree_a, tree_b, found);
+  EXPECT_TRUE(found.one_shared.empty());
+
+  const BruteForce<TypeParam::K> brute_a(both, x_t1, 0.01), brute_b(both, x_t1, 0.02);
+  Pairs least, most;
+  for (Index i = 0; i < first_triangle; ++i) {
+    for (Index j = first_triangle; j < static_cast<Index>(both.triangles.size()); ++j) {
+      const double gap = brute_a.gap(both.triangles[static_cast<std::size_t>(i)], brute_b,
+                                     both.triangles[static_cast<std::size_t>(j)]);
+      if (gap <= 0) least.insert({i, j});
+      if (gap <= 1e-6) most.insert({i, j});
+    }
+  }
+  EXPECT_GT(least.size(), 50U);
+  expect_between(least, as_set(found.apart), most);
+}
+
+TYPED_TEST(HierarchyPairs, CoverTouchingTrianglesAtLargeCoordinates) {
+  // Each triangle touches the next at one point, a kilometre from the origin, where a float is 6e-5 m coarse.
+  TestMesh mesh;
+  for (int i = 0; i < 40; ++i) {
+    const Vec3 corner = Vec3{1000, -900, 0} + 0.1 * i * Vec3{1, 1, 1} / 3;
+    for (const Vec3& p : {corner, Vec3(corner + Vec3{0, 0, 0.01}), Vec3(corner + 0.1 * Vec3{1, 1, 1} / 3)})
+      mesh.x.push_back(p);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  for (int i = 0; i + 1 < 40; ++i)
+    mesh.x[static_cast<std::size_t>(3 * i + 2)] = mesh.x[static_cast<std::size_t>(3 * i + 3)];
+  const typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kCapacity);
+  CandidatePairs found;
+  self_pairs(tree, found);
+  const Pairs apart = as_set(found.apart);
+  for (Index i = 0; i + 1 < 40; ++i) EXPECT_TRUE(apart.contains({i, i + 1})) << i;
+}
+
+TYPED_TEST(HierarchyPairs, OfTrianglesInOnePlaceAreAllPairs) {
+  TestMesh mesh;
+  for (Index i = 0; i < 50; ++i) {
+    for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) mesh.x.push_back(p);
+    mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
+  }
+  const typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kCapacity);
+  CandidatePairs found;
+  self_pairs(tree, found);
+  EXPECT_EQ(as_set(found.apart).size(), 50U * 49 / 2);
+}
+
+TYPED_TEST(HierarchyPairs, ComeInTheSameOrderEveryTime) {
+  const TestMesh mesh = folded_sheet(20, 4, 0.01);
+  typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kCapacity);
+  const typename TypeParam::TreeType again(mesh.surface(), mesh.x, TypeParam::kCapacity);
+  CandidatePairs first, second;
+  self_pairs(tree, first);
+  self_pairs(again, second);
+  EXPECT_TRUE(std::ranges::equal(first.apart.view(), second.apart.view()));
+  tree.refit(mesh.x, mesh.x, 0.05);
+  tree.refit(mesh.x, mesh.x, 0);
+  second.clear();
+  self_pairs(tree, second);
+  EXPECT_TRUE(std::ranges::equal(first.one_shared.view(), second.one_shared.view()));
+}
+
+TEST(Hierarchy, HoldsEveryTriangleOnceInLeavesWithinTheCapacityAndParentsBeforeChildren) {
+  const TestMesh mesh = folded_sheet(30, 3, 0.01);
+  for (int capacity = 1; capacity <= kLeafLanes; ++capacity) {
+    const Tree<18, 4> tree(mesh.surface(), mesh.x, capacity);
+    std::multiset<Index> held;
+    for (const auto& leaf : tree.leaves()) {
+      EXPECT_LE(leaf.count, capacity);
+      held.insert(leaf.triangle, leaf.triangle + leaf.count);
+    }
+    std::multiset<Index> expected;
+    for (std::size_t t = 0; t < mesh.triangles.size(); ++t) expected.insert(static_cast<Index>(t));
+    EXPECT_EQ(held, expected);
+    for (std::size_t n = 0; n < tree.nodes().size(); ++n)
+      for (int i = 0; i < tree.nodes()[n].count; ++i)
+        EXPECT_TRUE(tree.nodes()[n].child[i] < 0 || tree.nodes()[n].child[i] > static_cast<int>(n));
+  }
+}
+
+TEST(Hierarchy, OfNothingHasNoPairs) {
+  const TestMesh mesh = folded_sheet(3, 1, 0);
+  const SurfaceTree empty(Surface{}, {}), tree(mesh.surface(), mesh.x);
+  CandidatePairs found;
+  self_pairs(empty, found);
+  pairs(empty, tree, found);
+  pairs(tree, empty, found);
+  EXPECT_TRUE(found.apart.empty());
+}
+
+TEST(Hierarchy, RefusesIndicesOutsideTheSurface) {
+  TestMesh mesh = folded_sheet(3, 1, 0);
+  EXPECT_THROW(SurfaceTree(mesh.surface(), mesh.x, 9), Error);
+  mesh.triangles[2][1] = 9;
+  EXPECT_THROW(SurfaceTree(mesh.surface(), mesh.x), Error);
+  mesh.x.pop_back();
+  const Surface outside{{}, 0, 0, 9};
+  EXPECT_THROW(SurfaceTree(outside, mesh.x), Error);
+}
+
+TEST(SplitLongestSide, PutsCutTrianglesOnTheSideWithFewerUncutOnes) {
+  // Along x from 0 to 10 with the plane at 5: three below, one cut, two above.
+  const std::array<std::pair<double, double>, 6> spans{{{0, 1}, {4, 6}, {1, 2}, {8, 10}, {2, 3}, {6, 7}}};
+  std::vector<KDop<6>> bounds;
+  for (const auto& [low, high] : spans) bounds.push_back(swept_point<6>({low, 0, 0}, {high, 1, 1}, 0));
+  std::vector<Index> items{0, 1, 2, 3, 4, 5};
+  EXPECT_EQ(split_longest_side<6>(items, bounds), 3U);
+  EXPECT_EQ(items, (std::vector<Index>{0, 2, 4, 1, 3, 5}));
+}
+
+TEST(SplitLongestSide, UsesTheDirectionWhoseFacesAreFurthestApart) {
+  // Along the diagonal of x and y: only the 18-DOP has that direction, where the set is 14 long, not 10.
+  std::vector<KDop<18>> bounds;
+  for (int i = 0; i < 4; ++i) {
+    const Vec3 p{2.5 * i, 2.5 * i, 3.0 * (i % 2)};
+    bounds.push_back(swept_point<18>(p, p, 0));
+  }
+  KDop<18> hull = bounds[0];
+  for (const auto& b : bounds) hull.join(b);
+  EXPECT_NEAR(hull.side(0), 7.5, 1e-5);
+  EXPECT_NEAR(hull.side(3), 7.5 * std::sqrt(2.0), 1e-5);
+  std::vector<Index> items{3, 1, 0, 2};
+  EXPECT_EQ(split_longest_side<18>(items, bounds), 2U);
+  EXPECT_EQ(items, (std::vector<Index>{1, 0, 3, 2}));
+}
+
+TEST(SweptPoint, BoundsBothEndsAndTheMarginInEveryDirection) {
+  std::mt19937 generator(3);
+  for (int i = 0; i < 2000; ++i) {
+    const double scale = std::pow(10.0, i % 10 - 6);
+    const Vec3 p = scale * random_vec(generator), q = scale * random_vec(generator);
+    const double margin = 1e-3 * scale * (i % 3);
+    const KDop<26> bound = swept_point<26>(p, q, margin);
+    for (std::size_t r = 0; r < 26; ++r) {
+      const auto& dir = kDirections<26>;
+      const Eigen::Matrix<long double, 3, 1> axis(dir.x[r], dir.y[r], dir.z[r]);
+      const long double low =
+          std::min(axis.dot(p.cast<long double>()), axis.dot(q.cast<long double>())) - margin * axis.norm();
+      EXPECT_LE(static_cast<long double>(bound.row[r]), low);
+      EXPECT_GE(static_cast<long double>(bound.row[r]), low - 1e-6L * scale);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft::collision

@@ -1,0 +1,342 @@
+// Contact springs and friction as the solve sees them.
+#include "collision/response/contact_set.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+namespace weft::collision {
+namespace {
+
+constexpr double kStep = 0.02;  // [s]
+constexpr double kRange = 0.002;
+
+std::mt19937& engine() {
+  static std::mt19937 generator;
+  return generator;
+}
+Vec3 random_vector(double size) {
+  std::uniform_real_distribution<double> number(-size, size);
+  const double x = number(engine()), y = number(engine()), z = number(engine());
+  return {x, y, z};
+}
+
+/// Force of a contact of 500 N/m [N] and its slope [N/m], for a depth in ranges up to 1.
+double load_at(double depth) {
+  return 500 * kRange * depth * (1 + ContactSet::kStiffening * std::pow(depth, 4));
+}
+double slope_at(double depth) {
+  return 500 * (1 + 5 * ContactSet::kStiffening * std::pow(depth, 4));
+}
+
+/// A vertex 0.4 of the range above the middle of a triangle, both of cloth, in a slanted frame.
+struct VertexOnFace {
+  std::vector<Vec3> x;
+  Contact contact;
+
+  explicit VertexOnFace(double friction) {
+    engine().seed(1);
+    const Vec3 n = Vec3(1, -2, 4).normalized();
+    const Vec3 along = n.unitOrthogonal(), across = n.cross(along);
+    contact.particles = {0, 1, 2, 3};
+    contact.weights = {1, -0.2, -0.5, -0.3};
+    contact.normal = n;
+    contact.range = kRange;
+    contact.stiffness = 500;
+    contact.friction = friction;
+    x = {Vec3::Zero(), 0.02 * along, 0.02 * across, -0.02 * along - 0.01 * across};
+    x[0] = 0.2 * x[1] + 0.5 * x[2] + 0.3 * x[3] + 0.4 * kRange * n;
+    contact.relative_start = 0.4 * kRange * n;
+  }
+
+  ContactSet set() const {
+    ContactSet contacts;
+    contacts.set_step(kStep);
+    contacts.add(contact);
+    return contacts;
+  }
+  double gap(const std::vector<Vec3>& at) const { return contact.normal.dot(relative(at)); }
+  Vec3 relative(const std::vector<Vec3>& at) const { return at[0] - 0.2 * at[1] - 0.5 * at[2] - 0.3 * at[3]; }
+  double energy(const std::vector<Vec3>& at) const {
+    return contact.stiffness * kRange * kRange * energy_at((kRange - gap(at)) / kRange);
+  }
+  /// ∫ d (1 + c d⁴) for a depth d in ranges; from one range on the force goes on along its tangent.
+  static double energy_at(double depth) {
+    constexpr double c = ContactSet::kStiffening;
+    if (depth <= 0) return 0;
+    const double inner = std::min(depth, 1.0), beyond = depth - inner;
+    return 0.5 * inner * inner + c / 6 * std::pow(inner, 6) + (1 + c) * beyond + 0.5 * (1 + 5 * c) * beyond * beyond;
+  }
+  std::vector<Vec3> jittered(double size) const {
+    std::vector<Vec3> at = x;
+    for (Vec3& point : at) point += random_vector(size);
+    return at;
+  }
+};
+
+/// As before the first linearisation of a step.
+FrictionLag lag_at_start(const ContactSet& contacts, const std::vector<Vec3>& x) {
+  FrictionLag lag;
+  contacts.update(x, lag);
+  return lag;
+}
+
+std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x, const FrictionLag& lag) {
+  std::vector<Vec3> f(x.size(), Vec3::Zero());
+  contacts.add_forces(x, lag, f);
+  return f;
+}
+std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
+  return forces_of(contacts, x, lag_at_start(contacts, x));
+}
+
+TEST(ContactSet, ForceWithoutFrictionIsMinusTheGradientOfTheEnergy) {
+  const VertexOnFace pair(0);
+  const ContactSet contacts = pair.set();
+  constexpr double kEpsilon = 1e-7;
+  int pushing = 0;
+  for (int trial = 0; trial < 20; ++trial) {
+    std::vector<Vec3> x = pair.jittered(0.002);
+    const auto f = forces_of(contacts, x);
+    pushing += contacts.active(x);
+    for (std::size_t i = 0; i < 4; ++i)
+      for (int axis = 0; axis < 3; ++axis) {
+        const double place = x[i][axis];
+        x[i][axis] = place + kEpsilon;
+        const double above = pair.energy(x);
+        x[i][axis] = place - kEpsilon;
+        const double below = pair.energy(x);
+        x[i][axis] = place;
+        // The third derivative of the energy, 20 c k d³ / r⁴ with c = 10 and d ≤ r, times ε² / 6 is 8e-8 N.
+        EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kEpsilon), 1e-7);
+      }
+  }
+  // Some pushed and some were out of range.
+  EXPECT_GT(pushing, 5);
+  EXPECT_LT(pushing, 20);
+}
+
+TEST(ContactSet, ForceIsContinuousAtTheRangeAndNoneBeyond) {
+  const VertexOnFace pair(0.5);
+  const ContactSet contacts = pair.set();
+  for (double offset : {-1e-9, 0.0, 1e-9, 1e-3}) {
+    std::vector<Vec3> x = pair.x;
+    x[0] += (0.6 * kRange + offset) * pair.contact.normal;
+    const double force = forces_of(contacts, x)[0].norm();
+    // Coordinates are rounded by 1e-17 m.
+    EXPECT_NEAR(force, 500 * std::max(0.0, -offset), 1e-13) << offset;
+    EXPECT_EQ(contacts.active(x), offset < 0 ? 1 : 0);
+  }
+}
+
+TEST(ContactSet, ForcesSumToZero) {
+  const VertexOnFace pair(0.5);
+  const ContactSet contacts = pair.set();
+  for (int trial = 0; trial < 10; ++trial) {
+    const auto f = forces_of(contacts, pair.jittered(0.0005));
+    EXPECT_LT((f[0] + f[1] + f[2] + f[3]).norm(), 1e-15);
+  }
+}
+
+TEST(ContactSet, FrictionOpposesTheSlipAndIsBoundedByTheLoad) {
+  const double mu = 0.4;
+  const VertexOnFace pair(mu), smooth(0);
+  const ContactSet contacts = pair.set(), frictionless = smooth.set();
+  const Vec3 n = pair.contact.normal;
+  // At the start, which friction goes by before the first solve.
+  const double load = load_at(0.6);
+  const double stick = ContactSet::kStickSpeed * kStep;
+  const Vec3 direction = n.unitOrthogonal();
+  double last = 0;
+  for (double share : {0.0, 0.1, 0.5, 0.9, 1.0, 1.1, 10.0, 1000.0}) {
+    std::vector<Vec3> x = pair.x;
+    x[0] += share * stick * direction;
+    const Vec3 friction = forces_of(contacts, x)[0] - forces_of(frictionless, x)[0];
+    EXPECT_LT((friction + friction.norm() * direction).norm(), 1e-12 * mu * load) << share;
+    EXPECT_LE(friction.norm(), mu * load * (1 + 1e-12));
+    EXPECT_GE(friction.norm(), last * (1 - 1e-12));  // reached without going back
+    last = friction.norm();
+    const double expected = share < 1 ? mu * load * share * (2 - share) : mu * load;
+    EXPECT_NEAR(friction.norm(), expected, 1e-9 * mu * load);
+  }
+}
+
+TEST(ContactSet, StaticFrictionHoldsMoreThanThatOfSliding) {
+  VertexOnFace pair(0.4), smooth(0);
+  pair.contact.static_friction = 0.7;
+  const ContactSet contacts = pair.set(), frictionless = smooth.set();
+  const double load = load_at(0.6);
+  const double stick = ContactSet::kStickSpeed * kStep;
+  const auto coefficient = [&](double slip) {
+    std::vector<Vec3> x = pair.x;
+    x[0] += slip * stick * pair.contact.normal.unitOrthogonal();
+    return (forces_of(contacts, x)[0] - forces_of(frictionless, x)[0]).norm() / load;
+  };
+  EXPECT_NEAR(coefficient(1), 0.7, 1e-9);
+  EXPECT_NEAR(coefficient(0.5 * (1 + ContactSet::kSlideSpeed)), 0.55, 1e-9);
+  EXPECT_NEAR(coefficient(ContactSet::kSlideSpeed), 0.4, 1e-9);
+  EXPECT_NEAR(coefficient(1000), 0.4, 1e-9);
+}
+
+TEST(ContactSet, MotionAlongTheNormalIsNoSlip) {
+  const VertexOnFace pair(0.4), smooth(0);
+  std::vector<Vec3> x = pair.x;
+  x[0] += 0.3 * kRange * pair.contact.normal;
+  const Vec3 friction = forces_of(pair.set(), x)[0] - forces_of(smooth.set(), x)[0];
+  EXPECT_LT(friction.norm(), 1e-12);
+}
+
+TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKeepsIt) {
+  const double mu = 0.4;
+  const VertexOnFace pair(mu);
+  const ContactSet contacts = pair.set();
+  FrictionLag lag;
+  std::vector<Vec3> x = pair.x;
+  x[0] += 0.4 * kRange * pair.contact.normal + 0.01 * pair.contact.normal.unitOrthogonal();  // load down to a third
+  const auto tangential = [&] {
+    const Vec3 f = forces_of(contacts, x, lag)[0];
+    return (f - pair.contact.normal.dot(f) * pair.contact.normal).norm();
+  };
+  contacts.update(x, lag);
+  EXPECT_NEAR(tangential(), mu * load_at(0.6), 1e-12);
+  contacts.update(x, lag);
+  EXPECT_NEAR(tangential(), mu * load_at(0.2), 1e-12);
+  // Up to a number of updates, so that load and slip do not chase each other for ever; the next step begins anew.
+  for (int k = 2; k < ContactSet::kLoadUpdates; ++k) contacts.update(x, lag);
+  x[0] -= 0.2 * kRange * pair.contact.normal;
+  contacts.update(x, lag);
+  EXPECT_NEAR(tangential(), mu * load_at(0.2), 1e-12);
+  lag = {};
+  contacts.update(x, lag);
+  contacts.update(x, lag);
+  EXPECT_NEAR(tangential(), mu * load_at(0.4), 1e-12);
+}
+
+TEST(ContactSet, FrictionOfAContactThatIsNewInAStepBeginsWithTheLoadOfItsStart) {
+  const VertexOnFace pair(0.4);
+  ContactSet contacts = pair.set();
+  FrictionLag lag{{}, ContactSet::kLoadUpdates};
+  contacts.update(pair.x, lag);
+  lag.loads[0] = 7;
+  contacts.add(pair.contact);
+  contacts.update(pair.jittered(0.0003), lag);
+  EXPECT_EQ(lag.loads[0], 7);
+  EXPECT_NEAR(lag.loads[1], load_at(0.6), 1e-12);
+}
+
+TEST(ContactSet, ForcesChangeNothingThatTheyDependOn) {
+  const VertexOnFace pair(0.4);
+  const ContactSet contacts = pair.set();
+  const std::vector<Vec3> x = pair.jittered(0.0003), elsewhere = pair.jittered(0.0003);
+  FrictionLag lag = lag_at_start(contacts, x);
+  contacts.update(elsewhere, lag);
+  const std::vector<Vec3> before = forces_of(contacts, x, lag);
+  forces_of(contacts, elsewhere, lag);
+  EXPECT_EQ(forces_of(contacts, x, lag), before);
+}
+
+// −∂f/∂x of one contact, as linearise leaves it in the system.
+Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
+  const Index rows = system.matrix.rows();
+  Eigen::MatrixXd k = Eigen::MatrixXd::Zero(3 * rows, 3 * rows);
+  for (Index i = 0; i < rows; ++i) k.block<3, 3>(3 * i, 3 * i) = system.matrix.block(system.matrix.diagonal(i));
+  for (const solver::DiagonalTerm& term : system.diagonal_terms)
+    k.block<3, 3>(3 * term.particle, 3 * term.particle) += term.stiffness;
+  for (const solver::StencilTerm& term : system.terms)
+    for (std::size_t a = 0; a < 4; ++a)
+      for (std::size_t b = 0; b < 4; ++b)
+        k.block<3, 3>(3 * term.particles[a], 3 * term.particles[b]) +=
+            term.weights[a] * term.weights[b] * term.stiffness;
+  return k;
+}
+
+// −∂f/∂x by central differences with the loads of the start, times `rate`.
+Eigen::MatrixXd differences(const ContactSet& contacts, std::vector<Vec3> x, double rate) {
+  constexpr double kEpsilon = 1e-10;
+  const auto size = static_cast<Eigen::Index>(3 * x.size());
+  Eigen::MatrixXd k(size, size);
+  for (std::size_t i = 0; i < x.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      const double place = x[i][axis];
+      x[i][axis] = place + kEpsilon;
+      const auto above = forces_of(contacts, x);
+      x[i][axis] = place - kEpsilon;
+      const auto below = forces_of(contacts, x);
+      x[i][axis] = place;
+      for (std::size_t r = 0; r < x.size(); ++r)
+        k.block<3, 1>(static_cast<Eigen::Index>(3 * r), static_cast<Eigen::Index>(3 * i) + axis) =
+            rate * (below[r] - above[r]) / (2 * kEpsilon);
+    }
+  return k;
+}
+
+solver::LinearSystem linearised(const ContactSet& contacts, const std::vector<Vec3>& x, double rate) {
+  solver::LinearSystem system;
+  system.matrix = solver::BlockMatrix(static_cast<Index>(x.size()), {});
+  std::vector<Vec3> f(x.size(), Vec3::Zero());
+  contacts.linearise(x, rate, lag_at_start(contacts, x), f, system);
+  EXPECT_EQ(f, forces_of(contacts, x));
+  return system;
+}
+
+TEST(ContactSet, JacobianIsThatOfCentralDifferencesAtFixedLoad) {
+  for (double rate : {1.0, 2.0}) {
+    // Without friction anywhere in range; with friction where nothing has slipped yet.
+    const VertexOnFace smooth(0), rough(0.4);
+    std::vector<Vec3> x = smooth.jittered(0.0003);
+    ASSERT_EQ(smooth.set().active(x), 1);
+    const Eigen::MatrixXd spring = assembled(linearised(smooth.set(), x, rate));
+    // Rounding: 1e-17 of a coordinate over 1e-10, times the stiffness.
+    EXPECT_LT((spring - differences(smooth.set(), x, rate)).cwiseAbs().maxCoeff(), 1e-5 * spring.maxCoeff());
+    const Eigen::MatrixXd sticking = assembled(linearised(rough.set(), rough.x, rate));
+    // 2/ε − s/ε² changes by ε_difference / ε = 3e-5 over the difference.
+    EXPECT_LT((sticking - differences(rough.set(), rough.x, rate)).cwiseAbs().maxCoeff(), 1e-4 * sticking.maxCoeff());
+    EXPECT_GT(sticking.maxCoeff(), 2 * spring.maxCoeff());
+  }
+}
+
+TEST(ContactSet, JacobianOfSlidingIsExactAcrossTheSlipAndNeverTooSoftAlongIt) {
+  const VertexOnFace pair(0.4);
+  std::vector<Vec3> x = pair.x;
+  const Vec3 slip = pair.contact.normal.unitOrthogonal(), across = pair.contact.normal.cross(slip);
+  for (double share : {0.5, 3.0}) {
+    std::vector<Vec3> slid = pair.x;
+    slid[0] += share * ContactSet::kStickSpeed * kStep * slip;
+    const Mat3 k = assembled(linearised(pair.set(), slid, 1)).topLeftCorner<3, 3>();
+    const Mat3 exact = differences(pair.set(), slid, 1).topLeftCorner<3, 3>();
+    const double scale = k.cwiseAbs().maxCoeff();
+    EXPECT_LT(((k - exact) * across).norm(), 1e-4 * scale);
+    EXPECT_LT(((k - exact) * pair.contact.normal).norm(), 1e-4 * scale);
+    // Force over slip is the secant: above the slope, which a flattening curve has, and positive where that is zero.
+    EXPECT_GT(slip.dot((k - exact) * slip), 0.1 * scale);
+    EXPECT_GE(slip.dot(exact * slip), -1e-4 * scale);
+  }
+}
+
+TEST(ContactSet, ParticleOnAnObstacleGoesIntoTheDiagonal) {
+  ContactSet contacts;
+  contacts.set_step(kStep);
+  Contact contact;
+  contact.particles = {2, 0, 0, 0};
+  contact.weights = {1, 0, 0, 0};
+  contact.obstacle_end = Vec3(0, 0, -1);  // the obstacle is at height 1 at the end
+  contact.relative_start = Vec3(0, 0, 0.001);
+  contact.normal = Vec3::UnitZ();
+  contact.range = kRange;
+  contact.stiffness = 500;
+  contact.friction = 0.3;
+  contacts.add(contact);
+  std::vector<Vec3> x(3, Vec3::Zero());
+  x[2] = {0, 0, 1.0005};
+  const solver::LinearSystem system = linearised(contacts, x, 1);
+  EXPECT_TRUE(system.terms.empty());
+  const Eigen::MatrixXd k = assembled(system);
+  // Heights around 1 are rounded by 1e-16 m, against slopes that change by 2e7 N/m².
+  EXPECT_NEAR(k(8, 8), slope_at(0.0015 / kRange), 1e-8);
+  EXPECT_EQ(k.topLeftCorner(6, 6).norm(), 0);
+  EXPECT_NEAR(forces_of(contacts, x)[2].z(), load_at(0.0015 / kRange), 1e-9);
+}
+
+}  // namespace
+}  // namespace weft::collision

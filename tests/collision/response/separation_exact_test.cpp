@@ -1,0 +1,19 @@
+#include "collision/response/separation_exact_meshes.hpp"
+
+namespace weft::collision {
+namespace {
+
+TEST(SeparationExact, NoCertificateForPairsThatMeet) {
+  expect_nothing_missed(10'000, 1);
+}
+
+TEST(SeparationExact, NoCertificateForPairsThatMeetBesideTheirCommonVertex) {
+  expect_nothing_missed_in_fans(2'000, 2);
+}
+
+TEST(SeparationExact, NothingMeetsAfterEnforcement) {
+  expect_nothing_meets_after_enforcement(2'000, 3);
+}
+
+}  // namespace
+}  // namespace weft::collision
