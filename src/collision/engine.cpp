@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "core/archive.hpp"
-#include "mesh/geometry.hpp"
 
 namespace weft::collision {
 namespace {
@@ -272,10 +271,10 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
 
 // Pinched cloth is pushed back to its side, at no more than kHealingSpeed towards the obstacle's surface.
 void Engine::add_pinch_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  pinched_.release(surfaces_, x_t0);
-  for (const PinchTouch& touch : pinched_.find_touches(surfaces_, x_t0, reach_))
-    add_contact({touch.vertices, touch.weights, touch.normal, kHealingShare, touch.height + kHealingSpeed * step_},
-                x_t0, x_t1);
+  pinched_.release(broad_phase_, x_t0);
+  for (const FeaturePair& push : pinched_.find_pushes(broad_phase_, x_t0, reach_))
+    add_contact({push.vertices, push.weights, push.normal, kHealingShare, push.distance + kHealingSpeed * step_}, x_t0,
+                x_t1);
 }
 
 // Whether a pair of features is of pinched cloth and its obstacle: their direction does not tell the side.
@@ -334,59 +333,17 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
       collect(x_t0, x_t1);
       continue;
     }
-    if (const auto fresh = first_fresh(pinched); fresh && !may_pinch) {
+    if (const auto fresh = first_fresh(pinched, pinched_, broad_phase_); fresh && !may_pinch) {
       report.separated = false;
       report.stuck = *fresh;
       return report;
     }
-    pinched.note_origins(surfaces_, x_t0);
+    pinched.note_origins(broad_phase_, x_t0);
     pinched_ = std::move(pinched);
     return report;
   }
   report.separated = false;
   return report;
-}
-
-// A pair of `pinched` whose obstacle does not pinch that cloth so far.
-std::optional<CornerPair> Engine::first_fresh(const PinchedPairs& pinched) const {
-  for (const auto& [key, origin] : pinched.origins()) {
-    const std::size_t cloth = body_of(key.cloth[0]), obstacle = key.body;
-    const auto same = [&](const auto& other) {
-      return body_of(other.first.cloth[0]) == cloth && other.first.body == obstacle;
-    };
-    if (std::none_of(pinched_.origins().begin(), pinched_.origins().end(), same))
-      return CornerPair{key.cloth, surfaces_[obstacle].triangles.front()};
-  }
-  return std::nullopt;
-}
-
-// How far the pinching obstacle's faces that look this way are from the place; infinite where none do.
-double Engine::distance_facing(const Pinch& pinch, const Vec3& way, std::span<const Vec3> x) const {
-  const SurfacePoint point = nearest_point(pinch.place, surfaces_[pinch.obstacle].triangles, x, way);
-  const bool faces = mesh::area_vector(point.face, x).dot(way) > 0;
-  return faces ? std::abs(point.height) : std::numeric_limits<double>::infinity();
-}
-
-std::vector<Pinch> Engine::pinches(std::span<const Vec3> x) const {
-  std::vector<Pinch> found;
-  for (const auto& [key, origin] : pinched_.origins()) {
-    const Pinch pinch{body_of(key.cloth[0]), key.body, std::nullopt, x[static_cast<std::size_t>(key.cloth[0])]};
-    const auto same = [&](const Pinch& p) { return p.cloth == pinch.cloth && p.obstacle == pinch.obstacle; };
-    if (std::any_of(found.begin(), found.end(), same)) continue;
-    found.push_back(pinch);
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      if (bodies_[b].deformable || b == pinch.obstacle) continue;
-      const double distance = std::abs(nearest_point(pinch.place, surfaces_[b].triangles, x).height);
-      if (distance < nearest) nearest = distance, found.back().other = b;
-    }
-    // Parts of one body pinch too, as arm and side do: then it looks at the cloth from both sides, and from the far one
-    // from nearer than any other obstacle.
-    const Vec3 up = mesh::area_vector(key.cloth, x).normalized();
-    const double far = std::max(distance_facing(pinch, up, x), distance_facing(pinch, -up, x));
-    if (far < nearest) found.back().other = pinch.obstacle;
-  }
-  return found;
 }
 
 double Engine::min_distance() const {

@@ -10,7 +10,7 @@
 #include "collision/hierarchy/broad_phase.hpp"
 #include "collision/proximity/proximities.hpp"
 #include "collision/response/contact_set.hpp"
-#include "collision/response/pinch.hpp"
+#include "collision/response/pinch_report.hpp"
 #include "collision/response/separation.hpp"
 #include "collision/response/velocity_constraints.hpp"
 #include "core/types.hpp"
@@ -35,13 +35,6 @@ struct Friction {
 struct PairFriction {
   std::size_t a = 0, b = 0;  ///< bodies, in any order
   Friction friction;
-};
-
-/// Cloth that is in an obstacle because it has no room.
-struct Pinch {
-  std::size_t cloth = 0, obstacle = 0;
-  std::optional<std::size_t> other;  ///< the other obstacle nearest to it, if there is one; the same: parts of it pinch
-  Vec3 place;                        ///< of a particle [m]
 };
 
 struct EngineParameters {
@@ -94,8 +87,8 @@ class Engine {
 
   /// Triangles of cloth that are given up to an obstacle, counted per obstacle.
   int pinched_pairs() const { return static_cast<int>(pinched_.size()); }
-  /// Which cloths and obstacles that are, with places at x [m].
-  std::vector<Pinch> pinches(std::span<const Vec3> x) const;
+  /// Which cloths and obstacles that are, with places at x [m], where the last step began.
+  std::vector<Pinch> pinches(std::span<const Vec3> x) const { return list_pinches(pinched_, broad_phase_, x); }
 
   /// Pairs of features within the reach, 1.5 contact ranges, at the start of the last step.
   int proximities() const { return static_cast<int>(proximities_.size()); }
@@ -124,11 +117,9 @@ class Engine {
   void add_contact(const Touch& touch, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   void add_pinch_contacts(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   bool is_pinched(const std::array<Index, 4>& vertices) const;
-  std::optional<CornerPair> first_fresh(const PinchedPairs& pinched) const;
   bool constrain(const Touch& touch, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   bool constrain_corners(const CornerPair& pair, const Touch& touch, std::span<const Vec3> x_t0,
                          std::span<const Vec3> x_t1);
-  double distance_facing(const Pinch& pinch, const Vec3& way, std::span<const Vec3> x) const;
   bool near_start(std::span<const Vec3> x) const;
   bool inside_bounds(std::span<const Vec3> x) const;
   template <class Archive>

@@ -56,7 +56,7 @@ std::vector<collision::PairFriction> friction_pairs(const scene::Scene& scene,
 }
 
 collision::BroadPhaseOptions search_options(const scene::Search& search) {
-  constexpr std::array<int, 4> kDirections{6, 14, 18, 26};
+  constexpr std::array<int, 3> kDirections{6, 18, 26};
   constexpr std::array<int, 3> kChildren{2, 4, 8};
   collision::BroadPhaseOptions options;
   options.directions = kDirections[static_cast<std::size_t>(search.bounds)];

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "collision/response/pinch.hpp"
+#include "collision/proximity/surface_point.hpp"
 
 namespace weft::simulation {
 namespace {

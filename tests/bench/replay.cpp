@@ -6,8 +6,6 @@
 
 #include "bench/measure.hpp"
 #include "collision/hierarchy/broad_phase.hpp"
-#include "collision/hierarchy/feature_distance.hpp"
-#include "collision/hierarchy/normal_cones.hpp"
 #include "collision/hierarchy/test_motions.hpp"
 #include "collision/proximity/coherence.hpp"
 #include "mesh/ply.hpp"
@@ -175,45 +173,13 @@ void print_row(const std::string& name, const std::vector<Costs>& runs, int step
              runs[0].found / static_cast<std::size_t>(steps));
 }
 
-/// Pairs of a frame that a rule of normal cones leaves out, and how many of these are within reach.
-void count_left_out(const Recording& recording, double reach) {
-  fmt::print("\n| normal cones | pairs left out | of these within reach |\n|---|---|---|\n");
-  const std::vector<Surface> surfaces = recording.scene.surfaces();
-  for (const auto rule : {NormalConeRule::proved, NormalConeRule::provot}) {
-    std::size_t left_out = 0, missed = 0;
-    for (std::size_t f = 0; f < recording.frames.size(); f += 2)
-      for (std::size_t s = 0; s < surfaces.size(); ++s) {
-        if (!recording.deformable[s]) continue;
-        const std::vector<Vec3>& x = recording.frames[f];
-        Tree<6, 8> tree(surfaces[s], x);
-        tree.refit(x, x, reach / 2);
-        NormalCones<6, 8> cones(tree, rule);
-        cones.update(tree, x, x, reach);
-        CandidatePairs all, with_cones;
-        collision::self_pairs(tree, all);
-        Traversal how;
-        how.regions = &cones.regions();
-        collision::self_pairs(tree, with_cones, how);
-        const std::set<TrianglePair> found(with_cones.apart.begin(), with_cones.apart.end());
-        for (const TrianglePair& pair : all.apart) {
-          if (found.contains(pair)) continue;
-          ++left_out;
-          const auto triangle = [&](Index t) { return recording.scene.triangles[static_cast<std::size_t>(t)]; };
-          missed += static_cast<std::size_t>(
-              collision::testing::feature_distance(triangle(pair.a), triangle(pair.b), x) < reach);
-        }
-      }
-    fmt::print("| {} | {} | {} |\n", rule == NormalConeRule::proved ? "proved" : "Provot's", left_out, missed);
-  }
-}
-
 /// The default, and from it one thing at a time.
 std::vector<std::pair<std::string, BroadPhaseOptions>> settings() {
   std::vector<std::pair<std::string, BroadPhaseOptions>> all{{"default: k 6, 8 children, leaf 8", {}}};
   const auto add = [&](const std::string& name, auto change) {
     change(all.emplace_back(name, BroadPhaseOptions{}).second);
   };
-  for (const int k : {14, 18, 26}) add(fmt::format("k {}", k), [&](auto& o) { o.directions = k; });
+  for (const int k : {18, 26}) add(fmt::format("k {}", k), [&](auto& o) { o.directions = k; });
   for (const int c : {2, 4}) add(fmt::format("{} children", c), [&](auto& o) { o.children = c; });
   add("2 children, leaf 1 (as in the paper)", [](auto& o) { o.children = 2, o.leaf = 1; });
   add("4 children, leaf 1", [](auto& o) { o.children = 4, o.leaf = 1; });
@@ -253,7 +219,6 @@ void replay(const std::filesystem::path& meshes, int first_frame, int frames, do
     print_row(fmt::format("velocity cones, results kept, budget {} of reach ({} % kept)", part, 100 * reused / asked),
               coherent, recording.steps());
   }
-  count_left_out(recording, reach);
 }
 
 }  // namespace weft::bench

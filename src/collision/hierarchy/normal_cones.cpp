@@ -43,10 +43,10 @@ bool star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis
 }
 
 /// Finds P⁺, its contour and the leaves around for each node.
-template <int K, int Arity>
-class NormalCones<K, Arity>::Builder {
+template <int K>
+class NormalCones<K>::Builder {
  public:
-  Builder(const Tree<K, Arity>& tree, std::vector<Patch>& patches) : tree_(tree), patches_(patches) {
+  Builder(const Tree<K>& tree, std::vector<Patch>& patches) : tree_(tree), patches_(patches) {
     const Surface& surface = tree.surface();
     const auto vertices = static_cast<std::size_t>(surface.vertex_count);
     around_.resize(vertices);
@@ -136,33 +136,33 @@ class NormalCones<K, Arity>::Builder {
       if (!std::binary_search(own.begin(), own.end(), leaf)) patch.ring.push_back(~static_cast<Ref>(leaf));
   }
 
-  const Tree<K, Arity>& tree_;
+  const Tree<K>& tree_;
   std::vector<Patch>& patches_;
   std::vector<std::vector<Index>> around_;  // triangles at each vertex
   std::vector<std::size_t> leaf_of_;        // by triangle
   std::vector<std::uint8_t> border_;        // by vertex
 };
 
-template <int K, int Arity>
-std::size_t NormalCones<K, Arity>::slot(const Tree<K, Arity>& tree, Ref ref) {
+template <int K>
+std::size_t NormalCones<K>::slot(const Tree<K>& tree, Ref ref) {
   return ref >= 0 ? static_cast<std::size_t>(ref) : tree.nodes().size() + static_cast<std::size_t>(~ref);
 }
 
-template <int K, int Arity>
-NormalCones<K, Arity>::NormalCones(const Tree<K, Arity>& tree, NormalConeRule rule) : rule_(rule) {
+template <int K>
+NormalCones<K>::NormalCones(const Tree<K>& tree) {
   const std::size_t slots = tree.nodes().size() + tree.leaves().size();
   patches_.resize(slots);
   cones_.resize(slots);
   regions_.node.resize(tree.nodes().size());
   regions_.leaf.resize(tree.leaves().size());
-  if (!tree.empty() && rule == NormalConeRule::proved) Builder(tree, patches_).build(tree.root());
+  if (!tree.empty()) Builder(tree, patches_).build(tree.root());
 }
 
-template <int K, int Arity>
-void NormalCones<K, Arity>::fit_leaf(const typename Tree<K, Arity>::Leaf& leaf, std::span<const Vec3> x_t0,
-                                     std::span<const Vec3> x_t1, Cone& cone) const {
+template <int K>
+void NormalCones<K>::fit_leaf(const typename Tree<K>::Leaf& leaf, std::span<const Vec3> x_t0,
+                              std::span<const Vec3> x_t1, Cone& cone) const {
   // The normal of a triangle over time is a quadratic whose Bernstein coefficients are these three.
-  std::array<std::array<Vec3, 3>, kLeafLanes> normals;
+  std::array<std::array<Vec3, 3>, kLanes> normals;
   Vec3 sum = Vec3::Zero();
   cone.altitude = 1e300;
   for (int l = 0; l < leaf.count; ++l) {
@@ -193,8 +193,8 @@ void NormalCones<K, Arity>::fit_leaf(const typename Tree<K, Arity>::Leaf& leaf, 
 }
 
 /// The cone around the mean axis that holds all parts.
-template <int K, int Arity>
-typename NormalCones<K, Arity>::Cone NormalCones<K, Arity>::join(std::span<const Cone* const> parts) {
+template <int K>
+typename NormalCones<K>::Cone NormalCones<K>::join(std::span<const Cone* const> parts) {
   Cone all;
   all.altitude = 1e300;
   for (const Cone* part : parts) {
@@ -216,15 +216,14 @@ typename NormalCones<K, Arity>::Cone NormalCones<K, Arity>::join(std::span<const
   return all;
 }
 
-template <int K, int Arity>
-void NormalCones<K, Arity>::update(const Tree<K, Arity>& tree, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                                   double reach) {
+template <int K>
+void NormalCones<K>::update(const Tree<K>& tree, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double reach) {
   if (tree.empty()) return;
   const std::size_t nodes = tree.nodes().size();
   for (std::size_t n = 0; n < tree.leaves().size(); ++n) fit_leaf(tree.leaves()[n], x_t0, x_t1, cones_[nodes + n]);
   for (std::size_t n = nodes; n-- > 0;) {
     const auto& node = tree.nodes()[n];
-    std::array<const Cone*, Arity> parts;
+    std::array<const Cone*, kLanes> parts;
     for (int i = 0; i < node.count; ++i) parts[static_cast<std::size_t>(i)] = &cones_[slot(tree, node.child[i])];
     cones_[n] = join(std::span(parts).first(static_cast<std::size_t>(node.count)));
   }
@@ -233,11 +232,10 @@ void NormalCones<K, Arity>::update(const Tree<K, Arity>& tree, std::span<const V
   mark(tree, tree.root(), x_t0, x_t1, reach);
 }
 
-template <int K, int Arity>
-bool NormalCones<K, Arity>::nothing_near(const Tree<K, Arity>& tree, Ref ref, std::span<const Vec3> x_t0,
-                                         std::span<const Vec3> x_t1, double reach) const {
+template <int K>
+bool NormalCones<K>::nothing_near(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                                  double reach) const {
   const Cone& own = cones_[slot(tree, ref)];
-  if (rule_ == NormalConeRule::provot) return own.cosine > 0;
   const Patch& patch = patches_[slot(tree, ref)];
   const double needed = reach * (1 + kSafety);
   if (!patch.closed || own.cosine * own.altitude <= needed || own.cosine <= 0) return false;
@@ -248,9 +246,9 @@ bool NormalCones<K, Arity>::nothing_near(const Tree<K, Arity>& tree, Ref ref, st
 }
 
 /// From the top down; what is below a marked subtree is never asked for.
-template <int K, int Arity>
-void NormalCones<K, Arity>::mark(const Tree<K, Arity>& tree, Ref ref, std::span<const Vec3> x_t0,
-                                 std::span<const Vec3> x_t1, double reach) {
+template <int K>
+void NormalCones<K>::mark(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                          double reach) {
   const bool nothing = nothing_near(tree, ref, x_t0, x_t1, reach);
   auto& flags = ref >= 0 ? regions_.node : regions_.leaf;
   flags[static_cast<std::size_t>(ref >= 0 ? ref : ~ref)] = static_cast<std::uint8_t>(nothing);
@@ -259,17 +257,8 @@ void NormalCones<K, Arity>::mark(const Tree<K, Arity>& tree, Ref ref, std::span<
   for (int i = 0; i < node.count; ++i) mark(tree, node.child[i], x_t0, x_t1, reach);
 }
 
-template class NormalCones<6, 2>;
-template class NormalCones<6, 4>;
-template class NormalCones<6, 8>;
-template class NormalCones<14, 2>;
-template class NormalCones<14, 4>;
-template class NormalCones<14, 8>;
-template class NormalCones<18, 2>;
-template class NormalCones<18, 4>;
-template class NormalCones<18, 8>;
-template class NormalCones<26, 2>;
-template class NormalCones<26, 4>;
-template class NormalCones<26, 8>;
+template class NormalCones<6>;
+template class NormalCones<18>;
+template class NormalCones<26>;
 
 }  // namespace weft::collision

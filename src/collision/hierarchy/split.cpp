@@ -47,7 +47,6 @@ std::size_t split_longest_side(std::span<Index> items, std::span<const KDop<K>> 
 }
 
 template std::size_t split_longest_side<6>(std::span<Index>, std::span<const KDop<6>>);
-template std::size_t split_longest_side<14>(std::span<Index>, std::span<const KDop<14>>);
 template std::size_t split_longest_side<18>(std::span<Index>, std::span<const KDop<18>>);
 template std::size_t split_longest_side<26>(std::span<Index>, std::span<const KDop<26>>);
 

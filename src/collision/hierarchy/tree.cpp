@@ -14,14 +14,15 @@ namespace {
 /// Past this depth sets are halved by number: centre splits of a badly graded surface may peel off one triangle each.
 constexpr int kMaxCentreSplits = 64;
 
-void check(const Surface& surface, std::size_t positions, int leaf_capacity) {
+void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {
   const Index first = surface.first_vertex, last = first + surface.vertex_count;
   if (first < 0 || static_cast<std::size_t>(last) > positions)
     throw Error(ExitCode::internal, "hierarchy: expected vertices [{}, {}) inside {} positions", first, last,
                 positions);
-  if (leaf_capacity < 1 || leaf_capacity > kLeafLanes)
-    throw Error(ExitCode::internal, "hierarchy: expected a leaf capacity of 1 to {}, got {}", kLeafLanes,
-                leaf_capacity);
+  if (shape.children < 2 || shape.children > kLanes || shape.leaf < 1 || shape.leaf > kLanes)
+    throw Error(ExitCode::internal,
+                "hierarchy: expected 2 to {0} children and 1 to {0} triangles to a leaf, got {1}, {2}", kLanes,
+                shape.children, shape.leaf);
   for (const Triangle& triangle : surface.triangles)
     for (const Index corner : triangle)
       if (corner < first || corner >= last)
@@ -36,16 +37,16 @@ constexpr double kLeastSlackPart = 1.0 / 64;
 constexpr double kSlackPart = 1.0 / 8;
 
 /// Writes one bound into lane l.
-template <int K, int N>
-void set_lane(LaneBounds<K, N>& bounds, int l, const KDop<K>& bound) {
+template <int K>
+void set_lane(LaneBounds<K>& bounds, int l, const KDop<K>& bound) {
   for (int r = 0; r < K; ++r) bounds.row[r][l] = bound.row[r];
 }
 
 }  // namespace
 
 /// Splits a range of triangles into the children of a node, again and again.
-template <int K, int Arity>
-struct Tree<K, Arity>::Builder {
+template <int K>
+struct Tree<K>::Builder {
   struct Group {
     std::size_t begin, end;
     int depth;
@@ -53,7 +54,7 @@ struct Tree<K, Arity>::Builder {
   };
 
   Tree& tree;
-  std::size_t leaf_capacity;
+  std::size_t most_children, most_triangles;
   std::vector<Bound> bounds;  // of each triangle
   std::vector<Index> order;   // triangles, those of a group side by side
 
@@ -70,7 +71,7 @@ struct Tree<K, Arity>::Builder {
   Ref add_leaf(const Group& group) {
     Leaf leaf{};
     leaf.count = static_cast<std::int32_t>(group.size());
-    for (int l = 0; l < kLeafLanes; ++l) {
+    for (int l = 0; l < kLanes; ++l) {
       const bool used = l < leaf.count;
       const Index local = used ? order[group.begin + static_cast<std::size_t>(l)] : -1;
       leaf.triangle[l] = used ? tree.surface_.first_triangle + local : -1;
@@ -82,15 +83,15 @@ struct Tree<K, Arity>::Builder {
   }
 
   Ref add(const Group& whole) {
-    if (whole.size() <= leaf_capacity) return add_leaf(whole);
+    if (whole.size() <= most_triangles) return add_leaf(whole);
     // The child with the most triangles is split until the node is full, so that nodes and leaves come out full.
-    std::array<Group, Arity> children{whole};
+    std::array<Group, kLanes> children{whole};
     std::size_t count = 1;
-    while (count < Arity) {
+    while (count < most_children) {
       const auto by_size = [](const Group& a, const Group& b) { return a.size() < b.size(); };
       Group& largest =
           *std::max_element(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count), by_size);
-      if (largest.size() <= leaf_capacity) break;
+      if (largest.size() <= most_triangles) break;
       children[count++] = split(largest);
     }
     const auto number = static_cast<Ref>(tree.nodes_.size());
@@ -104,13 +105,13 @@ struct Tree<K, Arity>::Builder {
   }
 };
 
-template <int K, int Arity>
-Tree<K, Arity>::Tree(const Surface& surface, std::span<const Vec3> positions, int leaf_capacity) : surface_(surface) {
-  check(surface, positions.size(), leaf_capacity);
+template <int K>
+Tree<K>::Tree(const Surface& surface, std::span<const Vec3> positions, const TreeShape& shape) : surface_(surface) {
+  check(surface, positions.size(), shape);
   vertex_bounds_.resize(static_cast<std::size_t>(surface.vertex_count));
   if (surface.triangles.empty()) return;
 
-  Builder builder{*this, static_cast<std::size_t>(leaf_capacity), {}, {}};
+  Builder builder{*this, static_cast<std::size_t>(shape.children), static_cast<std::size_t>(shape.leaf), {}, {}};
   builder.bounds.reserve(surface.triangles.size());
   for (const Triangle& triangle : surface.triangles) {
     const auto at = [&](std::size_t c) -> const Vec3& { return positions[static_cast<std::size_t>(triangle[c])]; };
@@ -127,8 +128,8 @@ Tree<K, Arity>::Tree(const Surface& surface, std::span<const Vec3> positions, in
   refit(positions, positions, 0);
 }
 
-template <int K, int Arity>
-void Tree<K, Arity>::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+template <int K>
+void Tree<K>::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
   const auto first = static_cast<std::size_t>(surface_.first_vertex);
   for (std::size_t v = 0; v < vertex_bounds_.size(); ++v)
     vertex_bounds_[v] = swept_point<K>(x_t0[first + v], x_t1[first + v], margin);
@@ -139,8 +140,8 @@ void Tree<K, Arity>::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t
 }
 
 /// A leaf from its triangles' corners.
-template <int K, int Arity>
-void Tree<K, Arity>::fit(std::size_t n) {
+template <int K>
+void Tree<K>::fit(std::size_t n) {
   Leaf& leaf = leaves_[n];
   for (int l = 0; l < leaf.count; ++l) {
     const auto corner = [&](int c) -> const Bound& {
@@ -158,8 +159,8 @@ void Tree<K, Arity>::fit(std::size_t n) {
 }
 
 /// A node from its children, Eq. (3).
-template <int K, int Arity>
-void Tree<K, Arity>::fit_node(std::size_t n) {
+template <int K>
+void Tree<K>::fit_node(std::size_t n) {
   Node& node = nodes_[n];
   node_bounds_[n] = bound(node.child[0]);
   for (int i = 0; i < node.count; ++i) {
@@ -170,8 +171,8 @@ void Tree<K, Arity>::fit_node(std::size_t n) {
 }
 
 /// Whether the vertex v gets another bound for its way from p to q.
-template <int K, int Arity>
-bool Tree<K, Arity>::stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, double margin) {
+template <int K>
+bool Tree<K>::stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, double margin) {
   Resting& resting = resting_[v];
   const double slack_sq = resting.slack * resting.slack;
   if (resting.slack >= 0 && (p - resting.place).squaredNorm() <= slack_sq &&
@@ -189,8 +190,8 @@ bool Tree<K, Arity>::stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, d
   return true;
 }
 
-template <int K, int Arity>
-void Tree<K, Arity>::refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+template <int K>
+void Tree<K>::refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
   const auto first = static_cast<std::size_t>(surface_.first_vertex);
   if (resting_margin_ != margin) resting_.assign(vertex_bounds_.size(), {});
   resting_margin_ = margin;
@@ -220,17 +221,8 @@ void Tree<K, Arity>::refit_lazily(std::span<const Vec3> x_t0, std::span<const Ve
   }
 }
 
-template class Tree<6, 2>;
-template class Tree<6, 4>;
-template class Tree<6, 8>;
-template class Tree<14, 2>;
-template class Tree<14, 4>;
-template class Tree<14, 8>;
-template class Tree<18, 2>;
-template class Tree<18, 4>;
-template class Tree<18, 8>;
-template class Tree<26, 2>;
-template class Tree<26, 4>;
-template class Tree<26, 8>;
+template class Tree<6>;
+template class Tree<18>;
+template class Tree<26>;
 
 }  // namespace weft::collision

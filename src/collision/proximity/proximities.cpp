@@ -1,7 +1,6 @@
 #include "collision/proximity/proximities.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "collision/proximity/closest_points.hpp"
@@ -22,12 +21,6 @@ Vec3 direction(const Vec3& v, const Vec3& fallback) {
     if (length > 0) return tiny / length;
   }
   return Vec3::UnitZ();
-}
-
-/// Calls visit(l) for each set bit, lowest first.
-template <class Visit>
-void for_each_bit(std::uint32_t mask, const Visit& visit) {
-  for (; mask != 0; mask &= mask - 1) visit(static_cast<std::size_t>(std::countr_zero(mask)));
 }
 
 }  // namespace
@@ -234,8 +227,9 @@ class ProximityFinder::Search {
 
   void add(ProximityKind kind, const std::array<Index, 4>& vertices, const ClosestPoints& points, const Vec3& fallback,
            const std::array<double, 2>& outside) {
-    out_.push_back({kind, vertices, points.weights, direction(points.difference, fallback),
-                    std::sqrt(points.distance_sq), outside});
+    out_.push_back({{vertices, points.weights, direction(points.difference, fallback), std::sqrt(points.distance_sq)},
+                    kind,
+                    outside});
   }
 
   const Features& features_;

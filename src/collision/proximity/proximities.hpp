@@ -8,6 +8,7 @@
 
 #include "collision/hierarchy/lanes.hpp"
 #include "collision/hierarchy/surface.hpp"
+#include "collision/proximity/feature_pair.hpp"
 #include "collision/proximity/features.hpp"
 #include "core/types.hpp"
 
@@ -15,17 +16,13 @@ namespace weft::collision {
 
 enum class ProximityKind : std::uint8_t { vertex_face, edge_edge };
 
-/// Two features closer than the reach, with their closest points x_a = Σ (w > 0) w x and x_b = -Σ (w < 0) w x.
-struct Proximity {
-  ProximityKind kind;
-  std::array<Index, 4> vertices;  ///< vertex, then the face's corners; or the ends of edge a, then of edge b
-  std::array<double, 4> weights;  ///< side a sums to 1, side b to -1
-  Vec3 normal;                    ///< unit, from x_b to x_a: Σ w x = distance · normal
-  double distance;                ///< [m]
+/// Two features closer than the reach, with their closest points: Σ w x = distance · normal.
+struct Proximity : FeaturePair {
+  ProximityKind kind = ProximityKind::vertex_face;
   /// Edge-edge: sine of the angle by which the normal leaves the wedge of edge a and b, the directions in which no face
   /// at the edge comes closer than the edge itself; ≤ 0 inside, 0 for vertex-face. Above 0 a neighbouring pair
   /// is closer, and the response may leave this one out.
-  std::array<double, 2> outside_wedge;
+  std::array<double, 2> outside_wedge{};
 };
 
 /// Finds proximities among candidates. Listed are, of all vertex-face and edge-edge pairs without a common vertex whose

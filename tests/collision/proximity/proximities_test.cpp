@@ -70,7 +70,7 @@ struct AllPairs {
 };
 
 std::vector<Proximity> find(const TestMesh& mesh, double reach) {
-  SurfaceTree tree(mesh.surface(), mesh.x);
+  Tree<6> tree(mesh.surface(), mesh.x);
   tree.refit(mesh.x, mesh.x, reach / 2);
   CandidatePairs candidates;
   self_pairs(tree, candidates);
