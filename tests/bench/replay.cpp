@@ -112,51 +112,26 @@ Costs run(const Recording& recording, const BroadPhaseOptions& options, double r
   return costs;
 }
 
-/// With results kept between steps; the default tree.
+/// With results kept between steps; the default tree. Fitting and walking are in the time of the proximities.
 Costs run_coherent(const Recording& recording, double reach, double budget, int& reused, int& asked) {
   const std::vector<Surface> surfaces = recording.scene.surfaces();
   std::vector<Vec3> x_t0, x_t1 = recording.at(0);
   BroadPhase broad_phase(surfaces, x_t1);
   ProximityFinder finder(recording.scene.triangles, static_cast<Index>(x_t1.size()));
-  CoherentDetection kept(surfaces, x_t1, reach, budget);
-  CandidatePairs candidates;
-  std::vector<Proximity> proximities, found;
+  std::vector<SurfacePair> wanted;
+  for (std::size_t a = 0; a < surfaces.size(); ++a)
+    for (std::size_t b = a; recording.deformable[a] && b < surfaces.size(); ++b) wanted.push_back({a, b});
+  CoherentDetection detection(surfaces, wanted, x_t1, {.reach = reach, .budget = budget});
   Costs costs;
   for (int step = 0; step < recording.steps(); ++step) {
     x_t0 = x_t1;
     x_t1 = recording.at(step + 1);
-    found.clear();
-    add_ms(costs.refit, [&] { kept.advance(x_t0, x_t1); });
-    std::vector<bool> fitted(surfaces.size());
-    for (std::size_t a = 0; a < surfaces.size(); ++a)
-      for (std::size_t b = a; recording.deformable[a] && b < surfaces.size(); ++b) {
-        bool holds = false;
-        add_ms(costs.refit, [&] { holds = kept.holds(a, b); });
-        ++asked;
-        reused += static_cast<int>(holds);
-        if (!holds) {
-          add_ms(costs.refit, [&] {
-            for (const std::size_t s : {a, b})
-              if (!fitted[s]) broad_phase.refit(s, x_t0, x_t1, 0.5 * (reach + budget));
-            fitted[a] = fitted[b] = true;
-          });
-          candidates.clear();
-          add_ms(costs.pairs,
-                 [&] { a == b ? broad_phase.self_pairs(a, candidates) : broad_phase.pairs(a, b, candidates); });
-          add_ms(costs.proximities, [&] {
-            // What is of no pair of surfaces is not looked at; a search costs the size of the scene once.
-            if (a == b || candidates.apart.size() + candidates.one_shared.size() > 0)
-              finder.find(candidates, std::span(surfaces).subspan(a, a == b ? 1 : 0), x_t0, reach + budget,
-                          proximities);
-            else
-              proximities.clear();
-            kept.keep(a, b, candidates, proximities);
-          });
-        }
-        add_ms(costs.proximities, [&] { kept.proximities(a, b, x_t0, found); });
-        costs.candidates += kept.candidates(a, b).apart.size() + kept.candidates(a, b).one_shared.size();
-      }
-    costs.found += found.size();
+    int anew = 0;
+    add_ms(costs.proximities, [&] { anew = detection.update(broad_phase, finder, x_t0, x_t1); });
+    asked += static_cast<int>(wanted.size());
+    reused += static_cast<int>(wanted.size()) - anew;
+    costs.candidates += detection.candidates().apart.size() + detection.candidates().one_shared.size();
+    costs.found += detection.proximities().size();
   }
   return costs;
 }

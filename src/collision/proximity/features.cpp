@@ -6,7 +6,7 @@
 namespace weft::collision {
 
 Features::Features(std::span<const Triangle> triangles, Index vertex_count)
-    : triangles_(triangles.begin(), triangles.end()), owned_(triangles.size(), 0) {
+    : triangles_(triangles), owned_(triangles.size(), 0) {
   collect_fans(vertex_count);
   own_edges();
 }

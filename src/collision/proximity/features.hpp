@@ -18,7 +18,8 @@ class Features {
  public:
   Features() = default;
 
-  /// `triangles` are those of all surfaces in their global numbering; surfaces have no vertices in common.
+  /// `triangles` are those of all surfaces in their global numbering, and must outlive this; surfaces have no vertices
+  /// in common.
   Features(std::span<const Triangle> triangles, Index vertex_count);
 
   std::span<const Triangle> triangles() const { return triangles_; }
@@ -49,7 +50,7 @@ class Features {
   void collect_fans(Index vertex_count);
   void own_edges();
 
-  std::vector<Triangle> triangles_;
+  std::span<const Triangle> triangles_;
   std::vector<std::uint8_t> owned_;
   std::vector<std::array<Index, 3>> edge_;  // number of the edge, where owned
   std::vector<std::array<Index, 3>> across_;

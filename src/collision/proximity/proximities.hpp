@@ -40,7 +40,7 @@ class ProximityFinder {
  public:
   ProximityFinder() = default;
 
-  /// Triangles of all surfaces in their global numbering.
+  /// Triangles of all surfaces in their global numbering; they must outlive this.
   ProximityFinder(std::span<const Triangle> triangles, Index vertex_count) : features_(triangles, vertex_count) {}
 
   const Features& features() const { return features_; }
