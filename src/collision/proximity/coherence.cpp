@@ -109,7 +109,7 @@ void CoherentDetection::advance(std::span<const Vec3> x_t0, std::span<const Vec3
       for (const Index v : group.vertices)
         radius_sq = std::max({radius_sq, (x_t0[v] - reference_t0_[v] - mean).squaredNorm(),
                               (x_t1[v] - reference_t1_[v] - mean).squaredNorm()});
-      group.cone = VelocityCone(mean, std::sqrt(radius_sq));
+      group.cone = {mean, std::sqrt(radius_sq)};
     }
   }
 }
@@ -119,11 +119,8 @@ bool CoherentDetection::holds(const SurfacePair& pair, Kept& kept) const {
   for (std::size_t g = 0; kept.valid && g < kept.groups_a.size(); ++g) {
     for (std::size_t h = pair.a == pair.b ? g : 0; h < kept.groups_b.size(); ++h) {
       const GroupThen &g_then = kept.groups_a[g], &h_then = kept.groups_b[h];
-      // What has been added to the motions of each since then.
-      const VelocityCone &g_now = groups_[pair.a][g].cone, &h_now = groups_[pair.b][h].cone;
-      const VelocityCone since_g(g_now.mean() - g_then.cone.mean(), g_now.radius() + g_then.cone.radius());
-      const VelocityCone since_h(h_now.mean() - h_then.cone.mean(), h_now.radius() + h_then.cone.radius());
-      const double motion = relative_motion(since_g, since_h);
+      const double motion =
+          relative_motion(groups_[pair.a][g].cone - g_then.cone, groups_[pair.b][h].cone - h_then.cone);
       const double gap = (g_then.low - h_then.high).cwiseMax(h_then.low - g_then.high).maxCoeff();
       if (gap > parameters_.reach + motion) continue;
       if (motion > parameters_.budget) return false;

@@ -43,8 +43,6 @@ class ProximityFinder {
   /// Triangles of all surfaces in their global numbering; they must outlive this.
   ProximityFinder(std::span<const Triangle> triangles, Index vertex_count) : features_(triangles, vertex_count) {}
 
-  const Features& features() const { return features_; }
-
   /// Keeps the pairs of features that are closer than `radius` [m] at x [m]. The candidates must hold every pair of
   /// triangles closer than that (up to those with a common edge, which are looked up for each surface of `deformable`).
   /// Edge pairs are left out where the sines of half the angles by which the surface is folded along either edge add up
