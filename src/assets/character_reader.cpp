@@ -103,7 +103,7 @@ class CharacterReader {
       const Affine& local = character_.nodes.back().local;
       if (!local.matrix().allFinite())
         throw std::runtime_error(fmt::format("node \"{}\": expected finite numbers, got others", name));
-      globals_.push_back(parent < 0 ? local : globals_[static_cast<std::size_t>(parent)] * local);
+      globals_.push_back(parent < 0 ? local : globals_[parent] * local);
     }
   }
 
@@ -118,7 +118,7 @@ class CharacterReader {
     if (base + mesh.mNumVertices > kMaxVertices)
       throw std::runtime_error(fmt::format("mesh \"{}\": expected at most {} vertices in all", name, kMaxVertices));
 
-    Affine placing = globals_[static_cast<std::size_t>(node)];
+    Affine placing = globals_[node];
     std::vector<Weights> weights = read_weights(mesh, node, placing);
     for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
       const aiVector3D& x = mesh.mVertices[v];
@@ -155,7 +155,7 @@ class CharacterReader {
       bones.emplace_back(found->second, offset);
       for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights))
         if (w.mWeight > 0) weights[w.mVertexId].push_back({index, w.mWeight});
-      const Affine held = globals_[static_cast<std::size_t>(found->second)] * offset;
+      const Affine held = globals_[found->second] * offset;
       if (total > most && invertible(held)) {
         most = total;
         placing = held;
@@ -211,8 +211,7 @@ class CharacterReader {
                       mesh.mName.C_Str(), furthest_vertex, furthest));
     if (loose > 0 && mesh.mNumBones > 0)
       read_.warnings.push_back(fmt::format("mesh \"{}\": {} of {} vertices have no bone; they go with node \"{}\"",
-                                           mesh.mName.C_Str(), loose, weights.size(),
-                                           character_.nodes[static_cast<std::size_t>(node)].name));
+                                           mesh.mName.C_Str(), loose, weights.size(), character_.nodes[node].name));
   }
 
   void read_faces(const aiMesh& mesh, std::size_t base, bool mirrored) {
@@ -253,7 +252,7 @@ class CharacterReader {
       morphs_.push_back(std::move(morph));
     }
     if (group.count == 0) return;
-    const std::string& of_node = character_.nodes[static_cast<std::size_t>(node)].name;
+    const std::string& of_node = character_.nodes[node].name;
     targets_.morphs.emplace(of_node, group);
     if (name != of_node) targets_.morphs.emplace(name, group);
   }

@@ -17,7 +17,7 @@ namespace {
 /// For each vertex the first one at exactly the same place.
 std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
   const auto key = [&](Index i) {
-    const Vec3& x = positions[static_cast<std::size_t>(i)];
+    const Vec3& x = positions[i];
     return std::array{x.x(), x.y(), x.z()};
   };
   std::vector<Index> order(positions.size());
@@ -27,7 +27,7 @@ std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
   Index start = -1;  // of the run of equal positions
   for (const Index i : order) {
     if (start < 0 || key(i) != key(start)) start = i;
-    first[static_cast<std::size_t>(i)] = start;
+    first[i] = start;
   }
   return first;
 }
@@ -39,7 +39,7 @@ std::size_t join_vertices(Soup& soup) {
   std::vector<Index> renamed(first.size(), -1);
   std::vector<Vec3> kept;
   const auto rename = [&](Index& v) {
-    const auto representative = static_cast<std::size_t>(first[static_cast<std::size_t>(v)]);
+    const auto representative = static_cast<std::size_t>(first[v]);
     if (renamed[representative] < 0) {
       renamed[representative] = static_cast<Index>(kept.size());
       kept.push_back(soup.positions[representative]);

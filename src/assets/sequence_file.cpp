@@ -99,7 +99,7 @@ LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const
   std::vector<Index> renamed(groups.size(), -1);
   std::vector<std::size_t> kept;
   const auto rename = [&](Index& v) {
-    Index& name = renamed[static_cast<std::size_t>(groups[static_cast<std::size_t>(v)])];
+    Index& name = renamed[groups[v]];
     if (name < 0) {
       name = static_cast<Index>(kept.size());
       kept.push_back(static_cast<std::size_t>(v));

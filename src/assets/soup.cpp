@@ -30,7 +30,7 @@ using Transform = Eigen::Matrix4d;
 constexpr double kFlatFace = 1e-7;
 
 bool has_area(const mesh::Triangle& t, const std::vector<Vec3>& x) {
-  const auto corner = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(t[k])]; };
+  const auto corner = [&](std::size_t k) -> const Vec3& { return x[t[k]]; };
   const double longest_sq = std::max({(corner(1) - corner(0)).squaredNorm(), (corner(2) - corner(1)).squaredNorm(),
                                       (corner(0) - corner(2)).squaredNorm()});
   return mesh::area_vector(t, x).norm() > kFlatFace * longest_sq;

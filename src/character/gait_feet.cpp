@@ -94,13 +94,12 @@ Feet::Feet(const Physique& body, const StepPlan& plan, const Track& track, const
 
 /// 0 for the last plant, which is not left.
 double Feet::next_size(int side, std::size_t number) const {
-  return number + 1 < plan_.plants[static_cast<std::size_t>(side)].size() ? plant(side, number + 1).size : 0;
+  return number + 1 < plan_.plants[side].size() ? plant(side, number + 1).size : 0;
 }
 
 Vec3 Feet::hip(int side, int key) const {
   const Vec2& place = track_.place[track_.index(key)];
-  return Vec3(place.x(), place.y(), heights_.empty() ? 0 : pelvis_height(key)) +
-         hips_[track_.index(key)][static_cast<std::size_t>(side)];
+  return Vec3(place.x(), place.y(), heights_.empty() ? 0 : pelvis_height(key)) + hips_[track_.index(key)][side];
 }
 
 /// Of a leg that stands [degrees]: the curve after a strike and before the toes leave, as much of it as the steps are
@@ -247,8 +246,7 @@ void Feet::find_heights() {
   std::array<std::size_t, 2> numbers{0, 0};
   for (const auto& strike : plan_.strikes) {
     supports.back().end = strike.key - before;
-    supports.push_back(
-        {strike.side, ++numbers[static_cast<std::size_t>(strike.side)], strike.key, strike.key + after, kEver});
+    supports.push_back({strike.side, ++numbers[strike.side], strike.key, strike.key + after, kEver});
   }
   std::vector<double> heights;
   std::size_t now = 0;

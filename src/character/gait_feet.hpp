@@ -35,9 +35,7 @@ class Feet {
   double pelvis_height(int key) const { return heights_[track_.index(key)]; }
 
  private:
-  const Plant& plant(int side, std::size_t number) const {
-    return plan_.plants[static_cast<std::size_t>(side)][number];
-  }
+  const Plant& plant(int side, std::size_t number) const { return plan_.plants[side][number]; }
   double next_size(int side, std::size_t number) const;
   Vec3 hip(int side, int key) const;
   double knee(int side, std::size_t number, int key) const;

@@ -48,14 +48,14 @@ class Planner {
     plan.key_time = pace.step_time / plan.step_keys;
     plan.speed = pace.step_length / pace.step_time;
     next_strike_ = static_cast<int>(std::round(stand / plan.key_time)) + share(kShift) + share(kSwing);
-    for (int side = 0; side < 2; ++side) plan.plants[static_cast<std::size_t>(side)].push_back(plant_of(side));
+    for (int side = 0; side < 2; ++side) plan.plants[side].push_back(plant_of(side));
   }
 
   /// Moves the middle of the body and sets one foot beside it.
   void step(int side, const Step& step) {
     yaw_ += step.turn;
     middle_ += step.forward * forward_of(yaw_) + step.left * left_of(yaw_);
-    auto& plants = plan.plants[static_cast<std::size_t>(side)];
+    auto& plants = plan.plants[side];
     Plant plant = plant_of(side);
     plant.strike = next_strike_;
     plant.size = step.size;
@@ -130,7 +130,7 @@ Physique physique_of(const Character& mannequin) {
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const Node& node = mannequin.nodes[j];
     body.joints[j] = node.local.translation();
-    if (node.parent >= 0) body.joints[j] += body.joints[static_cast<std::size_t>(node.parent)];
+    if (node.parent >= 0) body.joints[j] += body.joints[node.parent];
   }
   const Vec3 hip = body.joints[z(Joint::left_upper_leg)], knee = body.joints[z(Joint::left_lower_leg)],
              ankle = body.joints[z(Joint::left_foot)], ball = body.joints[z(Joint::left_toes)] - ankle;
@@ -162,7 +162,7 @@ int keys_of_step(const Pace& pace) {
 }
 
 std::size_t StepPlan::plant_at(int side, int key) const {
-  const auto& list = plants[static_cast<std::size_t>(side)];
+  const auto& list = plants[side];
   std::size_t plant = 0;
   while (plant + 1 < list.size() && key >= list[plant + 1].strike) ++plant;
   return plant;

@@ -23,7 +23,7 @@ std::vector<Value> mean_around(const std::vector<Value>& values, int width) {
     Value sum = values[0] * 0;
     for (int d = -width / 2; d <= width / 2; ++d) {
       const double share = std::abs(d) == width / 2 ? 0.5 : 1;
-      sum += share / width * values[static_cast<std::size_t>(std::clamp(k + d, 0, n - 1))];
+      sum += share / width * values[std::clamp(k + d, 0, n - 1)];
     }
     means.push_back(sum);
   }
@@ -43,8 +43,7 @@ std::vector<Vec2> balanced(const std::vector<Vec2>& p, double omega, double key_
   for (int k = 0; k < n; ++k) {
     Vec2 mean = Vec2::Zero();
     for (int d = 1 - reach; d < reach; ++d) {
-      mean += weights[static_cast<std::size_t>(std::abs(d))] / sum *
-              p[static_cast<std::size_t>(std::clamp(k + d, 0, n - 1))];
+      mean += weights[std::abs(d)] / sum * p[std::clamp(k + d, 0, n - 1)];
     }
     means.push_back(mean);
   }
@@ -81,7 +80,7 @@ Track lay_track(const Physique& body, const StepPlan& plan, int first, int last)
     Vec2 point = Vec2::Zero();
     double yaw = 0, sum = 0;
     for (int side = 0; side < 2; ++side) {
-      const auto& plants = plan.plants[static_cast<std::size_t>(side)];
+      const auto& plants = plan.plants[side];
       const std::size_t number = plan.plant_at(side, key);
       const double share = load(plan, plants[number], key);
       const double next_size = number + 1 < plants.size() ? plants[number + 1].size : 0;

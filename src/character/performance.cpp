@@ -29,8 +29,8 @@ Performance::Performance(const Character& character, const Clip& clip, const Pla
   for (const Channel& channel : clip.channels)
     if (channel.position.times.size() > 1 && (root_ < 0 || channel.node < root_)) root_ = channel.node;
   if (root_ >= 0) {
-    const Index parent = character.nodes[static_cast<std::size_t>(root_)].parent;
-    if (parent >= 0) root_to_world_ = global_transforms(character, rest_)[static_cast<std::size_t>(parent)].linear();
+    const Index parent = character.nodes[root_].parent;
+    if (parent >= 0) root_to_world_ = global_transforms(character, rest_)[parent].linear();
   }
   const double fade = std::min(playing.crossfade, clip.duration / 2);
   playing_.crossfade = fade;
@@ -47,7 +47,7 @@ Vec3 Performance::way(const Pose& a, const Pose& b) const {
 }
 
 void Performance::displace(Pose& pose, const Vec3& by) const {
-  if (root_ >= 0) pose.nodes[static_cast<std::size_t>(root_)].position += root_to_world_.inverse() * by;
+  if (root_ >= 0) pose.nodes[root_].position += root_to_world_.inverse() * by;
 }
 
 Pose Performance::at_clip_time(double t) const {

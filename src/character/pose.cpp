@@ -70,14 +70,13 @@ Pose rest_pose(const Character& character) {
 Pose pose_at(const Character& character, const Clip& clip, double t) {
   Pose pose = rest_pose(character);
   for (const Channel& channel : clip.channels) {
-    Placement& node = pose.nodes[static_cast<std::size_t>(channel.node)];
+    Placement& node = pose.nodes[channel.node];
     if (!channel.position.times.empty()) node.position = value_at(channel.position, t);
     if (!channel.rotation.times.empty()) node.rotation = value_at(channel.rotation, t).normalized();
     if (!channel.scale.times.empty()) node.stretch = value_at(channel.scale, t).asDiagonal();
   }
   for (const MorphChannel& channel : clip.morphs)
-    if (!channel.weight.times.empty())
-      pose.morphs[static_cast<std::size_t>(channel.target)] = value_at(channel.weight, t);
+    if (!channel.weight.times.empty()) pose.morphs[channel.target] = value_at(channel.weight, t);
   return pose;
 }
 
@@ -99,7 +98,7 @@ std::vector<Affine> global_transforms(const Character& character, const Pose& po
   for (std::size_t n = 0; n < pose.nodes.size(); ++n) {
     const Index parent = character.nodes[n].parent;
     const Affine local = pose.nodes[n].to_affine();
-    globals.push_back(parent < 0 ? local : globals[static_cast<std::size_t>(parent)] * local);
+    globals.push_back(parent < 0 ? local : globals[parent] * local);
   }
   return globals;
 }
@@ -108,8 +107,7 @@ void skin(const Character& character, const Pose& pose, std::span<Vec3> out) {
   using Map = Eigen::Matrix<double, 3, 4>;
   const std::vector<Affine> globals = global_transforms(character, pose);
   std::vector<Map> bones;
-  for (const Bone& bone : character.bones)
-    bones.push_back((globals[static_cast<std::size_t>(bone.node)] * bone.offset).matrix().topRows<3>());
+  for (const Bone& bone : character.bones) bones.push_back((globals[bone.node] * bone.offset).matrix().topRows<3>());
   parallel_for(out.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       Vec3 shape = character.mesh.positions[v];
@@ -118,7 +116,7 @@ void skin(const Character& character, const Pose& pose, std::span<Vec3> out) {
       Map map = Map::Zero();
       for (auto i = static_cast<std::size_t>(character.first_influence[v]);
            i < static_cast<std::size_t>(character.first_influence[v + 1]); ++i)
-        map += character.influences[i].weight * bones[static_cast<std::size_t>(character.influences[i].bone)];
+        map += character.influences[i].weight * bones[character.influences[i].bone];
       out[v] = map * shape.homogeneous();
     }
   });

@@ -24,11 +24,9 @@ struct Joints {
   std::vector<Affine> globals;  // of all nodes
   std::span<const Index> nodes;
 
-  bool has(Index joint) const { return nodes[static_cast<std::size_t>(joint)] >= 0; }
+  bool has(Index joint) const { return nodes[joint] >= 0; }
   bool has(const std::string& joint) const { return has(joint_number(joint)); }
-  const Affine& global(Index joint) const {
-    return globals[static_cast<std::size_t>(nodes[static_cast<std::size_t>(joint)])];
-  }
+  const Affine& global(Index joint) const { return globals[nodes[joint]]; }
   Vec3 place(const std::string& joint) const { return global(joint_number(joint)).translation(); }
   Vec3 from_to(const std::string& a, const std::string& b) const {
     return has(a) && has(b) ? Vec3(place(b) - place(a)) : Vec3(Vec3::Zero());
@@ -81,9 +79,7 @@ double lowest_foot(const Joints& joints, const Vec3& up) {
 /// feet are taken to be upright and flat in both; hands go with their arms.
 std::vector<Quat> limb_turns(const Joints& body, const Joints& motion, const Quat& face) {
   std::vector<Quat> turns(joint_names().size(), Quat::Identity());
-  const auto turn = [&](const std::string& joint) -> Quat& {
-    return turns[static_cast<std::size_t>(joint_number(joint))];
-  };
+  const auto turn = [&](const std::string& joint) -> Quat& { return turns[joint_number(joint)]; };
   constexpr std::array<std::array<const char*, 2>, 4> kLimbs{
       {{"UpperArm", "LowerArm"}, {"LowerArm", "Hand"}, {"UpperLeg", "LowerLeg"}, {"LowerLeg", "Foot"}}};
   for (const std::string side : {"Left", "Right"}) {
@@ -167,7 +163,7 @@ class Retargeter {
     std::size_t channel = 0;
     for (std::size_t n = 0; n < joint_of_.size(); ++n) {
       const Index parent_node = body_.character.nodes[n].parent;
-      const Affine parent = parent_node < 0 ? Affine::Identity() : globals[static_cast<std::size_t>(parent_node)];
+      const Affine parent = parent_node < 0 ? Affine::Identity() : globals[parent_node];
       Placement local = at_rest_.nodes[n];
       if (joint_of_[n] >= 0) {
         Channel& to = result.channels[channel++];

@@ -11,7 +11,7 @@ FrameRange cached_frames(const cache::Reader& reader, FrameSelection selection) 
   const int frame_count = reader.manifest().frame_count;
   const std::vector<int> there = reader.frames();
   int whole = 0;
-  while (whole < static_cast<int>(there.size()) && there[static_cast<std::size_t>(whole)] == whole) ++whole;
+  while (whole < static_cast<int>(there.size()) && there[whole] == whole) ++whole;
   if (!selection.end && whole < frame_count) {
     log::warn(fmt::format("{} holds {} of {} frames; weft simulate --resume makes the others", reader.folder().string(),
                           whole, frame_count));

@@ -28,11 +28,11 @@ PictureSize small_size(const render::Settings& settings) {
 std::vector<int> evenly_spaced(const std::vector<int>& frames, int count) {
   const auto all = static_cast<int>(frames.size());
   if (count >= all) return frames;
-  if (count == 1) return {frames[static_cast<std::size_t>(all / 2)]};
+  if (count == 1) return {frames[all / 2]};
   std::vector<int> chosen;
   for (int i = 0; i < count; ++i) {
     const double share = static_cast<double>(i) / (count - 1);
-    chosen.push_back(frames[static_cast<std::size_t>(std::lround(share * (all - 1)))]);
+    chosen.push_back(frames[std::lround(share * (all - 1))]);
   }
   return chosen;
 }

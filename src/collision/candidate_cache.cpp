@@ -17,7 +17,14 @@ CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& par
       reach_(reach),
       broad_phase_(bodies.surfaces(), x, parameters.broad_phase),
       from_(x.begin(), x.end()),
-      to_(from_) {}
+      to_(from_) {
+  for (std::size_t a = 0; a < bodies.size(); ++a) {
+    if (!bodies[a].deformable) continue;
+    if (parameters.self) wanted_.push_back({a, a});
+    for (std::size_t b = a + 1; b < bodies.size(); ++b)
+      if (bodies[b].deformable ? parameters.self : parameters.obstacles) wanted_.push_back({a, b});
+  }
+}
 
 CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   double motion = 0;
@@ -25,16 +32,15 @@ CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<co
   const double margin = (0.5 + (parameters_.reuse && motion < kSkin * reach_ ? kSkin : 0.0)) * reach_;
   refit(x_t0, x_t1, margin);
   pairs_.clear();
-  for (std::size_t a = 0; a < bodies_.size(); ++a) {
-    if (!bodies_[a].deformable) continue;
-    if (parameters_.self) broad_phase_.self_pairs(a, pairs_);
-    for (std::size_t b = a + 1; b < bodies_.size(); ++b)
-      if (bodies_[b].deformable ? parameters_.self : parameters_.obstacles) broad_phase_.pairs(a, b, pairs_);
-  }
+  for (const auto& [a, b] : wanted_) a == b ? broad_phase_.self_pairs(a, pairs_) : broad_phase_.pairs(a, b, pairs_);
+  cover(x_t0, x_t1, margin);
+  return pairs_;
+}
+
+void CandidateCache::cover(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
   from_.assign(x_t0.begin(), x_t0.end());
   to_.assign(x_t1.begin(), x_t1.end());
   margin_ = margin;
-  return pairs_;
 }
 
 // A still obstacle keeps the bounds it has.

@@ -7,14 +7,16 @@
 
 #include "collision/bodies.hpp"
 #include "collision/hierarchy/broad_phase.hpp"
+#include "collision/proximity/coherence.hpp"
 #include "core/types.hpp"
 
 namespace weft::collision {
 
 struct SearchParameters {
-  bool self = true;       ///< cloth against itself and other cloth
-  bool obstacles = true;  ///< cloth against obstacles
-  bool reuse = true;      ///< of candidates while nothing has moved far
+  bool self = true;        ///< cloth against itself and other cloth
+  bool obstacles = true;   ///< cloth against obstacles
+  bool reuse = true;       ///< of candidates while nothing has moved far
+  bool coherence = false;  ///< of closest points instead, by velocity cones (see CoherentDetection)
   BroadPhaseOptions broad_phase = {};
 };
 
@@ -40,7 +42,13 @@ class CandidateCache {
   /// Whether x is inside the bounds: the pairs hold all that can meet on a way that ends there.
   bool covers_end(std::span<const Vec3> x) const;
 
+  /// For who collects by other means: pairs hold for ways within `margin` [m] of the one from x_t0 to x_t1.
+  void cover(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin);
+
+  /// The pairs of surfaces that are looked at.
+  const std::vector<SurfacePair>& wanted() const { return wanted_; }
   /// The hierarchies, with bounds that hold the vertices of every way that is covered.
+  BroadPhase& hierarchies() { return broad_phase_; }
   const BroadPhase& hierarchies() const { return broad_phase_; }
 
   /// From now on nothing is covered.
@@ -60,6 +68,7 @@ class CandidateCache {
   SearchParameters parameters_;
   double reach_;
   BroadPhase broad_phase_;
+  std::vector<SurfacePair> wanted_;
   CandidatePairs pairs_;
   // What they are good for: vertices between these positions, or no further from there than the margin [m].
   std::vector<Vec3> from_, to_;

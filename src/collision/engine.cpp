@@ -1,11 +1,10 @@
 #include "collision/engine.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "core/archive.hpp"
-#include "mesh/geometry.hpp"
 
 namespace weft::collision {
 namespace {
@@ -13,6 +12,9 @@ namespace {
 // Contacts are prepared up to this multiple of the range: those that come into range during the step are then in its
 // solve. Beyond, whatever would meet is found by the failing certificates.
 constexpr double kReachOfRange = 1.5;
+// Relative motion that kept closest points survive, in reaches: they are then a quarter of the reach farther apart than
+// their features at most. With half of the reach twice as many are kept (tests/bench/README.md).
+constexpr double kCoherenceBudget = 0.125;
 
 // Distance below which contacts are prepared [m].
 double reach_of(const Bodies& bodies) {
@@ -31,11 +33,29 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       finder_(bodies_.triangles(), bodies_.vertex_count()),
       builder_(bodies_, parameters.contact, masses),
       response_(parameters.response, {masses.begin(), masses.end()}),
-      pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {}
+      pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
+  const double reach = candidates_.reach();
+  if (parameters.search.coherence)
+    coherence_.emplace(bodies_.surfaces(), candidates_.wanted(), x,
+                       CoherenceParameters{reach, kCoherenceBudget * reach, kFlattest});
+}
+
+void Engine::forget() {
+  candidates_.forget();
+  if (!coherence_) return;
+  coherence_->forget();
+  candidates_.drop();
+}
 
 // Pairs that can meet on the way from x_t0 to x_t1; of them only those whose separating planes leave them near can have
 // features that are.
 void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  if (coherence_) {
+    coherence_->update(candidates_.hierarchies(), finder_, x_t0, x_t1);
+    candidates_.cover(x_t0, x_t1, 0.5 * candidates_.reach());
+    separation_.watch(coherence_->candidates().apart.view(), x_t0);
+    return;
+  }
   CandidatePairs& pairs = candidates_.collect(x_t0, x_t1);
   separation_.watch(pairs.apart.view(), x_t0);
   pairs.apart.clear();
@@ -46,15 +66,21 @@ void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
 void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h) {
   step_ = h;
   if (!candidates_.covers_start(x_t0) || !candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
-  finder_.find(x_t0, candidates_.reach(), proximities_);
+  if (coherence_) {
+    proximities_.clear();
+    std::ranges::copy_if(coherence_->proximities(), std::back_inserter(proximities_),
+                         [&](const Proximity& proximity) { return proximity.distance < candidates_.reach(); });
+  } else {
+    finder_.find(x_t0, candidates_.reach(), proximities_);
+  }
 
   const StepMotion motion{x_t0, x_t1, h};
   response_.begin_step(h);
   builder_.begin_step();
   if (!pinched_.empty()) {
-    pinched_.release(bodies_.surfaces(), x_t0);
-    for (const PinchTouch& touch : pinched_.find_touches(bodies_.surfaces(), x_t0, candidates_.reach()))
-      builder_.add_pinched({touch.vertices, touch.weights, touch.normal, touch.height}, motion, response_);
+    pinched_.release(candidates_.hierarchies(), x_t0);
+    for (const FeaturePair& push : pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.reach()))
+      builder_.add_pinched(push, motion, response_);
   }
   builder_.add(proximities_, pinched_, motion, response_);
   if (!apart(x_t0, x_t1)) adopt_failing(x_t0, x_t1);
@@ -96,59 +122,17 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
       collect(x_t0, x_t1);
       continue;
     }
-    if (const auto fresh = first_fresh(pinched); fresh && !may_pinch) {
+    if (const auto fresh = first_fresh(pinched, pinched_, candidates_.hierarchies()); fresh && !may_pinch) {
       report.separated = false;
       report.stuck = *fresh;
       return report;
     }
-    pinched.note_origins(bodies_.surfaces(), x_t0);
+    pinched.note_origins(candidates_.hierarchies(), x_t0);
     pinched_ = std::move(pinched);
     return report;
   }
   report.separated = false;
   return report;
-}
-
-// A pair of `pinched` whose obstacle does not pinch that cloth so far.
-std::optional<CornerPair> Engine::first_fresh(const PinchedPairs& pinched) const {
-  for (const auto& [key, origin] : pinched.origins()) {
-    const std::size_t cloth = bodies_.body_of(key.cloth[0]), obstacle = key.body;
-    const auto same = [&](const auto& other) {
-      return bodies_.body_of(other.first.cloth[0]) == cloth && other.first.body == obstacle;
-    };
-    if (std::none_of(pinched_.origins().begin(), pinched_.origins().end(), same))
-      return CornerPair{key.cloth, bodies_.surfaces()[obstacle].triangles.front()};
-  }
-  return std::nullopt;
-}
-
-// How far the pinching obstacle's faces that look this way are from the place; infinite where none do.
-double Engine::distance_facing(const Pinch& pinch, const Vec3& way, std::span<const Vec3> x) const {
-  const SurfacePoint point = nearest_point(pinch.place, bodies_.surfaces()[pinch.obstacle].triangles, x, way);
-  const bool faces = mesh::area_vector(point.face, x).dot(way) > 0;
-  return faces ? std::abs(point.height) : std::numeric_limits<double>::infinity();
-}
-
-std::vector<Pinch> Engine::pinches(std::span<const Vec3> x) const {
-  std::vector<Pinch> found;
-  for (const auto& [key, origin] : pinched_.origins()) {
-    const Pinch pinch{bodies_.body_of(key.cloth[0]), key.body, std::nullopt, x[static_cast<std::size_t>(key.cloth[0])]};
-    const auto same = [&](const Pinch& p) { return p.cloth == pinch.cloth && p.obstacle == pinch.obstacle; };
-    if (std::any_of(found.begin(), found.end(), same)) continue;
-    found.push_back(pinch);
-    double nearest = std::numeric_limits<double>::infinity();
-    for (std::size_t b = 0; b < bodies_.size(); ++b) {
-      if (bodies_[b].deformable || b == pinch.obstacle) continue;
-      const double distance = std::abs(nearest_point(pinch.place, bodies_.surfaces()[b].triangles, x).height);
-      if (distance < nearest) nearest = distance, found.back().other = b;
-    }
-    // Parts of one body pinch too, as arm and side do: then it looks at the cloth from both sides, and from the far one
-    // from nearer than any other obstacle.
-    const Vec3 up = mesh::area_vector(key.cloth, x).normalized();
-    const double far = std::max(distance_facing(pinch, up, x), distance_facing(pinch, -up, x));
-    if (far < nearest) found.back().other = pinch.obstacle;
-  }
-  return found;
 }
 
 double Engine::min_distance() const {

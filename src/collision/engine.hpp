@@ -18,20 +18,14 @@
 #include "collision/bodies.hpp"
 #include "collision/candidate_cache.hpp"
 #include "collision/contact_builder.hpp"
+#include "collision/proximity/coherence.hpp"
 #include "collision/proximity/proximities.hpp"
 #include "collision/response/contact_response.hpp"
-#include "collision/response/pinch.hpp"
+#include "collision/response/pinch_report.hpp"
 #include "collision/response/separation.hpp"
 #include "core/types.hpp"
 
 namespace weft::collision {
-
-/// Cloth that is in an obstacle because it has no room.
-struct Pinch {
-  std::size_t cloth = 0, obstacle = 0;
-  std::optional<std::size_t> other;  ///< the other obstacle nearest to it, if there is one; the same: parts of it pinch
-  Vec3 place;                        ///< of a particle [m]
-};
 
 struct EngineParameters {
   SearchParameters search;
@@ -51,7 +45,7 @@ class Engine {
   void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h);
 
   /// Lets go, between two steps, of what only makes the search faster and does not follow from positions.
-  void forget() { candidates_.forget(); }
+  void forget();
 
   /// What the next step from x [m] depends on, besides that. Throws std::runtime_error where these bodies cannot have
   /// it.
@@ -75,8 +69,10 @@ class Engine {
 
   /// Triangles of cloth that are pinched by an obstacle, counted per obstacle.
   int pinched_pairs() const { return static_cast<int>(pinched_.size()); }
-  /// Which cloths and obstacles that are, with places at x [m].
-  std::vector<Pinch> pinches(std::span<const Vec3> x) const;
+  /// Which cloths and obstacles that are, with places at x [m], where the last step began.
+  std::vector<Pinch> pinches(std::span<const Vec3> x) const {
+    return list_pinches(pinched_, candidates_.hierarchies(), x);
+  }
 
   /// Pairs of features within the reach, 1.5 contact ranges, at the start of the last step.
   int proximities() const { return static_cast<int>(proximities_.size()); }
@@ -90,8 +86,6 @@ class Engine {
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
-  std::optional<CornerPair> first_fresh(const PinchedPairs& pinched) const;
-  double distance_facing(const Pinch& pinch, const Vec3& way, std::span<const Vec3> x) const;
   template <class Archive>
   void serialize_candidates(Archive& archive);
 
@@ -99,6 +93,7 @@ class Engine {
   CandidateCache candidates_;
   Separation separation_;
   ProximityFinder finder_;
+  std::optional<CoherentDetection> coherence_;  // keeps pairs and closest points in place of the cache, where wanted
   ContactBuilder builder_;
   ContactResponse response_;
   PinchedPairs pinched_;

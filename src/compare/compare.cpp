@@ -78,7 +78,7 @@ image::Image heat_map(const Plane<float>& flip) {
   image::Image picture(flip.width, flip.height);
   std::uint8_t* to = picture.rgb.data();
   for (const float value : flip.values) {
-    const auto& color = colors[static_cast<std::size_t>(std::lround(std::sqrt(value) * (image::kHeatColors - 1)))];
+    const auto& color = colors[std::lround(std::sqrt(value) * (image::kHeatColors - 1))];
     to = std::copy(color.begin(), color.end(), to);
   }
   return picture;

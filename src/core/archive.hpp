@@ -95,22 +95,4 @@ void serialize_points(Archive& archive, std::vector<Vec3>& points, std::size_t c
   }
 }
 
-// The names of before, for the modules that still use them.
-template <class Archive, class... Values>
-void exchange_values(Archive& archive, Values&... values) {
-  serialize_values(archive, values...);
-}
-template <class Archive, class List>
-void exchange_plain(Archive& archive, List& list) {
-  serialize_plain(archive, list);
-}
-template <class Archive, class List, class Serialize>
-void exchange_each(Archive& archive, List& list, const Serialize& serialize_one, std::size_t least = 1) {
-  serialize_each(archive, list, serialize_one, least);
-}
-template <class Archive>
-void exchange_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
-  serialize_points(archive, points, count);
-}
-
 }  // namespace weft

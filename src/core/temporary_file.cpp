@@ -131,7 +131,7 @@ TemporaryName::~TemporaryName() {
 }
 
 void TemporaryName::release() {
-  if (slot_ >= 0) g_slots[static_cast<std::size_t>(slot_)].state.store(Slot::free);
+  if (slot_ >= 0) g_slots[slot_].state.store(Slot::free);
   if (descriptor_ >= 0) ::close(descriptor_);
   slot_ = descriptor_ = -1;
   path_.clear();

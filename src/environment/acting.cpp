@@ -103,10 +103,9 @@ std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNam
     if (number < 0)
       cast.fail(key + ".name", fmt::format("expected a joint of the body, got \"{}\"{}", joint.name,
                                            did_you_mean(joint.name, character::joint_names())));
-    if (joint.*name)
-      joints[static_cast<std::size_t>(number)] = named_node(cast, key, *(joint.*name), character.nodes, source);
+    if (joint.*name) joints[number] = named_node(cast, key, *(joint.*name), character.nodes, source);
   }
-  if (joints[static_cast<std::size_t>(character::joint_number("Hips"))] < 0)
+  if (joints[character::joint_number("Hips")] < 0)
     cast.fail("joint", fmt::format("expected a node of {} that is known as the hips, got none; name it in a "
                                    "[[character.joint]] with name = \"Hips\"",
                                    source));

@@ -26,7 +26,7 @@ void push(const std::array<Index, Corners>& face, const Vec3& area, const Vec3& 
   const double z = flow.h * coefficient * std::abs(speed) / mass;
   const double limit = flow.taken == Air::Taken::over_the_step ? 1 + z : std::sqrt(1 + z * z);
   const double drag = coefficient * std::abs(speed) * speed / limit;
-  for (Index p : face) flow.force[static_cast<std::size_t>(p)] -= 1.0 / Corners * drag * n;
+  for (Index p : face) flow.force[p] -= 1.0 / Corners * drag * n;
 }
 
 }  // namespace

@@ -6,7 +6,7 @@ namespace {
 Vec3 weighted_sum(const std::array<Index, 4>& particles, const std::array<double, 4>& weights,
                   std::span<const Vec3> x) {
   Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 4; ++k) sum += weights[k] * x[static_cast<std::size_t>(particles[k])];
+  for (int k = 0; k < 4; ++k) sum += weights[k] * x[particles[k]];
   return sum;
 }
 
@@ -64,7 +64,7 @@ void Bend::add(const Evaluation& at) const {
     Vec3 moment = rigidity_ * curvature;
     if (damping_.any()) moment += damping(d, curvature, at);
     for (int k = 0; k < difference.count; ++k)
-      at.force[static_cast<std::size_t>(difference.particles[k])] -= difference.area * difference.weights[k] * moment;
+      at.force[difference.particles[k]] -= difference.area * difference.weights[k] * moment;
   }
 }
 

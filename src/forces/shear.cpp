@@ -38,10 +38,10 @@ void Shear::attach(const solver::BlockMatrix& matrix) {
 }
 
 Shear::Strain Shear::strain(const Cell& cell, std::span<const Vec3> x) const {
-  const Vec3& x00 = x[static_cast<std::size_t>(cell.corners[0])];
-  const Vec3& x10 = x[static_cast<std::size_t>(cell.corners[1])];
-  const Vec3& x01 = x[static_cast<std::size_t>(cell.corners[2])];
-  const Vec3& x11 = x[static_cast<std::size_t>(cell.corners[3])];
+  const Vec3& x00 = x[cell.corners[0]];
+  const Vec3& x10 = x[cell.corners[1]];
+  const Vec3& x01 = x[cell.corners[2]];
+  const Vec3& x11 = x[cell.corners[3]];
   Strain s;
   s.su = (x10 - x00 + x11 - x01) / (2 * cell.lu);
   s.sv = (x01 - x00 + x11 - x10) / (2 * cell.lv);
@@ -59,10 +59,10 @@ void Shear::add(const Evaluation& at) const {
     // ∂c/∂x_k; opposite corners get opposite signs, so two vectors serve all four.
     const Vec3 u_part = s.sv / (2 * cell.lu), v_part = s.su / (2 * cell.lv);
     const Vec3 main_diagonal = stress * (u_part + v_part), cross_diagonal = stress * (u_part - v_part);
-    at.force[static_cast<std::size_t>(cell.corners[0])] += main_diagonal;
-    at.force[static_cast<std::size_t>(cell.corners[3])] -= main_diagonal;
-    at.force[static_cast<std::size_t>(cell.corners[1])] -= cross_diagonal;
-    at.force[static_cast<std::size_t>(cell.corners[2])] += cross_diagonal;
+    at.force[cell.corners[0]] += main_diagonal;
+    at.force[cell.corners[3]] -= main_diagonal;
+    at.force[cell.corners[1]] -= cross_diagonal;
+    at.force[cell.corners[2]] += cross_diagonal;
     if (at.matrix != nullptr) add_stiffness(c, s, rate, at);
   }
 }

@@ -75,8 +75,7 @@ void Stretch::add(const Evaluation& at) const {
 double Stretch::energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (const Edge& e : edges_) {
-    const double extension =
-        (x[static_cast<std::size_t>(e.j)] - x[static_cast<std::size_t>(e.i)]).norm() - e.rest_length;
+    const double extension = (x[e.j] - x[e.i]).norm() - e.rest_length;
     sum += 0.5 * e.elasticity * extension * extension;
   }
   return sum;
@@ -85,7 +84,7 @@ double Stretch::energy(std::span<const Vec3> x) const {
 double Stretch::max_strain(std::span<const Vec3> x) const {
   double largest = 0;
   for (const Edge& e : edges_) {
-    const double length = (x[static_cast<std::size_t>(e.j)] - x[static_cast<std::size_t>(e.i)]).norm();
+    const double length = (x[e.j] - x[e.i]).norm();
     largest = std::max(largest, std::abs(length / e.rest_length - 1));
   }
   return largest;
@@ -93,10 +92,10 @@ double Stretch::max_strain(std::span<const Vec3> x) const {
 
 void Stretch::strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const {
   for (const Edge& e : edges_) {
-    const double length = (x[static_cast<std::size_t>(e.j)] - x[static_cast<std::size_t>(e.i)]).norm();
+    const double length = (x[e.j] - x[e.i]).norm();
     const auto strain = static_cast<float>(std::abs(length / e.rest_length - 1));
     for (Index p : {e.i, e.j}) {
-      float& value = heat[static_cast<std::size_t>(p - first_)];
+      float& value = heat[p - first_];
       value = std::max(value, strain);
     }
   }

@@ -18,7 +18,7 @@ constexpr double kFlatRest = 1e-9;
 /// s_uu, s_vv and s_uv as columns.
 Mat3 columns_of(const std::array<Eigen::Array4d, 3>& curvature) {
   Mat3 columns;
-  for (int d = 0; d < 3; ++d) columns.row(d) = curvature[static_cast<std::size_t>(d)].head<3>();
+  for (int d = 0; d < 3; ++d) columns.row(d) = curvature[d].head<3>();
   return columns;
 }
 
@@ -29,7 +29,7 @@ struct Plane {
 };
 
 Plane plane_of(std::span<const Index> particles, std::span<const Vec3> x) {
-  const auto corner = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(particles[k % 3])]; };
+  const auto corner = [&](std::size_t k) -> const Vec3& { return x[particles[k % 3]]; };
   const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
   const double size = normal.norm();  // twice the area
   Plane plane{Vec3::Zero(), {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
@@ -70,12 +70,10 @@ void TriangleBend::find_rest(Element& element, const std::array<Vec2, 3>& materi
                                       inverse.row(1).transpose()};
   std::array<Vec3, 2> tangents{Vec3::Zero(), Vec3::Zero()};  // s_u and s_v at rest
   for (std::size_t k = 0; k < 3; ++k)
-    for (int axis = 0; axis < 2; ++axis)
-      tangents[static_cast<std::size_t>(axis)] += gradients[k][axis] * rest[static_cast<std::size_t>(corners[k])];
+    for (int axis = 0; axis < 2; ++axis) tangents[axis] += gradients[k][axis] * rest[corners[k]];
   for (std::size_t k = 0; k < 3; ++k)
     for (int axis = 0; axis < 2; ++axis)
-      weights_[element.begin + k].head<3>() -=
-          gradients[k][axis] * (curved.transpose() * tangents[static_cast<std::size_t>(axis)]).array();
+      weights_[element.begin + k].head<3>() -= gradients[k][axis] * (curved.transpose() * tangents[axis]).array();
 }
 
 TriangleBend::Curvature TriangleBend::curvature(const Element& element, std::span<const Vec3> x) const {
@@ -83,7 +81,7 @@ TriangleBend::Curvature TriangleBend::curvature(const Element& element, std::spa
   const Index* particle = particles_.data();
   const Lanes* weight = weights_.data();
   for (std::size_t k = element.begin; k < element.end; ++k) {
-    const Vec3& position = x[static_cast<std::size_t>(particle[k])];
+    const Vec3& position = x[particle[k]];
     of_x += position.x() * weight[k];
     of_y += position.y() * weight[k];
     of_z += position.z() * weight[k];
@@ -122,7 +120,7 @@ void TriangleBend::add(const Evaluation& at) const {
     for (std::size_t k = element.begin; k < element.end; ++k) {
       const Lanes& w = weights_[k];
       const Lanes force = w[0] * of_uu + w[1] * of_vv + w[2] * of_uv;
-      at.force[static_cast<std::size_t>(particles_[k])] -= force.head<3>().matrix();
+      at.force[particles_[k]] -= force.head<3>().matrix();
     }
     if (!element.rest.isZero(0)) add_rest_moment(element, columns_of(curved), at);
   }
@@ -188,8 +186,8 @@ void TriangleBend::add_rest_moment(const Element& element, const Mat3& curved, c
   const Index* particle = particles_.data() + element.begin;
   const solver::Slot* slots = slots_.data() + element.slots;
   const auto turned = [&](std::size_t k) { return rest.dot(weights_[element.begin + k].head<3>().matrix()); };
-  for (std::size_t k = 0; k < count; ++k) at.force[static_cast<std::size_t>(particle[k])] += size * turned(k) * n;
-  for (std::size_t k = 0; k < 3; ++k) at.force[static_cast<std::size_t>(particle[k])] -= size * m.dot(g[k]) * n;
+  for (std::size_t k = 0; k < count; ++k) at.force[particle[k]] += size * turned(k) * n;
+  for (std::size_t k = 0; k < 3; ++k) at.force[particle[k]] -= size * m.dot(g[k]) * n;
   if (at.matrix == nullptr) return;
 
   for (std::size_t k = 0; k < 3; ++k) {

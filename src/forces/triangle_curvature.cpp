@@ -110,7 +110,7 @@ Slope Slopes::across(const mesh::Edge& edge) const {
     const auto count = static_cast<Eigen::Index>(patch.vertices.size());
     Eigen::MatrixXd moments(6, count);
     for (Eigen::Index k = 0; k < count; ++k) {
-      const Point d = patch.vertices[static_cast<std::size_t>(k)].second - 0.5 * (p + q);
+      const Point d = patch.vertices[k].second - 0.5 * (p + q);
       const double a = cross(d, over) / determinant, b = cross(along, d) / determinant;  // d = a along + b over
       moments.col(k) << 1, a, b, a * a, a * b, b * b;
     }
@@ -130,8 +130,7 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   best[1] -= c / length;
   best[0] += c / length;
   Slope slope;
-  for (Eigen::Index k = 0; k < best.size(); ++k)
-    slope.emplace_back(patch.vertices[static_cast<std::size_t>(k)].first, best[k] / d);
+  for (Eigen::Index k = 0; k < best.size(); ++k) slope.emplace_back(patch.vertices[k].first, best[k] / d);
   return slope;
 }
 

@@ -44,7 +44,7 @@ TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const 
     if (!sheet.sewn) continue;
     Gradient s{Vec3::Zero(), Vec3::Zero()};
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& x = sheet.rest[static_cast<std::size_t>(sheet.triangles[t][k])];
+      const Vec3& x = sheet.rest[sheet.triangles[t][k]];
       s.u += element.gradients[k].x() * x;
       s.v += element.gradients[k].y() * x;
     }
@@ -91,8 +91,8 @@ void TriangleMembrane::attach(const solver::BlockMatrix& matrix) {
 // By differences to the first corner, so that only they are rounded.
 TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, std::span<const Vec3> x) {
   const auto& [a, b, c] = element.particles;
-  const Vec3& origin = x[static_cast<std::size_t>(a)];
-  const Vec3 p = x[static_cast<std::size_t>(b)] - origin, q = x[static_cast<std::size_t>(c)] - origin;
+  const Vec3& origin = x[a];
+  const Vec3 p = x[b] - origin, q = x[c] - origin;
   const Vec2 &gp = element.gradients[1], &gq = element.gradients[2];
   return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
 }
@@ -107,8 +107,7 @@ void TriangleMembrane::add(const Evaluation& at) const {
     const Vec3 along_u = element.area * (tension(stretch_.weft, stretch_.viscosity, s.u, rate.u) + stress * s.v);
     const Vec3 along_v = element.area * (tension(stretch_.warp, stretch_.viscosity, s.v, rate.v) + stress * s.u);
     for (std::size_t k = 0; k < 3; ++k)
-      at.force[static_cast<std::size_t>(element.particles[k])] -=
-          element.gradients[k].x() * along_u + element.gradients[k].y() * along_v;
+      at.force[element.particles[k]] -= element.gradients[k].x() * along_u + element.gradients[k].y() * along_v;
     if (at.matrix == nullptr) continue;
 
     add_blocks(element, slots_[e], hessian(s, rate, at), *at.matrix);
@@ -213,7 +212,7 @@ void TriangleMembrane::strain_per_particle(std::span<const Vec3> x, std::span<fl
   for (const Element& element : elements_) {
     const auto largest = static_cast<float>(strain(element, x));
     for (Index p : element.particles) {
-      float& value = heat[static_cast<std::size_t>(p - first_)];
+      float& value = heat[p - first_];
       value = std::max(value, largest);
     }
   }

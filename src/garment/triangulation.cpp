@@ -194,8 +194,7 @@ FlatMesh mesh_panel(std::span<const Vec2> outline, const Vec2& warp, double spac
   // Whole rows, centred, so that a symmetric panel gets a symmetric lattice; a multiple of the spacing is one in spite
   // of rounding.
   std::array<int, 2> count{};
-  for (int axis = 0; axis < 2; ++axis)
-    count[static_cast<std::size_t>(axis)] = static_cast<int>((high[axis] - low[axis]) / spacing + kRowShift);
+  for (int axis = 0; axis < 2; ++axis) count[axis] = static_cast<int>((high[axis] - low[axis]) / spacing + kRowShift);
   const Vec2 first = 0.5 * (low + high) - 0.5 * spacing * Vec2(count[0], count[1]);
   std::vector<Vec2> inside;
   std::vector<Vec2> exact(outline.begin(), outline.end());

@@ -31,8 +31,8 @@ class StepControl {
 
   /// What it remembers after an accepted step. Throws std::runtime_error where that cannot be.
   template <class Archive>
-  void exchange(Archive& archive) {
-    exchange_values(archive, wanted_, last_share_);
+  void serialize(Archive& archive) {
+    serialize_values(archive, wanted_, last_share_);
     // Half of the shortest step may be wanted after it failed.
     if constexpr (Archive::kReads)
       require(wanted_ >= 0.1 * kShortestStep && std::isfinite(wanted_) && std::isfinite(last_share_), "a step length");

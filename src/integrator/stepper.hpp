@@ -92,12 +92,12 @@ class Stepper {
 
   /// The history, of so many particles. Throws std::runtime_error where it cannot be.
   template <class Archive>
-  void exchange(Archive& archive, std::size_t particles) {
+  void serialize(Archive& archive, std::size_t particles) {
     archive.value(previous_h_);
     if constexpr (Archive::kReads) require(previous_h_ >= 0 && std::isfinite(previous_h_), "a step length");
     if (previous_h_ == 0) return;
-    exchange_points(archive, previous_.x, particles);
-    exchange_points(archive, previous_.v, particles);
+    serialize_points(archive, previous_.x, particles);
+    serialize_points(archive, previous_.v, particles);
   }
 
  private:

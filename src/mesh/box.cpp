@@ -78,8 +78,8 @@ class RoundedBox {
   /// Lattice point with `first` on axis + 1 and the rest on axis + 2.
   Lattice rim(int axis, int first) const {
     Lattice p{};
-    p[static_cast<std::size_t>((axis + 1) % 3)] = first;
-    p[static_cast<std::size_t>((axis + 2) % 3)] = steps_ - first;
+    p[(axis + 1) % 3] = first;
+    p[(axis + 2) % 3] = steps_ - first;
     return p;
   }
 
@@ -99,7 +99,7 @@ class RoundedBox {
   void add_sides(int axis) {
     const int u = 1 << (axis + 1) % 3, v = 1 << (axis + 2) % 3;
     Lattice p{};
-    p[static_cast<std::size_t>(axis)] = steps_;
+    p[axis] = steps_;
     for (const int side : {0, 1 << axis})
       add({vertex(side, p), vertex(side | u, p), vertex(side | u | v, p), vertex(side | v, p)}, side == 0);
   }

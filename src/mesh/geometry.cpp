@@ -14,7 +14,7 @@ void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> p
   std::fill(normals.begin(), normals.end(), Vec3::Zero());
   for (const Triangle& t : triangles) {
     const Vec3 weighted = area_vector(t, positions);
-    for (Index v : t) normals[static_cast<std::size_t>(v)] += weighted;
+    for (Index v : t) normals[v] += weighted;
   }
   for (Vec3& normal : normals) normal.normalize();
 }

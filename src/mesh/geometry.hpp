@@ -9,7 +9,7 @@ namespace weft::mesh {
 
 /// Half the cross product of two sides: length is the area [m²], direction the front normal.
 inline Vec3 area_vector(const Triangle& t, std::span<const Vec3> x) {
-  const auto corner = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(t[k])]; };
+  const auto corner = [&](std::size_t k) -> const Vec3& { return x[t[k]]; };
   return 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0));
 }
 

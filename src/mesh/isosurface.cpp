@@ -26,14 +26,14 @@ class Lattice {
 
   static constexpr int kBlock = 4;  ///< cells along the side of a block
 
-  int nodes(int axis) const { return nodes_[static_cast<std::size_t>(axis)]; }
+  int nodes(int axis) const { return nodes_[axis]; }
   std::int64_t index(int i, int j, int k) const {
     return i + nodes_[0] * (j + static_cast<std::int64_t>(nodes_[1]) * k);
   }
   Vec3 place(int i, int j, int k) const { return origin_ + cell_ * Vec3(i, j, k); }
 
   double value(int i, int j, int k) {
-    double& v = values_[static_cast<std::size_t>(index(i, j, k))];
+    double& v = values_[index(i, j, k)];
     if (std::isnan(v)) v = field_(place(i, j, k));
     return v;
   }
@@ -69,16 +69,14 @@ class Cutter {
     std::array<int, 4> in{}, out{};
     int ins = 0, outs = 0;
     for (int c = 0; c < 4; ++c) {
-      if (corner[static_cast<std::size_t>(c)].value < 0) {
-        in[static_cast<std::size_t>(ins++)] = c;
+      if (corner[c].value < 0) {
+        in[ins++] = c;
       } else {
-        out[static_cast<std::size_t>(outs++)] = c;
+        out[outs++] = c;
       }
     }
     if (ins == 0 || outs == 0) return;
-    const auto v = [&](int a, int b) {
-      return vertex(corner[static_cast<std::size_t>(a)], corner[static_cast<std::size_t>(b)]);
-    };
+    const auto v = [&](int a, int b) { return vertex(corner[a], corner[b]); };
     // Each list of corners, followed by the rest in ascending order, is an even or odd permutation of 0 1 2 3.
     if (ins == 1) {
       add(v(in[0], out[0]), v(in[0], out[1]), v(in[0], out[2]), in[0] % 2 != 0);
@@ -138,7 +136,7 @@ void cut_cell(Lattice& lattice, Cutter& cutter, int i, int j, int k) {
     std::array<int, 3> at{i, j, k};
     std::array<Node, 4> corner{node(at)};
     for (std::size_t step = 0; step < 3; ++step) {
-      ++at[static_cast<std::size_t>(kOrders[o][step])];
+      ++at[kOrders[o][step]];
       corner[step + 1] = node(at);
     }
     if (o >= 3) std::swap(corner[1], corner[2]);  // the last three orders are odd
@@ -170,7 +168,7 @@ MirroredMesh join_mirror_image(const Mesh& half) {
   std::vector<bool> on_border(count, false);
   for (const Edge& edge : collect_edges(half.topology.triangles).edges) {
     if (edge.triangles[1] < 0) {
-      for (const Index v : edge.vertices) on_border[static_cast<std::size_t>(v)] = true;
+      for (const Index v : edge.vertices) on_border[v] = true;
     }
   }
   // Border first, then the half as it is, then its image in the same order.
@@ -196,7 +194,7 @@ MirroredMesh join_mirror_image(const Mesh& half) {
     joined.image.push_back(place[v]);
   }
   auto& triangles = joined.mesh.topology.triangles;
-  const auto take = [](const std::vector<Index>& list, Index v) { return list[static_cast<std::size_t>(v)]; };
+  const auto take = [](const std::vector<Index>& list, Index v) { return list[v]; };
   for (const Triangle& t : half.topology.triangles) {
     triangles.push_back({take(place, t[0]), take(place, t[1]), take(place, t[2])});
   }

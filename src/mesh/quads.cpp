@@ -14,7 +14,7 @@ bool diagonal_inside(const Quad& q, bool first, std::span<const Vec3> x) {
 bool choose_first(const Quad& q, std::span<const Vec3> x) {
   const bool first_inside = diagonal_inside(q, true, x);
   if (first_inside != diagonal_inside(q, false, x)) return first_inside;
-  const auto corner = [&](std::size_t k) -> const Vec3& { return x[static_cast<std::size_t>(q[k])]; };
+  const auto corner = [&](std::size_t k) -> const Vec3& { return x[q[k]]; };
   return (corner(2) - corner(0)).squaredNorm() <= (corner(3) - corner(1)).squaredNorm();
 }
 

@@ -119,7 +119,7 @@ Mesh make_sphere(double radius, int segments) {
       if (fresh) {
         Vec3 x = Vec3::Zero();
         for (const auto& [corner, weight] : key)
-          if (weight > 0) x += weight * coarse.positions[static_cast<std::size_t>(corner - 1)];
+          if (weight > 0) x += weight * coarse.positions[corner - 1];
         add_vertex(mesh, radius * x.normalized());
       }
       return entry->second;

@@ -32,7 +32,7 @@ Sheet make_sheet_of(const Mesh& mesh) {
     const auto [weft, warp] = axes(area_vector(t, sheet.rest));
     auto& corners = sheet.material.emplace_back();
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& x = sheet.rest[static_cast<std::size_t>(t[k])];
+      const Vec3& x = sheet.rest[t[k]];
       corners[k] = {weft.dot(x), warp.dot(x)};
     }
   }

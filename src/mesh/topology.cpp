@@ -19,8 +19,8 @@ std::vector<Side> sorted_sides(std::span<const Triangle> triangles) {
   sides.reserve(3 * triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (int k = 0; k < 3; ++k) {
-      const Index a = triangles[t][static_cast<std::size_t>(k)];
-      const Index b = triangles[t][static_cast<std::size_t>((k + 1) % 3)];
+      const Index a = triangles[t][k];
+      const Index b = triangles[t][(k + 1) % 3];
       sides.push_back({std::min(a, b), std::max(a, b), static_cast<Index>(t), k, a < b});
     }
   }
@@ -51,8 +51,8 @@ EdgeSet collect_edges(std::span<const Triangle> triangles) {
     const auto edge = static_cast<Index>(set.edges.size());
     Edge entry{{first->low, first->high}};
     for (auto side = first; side != last; ++side) {
-      set.of_triangle[static_cast<std::size_t>(side->triangle)][static_cast<std::size_t>(side->corner)] = edge;
-      if (side - first < 2) entry.triangles[static_cast<std::size_t>(side - first)] = side->triangle;
+      set.of_triangle[side->triangle][side->corner] = edge;
+      if (side - first < 2) entry.triangles[side - first] = side->triangle;
     }
     if (last - first > 2) set.non_manifold.push_back(edge);
     set.edges.push_back(entry);

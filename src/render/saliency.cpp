@@ -33,8 +33,7 @@ class Cells {
                           : Vec3((0.5 + 0.5 * ndc.x()) * columns_, (0.5 + 0.5 * ndc.y()) * kRows, ndc.z()));
     }
     for (const auto& [a, b, c] : surface.triangles)
-      fill(cells[static_cast<std::size_t>(a)], cells[static_cast<std::size_t>(b)], cells[static_cast<std::size_t>(c)],
-           surface.kind == frame::ObjectKind::cloth);
+      fill(cells[a], cells[b], cells[c], surface.kind == frame::ObjectKind::cloth);
   }
 
   double cloth_share() const {
@@ -94,7 +93,7 @@ struct Facing {
 Facing facing(const frame::Surface& surface, const std::vector<Vec3>& x) {
   Facing result;
   for (const auto& [a, b, c] : surface.triangles) {
-    const auto at = [&](Index v) { return x[static_cast<std::size_t>(v)]; };
+    const auto at = [&](Index v) { return x[v]; };
     const Vec3 normal = 0.5 * (at(b) - at(a)).cross(at(c) - at(a));
     result.area += normal.norm();
     result.sum += normal;

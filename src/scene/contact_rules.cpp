@@ -8,7 +8,10 @@ namespace {
 const Table& search_rules() {
   static const Table kTable =
       TableBuilder<Search>("How near surfaces are found. Nothing here changes what is found, only how fast.")
-          .choice("bounds", &Search::bounds, {"box", "14-dop", "18-dop", "26-dop"}, "bounding volumes of the hierarchy")
+          .choice(
+              "bounds", &Search::bounds, {"box", "18-dop", "26-dop"},
+              "bounding volumes of the hierarchy: cheapest to refit; least work where layers lie slanted to the axes; "
+              "fewest pairs")
           .choice("tree", &Search::tree, {"binary", "quad", "oct"}, "children to a node: two, four or eight")
           .whole_number("leaf", &Search::leaf, within(1, 8), "triangles of a leaf at most")
           .plain(Type::boolean, "open_longer_side", &Search::open_longer_side,
@@ -18,6 +21,8 @@ const Table& search_rules() {
           .plain(Type::boolean, "velocity_cones", &Search::velocity_cones,
                  "leave the bounds of slow nodes as they are while everything stays inside")
           .plain(Type::boolean, "normal_cones", &Search::normal_cones, "skip regions that are provably flat enough")
+          .plain(Type::boolean, "coherence", &Search::coherence,
+                 "keep closest points, by velocity cones, while surfaces hardly move relative to each other")
           .plain(Type::boolean, "reuse", &Search::reuse,
                  "keep candidates and close features while nothing has moved far")
           .build();

@@ -51,18 +51,19 @@ struct Solver {
   int halvings = 8;  ///< of a rejected step, before the run gives up
 };
 
-enum class Bounds { box, dop14, dop18, dop26 };
+enum class Bounds { box, dop18, dop26 };
 enum class TreeKind { binary, quad, oct };
 
 /// How near surfaces are found (seed, "Collision Detection"). Nothing here changes what is found, only how fast.
 struct Search {
-  Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 14, 18, 26
+  Bounds bounds = Bounds::box;    ///< k-DOPs with k = 6, 18, 26
   TreeKind tree = TreeKind::oct;  ///< two, four or eight children to a node
   int leaf = 8;                   ///< most triangles of a leaf
   bool open_longer_side = false;  ///< of two nodes open the longer one, instead of both
   bool separation_lists = false;  ///< walk on from where the last walk stopped
   bool velocity_cones = false;    ///< leave the bounds of slow nodes as they are
   bool normal_cones = false;      ///< skip regions that are provably flat enough
+  bool coherence = false;         ///< keep closest points of surfaces that hardly move relative to each other
   bool reuse = true;              ///< keep candidates and close features while nothing has moved far
 };
 

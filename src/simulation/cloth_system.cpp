@@ -78,8 +78,7 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     masses_.insert(masses_.end(), masses.begin(), masses.end());
     for (const scene::Weight& weight : scene.cloths[c].weights) {
       const std::vector<Index> carriers = particles_of(weight, cloth, first);
-      for (Index particle : carriers)
-        masses_[static_cast<std::size_t>(particle)] += weight.mass / static_cast<double>(carriers.size());
+      for (Index particle : carriers) masses_[particle] += weight.mass / static_cast<double>(carriers.size());
     }
     if (cloth.sheet.triangles.empty())
       add_quad_forces(c, cloth.grid, material, scene.physics);
@@ -182,7 +181,7 @@ bool ClothSystem::sew(double t) {
 }
 
 template <class Archive>
-void ClothSystem::exchange(Archive& archive) {
+void ClothSystem::serialize(Archive& archive) {
   for (Sewing& sewing : sewing_) {
     archive.value(sewing.share);
     if constexpr (!Archive::kReads) continue;
@@ -191,8 +190,8 @@ void ClothSystem::exchange(Archive& archive) {
   }
 }
 
-template void ClothSystem::exchange(ByteWriter&);
-template void ClothSystem::exchange(ByteReader&);
+template void ClothSystem::serialize(ByteWriter&);
+template void ClothSystem::serialize(ByteReader&);
 
 // What is being sewn has no weight: it would fall before it fits.
 void ClothSystem::take_weight_off(std::span<Vec3> force) const {

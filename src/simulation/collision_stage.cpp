@@ -48,7 +48,7 @@ std::vector<collision::PairFriction> friction_pairs(const scene::Scene& scene,
 }
 
 collision::BroadPhaseOptions search_options(const scene::Search& search) {
-  constexpr std::array<int, 4> kDirections{6, 14, 18, 26};
+  constexpr std::array<int, 3> kDirections{6, 18, 26};
   constexpr std::array<int, 3> kChildren{2, 4, 8};
   collision::BroadPhaseOptions options;
   options.directions = kDirections[static_cast<std::size_t>(search.bounds)];
@@ -64,7 +64,8 @@ collision::BroadPhaseOptions search_options(const scene::Search& search) {
 collision::EngineParameters engine_parameters(const scene::Scene& scene, const environment::Environment& environment) {
   const scene::Contact& contact = scene.contact;
   const bool velocity = contact.response == scene::Response::velocity_constraints;
-  return {.search = {contact.self, contact.obstacles, contact.search.reuse, search_options(contact.search)},
+  return {.search = {contact.self, contact.obstacles, contact.search.reuse, contact.search.coherence,
+                     search_options(contact.search)},
           .contact = {contact.stiffness, friction_pairs(scene, environment)},
           .response = velocity ? collision::ResponseForm::velocity_constraints : collision::ResponseForm::springs};
 }
@@ -193,16 +194,16 @@ CollisionStage::Pinches CollisionStage::take_pinches(const Moment& last_start) {
 }
 
 template <class Archive>
-void CollisionStage::exchange(Archive& archive, double t, Moment& now) {
+void CollisionStage::serialize(Archive& archive, double t, Moment& now) {
   place_bodies(t, now);
   engine_.serialize(archive, now.x);
   std::vector<PinchingObjects> before(pinching_before_.begin(), pinching_before_.end());
-  exchange_each(archive, before,
-                [&](PinchingObjects& objects) { exchange_values(archive, objects.first, objects.second); });
+  serialize_each(archive, before,
+                 [&](PinchingObjects& objects) { serialize_values(archive, objects.first, objects.second); });
   pinching_before_ = {before.begin(), before.end()};
 }
 
-template void CollisionStage::exchange(ByteWriter&, double, Moment&);
-template void CollisionStage::exchange(ByteReader&, double, Moment&);
+template void CollisionStage::serialize(ByteWriter&, double, Moment&);
+template void CollisionStage::serialize(ByteReader&, double, Moment&);
 
 }  // namespace weft::simulation

@@ -69,7 +69,7 @@ class CollisionStage {
   /// What the next step from `now`, at time t [s], depends on. Throws std::runtime_error where this scene cannot have
   /// it.
   template <class Archive>
-  void exchange(Archive& archive, double t, Moment& now);
+  void serialize(Archive& archive, double t, Moment& now);
 
   int proximities() const { return engine_.proximities(); }
   double min_distance() const { return engine_.min_distance(); }

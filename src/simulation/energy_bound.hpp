@@ -18,8 +18,8 @@ class EnergyBound {
   void check(int frame, const FrameReport& energies);
 
   template <class Archive>
-  void exchange(Archive& archive) {
-    exchange_values(archive, potential_low_, potential_high_);
+  void serialize(Archive& archive) {
+    serialize_values(archive, potential_low_, potential_high_);
   }
 
  private:

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-#include "collision/response/pinch.hpp"
+#include "collision/proximity/surface_point.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -62,12 +62,10 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
       }
       if (group.particles.empty()) continue;
 
-      const auto start = [&](Index particle) -> const Vec3& {
-        return cloth.start[static_cast<std::size_t>(particle - first_particle[c])];
-      };
+      const auto start = [&](Index particle) -> const Vec3& { return cloth.start[particle - first_particle[c]]; };
       group.release = pin.release;
       group.follow = pin.follow.empty() ? -1 : body_named(environment, pin.follow);
-      if (group.follow >= 0 && environment.bodies[static_cast<std::size_t>(group.follow)].character) {
+      if (group.follow >= 0 && environment.bodies[group.follow].character) {
         std::vector<Vec3> places;
         for (Index particle : group.particles) places.push_back(start(particle));
         group.anchors = anchor(environment, static_cast<std::size_t>(group.follow), start_time, places);

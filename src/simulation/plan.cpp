@@ -62,18 +62,19 @@ void plan_constraints(const Scene& scene, std::vector<PlanItem>& items) {
 
 // The parts of the search for near surfaces, each of which can be switched.
 void plan_search(const scene::Search& search, bool any, std::vector<PlanItem>& items) {
-  constexpr std::array kBounds{"boxes", "14-DOPs", "18-DOPs", "26-DOPs"};
+  constexpr std::array kBounds{"boxes", "18-DOPs", "26-DOPs"};
   constexpr std::array kTrees{"binary trees", "quadtrees", "octrees"};
   const auto part = [&](std::string name, bool on, std::string what) {
     items.push_back(when("search: " + std::move(name), any && on, std::move(what),
                          any ? "off in contact.search" : "nothing collides"));
   };
   part("bounding volume hierarchy", true,
-       fmt::format("{} of {}, {} triangle{} to a leaf", kTrees[static_cast<std::size_t>(search.tree)],
-                   kBounds[static_cast<std::size_t>(search.bounds)], search.leaf, search.leaf == 1 ? "" : "s"));
+       fmt::format("{} of {}, {} triangle{} to a leaf", kTrees[static_cast<std::size_t>(search.tree)], kBounds[static_cast<std::size_t>(search.bounds)], search.leaf,
+                   search.leaf == 1 ? "" : "s"));
   part("reuse of candidates and features", search.reuse, "while nothing has moved far");
   part("separation lists", search.separation_lists, "walks go on where the last one stopped");
   part("velocity cones", search.velocity_cones, "slow bounds are left as they are");
+  part("coherence", search.coherence, "closest points are kept while surfaces hardly move relative to each other");
   part("normal cones", search.normal_cones, "flat regions are skipped");
 }
 

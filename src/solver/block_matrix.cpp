@@ -34,7 +34,7 @@ BlockMatrix::Pattern BlockMatrix::Pattern::of(Index rows, const Couplings& pairs
 }
 
 Index BlockMatrix::Pattern::find(Index row, Index column) const {
-  const auto begin = columns.begin() + start[static_cast<std::size_t>(row)];
+  const auto begin = columns.begin() + start[row];
   const auto end = columns.begin() + start[static_cast<std::size_t>(row) + 1];
   const auto found = std::lower_bound(begin, end, column);
   return found != end && *found == column ? static_cast<Index>(found - columns.begin()) : -1;
@@ -69,9 +69,7 @@ void BlockMatrix::set_zero() {
 void BlockMatrix::copy_rows(const BlockMatrix& other, Index begin, Index end) {
   assert(values_.size() == other.values_.size() && scalars_.size() == other.scalars_.size());
   const auto copy = [&](const Pattern& pattern, int size, const std::vector<double>& from, std::vector<double>& to) {
-    const auto at = [&](Index row) {
-      return size * static_cast<std::ptrdiff_t>(pattern.start[static_cast<std::size_t>(row)]);
-    };
+    const auto at = [&](Index row) { return size * static_cast<std::ptrdiff_t>(pattern.start[row]); };
     std::copy(from.begin() + at(begin), from.begin() + at(end), to.begin() + at(begin));
   };
   copy(blocks_, 9, other.values_, values_);
@@ -86,7 +84,7 @@ void BlockMatrix::multiply(std::span<const Vec3> x, std::span<Vec3> y, std::size
     // Lane 3 holds the first entry of the next column and is thrown away.
     Lanes sum0{}, sum1{}, sum2{};
     for (Index s = blocks_.start[row]; s < blocks_.start[row + 1]; ++s, value += 9) {
-      const double* xj = entry(blocks_.columns[static_cast<std::size_t>(s)]);
+      const double* xj = entry(blocks_.columns[s]);
       sum0 += load_lanes(value) * xj[0];
       sum1 += load_lanes(value + 3) * xj[1];
       sum2 += load_lanes(value + 6) * xj[2];
@@ -94,8 +92,8 @@ void BlockMatrix::multiply(std::span<const Vec3> x, std::span<Vec3> y, std::size
     const Lanes sum = sum0 + sum1 + sum2;
     double y0 = sum[0], y1 = sum[1], y2 = sum[2];
     for (Index s = isotropic_.start[row]; s < isotropic_.start[row + 1]; ++s) {
-      const double* xj = entry(isotropic_.columns[static_cast<std::size_t>(s)]);
-      const double factor = scalars_[static_cast<std::size_t>(s)];
+      const double* xj = entry(isotropic_.columns[s]);
+      const double factor = scalars_[s];
       y0 += factor * xj[0];
       y1 += factor * xj[1];
       y2 += factor * xj[2];

@@ -67,7 +67,7 @@ class BlockMatrix {
 
   /// Where block (row, column) lives. The pattern must hold it.
   Slot slot(Index row, Index column) const;
-  Slot diagonal(Index row) const { return diagonal_[static_cast<std::size_t>(row)]; }
+  Slot diagonal(Index row) const { return diagonal_[row]; }
 
   void set_zero();
   /// Takes over the rows [begin, end) of a matrix of the same pattern.
@@ -91,7 +91,7 @@ class BlockMatrix {
   /// Adds `value` times the unit matrix.
   void add_scalar(Slot slot, double value) {
     if (slot < 0) {
-      scalars_[static_cast<std::size_t>(~slot)] += value;
+      scalars_[~slot] += value;
       return;
     }
     double* block = values_.data() + 9 * static_cast<std::size_t>(slot);
@@ -100,7 +100,7 @@ class BlockMatrix {
     block[8] += value;
   }
   Mat3 block(Slot slot) const {
-    if (slot < 0) return scalars_[static_cast<std::size_t>(~slot)] * Mat3::Identity();
+    if (slot < 0) return scalars_[~slot] * Mat3::Identity();
     return Eigen::Map<const Mat3>(values_.data() + 9 * static_cast<std::size_t>(slot));
   }
 
@@ -108,16 +108,15 @@ class BlockMatrix {
   template <class Body>
   void for_each_block(Index begin, Index end, const Body& body) const {
     for (Index row = begin; row < end; ++row) {
-      Index s = blocks_.start[static_cast<std::size_t>(row)], t = isotropic_.start[static_cast<std::size_t>(row)];
+      Index s = blocks_.start[row], t = isotropic_.start[row];
       const Index s_end = blocks_.start[static_cast<std::size_t>(row) + 1],
                   t_end = isotropic_.start[static_cast<std::size_t>(row) + 1];
       while (s < s_end || t < t_end) {
-        const bool full = t == t_end || (s < s_end && blocks_.columns[static_cast<std::size_t>(s)] <
-                                                          isotropic_.columns[static_cast<std::size_t>(t)]);
+        const bool full = t == t_end || (s < s_end && blocks_.columns[s] < isotropic_.columns[t]);
         if (full)
-          body(row, blocks_.columns[static_cast<std::size_t>(s)], block(s)), ++s;
+          body(row, blocks_.columns[s], block(s)), ++s;
         else
-          body(row, isotropic_.columns[static_cast<std::size_t>(t)], block(~t)), ++t;
+          body(row, isotropic_.columns[t], block(~t)), ++t;
       }
     }
   }

@@ -108,15 +108,12 @@ double ConjugateGradient::multiply(std::span<const Vec3> p, std::span<Vec3> q,
                                    std::span<const std::size_t> parts) const {
   for (std::size_t part : parts)
     for_rows(parts_[part], [&](std::size_t begin, std::size_t end) { system_->matrix.multiply(p, q, begin, end); });
-  for (const DiagonalTerm& term : system_->diagonal_terms)
-    q[static_cast<std::size_t>(term.particle)] += term.stiffness * p[static_cast<std::size_t>(term.particle)];
+  for (const DiagonalTerm& term : system_->diagonal_terms) q[term.particle] += term.stiffness * p[term.particle];
   for (const StencilTerm* term : terms_) {
     const auto& [a, b, c, d] = term->particles;
     const auto& w = term->weights;
-    const Vec3 force =
-        term->stiffness * (w[0] * p[static_cast<std::size_t>(a)] + w[1] * p[static_cast<std::size_t>(b)] +
-                           w[2] * p[static_cast<std::size_t>(c)] + w[3] * p[static_cast<std::size_t>(d)]);
-    for (int k = 0; k < 4; ++k) q[static_cast<std::size_t>(term->particles[k])] += w[k] * force;
+    const Vec3 force = term->stiffness * (w[0] * p[a] + w[1] * p[b] + w[2] * p[c] + w[3] * p[d]);
+    for (int k = 0; k < 4; ++k) q[term->particles[k]] += w[k] * force;
   }
   filter(q);
   double sum = 0;

@@ -47,7 +47,7 @@ class Preconditioner {
   void add_terms();
   void restrict_residual(std::span<const Vec3> r, std::span<const std::size_t> parts);
   void correct_groups(std::span<const std::size_t> parts);
-  bool is_free(Index i) const { return constraint_of_[static_cast<std::size_t>(i)] < 0; }
+  bool is_free(Index i) const { return constraint_of_[i] < 0; }
   Mat3 filtered(Index i, const Mat3& block, Index j) const;
 
   const LinearSystem* system_ = nullptr;

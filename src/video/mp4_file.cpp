@@ -114,11 +114,11 @@ void verify_frames(const std::filesystem::path& file, const std::filesystem::pat
   while (read_packet(*input, *packet, reported_file)) {
     const std::int64_t frame = av_rescale_q(packet->pts, unit, av_inv_q(rate));
     const bool on_time = av_compare_ts(packet->pts, unit, frame, av_inv_q(rate)) == 0;
-    const bool new_frame = frame >= 0 && frame < frames && !seen[static_cast<std::size_t>(frame)];
+    const bool new_frame = frame >= 0 && frame < frames && !seen[frame];
     if (!on_time || !new_frame) {
       fail(reported_file, "verify the frames", fmt::format("packet {} is not one of {} frames", count, frames));
     }
-    seen[static_cast<std::size_t>(frame)] = true;
+    seen[frame] = true;
     ++count;
     av_packet_unref(packet.get());
   }

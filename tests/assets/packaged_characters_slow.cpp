@@ -53,8 +53,8 @@ void expect_sound(const Character& body, const std::string& name) {
   for (std::size_t v = 0; v < body.mesh.positions.size(); ++v) {
     double sum = 0;
     for (Index i = body.first_influence[v]; i < body.first_influence[v + 1]; ++i) {
-      ASSERT_LT(static_cast<std::size_t>(body.influences[static_cast<std::size_t>(i)].bone), body.bones.size()) << name;
-      sum += body.influences[static_cast<std::size_t>(i)].weight;
+      ASSERT_LT(static_cast<std::size_t>(body.influences[i].bone), body.bones.size()) << name;
+      sum += body.influences[i].weight;
     }
     ASSERT_NEAR(sum, 1, 1e-12) << name << " vertex " << v;
   }

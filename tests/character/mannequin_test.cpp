@@ -28,8 +28,8 @@ double girth(const Character& body, const Vec3& at, const Vec3& normal, const st
   for (const auto& t : body.mesh.topology.triangles) {
     std::vector<Vec3> cut;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& p = body.mesh.positions[static_cast<std::size_t>(t[k])];
-      const Vec3& q = body.mesh.positions[static_cast<std::size_t>(t[(k + 1) % 3])];
+      const Vec3& p = body.mesh.positions[t[k]];
+      const Vec3& q = body.mesh.positions[t[(k + 1) % 3]];
       const double a = (p - at).dot(normal), b = (q - at).dot(normal);
       if ((a < 0) != (b < 0)) cut.push_back(p + a / (a - b) * (q - p));
     }
@@ -42,7 +42,7 @@ double smallest_angle(const mesh::Mesh& mesh) {
   double least = std::numbers::pi;
   for (const auto& t : mesh.topology.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const auto corner = [&](std::size_t c) { return mesh.positions[static_cast<std::size_t>(t[(k + c) % 3])]; };
+      const auto corner = [&](std::size_t c) { return mesh.positions[t[(k + c) % 3]]; };
       const Vec3 a = corner(1) - corner(0), b = corner(2) - corner(0);
       least = std::min(least, std::atan2(a.cross(b).norm(), a.dot(b)));
     }
@@ -54,9 +54,7 @@ double mean_edge(const mesh::Mesh& mesh) {
   double sum = 0;
   const auto edges = mesh::collect_edges(mesh.topology.triangles).edges;
   for (const auto& e : edges) {
-    sum += (mesh.positions[static_cast<std::size_t>(e.vertices[0])] -
-            mesh.positions[static_cast<std::size_t>(e.vertices[1])])
-               .norm();
+    sum += (mesh.positions[e.vertices[0]] - mesh.positions[e.vertices[1]]).norm();
   }
   return sum / static_cast<double>(edges.size());
 }

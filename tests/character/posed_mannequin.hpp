@@ -19,7 +19,7 @@ inline std::vector<Affine> joints_at_key(const Character& body, const Clip& clip
     const Node& node = body.nodes[n];
     const Vec3 place = n == 0 ? clip.channels[0].position.values[key] : Vec3(node.local.translation());
     const Affine local = Eigen::Translation3d(place) * clip.channels[n].rotation.values[key];
-    global[n] = node.parent < 0 ? local : global[static_cast<std::size_t>(node.parent)] * local;
+    global[n] = node.parent < 0 ? local : global[node.parent] * local;
   }
   return global;
 }
@@ -29,9 +29,9 @@ inline std::vector<Vec3> skinned(const Character& body, const std::vector<Affine
   for (std::size_t v = 0; v < body.mesh.positions.size(); ++v) {
     Vec3 sum = Vec3::Zero();
     for (Index k = body.first_influence[v]; k < body.first_influence[v + 1]; ++k) {
-      const Influence& i = body.influences[static_cast<std::size_t>(k)];
-      const Bone& bone = body.bones[static_cast<std::size_t>(i.bone)];
-      sum += i.weight * (global[static_cast<std::size_t>(bone.node)] * (bone.offset * body.mesh.positions[v]));
+      const Influence& i = body.influences[k];
+      const Bone& bone = body.bones[i.bone];
+      sum += i.weight * (global[bone.node] * (bone.offset * body.mesh.positions[v]));
     }
     out.push_back(sum);
   }
@@ -40,7 +40,7 @@ inline std::vector<Vec3> skinned(const Character& body, const std::vector<Affine
 
 inline double weight_of(const Character& body, std::size_t vertex, Joint joint) {
   for (Index k = body.first_influence[vertex]; k < body.first_influence[vertex + 1]; ++k) {
-    const Influence& i = body.influences[static_cast<std::size_t>(k)];
+    const Influence& i = body.influences[k];
     if (i.bone == static_cast<Index>(joint)) return i.weight;
   }
   return 0;

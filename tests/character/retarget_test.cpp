@@ -33,7 +33,7 @@ struct Builder {
     global.translation() = place;
     if (parent >= 0) {
       parent_global.linear() = frame.toRotationMatrix();
-      parent_global.translation() = places[static_cast<std::size_t>(parent)];
+      parent_global.translation() = places[parent];
     }
     body.nodes.push_back({name, parent, parent_global.inverse() * global});
     places.push_back(place);
@@ -69,16 +69,16 @@ Character sticks(double size, double arm, double facing, const Quat& frame, bool
 /// The arm bends at the elbow by 90° upward, in world directions of a body that faces -y, while the hips walk `way`.
 Clip waving(const Character& body, const Vec3& way) {
   const auto joints = find_joints(body.nodes);
-  const auto node = [&](const char* joint) { return joints[static_cast<std::size_t>(joint_number(joint))]; };
+  const auto node = [&](const char* joint) { return joints[joint_number(joint)]; };
   const auto globals = global_transforms(body, rest_pose(body));
   const Index elbow = node("LeftLowerArm"), hips = node("Hips");
-  const Quat frame(globals[static_cast<std::size_t>(elbow)].linear());  // all nodes have the same
+  const Quat frame(globals[elbow].linear());  // all nodes have the same
   Channel bend;
   bend.node = elbow;
   bend.rotation = {{0, 1}, {Quat::Identity(), frame.conjugate() * about(Vec3::UnitY(), -90) * frame}};
   Channel walk;
   walk.node = hips;
-  const Vec3 from = globals[static_cast<std::size_t>(hips)].translation();
+  const Vec3 from = globals[hips].translation();
   walk.position = {{0, 1}, {from, from + way}};
   Clip clip{"wave", 1, {bend, walk}, {}};
   return clip;
@@ -90,7 +90,7 @@ struct Result {
   Vec3 place(const std::string& joint, double t) const {
     const auto joints = find_joints(body.nodes);
     const auto globals = global_transforms(body, pose_at(body, clip, t));
-    return globals[static_cast<std::size_t>(joints[static_cast<std::size_t>(joint_number(joint))])].translation();
+    return globals[joints[joint_number(joint)]].translation();
   }
   Vec3 finger(double t) const {  // of no joint
     const auto globals = global_transforms(body, pose_at(body, clip, t));
@@ -188,10 +188,9 @@ TEST(Joints, OfTheUsualRigsAreFoundByName) {
     for (const std::string& name : names) nodes.push_back({name, 0, Affine::Identity()});
     const auto found = find_joints(nodes);
     for (std::size_t k = 0; k < joints.size(); ++k)
-      EXPECT_EQ(found[static_cast<std::size_t>(joint_number(joints[k]))], static_cast<Index>(k + 2))
-          << rig << " " << joints[k];
-    EXPECT_EQ(found[static_cast<std::size_t>(joint_number("RightFoot"))], -1) << rig;
-    EXPECT_EQ(found[static_cast<std::size_t>(joint_number("RightShoulder"))], -1) << rig;
+      EXPECT_EQ(found[joint_number(joints[k])], static_cast<Index>(k + 2)) << rig << " " << joints[k];
+    EXPECT_EQ(found[joint_number("RightFoot")], -1) << rig;
+    EXPECT_EQ(found[joint_number("RightShoulder")], -1) << rig;
   }
 }
 

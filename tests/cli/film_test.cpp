@@ -148,7 +148,7 @@ TEST(Film, TakesEveryFrameThroughAllStagesInOrder) {
   EXPECT_FALSE(result.failure || result.interrupted);
   EXPECT_EQ(result.painter, "brush");
   for (int frame = 0; frame < 50; ++frame) {
-    const FrameRecord& record = result.frames[static_cast<std::size_t>(frame)];
+    const FrameRecord& record = result.frames[frame];
     EXPECT_EQ(record.report.steps, 10 * frame);
     EXPECT_TRUE(record.written);
     EXPECT_EQ(record.render.wall_s, 0.25);

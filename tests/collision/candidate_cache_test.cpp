@@ -87,6 +87,18 @@ TEST(CandidateCache, EveryPairWithinReachAtACoveredEndWasCollected) {
   EXPECT_GE(covered, 100);  // of the short ones all
 }
 
+// Folded, a sheet is near itself.
+TEST(CandidateCache, ASheetMeetsItself) {
+  Layers layers(4, 0.5 * kReach);
+  for (int j = 0; j <= 4; ++j)
+    for (int i = 3; i <= 4; ++i) layers.x[i + 5 * j] = layers.x[4 - i + 5 * j] + Vec3(0, 0.001, -0.3 * kReach);
+  CandidateCache cache(layers.bodies, {}, layers.x, kReach);
+  const auto collected = set_of(cache.collect(layers.x, layers.x).apart);
+  const auto of_itself = near(layers.bodies.triangles().first(32), layers.x, kReach);
+  EXPECT_GT(of_itself.size(), 20U);
+  for (const auto& pair : of_itself) EXPECT_TRUE(collected.contains(pair));
+}
+
 TEST(CandidateCache, FeaturesWithinReachAtACoveredStartWereWithinTheRadius) {
   const Layers layers(3, kReach);
   CandidateCache cache(layers.bodies, {}, layers.x, kReach);

@@ -109,7 +109,7 @@ TEST(Compare, HeatMapShowsTheSquareRootOfTheMapOnTheHeatScale) {
   const image::Image picture = heat_map(map);
   const std::array<double, 3> positions = {0, 0.5, 1};
   for (int x = 0; x < 3; ++x) {
-    const Vec3 expected = 255 * image::srgb_from_linear(image::heat_color(positions[static_cast<std::size_t>(x)]));
+    const Vec3 expected = 255 * image::srgb_from_linear(image::heat_color(positions[x]));
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(picture.pixel(x, 0)[c], expected[c], 1.5) << x;  // 256 steps of colour
   }
 }

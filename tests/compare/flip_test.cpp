@@ -117,7 +117,7 @@ using Map = std::vector<double>;
 struct Picture {
   int width, height;
   double at(const Map& map, int x, int y) const {
-    return map[static_cast<std::size_t>(std::clamp(y, 0, height - 1) * width + std::clamp(x, 0, width - 1))];
+    return map[std::clamp(y, 0, height - 1) * width + std::clamp(x, 0, width - 1)];
   }
   /// Convolution with a kernel whose positive values add up to 1, and the negative ones, if any, to -1.
   template <class Kernel>
@@ -131,8 +131,7 @@ struct Picture {
         for (int dy = -radius; dy <= radius; ++dy)
           for (int dx = -radius; dx <= radius; ++dx) {
             const double value = kernel(dx, dy);
-            out[static_cast<std::size_t>(y * width + x)] +=
-                value / (value > 0 ? positive : negative) * at(map, x - dx, y - dy);
+            out[y * width + x] += value / (value > 0 ? positive : negative) * at(map, x - dx, y - dy);
           }
     return out;
   }

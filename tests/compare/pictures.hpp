@@ -55,7 +55,7 @@ inline image::Image textured(int width, int height, std::uint32_t seed) {
 inline image::Image with_noise(image::Image image, int count, int levels, std::uint32_t seed) {
   Noise noise(seed);
   for (int i = 0; i < count; ++i) {
-    std::uint8_t& value = image.rgb[static_cast<std::size_t>(noise.below(static_cast<int>(image.rgb.size())))];
+    std::uint8_t& value = image.rgb[noise.below(static_cast<int>(image.rgb.size()))];
     value = static_cast<std::uint8_t>(std::clamp(value + noise.below(2 * levels + 1) - levels, 0, 255));
   }
   return image;

@@ -21,7 +21,7 @@ TEST(BoundedQueue, HandsItemsOnInOrderAcrossThreads) {
   while (const auto item = queue.pop()) received.push_back(*item);
   producer.join();
   ASSERT_EQ(received.size(), 1000u);
-  for (int i = 0; i < 1000; ++i) EXPECT_EQ(received[static_cast<std::size_t>(i)], i);
+  for (int i = 0; i < 1000; ++i) EXPECT_EQ(received[i], i);
 }
 
 TEST(BoundedQueue, NeverHoldsMoreThanItsCapacity) {

@@ -148,7 +148,7 @@ std::vector<std::string> chosen(const std::vector<std::string>& row, const std::
   for (const std::string& column : columns) {
     const auto at = std::find(head.begin(), head.end(), column);
     if (at == head.end()) throw std::runtime_error("no column is named " + column);
-    cells.push_back(row[static_cast<std::size_t>(at - head.begin())]);
+    cells.push_back(row[at - head.begin()]);
   }
   return cells;
 }

@@ -96,7 +96,7 @@ TEST(KeyFrames, StandBeforeTheFirstAndAfterTheLast) {
   const KeyFrames frames(scene::Interpolation::cubic, kFirst, kInterval, keys, false);
   for (const auto& [t, key] : {std::pair{0.0, 0}, {5.0, 3}}) {
     const Motion motion = at(frames, 2, t);
-    EXPECT_EQ(motion.positions, keys[static_cast<std::size_t>(key)]);
+    EXPECT_EQ(motion.positions, keys[key]);
     EXPECT_EQ(motion.velocities[0], Vec3(0, 0, 0));
     EXPECT_EQ(motion.accelerations[1], Vec3(0, 0, 0));
   }

@@ -137,10 +137,10 @@ TEST(Invariance, MassesAddUpToTheSheetsAndAreHalvedAlongItsBorder) {
   double sum = 0;
   for (double m : masses) sum += m;
   EXPECT_NEAR(sum, 0.2 * (4 * kGrid.lu) * (3 * kGrid.lv), 1e-15);
-  EXPECT_DOUBLE_EQ(masses[static_cast<std::size_t>(kGrid.index(2, 1))], inner);
-  EXPECT_DOUBLE_EQ(masses[static_cast<std::size_t>(kGrid.index(0, 1))], inner / 2);
-  EXPECT_DOUBLE_EQ(masses[static_cast<std::size_t>(kGrid.index(2, 3))], inner / 2);
-  EXPECT_DOUBLE_EQ(masses[static_cast<std::size_t>(kGrid.index(4, 3))], inner / 4);
+  EXPECT_DOUBLE_EQ(masses[kGrid.index(2, 1)], inner);
+  EXPECT_DOUBLE_EQ(masses[kGrid.index(0, 1)], inner / 2);
+  EXPECT_DOUBLE_EQ(masses[kGrid.index(2, 3)], inner / 2);
+  EXPECT_DOUBLE_EQ(masses[kGrid.index(4, 3)], inner / 4);
 }
 
 }  // namespace

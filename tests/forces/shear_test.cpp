@@ -56,14 +56,14 @@ TEST(Shear, ViscosityOpposesTheRateOfShear) {
   const Positions f = testing::force_of(shear, x, v);
   // Stress ½ η d/dt⟨s_u, s_v⟩ acts along weft on the upper border.
   Vec3 top = Vec3::Zero();
-  for (int i = 0; i < kGrid.nu; ++i) top += f[static_cast<std::size_t>(kGrid.index(i, kGrid.nv - 1))];
+  for (int i = 0; i < kGrid.nu; ++i) top += f[kGrid.index(i, kGrid.nv - 1)];
   EXPECT_NEAR(top.x(), -0.5 * eta * rate * (kGrid.nu - 1) * kGrid.lu, 1e-13);
 }
 
 TEST(Shear, StripesThatDifferencesOverTwoEdgesMissAreSheared) {
   Positions x = testing::flat(kGrid);
   for (int j = 0; j < kGrid.nv; ++j)
-    for (int i = 0; i < kGrid.nu; ++i) x[static_cast<std::size_t>(kGrid.index(i, j))].y() += i % 2 ? 1e-3 : -1e-3;
+    for (int i = 0; i < kGrid.nu; ++i) x[kGrid.index(i, j)].y() += i % 2 ? 1e-3 : -1e-3;
   // Along weft each edge climbs by 2e-3 m: ⟨s_u, s_v⟩ = ±0.1 in every cell.
   const double area = (kGrid.nu - 1) * kGrid.lu * (kGrid.nv - 1) * kGrid.lv;
   EXPECT_NEAR(Shear(kGrid, 0, {kModulus, 0}).energy(x), 0.25 * kModulus * 0.01 * area, 1e-12);

@@ -30,12 +30,12 @@ TEST(Stretch, BorderOfAUniformlyStrainedSheetPullsWithTheStressTimesItsWidth) {
   const Positions x = stretched(1.03, 0.98);
   const Positions f = testing::force_of(stretch, x, testing::zeros(x));
   Vec3 left = Vec3::Zero(), low = Vec3::Zero();
-  for (int j = 0; j < kGrid.nv; ++j) left += f[static_cast<std::size_t>(kGrid.index(0, j))];
-  for (int i = 0; i < kGrid.nu; ++i) low += f[static_cast<std::size_t>(kGrid.index(i, 0))];
+  for (int j = 0; j < kGrid.nv; ++j) left += f[kGrid.index(0, j)];
+  for (int i = 0; i < kGrid.nu; ++i) low += f[kGrid.index(i, 0)];
   EXPECT_NEAR(left.x(), 1000 * 0.03 * kHeight, 1e-12);
   EXPECT_NEAR(low.y(), -700 * 0.02 * kWidth, 1e-12);
   // Inside, the pull of both sides cancels.
-  EXPECT_LT(f[static_cast<std::size_t>(kGrid.index(2, 1))].norm(), 1e-12);
+  EXPECT_LT(f[kGrid.index(2, 1)].norm(), 1e-12);
 }
 
 TEST(Stretch, ViscosityOpposesTheStrainRate) {
@@ -45,7 +45,7 @@ TEST(Stretch, ViscosityOpposesTheStrainRate) {
   const Positions v = testing::shaped(kGrid, [=](double u, double) { return Vec3(rate * u, 0, 0); });
   const Positions f = testing::force_of(stretch, x, v);
   Vec3 right = Vec3::Zero();
-  for (int j = 0; j < kGrid.nv; ++j) right += f[static_cast<std::size_t>(kGrid.index(kGrid.nu - 1, j))];
+  for (int j = 0; j < kGrid.nv; ++j) right += f[kGrid.index(kGrid.nu - 1, j)];
   EXPECT_NEAR(right.x(), -eta * rate * kHeight, 1e-12);
   EXPECT_NEAR(right.y(), 0, 1e-14);
 }
@@ -79,8 +79,8 @@ TEST(Stretch, StrainOfAParticleIsTheLargestOfItsOwnEdges) {
   const double warp_edge = std::hypot(kGrid.lv, 0.5 * kGrid.lu) / kGrid.lv - 1;
   EXPECT_NEAR(heat[0], 0.5, 1e-6);
   EXPECT_NEAR(heat[1], 0.5, 1e-6);
-  EXPECT_NEAR(heat[static_cast<std::size_t>(kGrid.index(0, 1))], warp_edge, 1e-6);
-  EXPECT_NEAR(heat[static_cast<std::size_t>(kGrid.index(1, 1))], 0, 1e-6);
+  EXPECT_NEAR(heat[kGrid.index(0, 1)], warp_edge, 1e-6);
+  EXPECT_NEAR(heat[kGrid.index(1, 1)], 0, 1e-6);
 }
 
 TEST(Stretch, CautiousFormStiffensAShortEdgeByWhatCompressionSoftens) {

@@ -20,7 +20,7 @@ inline double in_circle(const Vec2& a, const Vec2& b, const Vec2& c, const Vec2&
 /// Turns the edges of a triangulation until it is Delaunay in the coordinates `p` (Lawson, "Software for C1 Surface
 /// Interpolation", 1977).
 inline void make_delaunay(std::vector<mesh::Triangle>& triangles, const std::vector<Vec2>& p) {
-  const auto at = [&](Index i) -> const Vec2& { return p[static_cast<std::size_t>(i)]; };
+  const auto at = [&](Index i) -> const Vec2& { return p[i]; };
   for (bool turned = true; turned;) {
     turned = false;
     std::vector<char> touched(triangles.size());

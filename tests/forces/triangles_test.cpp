@@ -27,13 +27,13 @@ std::vector<char> inside(const mesh::Sheet& sheet, int rings) {
   std::vector<char> result(sheet.rest.size(), 1);
   for (const mesh::Edge& edge : mesh::collect_edges(sheet.triangles).edges)
     if (edge.triangles[1] < 0)
-      for (Index v : edge.vertices) result[static_cast<std::size_t>(v)] = 0;
+      for (Index v : edge.vertices) result[v] = 0;
   for (int ring = 1; ring < rings; ++ring) {
     const std::vector<char> before = result;
     for (const mesh::Triangle& t : sheet.triangles)
       for (Index a : t)
         for (Index b : t)
-          if (!before[static_cast<std::size_t>(a)]) result[static_cast<std::size_t>(b)] = 0;
+          if (!before[a]) result[b] = 0;
   }
   return result;
 }
@@ -97,12 +97,12 @@ TEST(TriangleCurvature, IsExactForEveryQuadraticWhereNoSideIsFree) {
     for (std::size_t t = 0; t < stencils.size(); ++t) {
       Vec3 curvature = Vec3::Zero();
       for (std::size_t k = 0; k < stencils[t].vertices.size(); ++k) {
-        const Vec2& uv = mesh.uv[static_cast<std::size_t>(stencils[t].vertices[k])];
+        const Vec2& uv = mesh.uv[stencils[t].vertices[k]];
         const double w = 0.7 * uv.x() * uv.x() - 1.1 * uv.x() * uv.y() + 0.4 * uv.y() * uv.y() + 0.3 * uv.x() - 0.2;
         curvature += stencils[t].weights[k] * w;
       }
       bool free = false;
-      for (Index e : edges.of_triangle[t]) free = free || edges.edges[static_cast<std::size_t>(e)].triangles[1] < 0;
+      for (Index e : edges.of_triangle[t]) free = free || edges.edges[e].triangles[1] < 0;
       if (free) continue;
       ++exact;
       // Weights of 1/l², 1e4 to 1e6, times values of one, rounded.
@@ -142,8 +142,7 @@ TEST(TriangleBend, OnlyRigidMotionsAndStretchCostNothing) {
     Eigen::MatrixXd scaled(count, count);
     for (Eigen::Index i = 0; i < count; ++i)
       for (Eigen::Index j = 0; j < count; ++j)
-        scaled(i, j) = full(3 * i + 2, 3 * j + 2) /
-                       std::sqrt(masses[static_cast<std::size_t>(i)] * masses[static_cast<std::size_t>(j)]);
+        scaled(i, j) = full(3 * i + 2, 3 * j + 2) / std::sqrt(masses[i] * masses[j]);
     const Eigen::VectorXd squares = scaled.selfadjointView<Eigen::Lower>().eigenvalues();
     EXPECT_LT(std::abs(squares[2]), 1e-7) << meshing.name;
     EXPECT_NEAR(std::sqrt(squares[3]), 15.57, 0.02 * 15.57) << meshing.name;

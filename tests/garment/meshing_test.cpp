@@ -32,7 +32,7 @@ const std::vector<Vec2> kNotched{{0, 0}, {0.4, 0}, {0.5, 0.4}, {0.6, 0}, {1, 0},
 double area_of(const FlatMesh& mesh) {
   double sum = 0;
   for (const mesh::Triangle& t : mesh.triangles) {
-    const auto p = [&](std::size_t k) { return mesh.points[static_cast<std::size_t>(t[k])]; };
+    const auto p = [&](std::size_t k) { return mesh.points[t[k]]; };
     sum += polygon_area(std::vector<Vec2>{p(0), p(1), p(2)});
   }
   return sum;
@@ -64,8 +64,7 @@ TEST(PanelMeshes, AreDelaunay) {
   const std::vector<Vec2> outline = cut({{0, 0}, {1, 0.1}, {0.9, 0.7}, {0.2, 0.8}}, 0.05);
   const FlatMesh mesh = mesh_panel(outline, {0, 1}, 0.05);
   for (const mesh::Triangle& t : mesh.triangles) {
-    const Vec2 &a = mesh.points[static_cast<std::size_t>(t[0])], &b = mesh.points[static_cast<std::size_t>(t[1])],
-               &c = mesh.points[static_cast<std::size_t>(t[2])];
+    const Vec2 &a = mesh.points[t[0]], &b = mesh.points[t[1]], &c = mesh.points[t[2]];
     Eigen::Matrix2d sides;
     sides << 2 * (b - a).transpose(), 2 * (c - a).transpose();
     const Vec2 centre = sides.inverse() * Vec2(b.squaredNorm() - a.squaredNorm(), c.squaredNorm() - a.squaredNorm());

@@ -34,13 +34,13 @@ std::size_t openings(const mesh::Sheet& sheet) {
   for (bool changed = true; changed;) {
     changed = false;
     for (const auto& [a, b] : border) {
-      Index &p = group[static_cast<std::size_t>(a)], &q = group[static_cast<std::size_t>(b)];
+      Index &p = group[a], &q = group[b];
       changed |= p != q;
       p = q = std::min(p, q);
     }
   }
   std::set<Index> rims;
-  for (const auto& [a, b] : border) rims.insert(group[static_cast<std::size_t>(a)]);
+  for (const auto& [a, b] : border) rims.insert(group[a]);
   return rims.size();
 }
 
@@ -88,7 +88,7 @@ TEST(Garments, StartWithoutIntersectionsWithFrontsOutside) {
       // Each triangle faces away from the coronal plane.
       std::size_t outside = 0;
       for (const mesh::Triangle& t : garment.sheet.triangles) {
-        const auto x = [&](std::size_t k) -> const Vec3& { return garment.sheet.rest[static_cast<std::size_t>(t[k])]; };
+        const auto x = [&](std::size_t k) -> const Vec3& { return garment.sheet.rest[t[k]]; };
         const Vec3 normal = (x(1) - x(0)).cross(x(2) - x(0));
         outside += normal.y() * (x(0) + x(1) + x(2)).y() > 0;
       }

@@ -39,7 +39,7 @@ TEST(ContactSheet, HoldsEveryPictureUnchangedInReadingOrder) {
   for (int i = 0; i < 5; ++i) {
     const auto k = static_cast<std::size_t>(i);
     ASSERT_GE(places[k][0], 0) << i;
-    EXPECT_EQ(places[k][0], places[static_cast<std::size_t>(i % 3)][0]);
+    EXPECT_EQ(places[k][0], places[i % 3][0]);
     EXPECT_EQ(places[k][1], places[i < 3 ? 0u : 3u][1]);
   }
   EXPECT_GT(places[1][0], places[0][0] + 60);

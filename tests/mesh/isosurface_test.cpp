@@ -37,7 +37,7 @@ TEST(Isosurface, BorderLiesInThePlaneAndNowhereElse) {
       }
       EXPECT_EQ(in_plane, report.border.size());  // closed lines have as many vertices as edges
       for (const auto& edge : report.border) {
-        for (const Index v : edge) EXPECT_EQ(half.positions[static_cast<std::size_t>(v)].x(), 0);
+        for (const Index v : edge) EXPECT_EQ(half.positions[v].x(), 0);
       }
       remesh(
           half, field, [](const Vec3&) { return 0.06; }, 6);
@@ -68,8 +68,7 @@ TEST(Isosurface, RemeshedSphereHasEvenTrianglesOnTheSurface) {
   for (const Vec3& p : x) EXPECT_NEAR(p.norm(), 0.5, 1e-9);
   for (const Triangle& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3 a = x[static_cast<std::size_t>(t[k])], b = x[static_cast<std::size_t>(t[(k + 1) % 3])],
-                 c = x[static_cast<std::size_t>(t[(k + 2) % 3])];
+      const Vec3 a = x[t[k]], b = x[t[(k + 1) % 3]], c = x[t[(k + 2) % 3]];
       EXPECT_GT((b - a).norm(), 0.5 * 0.05);
       EXPECT_LT((b - a).norm(), 1.5 * 0.05);
       EXPECT_GT(std::acos((b - a).normalized().dot((c - a).normalized())), 25 * std::numbers::pi / 180);
@@ -86,8 +85,7 @@ TEST(Isosurface, FollowsASizeThatChanges) {
   double ratio = 0;
   const auto edges = collect_edges(half.topology.triangles).edges;
   for (const Edge& e : edges) {
-    const Vec3 &a = half.positions[static_cast<std::size_t>(e.vertices[0])],
-               &b = half.positions[static_cast<std::size_t>(e.vertices[1])];
+    const Vec3 &a = half.positions[e.vertices[0]], &b = half.positions[e.vertices[1]];
     const double r = (a - b).norm() / size(0.5 * (a + b));
     EXPECT_GT(r, 0.45);
     EXPECT_LT(r, 1.6);

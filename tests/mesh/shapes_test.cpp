@@ -34,7 +34,7 @@ double bulge_over_faces(const Mesh& mesh) {
   double highest = -std::numeric_limits<double>::infinity();
   for (const Triangle& t : mesh.topology.triangles) {
     const Vec3 normal = area_vector(t, mesh.positions).normalized();
-    const Vec3& foot = mesh.positions[static_cast<std::size_t>(t[0])];
+    const Vec3& foot = mesh.positions[t[0]];
     for (const Vec3& x : mesh.positions) highest = std::max(highest, normal.dot(x - foot));
   }
   return highest;
@@ -46,8 +46,8 @@ double worst_triangle(const Mesh& mesh) {
   for (const Triangle& t : mesh.topology.triangles) {
     double longest_sq = 0;
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& a = mesh.positions[static_cast<std::size_t>(t[k])];
-      const Vec3& b = mesh.positions[static_cast<std::size_t>(t[(k + 1) % 3])];
+      const Vec3& a = mesh.positions[t[k]];
+      const Vec3& b = mesh.positions[t[(k + 1) % 3]];
       longest_sq = std::max(longest_sq, (b - a).squaredNorm());
     }
     worst = std::min(worst, 2 * area_vector(t, mesh.positions).norm() / longest_sq);
@@ -121,8 +121,7 @@ TEST(Sphere, IsConvexAndMissesNoMoreVolumeThanOutsideTheBallItHolds) {
     EXPECT_LT(bulge_over_faces(sphere), kRounding);
     double depth = 1;  // distance of the nearest face: the convex polyhedron holds the ball of that radius
     for (const Triangle& t : sphere.topology.triangles) {
-      depth = std::min(
-          depth, area_vector(t, sphere.positions).normalized().dot(sphere.positions[static_cast<std::size_t>(t[0])]));
+      depth = std::min(depth, area_vector(t, sphere.positions).normalized().dot(sphere.positions[t[0]]));
     }
     EXPECT_LT(volume(sphere), 4 * kPi / 3);
     EXPECT_GT(volume(sphere), 4 * kPi / 3 * depth * depth * depth);
@@ -142,9 +141,7 @@ TEST(Sphere, HasAboutTheSegmentsAskedFor) {
   for (const int segments : {10, 24, 48, 100}) {
     const Mesh sphere = make_sphere(1, segments);
     const EdgeSet set = collect_edges(sphere.topology.triangles);
-    const auto corner = [&](const Edge& edge, std::size_t k) {
-      return sphere.positions[static_cast<std::size_t>(edge.vertices[k])];
-    };
+    const auto corner = [&](const Edge& edge, std::size_t k) { return sphere.positions[edge.vertices[k]]; };
     double sum = 0;
     for (const Edge& edge : set.edges) sum += (corner(edge, 1) - corner(edge, 0)).norm();
     // As many edges of mean length as fit into the circumference; they come in steps of 10.5.

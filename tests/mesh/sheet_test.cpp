@@ -36,7 +36,7 @@ TEST(TriangleSheet, FlatOnesHaveWeftAlongXAndWarpAlongY) {
   const Sheet sheet = make_sheet_of(mesh);
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Vec3& x = mesh.positions[static_cast<std::size_t>(sheet.triangles[t][k])];
+      const Vec3& x = mesh.positions[sheet.triangles[t][k]];
       EXPECT_LT((sheet.material[t][k] - Vec2(x.x(), x.y())).norm(), 1e-15);
     }
 }
@@ -51,11 +51,10 @@ TEST(TriangleSheet, MaterialCoordinatesKeepLengthsHoweverTheTriangleIsTurned) {
       for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
         const auto& m = sheet.material[t];
         for (std::size_t k = 0; k < 3; ++k)
-          EXPECT_NEAR((m[(k + 1) % 3] - m[k]).norm(),
-                      (turned.positions[static_cast<std::size_t>(sheet.triangles[t][(k + 1) % 3])] -
-                       turned.positions[static_cast<std::size_t>(sheet.triangles[t][k])])
-                          .norm(),
-                      1e-15);
+          EXPECT_NEAR(
+              (m[(k + 1) % 3] - m[k]).norm(),
+              (turned.positions[sheet.triangles[t][(k + 1) % 3]] - turned.positions[sheet.triangles[t][k]]).norm(),
+              1e-15);
         const Vec2 a = m[1] - m[0], b = m[2] - m[0];
         EXPECT_GT(a.x() * b.y() - a.y() * b.x(), 0);
       }

@@ -38,7 +38,7 @@ TEST(Edges, OfATriangleFollowItsCorners) {
     for (std::size_t k = 0; k < 3; ++k) {
       Pair expected{kTetrahedron[t][k], kTetrahedron[t][(k + 1) % 3]};
       std::sort(expected.begin(), expected.end());
-      EXPECT_EQ(set.edges[static_cast<std::size_t>(set.of_triangle[t][k])].vertices, expected);
+      EXPECT_EQ(set.edges[set.of_triangle[t][k]].vertices, expected);
     }
   }
 }

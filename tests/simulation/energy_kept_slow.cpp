@@ -38,7 +38,7 @@ class Energy {
     for (int j = 0; j < nv; ++j)
       for (int i = 0; i < nu; ++i) {
         const double share = (i == 0 || i == nu - 1 ? 0.5 : 1) * (j == 0 || j == nv - 1 ? 0.5 : 1);
-        height += share * x[static_cast<std::size_t>(i + nu * j)].z();
+        height += share * x[i + nu * j].z();
       }
     return report.kinetic_energy + report.elastic_energy + cell_mass * scene_.physics.gravity.norm() * height;
   }

@@ -62,7 +62,7 @@ struct Measures {
 
 Measures measure(const garment::Garment& garment, const std::vector<Vec3>& x) {
   Measures m;
-  const auto at = [&](Index i) -> const Vec3& { return x[static_cast<std::size_t>(i)]; };
+  const auto at = [&](Index i) -> const Vec3& { return x[i]; };
   for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
     const auto& [a, b, c] = garment.sheet.triangles[t];
     m.area += 0.5 * (at(b) - at(a)).cross(at(c) - at(a)).norm();

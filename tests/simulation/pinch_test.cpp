@@ -1,7 +1,5 @@
 // Cloth between two bodies that leave it no room: the run goes on, cloth stays apart from cloth, the pinch is reported,
 // and once the bodies have parted nothing intersects.
-#include "collision/response/pinch.hpp"
-
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -307,27 +305,6 @@ TEST_F(PinchBetweenParts, IsSaidToBeBetweenPartsOfThatBody) {
   ASSERT_FALSE(pinches.empty());
   for (const std::string& text : pinches)
     EXPECT_NE(text.find("'sheet' has no room between parts of 'jaws' near"), std::string::npos) << text;
-}
-
-// Of a box the signed distance is known: outside that to the nearest point of the box, inside minus the least depth.
-TEST(NearestPoint, TellsTheSignedDistanceToABox) {
-  const Vec3 half(0.1, 0.2, 0.05);
-  const mesh::Mesh box = mesh::make_box(2 * half, 0, 1);
-  for (int i = 0; i < 9 * 9 * 9; ++i) {
-    const Vec3 p = Vec3(i % 9 - 4, i / 9 % 9 - 4, i / 81 - 4).cwiseProduct(Vec3(0.041, 0.073, 0.027));
-    const Vec3 beyond = p.cwiseAbs() - half;
-    const double expected = beyond.maxCoeff() < 0 ? beyond.maxCoeff() : beyond.cwiseMax(0.0).norm();
-    const auto found = collision::nearest_point(p, box.topology.triangles, box.positions);
-    EXPECT_NEAR(found.height, expected, 1e-15) << p.transpose();  // a few roundings of 0.3
-  }
-}
-
-// Deep inside and near a side, the way back is still through the bottom where cloth came in.
-TEST(NearestPoint, LooksAtFacesOfOneDirectionAlone) {
-  const mesh::Mesh box = mesh::make_box(Vec3(0.2, 0.2, 0.1), 0, 1);
-  const auto found = collision::nearest_point({0.09, 0, -0.02}, box.topology.triangles, box.positions, -Vec3::UnitZ());
-  EXPECT_NEAR(found.height, -0.03, 1e-15);
-  EXPECT_LT((found.normal + Vec3::UnitZ()).norm(), 1e-14);
 }
 
 }  // namespace

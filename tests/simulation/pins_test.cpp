@@ -64,7 +64,7 @@ struct Pinned {
     return held;
   }
   const Vec3& start(const integrator::HeldParticle& held) const {
-    return environment.cloths[0].start[static_cast<std::size_t>(held.constraint.particle)];
+    return environment.cloths[0].start[held.constraint.particle];
   }
 };
 
@@ -116,7 +116,7 @@ TEST_F(PinsOnACharacter, CarryCloth) {
   const std::vector<Vec3> last = support::run_scene(scene, {.judged = false}).back().cloths[0];
   const Pinned pinned(scene);
   for (const auto& held : pinned.at(scene.time.duration)) {
-    EXPECT_EQ(last[static_cast<std::size_t>(held.constraint.particle)], held.x_end);
+    EXPECT_EQ(last[held.constraint.particle], held.x_end);
     EXPECT_GT((held.x_end - pinned.start(held)).norm(), 0.1);
   }
 }

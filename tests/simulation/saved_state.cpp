@@ -78,7 +78,7 @@ std::string go_on(const scene::Scene& scene, const std::string& state, int k, co
   Simulation simulation(scene);
   simulation.restore(state);
   if (saved(simulation) != state) return fmt::format("the state after frame {}, restored, is saved as another one", k);
-  if (k > 0 && !same_picture(*run[static_cast<std::size_t>(k - 1)].snapshot, *simulation.snapshot()))
+  if (k > 0 && !same_picture(*run[k - 1].snapshot, *simulation.snapshot()))
     return fmt::format("restored after frame {}: another picture", k);
   for (auto next = static_cast<std::size_t>(k); next < run.size(); ++next)
     if (const std::string what = compare(run[next], next_frame(simulation)); !what.empty())
@@ -110,7 +110,7 @@ Continued continue_runs(const scene::Scene& scene, const Interruptions& interrup
   const int threads = thread_count();
   if (interruptions.threads_after > 0) set_thread_count(interruptions.threads_after);
   for (int k : interruptions.saved_at)
-    if (result.difference.empty()) result.difference = go_on(scene, states[static_cast<std::size_t>(k)], k, run);
+    if (result.difference.empty()) result.difference = go_on(scene, states[k], k, run);
   set_thread_count(threads);
   return result;
 }

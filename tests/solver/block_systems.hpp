@@ -56,8 +56,8 @@ inline LinearSystem random_system(Index rows, int terms, Random& random) {
     StencilTerm term;
     const int involved = 2 + t % 3;
     for (int k = 0; k < involved; ++k) {
-      term.particles[static_cast<std::size_t>(k)] = (random.below(rows / 4) * 4 + k) % rows;  // all different
-      term.weights[static_cast<std::size_t>(k)] = random.number();
+      term.particles[k] = (random.below(rows / 4) * 4 + k) % rows;  // all different
+      term.weights[k] = random.number();
     }
     const Vec3 n = random.vector().normalized();
     term.stiffness = 50 * n * n.transpose();

@@ -58,7 +58,7 @@ TEST(ConjugateGradient, WithGroupsAgreesWithTheDirectSolutionUnderContactsAndCon
     EXPECT_LT((testing::flat(x) - expected).norm(), 1e-9 * expected.norm()) << counts.size() << " levels";
     for (const ParticleConstraint& c : system.constraints) {
       if (c.free.isZero(0)) {
-        EXPECT_EQ(x[static_cast<std::size_t>(c.particle)], Vec3::Zero());
+        EXPECT_EQ(x[c.particle], Vec3::Zero());
       }
     }
   }
@@ -212,7 +212,7 @@ TEST(ConjugateGradient, ObliqueConstraintsAreKeptToRounding) {
   cg.prepare(system);
   cg.solve(b, 1e-12 * cg.norm(b), 1000, x);
   for (const ParticleConstraint& c : system.constraints) {
-    const Vec3& entry = x[static_cast<std::size_t>(c.particle)];
+    const Vec3& entry = x[c.particle];
     // Each of some 100 iterations adds a direction that is off by a rounding.
     EXPECT_LE((entry - c.free * entry).norm(), 1e-14 * std::max(1.0, entry.norm()));
   }
@@ -230,7 +230,7 @@ TEST(ConjugateGradient, NormIsThatOfTheInverseBlockDiagonalOnTheFreeDirections) 
   for (Index i = 0; i < 21; ++i) {
     const Mat3 free = s.block<3, 3>(3 * i, 3 * i);
     const Mat3 block = free * a.block<3, 3>(3 * i, 3 * i) * free + (Mat3::Identity() - free);
-    const Vec3 entry = free * b[static_cast<std::size_t>(i)];
+    const Vec3 entry = free * b[i];
     sum += entry.dot(block.inverse() * entry);
   }
   EXPECT_NEAR(cg.norm(b), std::sqrt(sum), 1e-12 * std::sqrt(sum));
@@ -254,7 +254,7 @@ TEST(ConjugateGradient, ReportsTheResidualThatIsLeft) {
   EXPECT_NEAR(report.first_residual, cg.norm(b), 1e-12 * cg.norm(b));
   const Eigen::VectorXd left = testing::flat(b) - dense_with_terms(system) * testing::flat(x);
   std::vector<Vec3> residual(40);
-  for (Eigen::Index i = 0; i < 40; ++i) residual[static_cast<std::size_t>(i)] = left.segment<3>(3 * i);
+  for (Eigen::Index i = 0; i < 40; ++i) residual[i] = left.segment<3>(3 * i);
   EXPECT_NEAR(report.last_residual, cg.norm(residual), 1e-10 * report.first_residual);
 }
 

@@ -35,7 +35,7 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system) {
   std::vector<Index> group_of;
   for (Index i = 0; i < system.matrix.rows(); ++i) group_of.push_back(i);
   for (const Grouping& grouping : system.groupings) {
-    for (Index& group : group_of) group = grouping.of[static_cast<std::size_t>(group)];
+    for (Index& group : group_of) group = grouping.of[group];
     const Eigen::MatrixXd r = restriction(group_of, grouping.count), coarse = r * a * r.transpose();
     const bool last = &grouping == &system.groupings.back();
     sum += r.transpose() * (last ? coarse : diagonal_blocks(coarse)).inverse() * r;

@@ -355,8 +355,7 @@ std::vector<Path<Interval>> interval_paths(const MovingSimplex& a, const MovingS
     for (std::size_t i = 0; i < static_cast<std::size_t>(s->count); ++i) {
       Path<Interval>& path = paths.emplace_back();
       for (int d = 0; d < 3; ++d) {
-        path[static_cast<std::size_t>(d)] = {
-            1, {Interval(s->t0[i][d]) - Interval(a.t0[0][d]), Interval(s->t1[i][d]) - Interval(a.t1[0][d])}};
+        path[d] = {1, {Interval(s->t0[i][d]) - Interval(a.t0[0][d]), Interval(s->t1[i][d]) - Interval(a.t1[0][d])}};
       }
     }
   }
@@ -386,8 +385,7 @@ std::vector<Path<Integer>> integer_paths(const MovingSimplex& a, const MovingSim
   for (const MovingSimplex* s : {&a, &b}) {
     for (std::size_t i = 0; i < static_cast<std::size_t>(s->count); ++i) {
       Path<Integer>& path = paths.emplace_back();
-      for (int d = 0; d < 3; ++d)
-        path[static_cast<std::size_t>(d)] = {1, {scaled(s->t0[i][d], shift), scaled(s->t1[i][d], shift)}};
+      for (int d = 0; d < 3; ++d) path[d] = {1, {scaled(s->t0[i][d], shift), scaled(s->t1[i][d], shift)}};
     }
   }
   return paths;

@@ -268,7 +268,7 @@ MotionQuery grazing_rotation_query(Random& random) {
   const double gap = random.heads() ? 0 : random.decade(-9, -1);
   MotionQuery q = close_query(random, gap);
   // About a point near the contact or a corner farther off; before and after the place of contact.
-  const Vec3 centre = q.a.t0[static_cast<std::size_t>(random.whole(0, 2))] + random.vector(random.decade(-3, 0));
+  const Vec3 centre = q.a.t0[random.whole(0, 2)] + random.vector(random.decade(-3, 0));
   const Vec3 axis = random.unit();
   const double angle = random.decade(-3, 0) * std::numbers::pi, share = random.between(-0.2, 1);
   const Corners at = q.a.t0;

@@ -35,7 +35,7 @@ Point to_point(const JudgedObject& object, Index vertex) {
     throw std::invalid_argument(object.name + ": a face names vertex " + std::to_string(vertex) + " of " +
                                 std::to_string(object.positions.size()));
   }
-  const Vec3& p = object.positions[static_cast<std::size_t>(vertex)];
+  const Vec3& p = object.positions[vertex];
   if (!p.allFinite()) {
     throw std::invalid_argument(object.name + ": the position of vertex " + std::to_string(vertex) + " is not finite");
   }

@@ -24,7 +24,7 @@ void measure_stretch(MeasuredFrame& frame, const scene::Cloth& cloth, const std:
     return;
   }
   const mesh::Grid grid = environment::grid_of(cloth);
-  const auto at = [&](int i, int j) -> const Vec3& { return x[static_cast<std::size_t>(grid.index(i, j))]; };
+  const auto at = [&](int i, int j) -> const Vec3& { return x[grid.index(i, j)]; };
   const auto measure = [&](const Vec3& a, const Vec3& b, double rest) {
     const double stretch = (b - a).norm() / rest;
     if (stretch <= frame.max_stretch) return;

@@ -76,7 +76,7 @@ inline scene::Scene cantilever(scene::ClothShape shape, const Overhang& strip, i
 
 /// H/W of the tip's middle.
 inline double drop_over_reach(const std::vector<Vec3>& x, int cells) {
-  const Vec3& tip = x[static_cast<std::size_t>(2 * (cells + 2) - 1)];
+  const Vec3& tip = x[2 * (cells + 2) - 1];
   return -tip.z() / tip.x();
 }
 

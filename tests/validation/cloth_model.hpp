@@ -48,7 +48,7 @@ class ClothModel {
     for (const auto& force : forces_) force->attach(matrix_);
     held_.resize(x.size());
     for (const scene::Pin& pin : scene.cloths[0].pins)
-      for (Index i : particles_of(pin, cloth, 0)) held_[static_cast<std::size_t>(i)] = 1;
+      for (Index i : particles_of(pin, cloth, 0)) held_[i] = 1;
   }
 
   /// Coordinates of the particles that no pin holds, along these axes: 3 i + axis.
@@ -69,12 +69,12 @@ class ClothModel {
       force->add_constant_stiffness(matrix_);
     }
     std::vector<Eigen::Index> row(3 * x.size(), -1);
-    for (std::size_t k = 0; k < dofs.size(); ++k) row[static_cast<std::size_t>(dofs[k])] = static_cast<Eigen::Index>(k);
+    for (std::size_t k = 0; k < dofs.size(); ++k) row[dofs[k]] = static_cast<Eigen::Index>(k);
     std::vector<Eigen::Triplet<double>> entries;
     matrix_.for_each_block(0, matrix_.rows(), [&](Index i, Index j, const auto& block) {
       for (int a = 0; a < 3; ++a)
         for (int b = 0; b < 3; ++b) {
-          const auto r = row[static_cast<std::size_t>(3 * i + a)], c = row[static_cast<std::size_t>(3 * j + b)];
+          const auto r = row[3 * i + a], c = row[3 * j + b];
           if (r >= 0 && c >= 0) entries.emplace_back(r, c, block(a, b));
         }
     });
@@ -135,7 +135,7 @@ class ClothModel {
     const Eigen::SparseMatrix<double> k = stiffness(dofs);
     const auto n = static_cast<Eigen::Index>(dofs.size());
     Eigen::VectorXd m(n);
-    for (Eigen::Index d = 0; d < n; ++d) m[d] = masses[static_cast<std::size_t>(dofs[static_cast<std::size_t>(d)] / 3)];
+    for (Eigen::Index d = 0; d < n; ++d) m[d] = masses[dofs[d] / 3];
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factors(k);
     const Eigen::Index size = std::min<Eigen::Index>(n, 2 * count + 4);
     Eigen::MatrixXd basis(n, size);
@@ -164,12 +164,8 @@ class ClothModel {
   const environment::ClothObject& cloth() const { return environment_.cloths[0]; }
 
  private:
-  static double coordinate(const std::vector<Vec3>& x, Eigen::Index dof) {
-    return x[static_cast<std::size_t>(dof / 3)][dof % 3];
-  }
-  static double& coordinate(std::vector<Vec3>& x, Eigen::Index dof) {
-    return x[static_cast<std::size_t>(dof / 3)][dof % 3];
-  }
+  static double coordinate(const std::vector<Vec3>& x, Eigen::Index dof) { return x[dof / 3][dof % 3]; }
+  static double& coordinate(std::vector<Vec3>& x, Eigen::Index dof) { return x[dof / 3][dof % 3]; }
   double energy() const {
     double sum = 0;
     for (const auto& force : forces_) sum += force->energy(x);

@@ -201,7 +201,7 @@ std::vector<char> near_border(const Sample& sample) {
     for (const mesh::Triangle& t : sample.mesh.topology.triangles)
       for (Index a : t)
         for (Index b : t)
-          if (before[static_cast<std::size_t>(a)]) near[static_cast<std::size_t>(b)] = 1;
+          if (before[a]) near[b] = 1;
   }
   return near;
 }

@@ -57,7 +57,7 @@ Specimen rings(int free, int seed) {
   }
   disc.held.push_back(0);
   for (int k = 1; k <= all; ++k) {
-    const auto outside = [&](int i) { return first[static_cast<std::size_t>(k)] + i % (6 * k); };
+    const auto outside = [&](int i) { return first[k] + i % (6 * k); };
     const auto inside = [&](int i) { return k == 1 ? 0 : first[static_cast<std::size_t>(k) - 1] + i % (6 * (k - 1)); };
     for (int sector = 0; sector < 6; ++sector)
       for (int i = 0; i < k; ++i) {
@@ -92,8 +92,7 @@ double area_from_above(const std::vector<Vec3>& x, const std::vector<mesh::Trian
   const auto cross = [](const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); };
   for (const mesh::Triangle& triangle : triangles) {
     std::array<Vec2, 3> p;
-    for (std::size_t k = 0; k < 3; ++k)
-      p[k] = x[static_cast<std::size_t>(triangle[k])].head<2>() / kPixel + Vec2::Constant(0.5 * kSide);
+    for (std::size_t k = 0; k < 3; ++k) p[k] = x[triangle[k]].head<2>() / kPixel + Vec2::Constant(0.5 * kSide);
     const Vec2 low = p[0].cwiseMin(p[1]).cwiseMin(p[2]), high = p[0].cwiseMax(p[1]).cwiseMax(p[2]);
     for (int j = static_cast<int>(low.y()); j <= static_cast<int>(high.y()); ++j)
       for (int i = static_cast<int>(low.x()); i <= static_cast<int>(high.x()); ++i) {
@@ -101,7 +100,7 @@ double area_from_above(const std::vector<Vec3>& x, const std::vector<mesh::Trian
         std::array<double, 3> side;
         for (std::size_t k = 0; k < 3; ++k) side[k] = cross(p[(k + 1) % 3] - p[k], middle - p[k]);
         const auto [least, most] = std::minmax_element(side.begin(), side.end());
-        if (*least >= 0 || *most <= 0) seen[static_cast<std::size_t>(j * kSide + i)] = 1;
+        if (*least >= 0 || *most <= 0) seen[j * kSide + i] = 1;
       }
   }
   return kPixel * kPixel * static_cast<double>(std::count(seen.begin(), seen.end(), 1));

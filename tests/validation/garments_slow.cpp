@@ -100,7 +100,7 @@ class Worn : public support::TestFolder {
 
     const auto garment = garment::sew(garment::load_pattern(scene.cloths[0].file, "a test"), 0.025, "a test");
     const std::vector<Vec3>& x = frames.back().cloths[0];
-    const auto at = [&](Index i) -> const Vec3& { return x[static_cast<std::size_t>(i)]; };
+    const auto at = [&](Index i) -> const Vec3& { return x[i]; };
     double area = 0, pattern = 0, worst = 0;
     for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
       const auto& [a, b, c] = garment.sheet.triangles[t];
@@ -151,7 +151,7 @@ std::vector<Vec3> places_along(const garment::Pattern& pattern, const garment::G
     for (std::size_t t = 0; t < garment.panel_of.size() && places.size() == k; ++t)
       for (std::size_t c = 0; c < 3 && places.size() == k; ++c)
         if (garment.panel_of[t] == static_cast<Index>(p) && (garment.sheet.material[t][c] - flat).norm() < 1e-9)
-          places.push_back(x[static_cast<std::size_t>(garment.sheet.triangles[t][c])]);
+          places.push_back(x[garment.sheet.triangles[t][c]]);
     EXPECT_EQ(places.size(), k + 1) << edge << " has no point at " << flat.transpose();
     if (places.size() != k + 1) break;
   }
@@ -191,7 +191,7 @@ TEST_P(OnTheMannequin, FitsAtRestWithItsSeamsClosed) {
   const garment::Pattern pattern = garment::load_pattern(scene.cloths[0].file, "a test");
   const garment::Garment garment = garment::sew(pattern, kSpacing, "a test");
   const std::vector<Vec3>& x = frames.back().cloths[0];
-  const auto at = [&](Index i) -> const Vec3& { return x[static_cast<std::size_t>(i)]; };
+  const auto at = [&](Index i) -> const Vec3& { return x[i]; };
   std::vector<double> areas(pattern.panels.size()), flat(pattern.panels.size());
   for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
     const auto& [a, b, c] = garment.sheet.triangles[t];

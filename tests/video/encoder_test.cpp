@@ -62,7 +62,7 @@ void encode_numbers(const std::filesystem::path& file, const Settings& settings,
 
 void expect_numbers(const DecodedVideo& video, int frames) {
   ASSERT_EQ(video.frames.size(), static_cast<std::size_t>(frames));
-  for (int k = 0; k < frames; ++k) EXPECT_EQ(number_of(video.frames[static_cast<std::size_t>(k)].image), k);
+  for (int k = 0; k < frames; ++k) EXPECT_EQ(number_of(video.frames[k].image), k);
 }
 
 TEST_F(EncoderTest, ExactlyTheFramesThatWentInComeOutInOrder) {
@@ -81,7 +81,7 @@ TEST_F(EncoderTest, FrameKIsShownAtExactlyKOverFps) {
     const AVRational rate = frame_rate(fps);
     for (int k = 0; k < 40; ++k) {
       const AVRational expected = av_mul_q({k, 1}, av_inv_q(rate));
-      const AVRational time = video.frames[static_cast<std::size_t>(k)].time;
+      const AVRational time = video.frames[k].time;
       EXPECT_EQ(av_cmp_q(time, expected), 0) << fps << " fps, frame " << k << ": " << time.num << "/" << time.den;
     }
   }

@@ -39,7 +39,7 @@ TEST(FrameConverter, ColoursFollowTheStandardInLimitedRange) {
         const auto expected = bt709(red, green, blue);
         // Largest residual seen: 0.506 of a level; 0.5 is rounding, the rest swscale's 15-bit coefficients.
         for (int plane = 0; plane < 3; ++plane) {
-          EXPECT_NEAR(sample(*frame, plane, 3, 5), expected[static_cast<std::size_t>(plane)], 0.52)
+          EXPECT_NEAR(sample(*frame, plane, 3, 5), expected[plane], 0.52)
               << red << " " << green << " " << blue << " plane " << plane;
         }
       }

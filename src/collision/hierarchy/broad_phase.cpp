@@ -12,14 +12,14 @@ namespace weft::collision {
 
 namespace {
 
-template <int K, int Arity>
+template <int K>
 class TreesOf final : public BroadPhase::Trees {
  public:
   TreesOf(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options)
       : options_(options) {
     trees_.reserve(surfaces.size());
     for (const Surface& surface : surfaces) {
-      trees_.emplace_back(surface, x, options.leaf);
+      trees_.emplace_back(surface, x, TreeShape{options.children, options.leaf});
       if (options.normal_cones) cones_.emplace_back(trees_.back());
     }
   }
@@ -40,6 +40,16 @@ class TreesOf final : public BroadPhase::Trees {
     collision::pairs(trees_[a], trees_[b], out, traversal(a, b));
   }
 
+  void nearest_triangles(std::size_t surface, const Vec3& p, const DistanceSq& distance_sq,
+                         std::vector<Index>& out) const override {
+    collision::nearest_triangles(trees_[surface], p, distance_sq, out);
+  }
+
+  void triangles_in_box(std::size_t surface, const Vec3& low, const Vec3& high,
+                        std::vector<Index>& out) const override {
+    collision::triangles_in_box(trees_[surface], low, high, out);
+  }
+
   void forget() override {
     for (auto& tree : trees_) tree.forget();
     lists_.clear();
@@ -52,46 +62,29 @@ class TreesOf final : public BroadPhase::Trees {
   }
 
   BroadPhaseOptions options_;
-  std::vector<Tree<K, Arity>> trees_;
-  std::vector<NormalCones<K, Arity>> cones_;                             // by surface, where wanted
+  std::vector<Tree<K>> trees_;
+  std::vector<NormalCones<K>> cones_;                                    // by surface, where wanted
   std::map<std::pair<std::size_t, std::size_t>, SeparationList> lists_;  // by surfaces
 };
-
-template <int K>
-std::unique_ptr<BroadPhase::Trees> with_directions(std::span<const Surface> surfaces, std::span<const Vec3> x,
-                                                   const BroadPhaseOptions& options) {
-  switch (options.children) {
-    case 2:
-      return std::make_unique<TreesOf<K, 2>>(surfaces, x, options);
-    case 4:
-      return std::make_unique<TreesOf<K, 4>>(surfaces, x, options);
-    case 8:
-      return std::make_unique<TreesOf<K, 8>>(surfaces, x, options);
-    default:
-      throw Error(ExitCode::internal, "broad phase: expected 2, 4 or 8 children, got {}", options.children);
-  }
-}
 
 std::unique_ptr<BroadPhase::Trees> make_trees(std::span<const Surface> surfaces, std::span<const Vec3> x,
                                               const BroadPhaseOptions& options) {
   switch (options.directions) {
     case 6:
-      return with_directions<6>(surfaces, x, options);
-    case 14:
-      return with_directions<14>(surfaces, x, options);
+      return std::make_unique<TreesOf<6>>(surfaces, x, options);
     case 18:
-      return with_directions<18>(surfaces, x, options);
+      return std::make_unique<TreesOf<18>>(surfaces, x, options);
     case 26:
-      return with_directions<26>(surfaces, x, options);
+      return std::make_unique<TreesOf<26>>(surfaces, x, options);
     default:
-      throw Error(ExitCode::internal, "broad phase: expected 6, 14, 18 or 26 directions, got {}", options.directions);
+      throw Error(ExitCode::internal, "broad phase: expected 6, 18 or 26 directions, got {}", options.directions);
   }
 }
 
 }  // namespace
 
 BroadPhase::BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options)
-    : trees_(make_trees(surfaces, x, options)) {}
+    : surfaces_(surfaces.begin(), surfaces.end()), trees_(make_trees(surfaces, x, options)) {}
 
 void BroadPhase::refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
   trees_->refit(surface, x_t0, x_t1, margin);
@@ -103,6 +96,16 @@ void BroadPhase::self_pairs(std::size_t surface, CandidatePairs& out) {
 
 void BroadPhase::pairs(std::size_t a, std::size_t b, CandidatePairs& out) {
   trees_->pairs(a, b, out);
+}
+
+void BroadPhase::nearest_triangles(std::size_t surface, const Vec3& p, const DistanceSq& distance_sq,
+                                   std::vector<Index>& out) const {
+  trees_->nearest_triangles(surface, p, distance_sq, out);
+}
+
+void BroadPhase::triangles_in_box(std::size_t surface, const Vec3& low, const Vec3& high,
+                                  std::vector<Index>& out) const {
+  trees_->triangles_in_box(surface, low, high, out);
 }
 
 void BroadPhase::forget() {

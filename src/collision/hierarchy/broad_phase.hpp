@@ -13,22 +13,24 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <vector>
 
+#include "collision/hierarchy/query.hpp"
 #include "collision/hierarchy/surface.hpp"
 #include "core/types.hpp"
 
 namespace weft::collision {
 
-/// The defaults walk fastest on falling_band and multi_sheet (README, "Collision heuristics"; measured with
-/// tests/bench): leaves of 8 instead of 1 are worth a factor of 3, 8 children instead of 2 a fifth, separation lists a
-/// tenth at most; velocity and normal cones cost what they save or more. k = 18 walks and refits longer but lists a
-/// quarter fewer candidates: with the search for proximities 4 to 9 % less in all, a fifth less where layers lie
-/// slanted to the axes.
+/// The defaults walk fastest on falling_band and multi_sheet (measured with tests/bench): leaves of 8 instead of 1 are
+/// worth a factor of 3, 8 children instead of 2 a fifth, separation lists a tenth at most; velocity and normal cones
+/// cost what they save or more. k = 18 walks and refits longer but lists a quarter fewer candidates: with the search
+/// for proximities 4 to 9 % less in all, a fifth less where layers lie slanted to the axes. k = 26, the seed's, lists
+/// the fewest; k = 14 was worse than 6 or 18 in every measurement.
 struct BroadPhaseOptions {
-  /// Directions of the bounds: 6, 14, 18 or 26. More of them list fewer pairs and cost more (fewest: all pairs that
-  /// 26-DOPs list are also listed by boxes).
+  /// Directions of the bounds: 6, 18 or 26. More of them list fewer pairs and cost more (fewest: all pairs that 26-DOPs
+  /// list are also listed by boxes).
   int directions = 6;
-  /// Children per node: 2, 4 or 8. Changes the order of the pairs only.
+  /// Children per node, 2 to 8. Changes the order of the pairs only.
   int children = 8;
   /// Most triangles per leaf, 1 to 8. Changes the order of the pairs only.
   int leaf = 8;
@@ -62,6 +64,15 @@ class BroadPhase {
   /// Appends pairs (a of surface a, b of surface b).
   void pairs(std::size_t a, std::size_t b, CandidatePairs& out);
 
+  /// As collision::nearest_triangles and triangles_in_box (query.hpp), of one surface anywhere on the way that its
+  /// bounds were last fitted to.
+  void nearest_triangles(std::size_t surface, const Vec3& p, const DistanceSq& distance_sq,
+                         std::vector<Index>& out) const;
+  void triangles_in_box(std::size_t surface, const Vec3& low, const Vec3& high, std::vector<Index>& out) const;
+
+  std::size_t size() const { return surfaces_.size(); }
+  const Surface& surface(std::size_t number) const { return surfaces_[number]; }
+
   /// Whether bounds and the order of the pairs depend on the steps before.
   static bool remembers(const BroadPhaseOptions& options) { return options.separation_list || options.velocity_cones; }
   /// From here on they no longer do.
@@ -73,10 +84,15 @@ class BroadPhase {
     virtual void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) = 0;
     virtual void self_pairs(std::size_t surface, CandidatePairs& out) = 0;
     virtual void pairs(std::size_t a, std::size_t b, CandidatePairs& out) = 0;
+    virtual void nearest_triangles(std::size_t surface, const Vec3& p, const DistanceSq& distance_sq,
+                                   std::vector<Index>& out) const = 0;
+    virtual void triangles_in_box(std::size_t surface, const Vec3& low, const Vec3& high,
+                                  std::vector<Index>& out) const = 0;
     virtual void forget() = 0;
   };
 
  private:
+  std::vector<Surface> surfaces_;
   std::unique_ptr<Trees> trees_;
 };
 

@@ -21,7 +21,7 @@ inline constexpr int kRows = (K + 7) / 8 * 8;
 /// The directions of a k-DOP by component; not normalised, so that projections stay short sums. Rows past K are zero.
 template <int K>
 struct Directions {
-  static_assert(K == 6 || K == 14 || K == 18 || K == 26, "box; with corners; with edges; with corners and edges");
+  static_assert(K == 6 || K == 18 || K == 26, "box; with edges; with corners and edges");
   std::array<double, kRows<K>> x{}, y{}, z{};
   std::array<double, kRows<K>> length{};
 
@@ -36,9 +36,9 @@ struct Directions {
       }
     };
     add(1, 0, 0, 1), add(0, 1, 0, 1), add(0, 0, 1, 1);
-    if (K == 14 || K == 26)
+    if (K == 26)
       for (const auto& d : corner) add(d[0], d[1], d[2], 1.7320508075688772);
-    if (K == 18 || K == 26)
+    if (K >= 18)
       for (const auto& d : edge) add(d[0], d[1], d[2], 1.4142135623730951);
   }
 };

@@ -13,44 +13,54 @@
 
 namespace weft::collision {
 
-/// Bounds of N sets, structure of arrays: row r of set l is row[r][l].
-template <int K, int N>
-struct alignas(4 * N) LaneBounds {
-  float row[K][N];
+/// Sets that are tested at once: one per lane of an AVX register of floats.
+inline constexpr int kLanes = 8;
+
+/// The lanes below `count`.
+inline std::uint32_t first_lanes(int count) {
+  return (1U << count) - 1;
+}
+
+/// Calls visit(l) for each set bit, lowest first.
+template <class Visit>
+void for_each_bit(std::uint32_t mask, const Visit& visit) {
+  for (; mask != 0; mask &= mask - 1) visit(std::countr_zero(mask));
+}
+
+/// Bounds of eight sets, structure of arrays: row r of set l is row[r][l].
+template <int K>
+struct alignas(32) LaneBounds {
+  float row[K][kLanes];
 };
 
 /// Bit l is set where set l of `bounds` overlaps (or touches) the k-DOP whose row r is query[r * stride].
 /// The largest gap over all directions decides; a sum of two floats never has the wrong sign.
-template <int K, int N>
-inline std::uint32_t overlap_mask(const LaneBounds<K, N>& bounds, const float* query, std::size_t stride) {
+template <int K>
+inline std::uint32_t overlap_mask(const LaneBounds<K>& bounds, const float* query, std::size_t stride) {
 #if defined(__AVX__)
-  if constexpr (N == 8) {
-    __m256 gap = _mm256_add_ps(_mm256_load_ps(bounds.row[0]), _mm256_broadcast_ss(query + stride));
-    for (std::size_t r = 1; r < K; ++r)
-      gap = _mm256_max_ps(gap,
-                          _mm256_add_ps(_mm256_load_ps(bounds.row[r]), _mm256_broadcast_ss(query + (r ^ 1) * stride)));
-    return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(gap, _mm256_setzero_ps(), _CMP_LE_OQ)));
-  }
-#endif
-#if defined(__SSE2__)
-  if constexpr (N % 4 == 0) {
-    std::uint32_t mask = 0;
-    for (int part = 0; part < N; part += 4) {
-      __m128 gap = _mm_add_ps(_mm_load_ps(bounds.row[0] + part), _mm_set1_ps(query[stride]));
-      for (std::size_t r = 1; r < K; ++r)
-        gap = _mm_max_ps(gap, _mm_add_ps(_mm_load_ps(bounds.row[r] + part), _mm_set1_ps(query[(r ^ 1) * stride])));
-      mask |= static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(gap, _mm_setzero_ps()))) << part;
-    }
-    return mask;
-  }
-#endif
+  __m256 gap = _mm256_add_ps(_mm256_load_ps(bounds.row[0]), _mm256_broadcast_ss(query + stride));
+  for (std::size_t r = 1; r < K; ++r)
+    gap =
+        _mm256_max_ps(gap, _mm256_add_ps(_mm256_load_ps(bounds.row[r]), _mm256_broadcast_ss(query + (r ^ 1) * stride)));
+  return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(gap, _mm256_setzero_ps(), _CMP_LE_OQ)));
+#elif defined(__SSE2__)
   std::uint32_t mask = 0;
-  for (int l = 0; l < N; ++l) {
+  for (int half = 0; half < kLanes; half += 4) {
+    __m128 gap = _mm_add_ps(_mm_load_ps(bounds.row[0] + half), _mm_set1_ps(query[stride]));
+    for (std::size_t r = 1; r < K; ++r)
+      gap = _mm_max_ps(gap, _mm_add_ps(_mm_load_ps(bounds.row[r] + half), _mm_set1_ps(query[(r ^ 1) * stride])));
+    mask |= static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(gap, _mm_setzero_ps()))) << half;
+  }
+  return mask;
+#else
+  std::uint32_t mask = 0;
+  for (int l = 0; l < kLanes; ++l) {
     bool overlap = true;
     for (std::size_t r = 0; r < K; ++r) overlap &= bounds.row[r][l] + query[(r ^ 1) * stride] <= 0;
     mask |= static_cast<std::uint32_t>(overlap) << l;
   }
   return mask;
+#endif
 }
 
 /// Four or eight numbers side by side.

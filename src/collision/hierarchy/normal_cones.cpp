@@ -11,18 +11,14 @@ namespace {
 /// Relative safety against rounding, far above it and far below anything that decides.
 constexpr double kSafety = 1e-9;
 
-const Vec3& at(std::span<const Vec3> x, Index v) {
-  return x[static_cast<std::size_t>(v)];
-}
-
 }  // namespace
 
 bool star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis, std::span<const Vec3> x_t0,
                  std::span<const Vec3> x_t1) {
   Vec3 centre_t0 = Vec3::Zero(), centre_t1 = Vec3::Zero();
   for (const auto& edge : contour) {
-    centre_t0 += at(x_t0, edge[0]);
-    centre_t1 += at(x_t1, edge[0]);
+    centre_t0 += x_t0[edge[0]];
+    centre_t1 += x_t1[edge[0]];
   }
   centre_t0 /= static_cast<double>(contour.size());
   centre_t1 /= static_cast<double>(contour.size());
@@ -31,8 +27,8 @@ bool star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis
   const Vec3 up = axis.unitOrthogonal();
   int turns = 0;
   for (const auto& edge : contour) {
-    const Vec3 p0 = at(x_t0, edge[0]) - centre_t0, q0 = at(x_t0, edge[1]) - centre_t0;
-    const Vec3 p1 = at(x_t1, edge[0]) - centre_t1, q1 = at(x_t1, edge[1]) - centre_t1;
+    const Vec3 p0 = x_t0[edge[0]] - centre_t0, q0 = x_t0[edge[1]] - centre_t0;
+    const Vec3 p1 = x_t1[edge[0]] - centre_t1, q1 = x_t1[edge[1]] - centre_t1;
     const double least =
         std::min({axis.dot(p0.cross(q0)), 0.5 * axis.dot(p0.cross(q1) + p1.cross(q0)), axis.dot(p1.cross(q1))});
     const double size = std::max(p0.squaredNorm(), p1.squaredNorm()) + std::max(q0.squaredNorm(), q1.squaredNorm());
@@ -43,10 +39,10 @@ bool star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis
 }
 
 /// Finds P⁺, its contour and the leaves around for each node.
-template <int K, int Arity>
-class NormalCones<K, Arity>::Builder {
+template <int K>
+class NormalCones<K>::Builder {
  public:
-  Builder(const Tree<K, Arity>& tree, std::vector<Patch>& patches) : tree_(tree), patches_(patches) {
+  Builder(const Tree<K>& tree, std::vector<Patch>& patches) : tree_(tree), patches_(patches) {
     const Surface& surface = tree.surface();
     const auto vertices = static_cast<std::size_t>(surface.vertex_count);
     around_.resize(vertices);
@@ -55,7 +51,7 @@ class NormalCones<K, Arity>::Builder {
     leaf_of_.resize(surface.triangles.size());
     for (std::size_t n = 0; n < tree.leaves().size(); ++n)
       for (int l = 0; l < tree.leaves()[n].count; ++l)
-        leaf_of_[static_cast<std::size_t>(tree.leaves()[n].triangle[l] - surface.first_triangle)] = n;
+        leaf_of_[tree.leaves()[n].triangle[l] - surface.first_triangle] = n;
     find_border();
   }
 
@@ -63,10 +59,10 @@ class NormalCones<K, Arity>::Builder {
   std::vector<Index> build(Ref ref) {
     std::vector<Index> below;
     if (ref < 0) {
-      const auto& leaf = tree_.leaves()[static_cast<std::size_t>(~ref)];
+      const auto& leaf = tree_.leaves()[~ref];
       for (int l = 0; l < leaf.count; ++l) below.push_back(leaf.triangle[l] - tree_.surface().first_triangle);
     } else {
-      const auto& node = tree_.nodes()[static_cast<std::size_t>(ref)];
+      const auto& node = tree_.nodes()[ref];
       for (int i = 0; i < node.count; ++i) {
         const std::vector<Index> part = build(node.child[i]);
         below.insert(below.end(), part.begin(), part.end());
@@ -85,7 +81,7 @@ class NormalCones<K, Arity>::Builder {
   };
 
   std::size_t local(Index v) const { return static_cast<std::size_t>(v - tree_.surface().first_vertex); }
-  const Triangle& triangle(Index t) const { return tree_.surface().triangles[static_cast<std::size_t>(t)]; }
+  const Triangle& triangle(Index t) const { return tree_.surface().triangles[t]; }
 
   /// A vertex is on the border where an edge at it has not exactly one triangle on each side.
   void find_border() {
@@ -126,8 +122,8 @@ class NormalCones<K, Arity>::Builder {
           patch.contour.push_back({triangle(t)[c], triangle(t)[(c + 1) % 3]});
 
     std::vector<std::size_t> own, ring;
-    for (const Index t : below) own.push_back(leaf_of_[static_cast<std::size_t>(t)]);
-    for (const Index t : all) ring.push_back(leaf_of_[static_cast<std::size_t>(t)]);
+    for (const Index t : below) own.push_back(leaf_of_[t]);
+    for (const Index t : all) ring.push_back(leaf_of_[t]);
     for (auto* leaves : {&own, &ring}) {
       std::sort(leaves->begin(), leaves->end());
       leaves->erase(std::unique(leaves->begin(), leaves->end()), leaves->end());
@@ -136,40 +132,40 @@ class NormalCones<K, Arity>::Builder {
       if (!std::binary_search(own.begin(), own.end(), leaf)) patch.ring.push_back(~static_cast<Ref>(leaf));
   }
 
-  const Tree<K, Arity>& tree_;
+  const Tree<K>& tree_;
   std::vector<Patch>& patches_;
   std::vector<std::vector<Index>> around_;  // triangles at each vertex
   std::vector<std::size_t> leaf_of_;        // by triangle
   std::vector<std::uint8_t> border_;        // by vertex
 };
 
-template <int K, int Arity>
-std::size_t NormalCones<K, Arity>::slot(const Tree<K, Arity>& tree, Ref ref) {
+template <int K>
+std::size_t NormalCones<K>::slot(const Tree<K>& tree, Ref ref) {
   return ref >= 0 ? static_cast<std::size_t>(ref) : tree.nodes().size() + static_cast<std::size_t>(~ref);
 }
 
-template <int K, int Arity>
-NormalCones<K, Arity>::NormalCones(const Tree<K, Arity>& tree, NormalConeRule rule) : rule_(rule) {
+template <int K>
+NormalCones<K>::NormalCones(const Tree<K>& tree) {
   const std::size_t slots = tree.nodes().size() + tree.leaves().size();
   patches_.resize(slots);
   cones_.resize(slots);
   regions_.node.resize(tree.nodes().size());
   regions_.leaf.resize(tree.leaves().size());
-  if (!tree.empty() && rule == NormalConeRule::proved) Builder(tree, patches_).build(tree.root());
+  if (!tree.empty()) Builder(tree, patches_).build(tree.root());
 }
 
-template <int K, int Arity>
-void NormalCones<K, Arity>::fit_leaf(const typename Tree<K, Arity>::Leaf& leaf, std::span<const Vec3> x_t0,
-                                     std::span<const Vec3> x_t1, Cone& cone) const {
+template <int K>
+void NormalCones<K>::fit_leaf(const typename Tree<K>::Leaf& leaf, std::span<const Vec3> x_t0,
+                              std::span<const Vec3> x_t1, Cone& cone) const {
   // The normal of a triangle over time is a quadratic whose Bernstein coefficients are these three.
-  std::array<std::array<Vec3, 3>, kLeafLanes> normals;
+  std::array<std::array<Vec3, 3>, kLanes> normals;
   Vec3 sum = Vec3::Zero();
   cone.altitude = 1e300;
   for (int l = 0; l < leaf.count; ++l) {
-    const auto corner = [&](std::span<const Vec3> x, int c) -> const Vec3& { return at(x, leaf.corners.corner[c][l]); };
+    const auto corner = [&](std::span<const Vec3> x, int c) -> const Vec3& { return x[leaf.corners.corner[c][l]]; };
     const Vec3 e0 = corner(x_t0, 1) - corner(x_t0, 0), f0 = corner(x_t0, 2) - corner(x_t0, 0);
     const Vec3 e1 = corner(x_t1, 1) - corner(x_t1, 0), f1 = corner(x_t1, 2) - corner(x_t1, 0);
-    auto& n = normals[static_cast<std::size_t>(l)];
+    auto& n = normals[l];
     n = {e0.cross(f0), 0.5 * (e0.cross(f1) + e1.cross(f0)), e1.cross(f1)};
     sum += n[0] + n[2];
     const double longest_sq = std::max({e0.squaredNorm(), f0.squaredNorm(), (f0 - e0).squaredNorm(), e1.squaredNorm(),
@@ -180,7 +176,7 @@ void NormalCones<K, Arity>::fit_leaf(const typename Tree<K, Arity>::Leaf& leaf, 
   cone.axis = sum.normalized();
   cone.cosine = 1;
   for (int l = 0; l < leaf.count; ++l)
-    for (const Vec3& n : normals[static_cast<std::size_t>(l)]) {
+    for (const Vec3& n : normals[l]) {
       const double along = cone.axis.dot(n);
       if (!(along > 0)) {
         cone.cosine = -1;
@@ -193,8 +189,8 @@ void NormalCones<K, Arity>::fit_leaf(const typename Tree<K, Arity>::Leaf& leaf, 
 }
 
 /// The cone around the mean axis that holds all parts.
-template <int K, int Arity>
-typename NormalCones<K, Arity>::Cone NormalCones<K, Arity>::join(std::span<const Cone* const> parts) {
+template <int K>
+typename NormalCones<K>::Cone NormalCones<K>::join(std::span<const Cone* const> parts) {
   Cone all;
   all.altitude = 1e300;
   for (const Cone* part : parts) {
@@ -216,16 +212,15 @@ typename NormalCones<K, Arity>::Cone NormalCones<K, Arity>::join(std::span<const
   return all;
 }
 
-template <int K, int Arity>
-void NormalCones<K, Arity>::update(const Tree<K, Arity>& tree, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                                   double reach) {
+template <int K>
+void NormalCones<K>::update(const Tree<K>& tree, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double reach) {
   if (tree.empty()) return;
   const std::size_t nodes = tree.nodes().size();
   for (std::size_t n = 0; n < tree.leaves().size(); ++n) fit_leaf(tree.leaves()[n], x_t0, x_t1, cones_[nodes + n]);
   for (std::size_t n = nodes; n-- > 0;) {
     const auto& node = tree.nodes()[n];
-    std::array<const Cone*, Arity> parts;
-    for (int i = 0; i < node.count; ++i) parts[static_cast<std::size_t>(i)] = &cones_[slot(tree, node.child[i])];
+    std::array<const Cone*, kLanes> parts;
+    for (int i = 0; i < node.count; ++i) parts[i] = &cones_[slot(tree, node.child[i])];
     cones_[n] = join(std::span(parts).first(static_cast<std::size_t>(node.count)));
   }
   std::fill(regions_.node.begin(), regions_.node.end(), std::uint8_t{0});
@@ -233,11 +228,10 @@ void NormalCones<K, Arity>::update(const Tree<K, Arity>& tree, std::span<const V
   mark(tree, tree.root(), x_t0, x_t1, reach);
 }
 
-template <int K, int Arity>
-bool NormalCones<K, Arity>::nothing_near(const Tree<K, Arity>& tree, Ref ref, std::span<const Vec3> x_t0,
-                                         std::span<const Vec3> x_t1, double reach) const {
+template <int K>
+bool NormalCones<K>::nothing_near(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                                  double reach) const {
   const Cone& own = cones_[slot(tree, ref)];
-  if (rule_ == NormalConeRule::provot) return own.cosine > 0;
   const Patch& patch = patches_[slot(tree, ref)];
   const double needed = reach * (1 + kSafety);
   if (!patch.closed || own.cosine * own.altitude <= needed || own.cosine <= 0) return false;
@@ -248,28 +242,19 @@ bool NormalCones<K, Arity>::nothing_near(const Tree<K, Arity>& tree, Ref ref, st
 }
 
 /// From the top down; what is below a marked subtree is never asked for.
-template <int K, int Arity>
-void NormalCones<K, Arity>::mark(const Tree<K, Arity>& tree, Ref ref, std::span<const Vec3> x_t0,
-                                 std::span<const Vec3> x_t1, double reach) {
+template <int K>
+void NormalCones<K>::mark(const Tree<K>& tree, Ref ref, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                          double reach) {
   const bool nothing = nothing_near(tree, ref, x_t0, x_t1, reach);
   auto& flags = ref >= 0 ? regions_.node : regions_.leaf;
-  flags[static_cast<std::size_t>(ref >= 0 ? ref : ~ref)] = static_cast<std::uint8_t>(nothing);
+  flags[ref >= 0 ? ref : ~ref] = static_cast<std::uint8_t>(nothing);
   if (nothing || ref < 0) return;
-  const auto& node = tree.nodes()[static_cast<std::size_t>(ref)];
+  const auto& node = tree.nodes()[ref];
   for (int i = 0; i < node.count; ++i) mark(tree, node.child[i], x_t0, x_t1, reach);
 }
 
-template class NormalCones<6, 2>;
-template class NormalCones<6, 4>;
-template class NormalCones<6, 8>;
-template class NormalCones<14, 2>;
-template class NormalCones<14, 4>;
-template class NormalCones<14, 8>;
-template class NormalCones<18, 2>;
-template class NormalCones<18, 4>;
-template class NormalCones<18, 8>;
-template class NormalCones<26, 2>;
-template class NormalCones<26, 4>;
-template class NormalCones<26, 8>;
+template class NormalCones<6>;
+template class NormalCones<18>;
+template class NormalCones<26>;
 
 }  // namespace weft::collision

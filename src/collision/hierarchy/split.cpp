@@ -20,7 +20,7 @@ int longest_side(const KDop<K>& hull) {
 
 template <int K>
 std::size_t split_longest_side(std::span<Index> items, std::span<const KDop<K>> bounds) {
-  const auto bound = [&](Index item) -> const KDop<K>& { return bounds[static_cast<std::size_t>(item)]; };
+  const auto bound = [&](Index item) -> const KDop<K>& { return bounds[item]; };
   KDop<K> hull = bound(items.front());
   for (const Index item : items) hull.join(bound(item));
 
@@ -47,7 +47,6 @@ std::size_t split_longest_side(std::span<Index> items, std::span<const KDop<K>> 
 }
 
 template std::size_t split_longest_side<6>(std::span<Index>, std::span<const KDop<6>>);
-template std::size_t split_longest_side<14>(std::span<Index>, std::span<const KDop<14>>);
 template std::size_t split_longest_side<18>(std::span<Index>, std::span<const KDop<18>>);
 template std::size_t split_longest_side<26>(std::span<Index>, std::span<const KDop<26>>);
 

@@ -13,9 +13,7 @@ namespace weft::collision {
 struct Regions {
   std::vector<std::uint8_t> node, leaf;  ///< 1 where nothing is near, by number
 
-  bool nothing_near(std::int32_t ref) const {
-    return (ref >= 0 ? node[static_cast<std::size_t>(ref)] : leaf[static_cast<std::size_t>(~ref)]) != 0;
-  }
+  bool nothing_near(std::int32_t ref) const { return (ref >= 0 ? node[ref] : leaf[~ref]) != 0; }
 };
 
 /// How to walk; none of it changes what is found, except that pairs inside `regions` are left out.
@@ -29,11 +27,11 @@ struct Traversal {
 
 /// Appends all pairs of different triangles of one surface whose bounds overlap, except those sharing an edge or more.
 /// Every pair appears once, a < b; the order depends on the tree and, with a separation list, on its earlier walks.
-template <int K, int Arity>
-void self_pairs(const Tree<K, Arity>& tree, CandidatePairs& out, const Traversal& how = {});
+template <int K>
+void self_pairs(const Tree<K>& tree, CandidatePairs& out, const Traversal& how = {});
 
 /// Appends all pairs (a of tree a, b of tree b) whose bounds overlap, except those sharing an edge or more.
-template <int K, int Arity>
-void pairs(const Tree<K, Arity>& tree_a, const Tree<K, Arity>& tree_b, CandidatePairs& out, const Traversal& how = {});
+template <int K>
+void pairs(const Tree<K>& tree_a, const Tree<K>& tree_b, CandidatePairs& out, const Traversal& how = {});
 
 }  // namespace weft::collision

@@ -14,14 +14,15 @@ namespace {
 /// Past this depth sets are halved by number: centre splits of a badly graded surface may peel off one triangle each.
 constexpr int kMaxCentreSplits = 64;
 
-void check(const Surface& surface, std::size_t positions, int leaf_capacity) {
+void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {
   const Index first = surface.first_vertex, last = first + surface.vertex_count;
   if (first < 0 || static_cast<std::size_t>(last) > positions)
     throw Error(ExitCode::internal, "hierarchy: expected vertices [{}, {}) inside {} positions", first, last,
                 positions);
-  if (leaf_capacity < 1 || leaf_capacity > kLeafLanes)
-    throw Error(ExitCode::internal, "hierarchy: expected a leaf capacity of 1 to {}, got {}", kLeafLanes,
-                leaf_capacity);
+  if (shape.children < 2 || shape.children > kLanes || shape.leaf < 1 || shape.leaf > kLanes)
+    throw Error(ExitCode::internal,
+                "hierarchy: expected 2 to {0} children and 1 to {0} triangles to a leaf, got {1}, {2}", kLanes,
+                shape.children, shape.leaf);
   for (const Triangle& triangle : surface.triangles)
     for (const Index corner : triangle)
       if (corner < first || corner >= last)
@@ -36,16 +37,16 @@ constexpr double kLeastSlackPart = 1.0 / 64;
 constexpr double kSlackPart = 1.0 / 8;
 
 /// Writes one bound into lane l.
-template <int K, int N>
-void set_lane(LaneBounds<K, N>& bounds, int l, const KDop<K>& bound) {
+template <int K>
+void set_lane(LaneBounds<K>& bounds, int l, const KDop<K>& bound) {
   for (int r = 0; r < K; ++r) bounds.row[r][l] = bound.row[r];
 }
 
 }  // namespace
 
 /// Splits a range of triangles into the children of a node, again and again.
-template <int K, int Arity>
-struct Tree<K, Arity>::Builder {
+template <int K>
+struct Tree<K>::Builder {
   struct Group {
     std::size_t begin, end;
     int depth;
@@ -53,7 +54,7 @@ struct Tree<K, Arity>::Builder {
   };
 
   Tree& tree;
-  std::size_t leaf_capacity;
+  std::size_t most_children, most_triangles;
   std::vector<Bound> bounds;  // of each triangle
   std::vector<Index> order;   // triangles, those of a group side by side
 
@@ -70,50 +71,49 @@ struct Tree<K, Arity>::Builder {
   Ref add_leaf(const Group& group) {
     Leaf leaf{};
     leaf.count = static_cast<std::int32_t>(group.size());
-    for (int l = 0; l < kLeafLanes; ++l) {
+    for (int l = 0; l < kLanes; ++l) {
       const bool used = l < leaf.count;
       const Index local = used ? order[group.begin + static_cast<std::size_t>(l)] : -1;
       leaf.triangle[l] = used ? tree.surface_.first_triangle + local : -1;
-      for (std::size_t c = 0; c < 3; ++c)
-        leaf.corners.corner[c][l] = used ? tree.surface_.triangles[static_cast<std::size_t>(local)][c] : -1;
+      for (std::size_t c = 0; c < 3; ++c) leaf.corners.corner[c][l] = used ? tree.surface_.triangles[local][c] : -1;
     }
     tree.leaves_.push_back(leaf);
     return ~static_cast<Ref>(tree.leaves_.size() - 1);
   }
 
   Ref add(const Group& whole) {
-    if (whole.size() <= leaf_capacity) return add_leaf(whole);
+    if (whole.size() <= most_triangles) return add_leaf(whole);
     // The child with the most triangles is split until the node is full, so that nodes and leaves come out full.
-    std::array<Group, Arity> children{whole};
+    std::array<Group, kLanes> children{whole};
     std::size_t count = 1;
-    while (count < Arity) {
+    while (count < most_children) {
       const auto by_size = [](const Group& a, const Group& b) { return a.size() < b.size(); };
       Group& largest =
           *std::max_element(children.begin(), children.begin() + static_cast<std::ptrdiff_t>(count), by_size);
-      if (largest.size() <= leaf_capacity) break;
+      if (largest.size() <= most_triangles) break;
       children[count++] = split(largest);
     }
     const auto number = static_cast<Ref>(tree.nodes_.size());
     tree.nodes_.emplace_back();
     for (std::size_t i = 0; i < count; ++i) {
       const Ref child = add(children[i]);
-      tree.nodes_[static_cast<std::size_t>(number)].child[i] = child;
+      tree.nodes_[number].child[i] = child;
     }
-    tree.nodes_[static_cast<std::size_t>(number)].count = static_cast<std::int32_t>(count);
+    tree.nodes_[number].count = static_cast<std::int32_t>(count);
     return number;
   }
 };
 
-template <int K, int Arity>
-Tree<K, Arity>::Tree(const Surface& surface, std::span<const Vec3> positions, int leaf_capacity) : surface_(surface) {
-  check(surface, positions.size(), leaf_capacity);
+template <int K>
+Tree<K>::Tree(const Surface& surface, std::span<const Vec3> positions, const TreeShape& shape) : surface_(surface) {
+  check(surface, positions.size(), shape);
   vertex_bounds_.resize(static_cast<std::size_t>(surface.vertex_count));
   if (surface.triangles.empty()) return;
 
-  Builder builder{*this, static_cast<std::size_t>(leaf_capacity), {}, {}};
+  Builder builder{*this, static_cast<std::size_t>(shape.children), static_cast<std::size_t>(shape.leaf), {}, {}};
   builder.bounds.reserve(surface.triangles.size());
   for (const Triangle& triangle : surface.triangles) {
-    const auto at = [&](std::size_t c) -> const Vec3& { return positions[static_cast<std::size_t>(triangle[c])]; };
+    const auto at = [&](std::size_t c) -> const Vec3& { return positions[triangle[c]]; };
     Bound bound = swept_point<K>(at(0), at(1), 0);
     bound.join(swept_point<K>(at(2), at(2), 0));
     builder.bounds.push_back(bound);
@@ -127,8 +127,8 @@ Tree<K, Arity>::Tree(const Surface& surface, std::span<const Vec3> positions, in
   refit(positions, positions, 0);
 }
 
-template <int K, int Arity>
-void Tree<K, Arity>::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+template <int K>
+void Tree<K>::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
   const auto first = static_cast<std::size_t>(surface_.first_vertex);
   for (std::size_t v = 0; v < vertex_bounds_.size(); ++v)
     vertex_bounds_[v] = swept_point<K>(x_t0[first + v], x_t1[first + v], margin);
@@ -139,12 +139,12 @@ void Tree<K, Arity>::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t
 }
 
 /// A leaf from its triangles' corners.
-template <int K, int Arity>
-void Tree<K, Arity>::fit(std::size_t n) {
+template <int K>
+void Tree<K>::fit(std::size_t n) {
   Leaf& leaf = leaves_[n];
   for (int l = 0; l < leaf.count; ++l) {
     const auto corner = [&](int c) -> const Bound& {
-      return vertex_bounds_[static_cast<std::size_t>(leaf.corners.corner[c][l] - surface_.first_vertex)];
+      return vertex_bounds_[leaf.corners.corner[c][l] - surface_.first_vertex];
     };
     Bound bound = corner(0);
     bound.join(corner(1));
@@ -158,8 +158,8 @@ void Tree<K, Arity>::fit(std::size_t n) {
 }
 
 /// A node from its children, Eq. (3).
-template <int K, int Arity>
-void Tree<K, Arity>::fit_node(std::size_t n) {
+template <int K>
+void Tree<K>::fit_node(std::size_t n) {
   Node& node = nodes_[n];
   node_bounds_[n] = bound(node.child[0]);
   for (int i = 0; i < node.count; ++i) {
@@ -170,8 +170,8 @@ void Tree<K, Arity>::fit_node(std::size_t n) {
 }
 
 /// Whether the vertex v gets another bound for its way from p to q.
-template <int K, int Arity>
-bool Tree<K, Arity>::stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, double margin) {
+template <int K>
+bool Tree<K>::stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, double margin) {
   Resting& resting = resting_[v];
   const double slack_sq = resting.slack * resting.slack;
   if (resting.slack >= 0 && (p - resting.place).squaredNorm() <= slack_sq &&
@@ -189,8 +189,8 @@ bool Tree<K, Arity>::stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, d
   return true;
 }
 
-template <int K, int Arity>
-void Tree<K, Arity>::refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+template <int K>
+void Tree<K>::refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
   const auto first = static_cast<std::size_t>(surface_.first_vertex);
   if (resting_margin_ != margin) resting_.assign(vertex_bounds_.size(), {});
   resting_margin_ = margin;
@@ -204,8 +204,7 @@ void Tree<K, Arity>::refit_lazily(std::span<const Vec3> x_t0, std::span<const Ve
     const Leaf& leaf = leaves_[n];
     std::uint8_t any = 0;
     for (int l = 0; l < leaf.count; ++l)
-      for (const auto& row : leaf.corners.corner)
-        any |= moved_[static_cast<std::size_t>(row[l] - surface_.first_vertex)];
+      for (const auto& row : leaf.corners.corner) any |= moved_[row[l] - surface_.first_vertex];
     leaf_changed_[n] = any;
     if (any != 0) fit(n);
   }
@@ -213,24 +212,14 @@ void Tree<K, Arity>::refit_lazily(std::span<const Vec3> x_t0, std::span<const Ve
     const Node& node = nodes_[n];
     std::uint8_t any = 0;
     for (int i = 0; i < node.count; ++i)
-      any |= node.child[i] >= 0 ? changed_[static_cast<std::size_t>(node.child[i])]
-                                : leaf_changed_[static_cast<std::size_t>(~node.child[i])];
+      any |= node.child[i] >= 0 ? changed_[node.child[i]] : leaf_changed_[~node.child[i]];
     changed_[n] = any;
     if (any != 0) fit_node(n);
   }
 }
 
-template class Tree<6, 2>;
-template class Tree<6, 4>;
-template class Tree<6, 8>;
-template class Tree<14, 2>;
-template class Tree<14, 4>;
-template class Tree<14, 8>;
-template class Tree<18, 2>;
-template class Tree<18, 4>;
-template class Tree<18, 8>;
-template class Tree<26, 2>;
-template class Tree<26, 4>;
-template class Tree<26, 8>;
+template class Tree<6>;
+template class Tree<18>;
+template class Tree<26>;
 
 }  // namespace weft::collision

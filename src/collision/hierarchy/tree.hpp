@@ -13,13 +13,16 @@
 
 namespace weft::collision {
 
-/// Most triangles a leaf can hold: one per AVX lane.
-inline constexpr int kLeafLanes = 8;
+/// How many children a node and how many triangles a leaf has at most, one per lane.
+struct TreeShape {
+  int children = kLanes;  ///< 2 to 8
+  int leaf = kLanes;      ///< 1 to 8
+};
 
-/// A tree of k-DOPs with up to `Arity` (2, 4 or 8) children per node and up to eight triangles per leaf. The bounds of
-/// a node's children, and of a leaf's triangles, lie side by side so that all are tested at once. Nodes are numbered
-/// depth first, parents before children: refitting is one pass from the last to the first.
-template <int K, int Arity>
+/// A tree of k-DOPs. The bounds of a node's children, and of a leaf's triangles, lie side by side so that all are
+/// tested at once; a shape with fewer of them leaves lanes empty. Nodes are numbered depth first, parents before
+/// children: refitting is one pass from the last to the first.
+template <int K>
 class Tree {
  public:
   using Bound = KDop<K>;
@@ -28,24 +31,23 @@ class Tree {
   using Ref = std::int32_t;
 
   struct Node {
-    LaneBounds<K, Arity> bounds;
-    Ref child[Arity];
+    LaneBounds<K> bounds;
+    Ref child[kLanes];
     std::int32_t count = 0;  ///< children used
   };
 
   struct Leaf {
-    LaneBounds<K, kLeafLanes> bounds;
+    LaneBounds<K> bounds;
     LaneCorners corners;
-    std::int32_t triangle[kLeafLanes];  ///< global numbers
+    std::int32_t triangle[kLanes];  ///< global numbers
     std::int32_t count = 0;
   };
 
   Tree() = default;
 
   /// Builds over the surface at `positions` (global array, [m]) and fits it there without margin. Split by the longest
-  /// side until at most leaf_capacity (1 to 8) triangles are left. Throws Error(internal) where an index is out of
-  /// range.
-  Tree(const Surface& surface, std::span<const Vec3> positions, int leaf_capacity = kLeafLanes);
+  /// side until the triangles left fit into a leaf. Throws Error(internal) where an index or the shape is out of range.
+  Tree(const Surface& surface, std::span<const Vec3> positions, const TreeShape& shape = {});
 
   /// Fits all bounds to the linear motion from x_t0 to x_t1 (global arrays, [m]; the same twice for a still surface),
   /// enlarged by `margin` [m] in every direction. With margin ε/2 on both sides, triangles that come closer than ε at
@@ -67,9 +69,7 @@ class Tree {
   std::span<const Leaf> leaves() const { return leaves_; }
 
   /// Bound of a node or leaf as a whole.
-  const Bound& bound(Ref ref) const {
-    return ref >= 0 ? node_bounds_[static_cast<std::size_t>(ref)] : leaf_bounds_[static_cast<std::size_t>(~ref)];
-  }
+  const Bound& bound(Ref ref) const { return ref >= 0 ? node_bounds_[ref] : leaf_bounds_[~ref]; }
 
  private:
   struct Builder;
@@ -97,12 +97,5 @@ class Tree {
   std::vector<std::uint8_t> changed_, leaf_changed_;  // by node, by leaf
   double resting_margin_ = -1;                        // margin that the resting bounds have [m]
 };
-
-/// The tree of the simulation. Measured with tests/bench/collision.cpp, refit + self pairs in CPU ms on one core,
-/// sheets of 64×64 particles flat / in 8 layers: boxes 8-ary 0.44 / 0.81, 4-ary 0.43 / 0.83, 2-ary 0.51 / 0.97; 14-DOPs
-/// 8-ary 0.61 / 2.6, 18-DOPs 0.72 / 3.0, 26-DOPs 1.27 / 3.8; leaves of 4 instead of 8 take 20 to 80 % longer. More
-/// directions drop up to 43 % of the pairs between layers but cost more than the pairs saved, in part because the
-/// longest side of a sheet is then its diagonal, and halves cut along it have worse bounds.
-using SurfaceTree = Tree<6, 8>;
 
 }  // namespace weft::collision

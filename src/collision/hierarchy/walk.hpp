@@ -2,31 +2,19 @@
 #pragma once
 
 #include <algorithm>
-#include <bit>
 #include <utility>
 
 #include "collision/hierarchy/traversal.hpp"
 
 namespace weft::collision {
 
-/// The lanes below `count`.
-inline std::uint32_t first_lanes(int count) {
-  return (1U << count) - 1;
-}
-
-/// Calls visit(l) for each set bit, lowest first.
-template <class Visit>
-void for_each_bit(std::uint32_t mask, const Visit& visit) {
-  for (; mask != 0; mask &= mask - 1) visit(std::countr_zero(mask));
-}
-
 /// One walk over the trees of both sides, which may be the same one. kLonger: of two nodes only the one with the longer
 /// side is opened. kListed: stops are noted in a separation list. Both are fixed at compile time so that the plain walk
 /// does not ask.
-template <int K, int Arity, bool kLonger, bool kListed>
+template <int K, bool kLonger, bool kListed>
 class Walk {
  public:
-  using TreeType = Tree<K, Arity>;
+  using TreeType = Tree<K>;
   using Ref = typename TreeType::Ref;
   using Leaf = typename TreeType::Leaf;
   using Node = typename TreeType::Node;
@@ -113,7 +101,7 @@ class Walk {
     for (int i = 0; i < node.count; ++i) {
       self(node.child[i]);
       const std::uint32_t later = first_lanes(node.count) & ~first_lanes(i + 1);
-      const std::uint32_t hits = overlap_mask(node.bounds, &node.bounds.row[0][i], Arity) & later;
+      const std::uint32_t hits = overlap_mask(node.bounds, &node.bounds.row[0][i], kLanes) & later;
       note(node.child[i], ref, later & ~hits, true);
       for_each_bit(hits, [&](int j) { both(node.child[i], node.child[j]); });
     }
@@ -136,7 +124,7 @@ class Walk {
       if (kLonger || ref_b < 0)
         both(node_a.child[i], ref_b);
       else
-        open_b(node_a.child[i], &node_a.bounds.row[0][i], Arity, ref_b);
+        open_b(node_a.child[i], &node_a.bounds.row[0][i], kLanes, ref_b);
     });
   }
 
@@ -164,7 +152,7 @@ class Walk {
 
   /// Triangle i of leaf a against the `allowed` ones of leaf b.
   void lane(const Leaf& leaf_a, int i, const Leaf& leaf_b, std::uint32_t allowed) {
-    const std::uint32_t hits = overlap_mask(leaf_b.bounds, &leaf_a.bounds.row[0][i], kLeafLanes) & allowed;
+    const std::uint32_t hits = overlap_mask(leaf_b.bounds, &leaf_a.bounds.row[0][i], kLanes) & allowed;
     if (hits == 0) return;
     const SharedMasks shared = shared_vertices(leaf_b.corners, leaf_a.corners, i);
     append(out_.apart, leaf_a.triangle[i], leaf_b, hits & ~shared.one & ~shared.more);
@@ -172,7 +160,7 @@ class Walk {
   }
 
   void append(PairList& list, Index a, const Leaf& leaf_b, std::uint32_t mask) {
-    TrianglePair* end = list.reserve_more(kLeafLanes);
+    TrianglePair* end = list.reserve_more(kLanes);
     for_each_bit(mask, [&](int j) {
       const Index b = leaf_b.triangle[j];
       *end++ = same_ && b < a ? TrianglePair{b, a} : TrianglePair{a, b};

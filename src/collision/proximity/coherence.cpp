@@ -13,25 +13,40 @@ namespace {
 
 /// Triangles per group: fewer follow the motion more closely, and cost with the square of their number.
 constexpr std::size_t kGroupSize = 128;
+/// After so many updates the reference is set anew and nothing holds, so that the cones of old references do not add
+/// up.
+constexpr int kReferenceUpdates = 64;
 
-const Vec3& at(std::span<const Vec3> x, Index v) {
-  return x[static_cast<std::size_t>(v)];
+void append(const PairList& from, PairList& to) {
+  to.grow(std::copy(from.begin(), from.end(), to.reserve_more(from.size())));
+}
+
+std::size_t surface_of(Index vertex, std::span<const Surface> surfaces) {
+  const auto holds = [&](const Surface& s) {
+    return vertex >= s.first_vertex && vertex < s.first_vertex + s.vertex_count;
+  };
+  return static_cast<std::size_t>(std::ranges::find_if(surfaces, holds) - surfaces.begin());
 }
 
 }  // namespace
 
-CoherentDetection::CoherentDetection(std::span<const Surface> surfaces, std::span<const Vec3> x, double reach,
-                                     double budget)
-    : reach_(reach), budget_(budget) {
-  for (const Surface& surface : surfaces) add_groups(surface, x, groups_.emplace_back());
+CoherentDetection::CoherentDetection(std::span<const Surface> surfaces, std::vector<SurfacePair> wanted,
+                                     std::span<const Vec3> x, const CoherenceParameters& parameters)
+    : surfaces_(surfaces.begin(), surfaces.end()),
+      wanted_(std::move(wanted)),
+      parameters_(parameters),
+      kept_(wanted_.size()) {
+  for (const Surface& surface : surfaces) add_groups(surface, x);
 }
 
-/// Halves by the longest side until a group is small.
-void CoherentDetection::add_groups(const Surface& surface, std::span<const Vec3> x, std::vector<Group>& groups) const {
+// Halves by the longest side until a group is small.
+void CoherentDetection::add_groups(const Surface& surface, std::span<const Vec3> x) {
+  std::vector<Group>& groups = groups_.emplace_back();
+  if (surface.triangles.empty()) return;
   std::vector<KDop<6>> bounds;
   for (const Triangle& t : surface.triangles) {
-    bounds.push_back(swept_point<6>(at(x, t[0]), at(x, t[1]), 0));
-    bounds.back().join(swept_point<6>(at(x, t[2]), at(x, t[2]), 0));
+    bounds.push_back(swept_point<6>(x[t[0]], x[t[1]], 0));
+    bounds.back().join(swept_point<6>(x[t[2]], x[t[2]], 0));
   }
   std::vector<Index> order(bounds.size());
   std::iota(order.begin(), order.end(), Index{0});
@@ -46,20 +61,37 @@ void CoherentDetection::add_groups(const Surface& surface, std::span<const Vec3>
       continue;
     }
     std::vector<Index>& vertices = groups.emplace_back().vertices;
-    for (const Index t : items) {
-      const Triangle& corners = surface.triangles[static_cast<std::size_t>(t)];
-      vertices.insert(vertices.end(), corners.begin(), corners.end());
-    }
+    for (const Index t : items)
+      vertices.insert(vertices.end(), surface.triangles[t].begin(), surface.triangles[t].end());
     std::sort(vertices.begin(), vertices.end());
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
   }
 }
 
+int CoherentDetection::update(BroadPhase& broad_phase, ProximityFinder& finder, std::span<const Vec3> x_t0,
+                              std::span<const Vec3> x_t1) {
+  advance(x_t0, x_t1);
+  std::vector<std::size_t> anew;
+  for (std::size_t w = 0; w < wanted_.size(); ++w)
+    if (!holds(wanted_[w], kept_[w])) anew.push_back(w);
+  for (std::size_t s = 0; s < surfaces_.size(); ++s)
+    broad_phase.refit(s, x_t0, x_t1, 0.5 * (parameters_.reach + parameters_.budget));
+  if (!anew.empty()) find_anew(anew, broad_phase, finder, x_t0);
+  proximities_.clear();
+  largest_motion_ = 0;
+  for (const Kept& kept : kept_) {
+    append_proximities(kept, x_t0);
+    largest_motion_ = std::max(largest_motion_, kept.motion);
+  }
+  return static_cast<int>(anew.size());
+}
+
+// Velocity cones for the step from x_t0 to x_t1.
 void CoherentDetection::advance(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  if (steps_++ % kReferenceSteps == 0) {
+  if (updates_++ % kReferenceUpdates == 0) {
     reference_t0_.assign(x_t0.begin(), x_t0.end());
     reference_t1_.assign(x_t1.begin(), x_t1.end());
-    kept_.clear();
+    for (Kept& kept : kept_) kept.valid = false;
   }
   for (std::vector<Group>& groups : groups_) {
     for (Group& group : groups) {
@@ -68,65 +100,87 @@ void CoherentDetection::advance(std::span<const Vec3> x_t0, std::span<const Vec3
       group.low.setConstant(INFINITY);
       group.high.setConstant(-INFINITY);
       for (const Index v : group.vertices) {
-        mean += at(x_t0, v) - at(reference_t0_, v) + at(x_t1, v) - at(reference_t1_, v);
-        group.low = group.low.cwiseMin(at(x_t0, v)).cwiseMin(at(x_t1, v));
-        group.high = group.high.cwiseMax(at(x_t0, v)).cwiseMax(at(x_t1, v));
+        mean += x_t0[v] - reference_t0_[v] + x_t1[v] - reference_t1_[v];
+        group.low = group.low.cwiseMin(x_t0[v]).cwiseMin(x_t1[v]);
+        group.high = group.high.cwiseMax(x_t0[v]).cwiseMax(x_t1[v]);
       }
       mean /= 2.0 * static_cast<double>(group.vertices.size());
       double radius_sq = 0;
       for (const Index v : group.vertices)
-        radius_sq = std::max({radius_sq, (at(x_t0, v) - at(reference_t0_, v) - mean).squaredNorm(),
-                              (at(x_t1, v) - at(reference_t1_, v) - mean).squaredNorm()});
-      group.cone = VelocityCone(mean, std::sqrt(radius_sq));
+        radius_sq = std::max({radius_sq, (x_t0[v] - reference_t0_[v] - mean).squaredNorm(),
+                              (x_t1[v] - reference_t1_[v] - mean).squaredNorm()});
+      group.cone = {mean, std::sqrt(radius_sq)};
     }
   }
 }
 
-bool CoherentDetection::holds(std::size_t a, std::size_t b) {
-  const auto found = kept_.find({a, b});
-  if (found == kept_.end()) return false;
-  Kept& kept = found->second;
+bool CoherentDetection::holds(const SurfacePair& pair, Kept& kept) const {
   kept.motion = 0;
-  for (std::size_t g = 0; g < kept.groups_a.size(); ++g) {
-    for (std::size_t h = a == b ? g : 0; h < kept.groups_b.size(); ++h) {
-      const Group &g_then = kept.groups_a[g], &h_then = kept.groups_b[h];
-      // What has been added to the motions of each since then.
-      const VelocityCone &g_now = groups_[a][g].cone, &h_now = groups_[b][h].cone;
-      const VelocityCone since_g(g_now.mean() - g_then.cone.mean(), g_now.radius() + g_then.cone.radius());
-      const VelocityCone since_h(h_now.mean() - h_then.cone.mean(), h_now.radius() + h_then.cone.radius());
-      const double motion = relative_motion(since_g, since_h);
+  for (std::size_t g = 0; kept.valid && g < kept.groups_a.size(); ++g) {
+    for (std::size_t h = pair.a == pair.b ? g : 0; h < kept.groups_b.size(); ++h) {
+      const GroupThen &g_then = kept.groups_a[g], &h_then = kept.groups_b[h];
+      const double motion =
+          relative_motion(groups_[pair.a][g].cone - g_then.cone, groups_[pair.b][h].cone - h_then.cone);
       const double gap = (g_then.low - h_then.high).cwiseMax(h_then.low - g_then.high).maxCoeff();
-      if (gap > reach_ + motion) continue;
-      if (motion > budget_) return false;
+      if (gap > parameters_.reach + motion) continue;
+      if (motion > parameters_.budget) return false;
       kept.motion = std::max(kept.motion, motion);
     }
   }
-  return true;
+  return kept.valid;
 }
 
-void CoherentDetection::keep(std::size_t a, std::size_t b, const CandidatePairs& candidates,
-                             std::span<const Proximity> proximities) {
-  Kept& kept = kept_[{a, b}];
-  kept.candidates = candidates;
-  kept.proximities.assign(proximities.begin(), proximities.end());
-  kept.motion = 0;
-  for (auto [groups, surface] : {std::pair(&kept.groups_a, a), std::pair(&kept.groups_b, b)}) {
-    groups->clear();
-    for (const Group& group : groups_[surface]) groups->push_back({{}, group.low, group.high, group.cone});
+// One search for all of them, because it costs the size of the scene once; then each pair of surfaces gets its own.
+void CoherentDetection::find_anew(const std::vector<std::size_t>& pairs, BroadPhase& broad_phase,
+                                  ProximityFinder& finder, std::span<const Vec3> x_t0) {
+  CandidatePairs all;
+  std::vector<Surface> with_themselves;
+  for (const std::size_t w : pairs) {
+    const auto& [a, b] = wanted_[w];
+    Kept& kept = kept_[w];
+    kept = {};
+    kept.valid = true;
+    if (a == b) {
+      broad_phase.self_pairs(a, kept.candidates);
+      with_themselves.push_back(surfaces_[a]);
+    } else {
+      broad_phase.pairs(a, b, kept.candidates);
+    }
+    append(kept.candidates.apart, all.apart);
+    append(kept.candidates.one_shared, all.one_shared);
+    for (const Group& group : groups_[a]) kept.groups_a.push_back({group.low, group.high, group.cone});
+    for (const Group& group : groups_[b]) kept.groups_b.push_back({group.low, group.high, group.cone});
+  }
+
+  const double radius = parameters_.reach + parameters_.budget;
+  finder.gather(all, with_themselves, x_t0, radius, parameters_.flattest);
+  std::vector<Proximity> found;
+  finder.find(x_t0, radius, found);
+  for (const Proximity& proximity : found) {
+    const std::size_t one = surface_of(proximity.vertices[0], surfaces_),
+                      other = surface_of(proximity.vertices[3], surfaces_);
+    const auto is_its = [&](std::size_t w) {
+      return wanted_[w].a == std::min(one, other) && wanted_[w].b == std::max(one, other);
+    };
+    kept_[*std::ranges::find_if(pairs, is_its)].proximities.push_back(proximity);
+  }
+
+  candidates_.clear();
+  for (const Kept& kept : kept_) {
+    append(kept.candidates.apart, candidates_.apart);
+    append(kept.candidates.one_shared, candidates_.one_shared);
   }
 }
 
-void CoherentDetection::proximities(std::size_t a, std::size_t b, std::span<const Vec3> x,
-                                    std::vector<Proximity>& out) const {
-  const Kept& kept = kept_.at({a, b});
-  const double limit = reach_ + 2 * kept.motion;
+void CoherentDetection::append_proximities(const Kept& kept, std::span<const Vec3> x) {
+  const double limit = parameters_.reach + 2 * kept.motion;
   for (Proximity p : kept.proximities) {
     Vec3 difference = Vec3::Zero();
-    for (std::size_t i = 0; i < 4; ++i) difference += p.weights[i] * at(x, p.vertices[i]);
+    for (std::size_t i = 0; i < 4; ++i) difference += p.weights[i] * x[p.vertices[i]];
     p.distance = difference.norm();
     if (!(p.distance < limit)) continue;
     if (p.distance > 0) p.normal = difference / p.distance;
-    out.push_back(p);
+    proximities_.push_back(p);
   }
 }
 

@@ -6,7 +6,7 @@
 namespace weft::collision {
 
 Features::Features(std::span<const Triangle> triangles, Index vertex_count)
-    : triangles_(triangles.begin(), triangles.end()), owned_(triangles.size(), 0) {
+    : triangles_(triangles), owned_(triangles.size(), 0) {
   collect_fans(vertex_count);
   own_edges();
 }
@@ -56,15 +56,11 @@ void Features::own_edges() {
   for (std::size_t begin = 0, end = 0; begin < sides.size(); begin = end) {
     while (end < sides.size() && sides[end].same_edge(sides[begin])) ++end;
     const Side& owner = sides[begin];
-    owned_[static_cast<std::size_t>(owner.triangle)] |= static_cast<std::uint8_t>(8U << owner.corner);
-    edge_[static_cast<std::size_t>(owner.triangle)][static_cast<std::size_t>(owner.corner)] =
-        static_cast<Index>(apexes_begin_.size() - 1);
-    if (end - begin == 2)
-      across_[static_cast<std::size_t>(owner.triangle)][static_cast<std::size_t>(owner.corner)] =
-          sides[begin + 1].triangle;
+    owned_[owner.triangle] |= static_cast<std::uint8_t>(8U << owner.corner);
+    edge_[owner.triangle][owner.corner] = static_cast<Index>(apexes_begin_.size() - 1);
+    if (end - begin == 2) across_[owner.triangle][owner.corner] = sides[begin + 1].triangle;
     for (std::size_t i = begin; i < end; ++i)
-      apexes_.push_back(
-          triangles_[static_cast<std::size_t>(sides[i].triangle)][static_cast<std::size_t>(sides[i].corner + 2) % 3]);
+      apexes_.push_back(triangles_[sides[i].triangle][static_cast<std::size_t>(sides[i].corner + 2) % 3]);
     apexes_begin_.push_back(apexes_.size());
     for (std::size_t i = begin; i < end; ++i)
       for (std::size_t j = i + 1; j < end; ++j)

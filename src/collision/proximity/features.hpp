@@ -18,23 +18,24 @@ class Features {
  public:
   Features() = default;
 
-  /// `triangles` are those of all surfaces in their global numbering; surfaces have no vertices in common.
+  /// `triangles` are those of all surfaces in their global numbering, and must outlive this; surfaces have no vertices
+  /// in common.
   Features(std::span<const Triangle> triangles, Index vertex_count);
 
   std::span<const Triangle> triangles() const { return triangles_; }
-  const Triangle& triangle(Index t) const { return triangles_[static_cast<std::size_t>(t)]; }
+  const Triangle& triangle(Index t) const { return triangles_[t]; }
 
   /// Bits 0 to 2: corner c is owned; bits 3 to 5: the edge from corner c to corner c + 1 is owned.
-  std::uint8_t owned(Index t) const { return owned_[static_cast<std::size_t>(t)]; }
+  std::uint8_t owned(Index t) const { return owned_[t]; }
 
   /// Third corners of all triangles at the edge that triangle t owns from corner c to corner c + 1.
   std::span<const Index> apexes(Index t, std::size_t c) const {
-    const auto edge = static_cast<std::size_t>(edge_[static_cast<std::size_t>(t)][c]);
+    const auto edge = static_cast<std::size_t>(edge_[t][c]);
     return std::span(apexes_).subspan(apexes_begin_[edge], apexes_begin_[edge + 1] - apexes_begin_[edge]);
   }
 
   /// The other triangle at the edge that triangle t owns from corner c to corner c + 1; −1 unless there are two in all.
-  Index across(Index t, std::size_t c) const { return across_[static_cast<std::size_t>(t)][c]; }
+  Index across(Index t, std::size_t c) const { return across_[t][c]; }
 
   /// Triangles at a vertex, lowest number first.
   std::span<const Index> triangles_at(Index vertex) const {
@@ -49,7 +50,7 @@ class Features {
   void collect_fans(Index vertex_count);
   void own_edges();
 
-  std::vector<Triangle> triangles_;
+  std::span<const Triangle> triangles_;
   std::vector<std::uint8_t> owned_;
   std::vector<std::array<Index, 3>> edge_;  // number of the edge, where owned
   std::vector<std::array<Index, 3>> across_;

@@ -1,7 +1,6 @@
 #include "collision/proximity/proximities.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "collision/proximity/closest_points.hpp"
@@ -22,12 +21,6 @@ Vec3 direction(const Vec3& v, const Vec3& fallback) {
     if (length > 0) return tiny / length;
   }
   return Vec3::UnitZ();
-}
-
-/// Calls visit(l) for each set bit, lowest first.
-template <class Visit>
-void for_each_bit(std::uint32_t mask, const Visit& visit) {
-  for (; mask != 0; mask &= mask - 1) visit(static_cast<std::size_t>(std::countr_zero(mask)));
 }
 
 }  // namespace
@@ -74,7 +67,7 @@ class ProximityFinder::Gathering {
         const Lanes4* row[8];
         for (std::size_t l = 0; l < 8; ++l) {
           corner[c][l] = features.triangle(triangles[l])[c];
-          row[l] = &rounded[static_cast<std::size_t>(corner[c][l])].xyz;
+          row[l] = &rounded[corner[c][l]].xyz;
         }
         at[c] = transpose(row);
       }
@@ -91,7 +84,7 @@ class ProximityFinder::Gathering {
       }
       IntLanes8 bits;
       for (std::size_t l = 0; l < 8; ++l) bits[l] = features.owned(triangles[l]);
-      for (int bit = 0; bit < 6; ++bit) owned[static_cast<std::size_t>(bit)] = sign_mask(IntLanes8(bits << (31 - bit)));
+      for (int bit = 0; bit < 6; ++bit) owned[bit] = sign_mask(IntLanes8(bits << (31 - bit)));
     }
   };
 
@@ -135,7 +128,7 @@ class ProximityFinder::Gathering {
     }
   }
 
-  const Vec3& at(Index vertex) const { return x_[static_cast<std::size_t>(vertex)]; }
+  const Vec3& at(Index vertex) const { return x_[vertex]; }
 
   void keep_vertex_face(Index vertex, Index face) {
     const Triangle& corners = features_.triangle(face);
@@ -148,7 +141,7 @@ class ProximityFinder::Gathering {
     if (!surely_farther_edges(at(v[0]), at(v[1]), at(v[2]), at(v[3]), radius_sq_)) finder_.edge_edges_.push_back(edges);
   }
 
-  float fold(Index face, std::size_t edge) const { return finder_.folds_[static_cast<std::size_t>(face)][edge]; }
+  float fold(Index face, std::size_t edge) const { return finder_.folds_[face][edge]; }
 
   ProximityFinder& finder_;
   const Features& features_;
@@ -216,7 +209,7 @@ class ProximityFinder::Search {
   }
 
  private:
-  const Vec3& at(Index vertex) const { return x_[static_cast<std::size_t>(vertex)]; }
+  const Vec3& at(Index vertex) const { return x_[vertex]; }
 
   /// Largest sine of the angle by which the unit direction `outward`, which is perpendicular to the edge, points to the
   /// inside of one of its faces: |e| (arm · outward) / |e × arm|.
@@ -247,7 +240,7 @@ class ProximityFinder::Search {
 
 void ProximityFinder::measure_folds(std::span<const Vec3> x) {
   const auto triangles = features_.triangles();
-  const auto at = [&](Index vertex) -> const Vec3& { return x[static_cast<std::size_t>(vertex)]; };
+  const auto at = [&](Index vertex) -> const Vec3& { return x[vertex]; };
   face_normals_.resize(triangles.size());
   folds_.resize(triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t)
@@ -257,10 +250,10 @@ void ProximityFinder::measure_folds(std::span<const Vec3> x) {
     for (std::size_t c = 0; c < 3; ++c) {
       const Index other = features_.across(static_cast<Index>(t), c);
       // 1 − cos θ = 2 sin² (θ / 2)
-      folds_[t][c] = other < 0
-                         ? 1.0F
-                         : static_cast<float>(std::sqrt(std::max(
-                               0.0, 0.5 - 0.5 * face_normals_[t].dot(face_normals_[static_cast<std::size_t>(other)]))));
+      folds_[t][c] =
+          other < 0
+              ? 1.0F
+              : static_cast<float>(std::sqrt(std::max(0.0, 0.5 - 0.5 * face_normals_[t].dot(face_normals_[other]))));
     }
   }
 }

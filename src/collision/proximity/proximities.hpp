@@ -8,6 +8,7 @@
 
 #include "collision/hierarchy/lanes.hpp"
 #include "collision/hierarchy/surface.hpp"
+#include "collision/proximity/feature_pair.hpp"
 #include "collision/proximity/features.hpp"
 #include "core/types.hpp"
 
@@ -15,15 +16,7 @@ namespace weft::collision {
 
 enum class ProximityKind : std::uint8_t { vertex_face, edge_edge };
 
-/// A point on each of two surfaces: x_a = Σ (w > 0) w x and x_b = −Σ (w < 0) w x.
-struct FeaturePair {
-  std::array<Index, 4> vertices{};  ///< vertex, then a face's corners; or the ends of edge a, then of edge b
-  std::array<double, 4> weights{};  ///< side a sums to 1, side b to −1
-  Vec3 normal = Vec3::UnitZ();      ///< unit, from x_b to x_a
-  double distance = 0;              ///< n · (x_a − x_b) [m]
-};
-
-/// Two features closer than the reach, with their closest points.
+/// Two features closer than the reach, with their closest points: Σ w x = distance · normal.
 struct Proximity : FeaturePair {
   ProximityKind kind = ProximityKind::vertex_face;
   /// Edge-edge: sine of the angle by which the normal leaves the wedge of edge a and b, the directions in which no face
@@ -47,10 +40,8 @@ class ProximityFinder {
  public:
   ProximityFinder() = default;
 
-  /// Triangles of all surfaces in their global numbering.
+  /// Triangles of all surfaces in their global numbering; they must outlive this.
   ProximityFinder(std::span<const Triangle> triangles, Index vertex_count) : features_(triangles, vertex_count) {}
-
-  const Features& features() const { return features_; }
 
   /// Keeps the pairs of features that are closer than `radius` [m] at x [m]. The candidates must hold every pair of
   /// triangles closer than that (up to those with a common edge, which are looked up for each surface of `deformable`).

@@ -9,22 +9,18 @@
 namespace weft::collision {
 namespace {
 
-const Vec3& at(std::span<const Vec3> x, Index vertex) {
-  return x[static_cast<std::size_t>(vertex)];
-}
-
 Vec3 normal(const Triangle& t, std::span<const Vec3> x) {
-  return (at(x, t[1]) - at(x, t[0])).cross(at(x, t[2]) - at(x, t[0]));
+  return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
 }
 
 Vec3 sum(const Triangle& t, std::span<const Vec3> x) {
-  return at(x, t[0]) + at(x, t[1]) + at(x, t[2]);
+  return x[t[0]] + x[t[1]] + x[t[2]];
 }
 
 }  // namespace
 
 double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x) {
-  const auto along = [&](Index vertex) { return n.dot(at(x, vertex)); };
+  const auto along = [&](Index vertex) { return n.dot(x[vertex]); };
   return std::min({along(pair.a[0]), along(pair.a[1]), along(pair.a[2])}) -
          std::max({along(pair.b[0]), along(pair.b[1]), along(pair.b[2])});
 }
@@ -48,7 +44,7 @@ std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec
       try_direction(centres) || try_direction(facing(normal(pair.a, x_t1))) ||
       try_direction(facing(normal(pair.b, x_t1))))
     return found;
-  const auto corners = [&](const Triangle& t) { return std::array{at(x_t0, t[0]), at(x_t0, t[1]), at(x_t0, t[2])}; };
+  const auto corners = [&](const Triangle& t) { return std::array{x_t0[t[0]], x_t0[t[1]], x_t0[t[2]]}; };
   try_direction(closest_convex(corners(pair.a), corners(pair.b)).difference);
   return found;
 }
@@ -57,7 +53,7 @@ ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x
   ClosestFeatures best;
   best.points.distance_sq = std::numeric_limits<double>::infinity();
   const auto vertex_face = [&](Index v, const Triangle& t, double sign) {
-    ClosestPoints points = closest_vertex_face(at(x, v), at(x, t[0]), at(x, t[1]), at(x, t[2]));
+    ClosestPoints points = closest_vertex_face(x[v], x[t[0]], x[t[1]], x[t[2]]);
     if (points.distance_sq >= best.points.distance_sq) return;
     points.difference *= sign;
     for (double& w : points.weights) w *= sign;
@@ -68,7 +64,7 @@ ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x
     vertex_face(pair.b[i], pair.a, -1);
     for (int j = 0; j < 3; ++j) {
       const std::array<Index, 4> v{pair.a[i], pair.a[(i + 1) % 3], pair.b[j], pair.b[(j + 1) % 3]};
-      const ClosestPoints points = closest_edge_edge(at(x, v[0]), at(x, v[1]), at(x, v[2]), at(x, v[3]));
+      const ClosestPoints points = closest_edge_edge(x[v[0]], x[v[1]], x[v[2]], x[v[3]]);
       if (points.distance_sq < best.points.distance_sq) best = {v, points};
     }
   }

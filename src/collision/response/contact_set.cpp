@@ -7,8 +7,8 @@ namespace weft::collision {
 namespace {
 
 Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
-  Vec3 sum = contact.weights[0] * x[static_cast<std::size_t>(contact.particles[0])];
-  for (int k = 1; k < 4; ++k) sum += contact.weights[k] * x[static_cast<std::size_t>(contact.particles[k])];
+  Vec3 sum = contact.weights[0] * x[contact.particles[0]];
+  for (int k = 1; k < 4; ++k) sum += contact.weights[k] * x[contact.particles[k]];
   return sum;
 }
 
@@ -81,8 +81,7 @@ void ContactSet::add_forces(std::span<const Vec3> x_end, const FrictionLag& lag,
     const Contact& contact = contacts_[c];
     const Response response = respond(contact, x_end, lag.loads[c]);
     if (!response.active) continue;
-    for (int k = 0; k < 4; ++k)
-      force[static_cast<std::size_t>(contact.particles[k])] += contact.weights[k] * response.force;
+    for (int k = 0; k < 4; ++k) force[contact.particles[k]] += contact.weights[k] * response.force;
   }
 }
 
@@ -94,7 +93,7 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const F
     if (!response.active) continue;
     int involved = 0, last = 0;
     for (int k = 0; k < 4; ++k) {
-      force[static_cast<std::size_t>(contact.particles[k])] += contact.weights[k] * response.force;
+      force[contact.particles[k]] += contact.weights[k] * response.force;
       if (contact.weights[k] != 0) ++involved, last = k;
     }
     const Mat3 along = contact.normal * contact.normal.transpose();

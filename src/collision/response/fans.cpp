@@ -7,10 +7,6 @@
 namespace weft::collision {
 namespace {
 
-const Vec3& at(std::span<const Vec3> x, Index vertex) {
-  return x[static_cast<std::size_t>(vertex)];
-}
-
 /// The triangle with its corners turned so that `first` comes first.
 Triangle turned(const Triangle& t, Index first) {
   return t[0] == first ? t : t[1] == first ? Triangle{t[1], t[2], t[0]} : Triangle{t[2], t[0], t[1]};
@@ -30,9 +26,8 @@ Fans::Fans(std::span<const Surface> surfaces) {
   for (const Surface& surface : surfaces) {
     std::vector<std::vector<Triangle>> around(static_cast<std::size_t>(surface.vertex_count));
     for (const Triangle& t : surface.triangles)
-      for (Index v : t) around[static_cast<std::size_t>(v - surface.first_vertex)].push_back(turned(t, v));
-    for (Index v = 0; v < surface.vertex_count; ++v)
-      add_fan(surface.first_vertex + v, around[static_cast<std::size_t>(v)]);
+      for (Index v : t) around[v - surface.first_vertex].push_back(turned(t, v));
+    for (Index v = 0; v < surface.vertex_count; ++v) add_fan(surface.first_vertex + v, around[v]);
   }
   slack_.assign(middle_.size(), -1.0F);
 }
@@ -68,12 +63,12 @@ void Fans::add_fan(Index vertex, std::span<const Triangle> triangles) {
 // to its ring, measured from the first, the cross product turns from negative to positive once for each turn.
 bool Fans::turns_once(std::size_t fan, const Vec3& axis, std::span<const Vec3> x) const {
   const auto vertices = ring(fan);
-  const Vec3& middle = at(x, middle_[fan]);
-  const Vec3 across = axis.cross(at(x, vertices.front()) - middle);
+  const Vec3& middle = x[middle_[fan]];
+  const Vec3 across = axis.cross(x[vertices.front()] - middle);
   int turns = 0;
   double before = 0;
   for (std::size_t k = 1; k + 1 < vertices.size(); ++k) {
-    const double side = across.dot(at(x, vertices[k]) - middle);
+    const double side = across.dot(x[vertices[k]] - middle);
     turns += before < 0 && side >= 0 ? 1 : 0;
     before = side;
   }
@@ -85,17 +80,17 @@ void Fans::set_reference(std::span<const Vec3> x) {
     slack_[fan] = -1;
     const auto vertices = ring(fan);
     if (vertices.empty()) continue;
-    const Vec3& middle = at(x, middle_[fan]);
-    Vec3 axis = Vec3::Zero(), e = at(x, vertices.front()) - middle;
+    const Vec3& middle = x[middle_[fan]];
+    Vec3 axis = Vec3::Zero(), e = x[vertices.front()] - middle;
     for (std::size_t k = 1; k < vertices.size(); ++k) {
-      const Vec3 f = at(x, vertices[k]) - middle;
+      const Vec3 f = x[vertices[k]] - middle;
       axis += e.cross(f);
       e = f;
     }
     axis.normalize();
     double slack = std::numeric_limits<double>::infinity(), e_length = e.norm();
     for (std::size_t k = 1; k < vertices.size(); ++k) {
-      const Vec3 f = at(x, vertices[k]) - middle;
+      const Vec3 f = x[vertices[k]] - middle;
       const double f_length = f.norm();
       slack = std::min(slack, room(axis.dot(e.cross(f)), e_length + f_length));
       e = f;
@@ -109,9 +104,7 @@ void Fans::set_reference(std::span<const Vec3> x) {
 bool Fans::keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const {
   const auto vertices = ring(fan);
   if (vertices.empty()) return false;
-  const auto arm = [&](std::size_t k, std::span<const Vec3> x) -> Vec3 {
-    return at(x, vertices[k]) - at(x, middle_[fan]);
-  };
+  const auto arm = [&](std::size_t k, std::span<const Vec3> x) -> Vec3 { return x[vertices[k]] - x[middle_[fan]]; };
   Vec3 axis = Vec3::Zero(), e_t0 = arm(0, x_t0), e_t1 = arm(0, x_t1);
   for (std::size_t k = 1; k < vertices.size(); ++k) {
     const Vec3 f_t0 = arm(k, x_t0), f_t1 = arm(k, x_t1);
@@ -136,8 +129,8 @@ void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
                         std::vector<CornerPair>& failing) {
   const auto stays = [&](std::size_t fan) {
     if (!(slack_[fan] > 0)) return false;
-    float most = moved[static_cast<std::size_t>(middle_[fan])];
-    for (Index v : ring(fan)) most = std::max(most, moved[static_cast<std::size_t>(v)]);
+    float most = moved[middle_[fan]];
+    for (Index v : ring(fan)) most = std::max(most, moved[v]);
     return most < slack_[fan];
   };
   for (std::size_t fan = 0; fan < middle_.size(); ++fan) {

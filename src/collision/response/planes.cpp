@@ -37,8 +37,8 @@ void Planes::look_at_eight(std::size_t first, std::size_t count, float rounding)
       const Lanes4* row[8];
       for (std::size_t l = 0; l < 8; ++l) {
         const TrianglePair& pair = pairs_[first + std::min(l, count - 1)];
-        const Triangle& t = triangles_[static_cast<std::size_t>(side_b ? pair.b : pair.a)];
-        row[l] = &rounded_[static_cast<std::size_t>(t[static_cast<std::size_t>(c)])];
+        const Triangle& t = triangles_[side_b ? pair.b : pair.a];
+        row[l] = &rounded_[t[c]];
       }
       result.corner[c] = transpose(row);
     }
@@ -109,7 +109,7 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
                           std::span<const float> moved, std::vector<CornerPair>& failing) {
   moved_.resize(triangles_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const auto of = [&](std::size_t c) { return moved[static_cast<std::size_t>(triangles_[t][c])]; };
+    const auto of = [&](std::size_t c) { return moved[triangles_[t][c]]; };
     moved_[t] = std::max({of(0), of(1), of(2)});
   }
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
@@ -140,10 +140,10 @@ void Planes::serialize(Archive& archive, std::span<const Vec3> reference) {
     for (std::size_t p = 0; p < planes_.size(); ++p)
       if (planes_[p] != fresh.planes_[p]) changed.push_back(static_cast<std::uint32_t>(p));
   }
-  exchange_plain(archive, changed);
+  serialize_plain(archive, changed);
   for (std::uint32_t p : changed) {
     if constexpr (Archive::kReads) require(p < planes_.size(), "planes of the pairs near each other");
-    exchange_values(archive, planes_[p].n, planes_[p].gap);
+    serialize_values(archive, planes_[p].n, planes_[p].gap);
   }
 }
 

@@ -16,10 +16,6 @@ constexpr int kPushRounds = 24;
 constexpr int kHalfRounds = 36;
 constexpr int kRounds = 60;
 
-std::size_t index(Index vertex) {
-  return static_cast<std::size_t>(vertex);
-}
-
 }  // namespace
 
 Separation::Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable)
@@ -60,18 +56,17 @@ bool Separation::push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, 
   double low = -kInfinity, high = kInfinity;  // of c
   double lowest_a = kInfinity, highest_b = -kInfinity;
   for (int k = 0; k < 3; ++k) {
-    const double a = n.dot(x_t1[index(pair.a[k])]), b = n.dot(x_t1[index(pair.b[k])]);
+    const double a = n.dot(x_t1[pair.a[k]]), b = n.dot(x_t1[pair.b[k]]);
     lowest_a = std::min(lowest_a, a);
     highest_b = std::max(highest_b, b);
-    if (!movable[index(pair.a[k])]) high = std::min(high, a - 0.5 * target);
-    if (!movable[index(pair.b[k])]) low = std::max(low, b + 0.5 * target);
+    if (!movable[pair.a[k]]) high = std::min(high, a - 0.5 * target);
+    if (!movable[pair.b[k]]) low = std::max(low, b + 0.5 * target);
   }
   if (low > high) return false;
   const double plane = std::clamp(0.5 * (lowest_a + highest_b), low, high);
 
   const auto push = [&](const Triangle& corners, double sign) {
-    for (Index corner : corners) {
-      const std::size_t v = index(corner);
+    for (Index v : corners) {
       const double missing = sign * plane + 0.5 * target - sign * n.dot(x_t1[v]);
       if (missing <= 0 || !movable[v]) continue;
       x_t1[v] += sign * missing * n;
@@ -88,8 +83,7 @@ bool Separation::backtrack(const CornerPair& pair, double share, std::span<const
                            std::span<const std::uint8_t> movable, SeparationReport& report) {
   bool moved = false;
   for (const Triangle& corners : {pair.a, pair.b}) {
-    for (Index corner : corners) {
-      const std::size_t v = index(corner);
+    for (Index v : corners) {
       if (!movable[v] || x_t1[v] == x_t0[v]) continue;
       moved = true;
       if (backtracked_in_[v] == round_) continue;
@@ -116,7 +110,7 @@ bool Separation::backtrack_all(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
 // start, however close they are.
 void Separation::look_again(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, const PinchedPairs* pinched) {
   find_failing(x_t0, x_t1, pinched);
-  const auto stays = [&](Index v) { return x_t1[index(v)] == x_t0[index(v)]; };
+  const auto stays = [&](Index v) { return x_t1[v] == x_t0[v]; };
   std::erase_if(failing_, [&](const CornerPair& pair) {
     return std::all_of(pair.a.begin(), pair.a.end(), stays) && std::all_of(pair.b.begin(), pair.b.end(), stays);
   });

@@ -42,10 +42,6 @@ bool feasible(std::span<const HalfSpace> all, const Vec3& u, double slack) {
   return std::all_of(all.begin(), all.end(), [&](const HalfSpace& h) { return h.normal.dot(u) >= h.bound - slack; });
 }
 
-std::size_t index(Index particle) {
-  return static_cast<std::size_t>(particle);
-}
-
 }  // namespace
 
 VelocityConstraints::VelocityConstraints(std::vector<double> masses)
@@ -53,7 +49,7 @@ VelocityConstraints::VelocityConstraints(std::vector<double> masses)
 
 void VelocityConstraints::begin_step(double h) {
   step_ = h;
-  for (const Touched& particle : touched_) touched_of_[index(particle.particle)] = -1;
+  for (const Touched& particle : touched_) touched_of_[particle.particle] = -1;
   touched_.clear();
   walls_.clear();
   prescribed_.clear();
@@ -61,16 +57,16 @@ void VelocityConstraints::begin_step(double h) {
 
 void VelocityConstraints::add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion,
                               double friction, double static_friction) {
-  int& place = touched_of_[index(particle)];
+  int& place = touched_of_[particle];
   if (place < 0) {
     place = static_cast<int>(touched_.size());
     touched_.push_back({particle, -1, {}, {}});
   }
-  Touched& touched = touched_[static_cast<std::size_t>(place)];
+  Touched& touched = touched_[place];
   const double gamma_d_min = distance >= d_min ? d_min : distance + kCorrection * (d_min - distance);
   const double bound = gamma_d_min - distance + normal.dot(motion);
-  for (int w = touched.first_wall; w >= 0; w = walls_[static_cast<std::size_t>(w)].next) {
-    Wall& wall = walls_[static_cast<std::size_t>(w)];
+  for (int w = touched.first_wall; w >= 0; w = walls_[w].next) {
+    Wall& wall = walls_[w];
     if (wall.normal.dot(normal) < kSameWall) continue;
     wall.bound = std::max(wall.bound, bound);
     return;
@@ -85,8 +81,8 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
 Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool of_force, Held& held) const {
   held = {};
   std::vector<HalfSpace> all;
-  for (int w = particle.first_wall; w >= 0; w = walls_[static_cast<std::size_t>(w)].next) {
-    const Wall& wall = walls_[static_cast<std::size_t>(w)];
+  for (int w = particle.first_wall; w >= 0; w = walls_[w].next) {
+    const Wall& wall = walls_[w];
     const auto& holding = particle.held.walls;
     if (of_force && std::find(holding.begin(), holding.end(), w) == holding.end()) continue;
     all.push_back({wall.normal, of_force ? 0 : wall.bound, w});
@@ -139,7 +135,7 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
 
 int VelocityConstraints::main_wall(const Touched& particle) const {
   const auto& loads = particle.held.loads;
-  return particle.held.walls[static_cast<std::size_t>(std::max_element(loads.begin(), loads.end()) - loads.begin())];
+  return particle.held.walls[std::max_element(loads.begin(), loads.end()) - loads.begin()];
 }
 
 // Holds the particle by these walls, found on the way to u, the closest point that passes none. What sticks goes along
@@ -147,7 +143,7 @@ int VelocityConstraints::main_wall(const Touched& particle) const {
 void VelocityConstraints::hold(Touched& particle, const Vec3& u, Held held) {
   particle.held = held;
   particle.u_held = u;
-  const Wall& wall = walls_[static_cast<std::size_t>(main_wall(particle))];
+  const Wall& wall = walls_[main_wall(particle)];
   if (particle.memory.state == State::sticking && wall.static_friction > 0) {
     const Vec3 along = wall.motion + (wall.bound - wall.normal.dot(wall.motion)) * wall.normal;
     Held more;
@@ -159,7 +155,7 @@ void VelocityConstraints::hold(Touched& particle, const Vec3& u, Held held) {
 
 void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   for (Touched& particle : touched_) {
-    const std::size_t i = index(particle.particle);
+    const Index i = particle.particle;
     particle.x_t0 = x_t0[i];
     particle.memory = memory_[i];
     const double push = particle.memory.push.norm();
@@ -180,7 +176,7 @@ void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Ve
 int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const ForceOn& force_on) {
   int changed = 0;
   for (Touched& particle : touched_) {
-    const std::size_t i = index(particle.particle);
+    const Index i = particle.particle;
     particle.x_t0 = x_t0[i];
     Vec3 force = Vec3::Zero();
     if (particle.memory.state != State::away) {
@@ -200,7 +196,7 @@ int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3
 bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec3& force) {
   Memory& memory = particle.memory;
   const Vec3 u = x_end - particle.x_t0;
-  const double negligible = kNegligibleAcceleration * masses_[index(particle.particle)];
+  const double negligible = kNegligibleAcceleration * masses_[particle.particle];
   Held next;
   if (memory.state == State::away) {
     const Vec3 held_at = project(particle, u, false, next);
@@ -227,7 +223,7 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
 
   Held passed;
   project(particle, u, false, passed);
-  const Wall& wall = walls_[static_cast<std::size_t>(main_wall(particle))];
+  const Wall& wall = walls_[main_wall(particle)];
   const double limit = (memory.state == State::sticking ? wall.static_friction : wall.friction) * memory.load;
   if (memory.state == State::sticking) {
     const bool slips = left.norm() > limit, passes = passed.load() >= kPassed;
@@ -252,13 +248,12 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
 }
 
 void VelocityConstraints::accept() {
-  for (Index particle : remembered_) memory_[index(particle)] = {};
+  for (Index particle : remembered_) memory_[particle] = {};
   remembered_.clear();
   for (const Touched& particle : touched_) {
     if (particle.memory.state == State::away) continue;
-    memory_[index(particle.particle)] = particle.memory;
-    if (particle.stops && particle.memory.state == State::sliding)
-      memory_[index(particle.particle)].state = State::sticking;
+    memory_[particle.particle] = particle.memory;
+    if (particle.stops && particle.memory.state == State::sliding) memory_[particle.particle].state = State::sticking;
     remembered_.push_back(particle.particle);
   }
 }
@@ -267,7 +262,7 @@ void VelocityConstraints::accept() {
 Mat3 VelocityConstraints::free_directions(const Touched& particle) const {
   Mat3 free = Mat3::Identity();
   for (int k = 0; k < particle.held.count; ++k) {
-    const Vec3 q = free * walls_[static_cast<std::size_t>(particle.held.walls[static_cast<std::size_t>(k)])].normal;
+    const Vec3 q = free * walls_[particle.held.walls[k]].normal;
     const double size = q.norm();
     if (size < kSameDirection) continue;
     free -= q * q.transpose() / (size * size);
@@ -278,13 +273,13 @@ Mat3 VelocityConstraints::free_directions(const Touched& particle) const {
 PrescribedParticle VelocityConstraints::prescription(const Touched& particle) const {
   PrescribedParticle result{{particle.particle, Mat3::Zero()}, particle.x_t0 + particle.u_held, Vec3::Zero()};
   if (particle.memory.state == State::sticking) {
-    result.v_end = walls_[static_cast<std::size_t>(main_wall(particle))].motion / step_;
+    result.v_end = walls_[main_wall(particle)].motion / step_;
     return result;
   }
   // v_r along each normal, once those before it are met.
   Mat3 free = Mat3::Identity();
   for (int k = 0; k < particle.held.count; ++k) {
-    const Wall& wall = walls_[static_cast<std::size_t>(particle.held.walls[static_cast<std::size_t>(k)])];
+    const Wall& wall = walls_[particle.held.walls[k]];
     const Vec3 q = free * wall.normal;
     const double size_sq = q.squaredNorm();
     if (size_sq < kSameDirection * kSameDirection) continue;
@@ -303,7 +298,7 @@ void VelocityConstraints::prescribe() {
 
 // Motion along the walls, against that of the obstacle [m].
 Vec3 VelocityConstraints::slip(const Touched& particle, const Vec3& x_end) const {
-  const Wall& wall = walls_[static_cast<std::size_t>(main_wall(particle))];
+  const Wall& wall = walls_[main_wall(particle)];
   return free_directions(particle) * (x_end - particle.x_t0 - wall.motion);
 }
 
@@ -311,14 +306,13 @@ VelocityConstraints::Friction VelocityConstraints::friction(const Touched& parti
   const Vec3 s = slip(particle, x_end);
   const double size = s.norm(), stick_slip = ContactSet::kStickSpeed * step_;
   const double over_slip = size < stick_slip ? (2 - size / stick_slip) / stick_slip : 1 / size;
-  const double sliding =
-      walls_[static_cast<std::size_t>(main_wall(particle))].friction * particle.friction_load * over_slip;
+  const double sliding = walls_[main_wall(particle)].friction * particle.friction_load * over_slip;
   return {-sliding * s, sliding * free_directions(particle)};
 }
 
 void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const {
   for (const Touched& particle : touched_) {
-    const std::size_t i = index(particle.particle);
+    const Index i = particle.particle;
     if (particle.memory.state == State::sliding && particle.friction_load > 0)
       force[i] += friction(particle, x_end[i]).force;
   }
@@ -327,7 +321,7 @@ void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3
 void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
                                     solver::LinearSystem& system) const {
   for (const Touched& particle : touched_) {
-    const std::size_t i = index(particle.particle);
+    const Index i = particle.particle;
     if (particle.memory.state != State::sliding || particle.friction_load == 0) continue;
     const Friction sliding = friction(particle, x_end[i]);
     force[i] += sliding.force;
@@ -337,11 +331,12 @@ void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate
 
 template <class Archive>
 void VelocityConstraints::serialize(Archive& archive) {
-  exchange_each(archive, remembered_, [&](Index& particle) {
+  serialize_each(archive, remembered_, [&](Index& particle) {
     archive.value(particle);
-    if constexpr (Archive::kReads) require(particle >= 0 && index(particle) < masses_.size(), "particles of the scene");
-    Memory& memory = memory_[index(particle)];
-    exchange_values(archive, memory.state, memory.push, memory.load);
+    if constexpr (Archive::kReads)
+      require(particle >= 0 && static_cast<std::size_t>(particle) < masses_.size(), "particles of the scene");
+    Memory& memory = memory_[particle];
+    serialize_values(archive, memory.state, memory.push, memory.load);
     if constexpr (Archive::kReads) require(memory.state <= State::sliding, "a particle that sticks or slides");
   });
 }

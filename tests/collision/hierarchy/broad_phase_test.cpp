@@ -48,7 +48,7 @@ BothLists brute_force(const MovingScene& scene, std::span<const Vec3> x_t0, std:
     for (std::size_t b = a + 1; b < bounds.size(); ++b)
       if (bounds[a].overlaps(bounds[b]))
         if (const int shared = shared_count(scene.triangles[a], scene.triangles[b]); shared < 2)
-          found[static_cast<std::size_t>(shared)].insert({static_cast<Index>(a), static_cast<Index>(b)});
+          found[shared].insert({static_cast<Index>(a), static_cast<Index>(b)});
   return found;
 }
 
@@ -85,8 +85,8 @@ std::vector<BroadPhaseOptions> exact_options(int directions) {
 
 template <class K>
 class BroadPhasePairs : public ::testing::Test {};
-using AllK = ::testing::Types<std::integral_constant<int, 6>, std::integral_constant<int, 14>,
-                              std::integral_constant<int, 18>, std::integral_constant<int, 26>>;
+using AllK =
+    ::testing::Types<std::integral_constant<int, 6>, std::integral_constant<int, 18>, std::integral_constant<int, 26>>;
 TYPED_TEST_SUITE(BroadPhasePairs, AllK);
 
 TYPED_TEST(BroadPhasePairs, OfMovingSurfacesEqualBruteForceAtEveryStepForAllTreesOrdersAndSeparationLists) {
@@ -162,7 +162,7 @@ TEST(BroadPhase, RefusesKindsOfTreesThatItDoesNotHave) {
   options.directions = 8;
   EXPECT_THROW(BroadPhase(surfaces, motion.at(0), options), Error);
   options = {};
-  options.children = 3;
+  options.children = 9;
   EXPECT_THROW(BroadPhase(surfaces, motion.at(0), options), Error);
   options = {};
   options.leaf = 9;

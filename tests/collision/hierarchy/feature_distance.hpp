@@ -12,7 +12,7 @@ namespace weft::collision::testing {
 
 /// Least distance of two features of the triangles that have no common vertex; infinite where there are none.
 inline double feature_distance(const Triangle& a, const Triangle& b, std::span<const Vec3> x) {
-  const auto at = [&](Index v) -> const Vec3& { return x[static_cast<std::size_t>(v)]; };
+  const auto at = [&](Index v) -> const Vec3& { return x[v]; };
   double least_sq = 1e300;
   for (const auto& [own, other] : {std::pair(a, b), std::pair(b, a)})
     for (const Index v : own)

@@ -17,19 +17,19 @@ using testing::TestMesh;
 using testing::triangle_soup;
 using Pairs = std::set<TrianglePair>;
 
-/// One combination of template parameters and leaf capacity.
-template <int TestK, int TestArity, int TestCapacity>
+/// One kind of bound and one shape of the tree.
+template <int TestK, int children, int leaf>
 struct Setup {
-  static constexpr int K = TestK, kArity = TestArity, kCapacity = TestCapacity;
-  using TreeType = Tree<K, kArity>;
+  static constexpr int K = TestK;
+  static constexpr TreeShape kShape{children, leaf};
+  using TreeType = Tree<K>;
 };
 
 template <class S>
 class HierarchyPairs : public ::testing::Test {};
 
-using Setups = ::testing::Types<Setup<6, 2, 1>, Setup<6, 4, 3>, Setup<6, 8, 8>, Setup<6, 8, 1>, Setup<14, 2, 8>,
-                                Setup<14, 4, 1>, Setup<14, 8, 4>, Setup<18, 2, 4>, Setup<18, 4, 8>, Setup<18, 8, 2>,
-                                Setup<26, 2, 5>, Setup<26, 4, 4>, Setup<26, 8, 8>>;
+using Setups = ::testing::Types<Setup<6, 2, 1>, Setup<6, 4, 3>, Setup<6, 8, 8>, Setup<6, 8, 1>, Setup<18, 2, 4>,
+                                Setup<18, 4, 8>, Setup<18, 8, 2>, Setup<26, 2, 5>, Setup<26, 4, 4>, Setup<26, 8, 8>>;
 TYPED_TEST_SUITE(HierarchyPairs, Setups);
 
 /// Everything by definition and in double: the interval of a triangle's path along each direction.
@@ -57,7 +57,7 @@ class BruteForce {
   std::pair<double, double> interval(const Triangle& t, const Vec3& axis) const {
     double low = 1e300, high = -1e300;
     for (const Index v : t) {
-      for (const Vec3& p : {mesh_.x[static_cast<std::size_t>(v)], x_t1_[static_cast<std::size_t>(v)]}) {
+      for (const Vec3& p : {mesh_.x[v], x_t1_[v]}) {
         low = std::min(low, axis.dot(p));
         high = std::max(high, axis.dot(p));
       }
@@ -113,14 +113,14 @@ void expect_self_pairs(const TestMesh& mesh, const typename S::TreeType& tree, s
 TYPED_TEST(HierarchyPairs, OfASoupWithEqualAndDegenerateTrianglesEqualBruteForce) {
   for (const unsigned seed : {1U, 2U, 3U}) {
     const TestMesh mesh = triangle_soup(seed, 40, 300, seed == 1 ? 0.5 : 0.1);
-    const typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kCapacity);
+    const typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kShape);
     expect_self_pairs<TypeParam>(mesh, tree, mesh.x, 0);
   }
 }
 
 TYPED_TEST(HierarchyPairs, OfAMovingMeshEqualBruteForceAfterEachRefit) {
   const TestMesh mesh = folded_sheet(11, 3, 0.02);
-  typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kCapacity);
+  typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kShape);
   std::mt19937 generator(5);
   for (const double motion : {0.0, 0.03, 0.5}) {
     std::vector<Vec3> x_t1 = mesh.x;
@@ -149,7 +149,7 @@ TYPED_TEST(HierarchyPairs, OfTwoSurfacesEqualBruteForce) {
   std::vector<Vec3> x_t1 = both.x;
   for (std::size_t v = 0; v < cloth.x.size(); ++v) x_t1[v] += Vec3{0.1, -0.2, 0.05};
 
-  typename TypeParam::TreeType tree_a(a, both.x, TypeParam::kCapacity), tree_b(b, both.x, TypeParam::kCapacity);
+  typename TypeParam::TreeType tree_a(a, both.x, TypeParam::kShape), tree_b(b, both.x, TypeParam::kShape);
   tree_a.refit(both.x, x_t1, 0.01);
   tree_b.refit(both.x, x_t1, 0.02);
   CandidatePairs found;
@@ -160,8 +160,7 @@ TYPED_TEST(HierarchyPairs, OfTwoSurfacesEqualBruteForce) {
   Pairs least, most;
   for (Index i = 0; i < first_triangle; ++i) {
     for (Index j = first_triangle; j < static_cast<Index>(both.triangles.size()); ++j) {
-      const double gap = brute_a.gap(both.triangles[static_cast<std::size_t>(i)], brute_b,
-                                     both.triangles[static_cast<std::size_t>(j)]);
+      const double gap = brute_a.gap(both.triangles[i], brute_b, both.triangles[j]);
       if (gap <= 0) least.insert({i, j});
       if (gap <= 1e-6) most.insert({i, j});
     }
@@ -179,9 +178,8 @@ TYPED_TEST(HierarchyPairs, CoverTouchingTrianglesAtLargeCoordinates) {
       mesh.x.push_back(p);
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  for (int i = 0; i + 1 < 40; ++i)
-    mesh.x[static_cast<std::size_t>(3 * i + 2)] = mesh.x[static_cast<std::size_t>(3 * i + 3)];
-  const typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kCapacity);
+  for (int i = 0; i + 1 < 40; ++i) mesh.x[3 * i + 2] = mesh.x[3 * i + 3];
+  const typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kShape);
   CandidatePairs found;
   self_pairs(tree, found);
   const Pairs apart = as_set(found.apart);
@@ -194,7 +192,7 @@ TYPED_TEST(HierarchyPairs, OfTrianglesInOnePlaceAreAllPairs) {
     for (const Vec3& p : {Vec3{0, 0, 0}, Vec3{1, 0, 0}, Vec3{0, 1, 0}}) mesh.x.push_back(p);
     mesh.triangles.push_back({3 * i, 3 * i + 1, 3 * i + 2});
   }
-  const typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kCapacity);
+  const typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kShape);
   CandidatePairs found;
   self_pairs(tree, found);
   EXPECT_EQ(as_set(found.apart).size(), 50U * 49 / 2);
@@ -202,8 +200,8 @@ TYPED_TEST(HierarchyPairs, OfTrianglesInOnePlaceAreAllPairs) {
 
 TYPED_TEST(HierarchyPairs, ComeInTheSameOrderEveryTime) {
   const TestMesh mesh = folded_sheet(20, 4, 0.01);
-  typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kCapacity);
-  const typename TypeParam::TreeType again(mesh.surface(), mesh.x, TypeParam::kCapacity);
+  typename TypeParam::TreeType tree(mesh.surface(), mesh.x, TypeParam::kShape);
+  const typename TypeParam::TreeType again(mesh.surface(), mesh.x, TypeParam::kShape);
   CandidatePairs first, second;
   self_pairs(tree, first);
   self_pairs(again, second);
@@ -215,27 +213,31 @@ TYPED_TEST(HierarchyPairs, ComeInTheSameOrderEveryTime) {
   EXPECT_TRUE(std::ranges::equal(first.one_shared.view(), second.one_shared.view()));
 }
 
-TEST(Hierarchy, HoldsEveryTriangleOnceInLeavesWithinTheCapacityAndParentsBeforeChildren) {
+TEST(Hierarchy, HoldsEveryTriangleOnceInNodesAndLeavesOfItsShapeAndParentsBeforeChildren) {
   const TestMesh mesh = folded_sheet(30, 3, 0.01);
-  for (int capacity = 1; capacity <= kLeafLanes; ++capacity) {
-    const Tree<18, 4> tree(mesh.surface(), mesh.x, capacity);
+  for (int most = 1; most <= kLanes; ++most) {
+    const TreeShape shape{std::max(2, most), most};
+    const Tree<18> tree(mesh.surface(), mesh.x, shape);
     std::multiset<Index> held;
     for (const auto& leaf : tree.leaves()) {
-      EXPECT_LE(leaf.count, capacity);
+      EXPECT_LE(leaf.count, shape.leaf);
       held.insert(leaf.triangle, leaf.triangle + leaf.count);
     }
     std::multiset<Index> expected;
     for (std::size_t t = 0; t < mesh.triangles.size(); ++t) expected.insert(static_cast<Index>(t));
     EXPECT_EQ(held, expected);
-    for (std::size_t n = 0; n < tree.nodes().size(); ++n)
+    for (std::size_t n = 0; n < tree.nodes().size(); ++n) {
+      EXPECT_LE(tree.nodes()[n].count, shape.children);
       for (int i = 0; i < tree.nodes()[n].count; ++i)
         EXPECT_TRUE(tree.nodes()[n].child[i] < 0 || tree.nodes()[n].child[i] > static_cast<int>(n));
+    }
+    EXPECT_EQ(tree.nodes()[0].count, shape.children) << "the root has triangles enough for all";
   }
 }
 
 TEST(Hierarchy, OfNothingHasNoPairs) {
   const TestMesh mesh = folded_sheet(3, 1, 0);
-  const SurfaceTree empty(Surface{}, {}), tree(mesh.surface(), mesh.x);
+  const Tree<6> empty(Surface{}, {}), tree(mesh.surface(), mesh.x);
   CandidatePairs found;
   self_pairs(empty, found);
   pairs(empty, tree, found);
@@ -243,14 +245,15 @@ TEST(Hierarchy, OfNothingHasNoPairs) {
   EXPECT_TRUE(found.apart.empty());
 }
 
-TEST(Hierarchy, RefusesIndicesOutsideTheSurface) {
+TEST(Hierarchy, RefusesIndicesOutsideTheSurfaceAndShapesWithoutLanes) {
   TestMesh mesh = folded_sheet(3, 1, 0);
-  EXPECT_THROW(SurfaceTree(mesh.surface(), mesh.x, 9), Error);
+  EXPECT_THROW(Tree<6>(mesh.surface(), mesh.x, {8, 9}), Error);
+  EXPECT_THROW(Tree<6>(mesh.surface(), mesh.x, {1, 8}), Error);
   mesh.triangles[2][1] = 9;
-  EXPECT_THROW(SurfaceTree(mesh.surface(), mesh.x), Error);
+  EXPECT_THROW(Tree<6>(mesh.surface(), mesh.x), Error);
   mesh.x.pop_back();
   const Surface outside{{}, 0, 0, 9};
-  EXPECT_THROW(SurfaceTree(outside, mesh.x), Error);
+  EXPECT_THROW(Tree<6>(outside, mesh.x), Error);
 }
 
 TEST(SplitLongestSide, PutsCutTrianglesOnTheSideWithFewerUncutOnes) {

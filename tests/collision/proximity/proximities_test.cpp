@@ -40,7 +40,7 @@ std::set<Edge> edges_of(const TestMesh& mesh) {
 }
 
 const Vec3& at(const TestMesh& mesh, Index v) {
-  return mesh.x[static_cast<std::size_t>(v)];
+  return mesh.x[v];
 }
 
 ClosestPoints to_face(const TestMesh& mesh, Index v, const Triangle& t) {
@@ -70,7 +70,7 @@ struct AllPairs {
 };
 
 std::vector<Proximity> find(const TestMesh& mesh, double reach) {
-  SurfaceTree tree(mesh.surface(), mesh.x);
+  Tree<6> tree(mesh.surface(), mesh.x);
   tree.refit(mesh.x, mesh.x, reach / 2);
   CandidatePairs candidates;
   self_pairs(tree, candidates);

@@ -73,7 +73,9 @@ TEST(Planes, SavingKeepsEveryPlaneThatDiffersFromThoseOfWatching) {
   const std::vector<Vec3> first = pairs.moved(0.03), second = pairs.moved(0.03);
   failing(original, pairs, pairs.x, first);
   const std::string bytes = saved(original, pairs);
+  const std::size_t each = sizeof(std::uint32_t) + 4 * sizeof(float);  // number, n, gap
   EXPECT_GT(bytes.size(), of_fresh.size());
+  EXPECT_EQ((bytes.size() - of_fresh.size()) % each, 0U);
 
   ByteReader reader{bytes};
   restored.serialize(reader, pairs.x);
@@ -88,7 +90,7 @@ TEST(Planes, APlaneOfAPairThatIsNotWatchedIsRefused) {
   planes.watch(pairs.pairs, pairs.x);
   ByteWriter writer;
   std::vector<std::uint32_t> changed{static_cast<std::uint32_t>(pairs.pairs.size())};
-  exchange_plain(writer, changed);
+  serialize_plain(writer, changed);
   writer.bytes.append(16, '\0');
   ByteReader reader{writer.bytes};
   EXPECT_THROW(planes.serialize(reader, pairs.x), std::runtime_error);

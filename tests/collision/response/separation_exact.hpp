@@ -60,8 +60,7 @@ struct SeparationBatch {
     separation.watch(pairs, watched == Watched::at_start ? x_t0 : mixed(watched == Watched::elsewhere ? -0.1 : 0.5));
     if (watched == Watched::on_the_way) separation.find_failing(x_t0, mixed(0.25));
     std::vector<char> flags(pairs.size(), 0);
-    for (const CornerPair& pair : separation.find_failing(x_t0, x_t1))
-      flags[static_cast<std::size_t>(pair.a[0] / 6)] = 1;
+    for (const CornerPair& pair : separation.find_failing(x_t0, x_t1)) flags[pair.a[0] / 6] = 1;
     return flags;
   }
 };
@@ -95,8 +94,8 @@ inline void judge(const support::MotionQuery& query, bool refused, SeparationTal
   }
   const double distance = support::distance_at(query.a, query.b, 0);
   const int bin = std::clamp(static_cast<int>(std::floor(std::log10(distance))) + 9, 0, 7);
-  ++tally.apart[static_cast<std::size_t>(bin)];
-  tally.refused[static_cast<std::size_t>(bin)] += refused;
+  ++tally.apart[bin];
+  tally.refused[bin] += refused;
   if (distance >= 1e-5 && relative_motion(query) <= 0.8 * distance) {
     ++tally.benign;
     tally.benign_alarms += refused;
@@ -110,7 +109,7 @@ inline SeparationTally judge_family(support::QueryFamily family, int count, unsi
   int batches = 0;
   while (tally.queries < count) {
     // Some alone and some together, since the coarse first look at eight is as good as the largest coordinate allows.
-    const int size = std::array{1, 8, 3, 12}[static_cast<std::size_t>(batches / 3 % 4)];
+    const int size = std::array{1, 8, 3, 12}[batches / 3 % 4];
     const auto watched = static_cast<Watched>(batches++ % 3);
     std::vector<support::MotionQuery> queries;
     SeparationBatch batch;

@@ -20,7 +20,7 @@ struct MovingMesh {
     int corner_a = -1, corner_b = -1;  ///< the common vertex, or -1
   };
 
-  const Triangle& at(Index triangle) const { return triangles[static_cast<std::size_t>(triangle)]; }
+  const Triangle& at(Index triangle) const { return triangles[triangle]; }
   /// All pairs with at most one common vertex.
   std::vector<Pair> pairs() const {
     std::vector<Pair> list;
@@ -106,8 +106,7 @@ inline MovingMesh make_fan_of_size_one(FanKind kind, std::mt19937& engine) {
   for (int k = 0; k < count; ++k)
     angles.push_back(angles.back() + (kind == FanKind::calm ? 1 : std::pow(10.0, between(-1.5, 0))));
   const double total = open ? between(0.5, 3.6) : kind == FanKind::around_twice ? 4 : 2;
-  for (double& angle : angles)
-    angle *= total * std::numbers::pi / (open ? angles.back() : angles[static_cast<std::size_t>(count)]);
+  for (double& angle : angles) angle *= total * std::numbers::pi / (open ? angles.back() : angles[count]);
 
   const double cone = kind == FanKind::calm ? 0 : between(-1, 1), wave = kind == FanKind::calm ? 0.05 : between(-1, 1);
   const double pitch = kind == FanKind::collapsing ? 0.1 : open ? between(0.02, 0.3) : 0;
@@ -115,7 +114,7 @@ inline MovingMesh make_fan_of_size_one(FanKind kind, std::mt19937& engine) {
   mesh.x_t0.push_back(Vec3::Zero());
   const int ring = open ? count + 1 : count;
   for (int k = 0; k < ring; ++k) {
-    const double angle = angles[static_cast<std::size_t>(k)], r = between(0.5, 1);
+    const double angle = angles[k], r = between(0.5, 1);
     const double twice = kind == FanKind::around_twice ? 0.3 * std::sin(angle / 2) : 0;
     mesh.x_t0.push_back({r * std::cos(angle), r * std::sin(angle),
                          r * (cone + wave * std::sin(2 * angle)) * (open ? 0.2 : 1) + pitch * angle + twice});
@@ -268,7 +267,7 @@ inline void expect_nothing_meets_after_enforcement(int count, unsigned seed) {
     // Of three clusters, one is free, one has a moving obstacle as its first part, one has vertices that are held.
     const bool obstacle = k % 3 == 1, held = k % 3 == 2;
     for (Index v : cluster.triangles[0])
-      if (obstacle) cluster.movable[static_cast<std::size_t>(v)] = 0;
+      if (obstacle) cluster.movable[v] = 0;
     for (std::size_t v = 0; v < cluster.x_t0.size(); ++v) {
       if (!held || engine() % 4 != 0) continue;
       cluster.movable[v] = 0;

@@ -190,20 +190,17 @@ TEST(Separation, SaysWhichPairIsStuckWhereThereIsNoRoom) {
 TEST(ClosestFeatures, AreThoseOfADenseSearch) {
   const Pairs pairs = random_pairs(20, 0, 6);
   for (const TrianglePair& pair : pairs.pairs) {
-    const Triangle &a = pairs.triangles[static_cast<std::size_t>(pair.a)],
-                   &b = pairs.triangles[static_cast<std::size_t>(pair.b)];
+    const Triangle &a = pairs.triangles[pair.a], &b = pairs.triangles[pair.b];
     const ClosestFeatures found = closest_features({a, b}, pairs.x_t0);
     const double distance = std::sqrt(found.points.distance_sq);
     Vec3 difference = Vec3::Zero();
-    for (std::size_t k = 0; k < 4; ++k)
-      difference += found.points.weights[k] * pairs.x_t0[static_cast<std::size_t>(found.vertices[k])];
+    for (std::size_t k = 0; k < 4; ++k) difference += found.points.weights[k] * pairs.x_t0[found.vertices[k]];
     EXPECT_LT((difference - found.points.difference).norm(), 1e-14);
     EXPECT_NEAR(difference.norm(), distance, 1e-14);
 
     constexpr int kCuts = 24;
     const auto point = [&](const Triangle& t, int i, int j) {
-      const Vec3 &p = pairs.x_t0[static_cast<std::size_t>(t[0])], &q = pairs.x_t0[static_cast<std::size_t>(t[1])],
-                 &r = pairs.x_t0[static_cast<std::size_t>(t[2])];
+      const Vec3 &p = pairs.x_t0[t[0]], &q = pairs.x_t0[t[1]], &r = pairs.x_t0[t[2]];
       return Vec3(p + double(i) / kCuts * (q - p) + double(j) / kCuts * (r - p));
     };
     double least = 1;

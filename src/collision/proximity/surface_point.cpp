@@ -1,0 +1,151 @@
+#include "collision/proximity/surface_point.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "collision/proximity/closest_points.hpp"
+
+namespace weft::collision {
+namespace {
+
+// Faces whose distances differ by less than this part meet in the nearest point: far above the rounding of the squared
+// distance, far below what tells two features apart.
+constexpr double kTie = 1e-9;
+// Closer than this the line to the nearest point has no direction [m].
+constexpr double kNoDirection = 1e-10;
+// Cosine of the angle up to which a face looks the same way as another.
+constexpr double kSameWay = 0.5;
+
+ClosestPoints closest(const Vec3& p, const Triangle& t, std::span<const Vec3> x) {
+  return closest_vertex_face(p, x[t[0]], x[t[1]], x[t[2]]);
+}
+
+// Angle of a face at the feature of its own that the weights are on: of a corner, half a turn of an edge, a whole one
+// inside.
+double angle_at(const Triangle& t, const std::array<double, 3>& weights, std::span<const Vec3> x) {
+  const auto on = [&](std::size_t c) { return weights[c] > kTie; };
+  const int support = on(0) + on(1) + on(2);
+  if (support != 1) return support == 2 ? std::numbers::pi : 2 * std::numbers::pi;
+  const std::size_t c = on(0) ? 0 : on(1) ? 1 : 2;
+  const Vec3 e = x[t[(c + 1) % 3]] - x[t[c]], f = x[t[(c + 2) % 3]] - x[t[c]];
+  return std::atan2(e.cross(f).norm(), e.dot(f));
+}
+
+// Weights on the corners of `face` of the point where the segment from p to q goes through it.
+std::optional<std::array<double, 3>> pierce(const Vec3& p, const Vec3& q, const Triangle& face,
+                                            std::span<const Vec3> x) {
+  const Vec3 &t0 = x[face[0]], &t1 = x[face[1]], &t2 = x[face[2]];
+  const Vec3 way = q - p;
+  // Volumes of the segment with each edge of the face: all of one sign if the line goes through.
+  const double v0 = way.dot((t1 - p).cross(t2 - p)), v1 = way.dot((t2 - p).cross(t0 - p)),
+               v2 = way.dot((t0 - p).cross(t1 - p));
+  const double sum = v0 + v1 + v2;
+  if (sum == 0 || std::min({v0 / sum, v1 / sum, v2 / sum}) < 0) return std::nullopt;
+  const Vec3 n = (t1 - t0).cross(t2 - t0);
+  if (n.dot(p - t0) * n.dot(q - t0) > 0) return std::nullopt;
+  return std::array<double, 3>{v0 / sum, v1 / sum, v2 / sum};
+}
+
+struct Box {
+  Vec3 low, high;
+  Box(const Triangle& t, std::span<const Vec3> x)
+      : low(x[t[0]].cwiseMin(x[t[1]]).cwiseMin(x[t[2]])), high(x[t[0]].cwiseMax(x[t[1]]).cwiseMax(x[t[2]])) {}
+};
+
+}  // namespace
+
+Vec3 face_normal(const Triangle& t, std::span<const Vec3> x) {
+  return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).stableNormalized();
+}
+
+SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, std::span<const Vec3> x) {
+  SurfacePoint best;
+  double best_sq = std::numeric_limits<double>::infinity();
+  Vec3 difference = Vec3::Zero(), outward = Vec3::Zero();
+  for (const Triangle& t : triangles) {
+    const Box box(t, x);
+    if ((p - p.cwiseMax(box.low).cwiseMin(box.high)).squaredNorm() > (1 + kTie) * best_sq) continue;
+    const ClosestPoints points = closest(p, t, x);
+    if (points.distance_sq > (1 + kTie) * best_sq) continue;
+    const std::array<double, 3> weights{-points.weights[1], -points.weights[2], -points.weights[3]};
+    if (points.distance_sq < (1 - kTie) * best_sq) {
+      best.face = t;
+      best.weights = weights;
+      best_sq = points.distance_sq;
+      difference = points.difference;
+      outward.setZero();
+    }
+    // Another point just as near, across a thin body, does not count.
+    if ((points.difference - difference).squaredNorm() > kTie * best_sq + kNoDirection * kNoDirection) continue;
+    outward += angle_at(t, weights, x) * face_normal(t, x);
+  }
+  const double distance = std::sqrt(best_sq);
+  const double sign = outward.dot(difference) < 0 ? -1 : 1;
+  best.height = sign * distance;
+  best.normal = distance > kNoDirection ? Vec3(sign * difference / distance) : outward.stableNormalized();
+  return best;
+}
+
+SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
+                           const Vec3& towards) {
+  const Surface& all = broad_phase.surface(surface);
+  const auto triangle = [&](Index number) -> const Triangle& { return all.triangles[number - all.first_triangle]; };
+  const auto distance_sq = [&](Index number) { return closest(p, triangle(number), x).distance_sq; };
+  std::vector<Index> numbers;
+  if (!towards.isZero())
+    broad_phase.nearest_triangles(
+        surface, p,
+        [&](Index number) {
+          const bool looks_there = face_normal(triangle(number), x).dot(towards) > kSameWay;
+          return looks_there ? distance_sq(number) : std::numeric_limits<double>::infinity();
+        },
+        numbers);
+  if (numbers.empty()) broad_phase.nearest_triangles(surface, p, distance_sq, numbers);
+  std::vector<Triangle> nearest;
+  for (const Index number : numbers) nearest.push_back(triangle(number));
+  return nearest_point(p, nearest, x);
+}
+
+std::vector<Triangle> triangles_near(const Triangle& triangle, const BroadPhase& broad_phase, std::size_t surface,
+                                     std::span<const Vec3> x, double reach) {
+  const Surface& all = broad_phase.surface(surface);
+  const Box box(triangle, x);
+  std::vector<Index> numbers;
+  broad_phase.triangles_in_box(surface, box.low.array() - reach, box.high.array() + reach, numbers);
+  std::vector<Triangle> near;
+  for (const Index number : numbers) {
+    const Triangle& other = all.triangles[number - all.first_triangle];
+    const Box of_other(other, x);
+    if ((box.low - of_other.high).maxCoeff() < reach && (of_other.low - box.high).maxCoeff() < reach)
+      near.push_back(other);
+  }
+  return near;
+}
+
+std::optional<std::array<double, 3>> find_crossing(const Triangle& a, const Triangle& b, std::span<const Vec3> x) {
+  std::array<double, 3> sum{0, 0, 0};
+  int count = 0;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const std::size_t next = (c + 1) % 3;
+    if (pierce(x[a[c]], x[a[next]], b, x)) {
+      // Where on the edge: by the heights of its ends over the face.
+      const Vec3 n = face_normal(b, x);
+      const double from = std::abs(n.dot(x[a[c]] - x[b[0]])), to = std::abs(n.dot(x[a[next]] - x[b[0]]));
+      const double share = from + to > 0 ? from / (from + to) : 0.5;
+      sum[c] += 1 - share;
+      sum[next] += share;
+      ++count;
+    }
+    if (const auto weights = pierce(x[b[c]], x[b[next]], a, x)) {
+      for (std::size_t k = 0; k < 3; ++k) sum[k] += (*weights)[k];
+      ++count;
+    }
+  }
+  if (count == 0) return std::nullopt;
+  for (double& weight : sum) weight /= count;
+  return sum;
+}
+
+}  // namespace weft::collision
