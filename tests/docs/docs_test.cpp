@@ -60,11 +60,12 @@ TEST_F(MadePages, NamesThatAreNotInTheSourcesAreReported) {
   write("README.md",
         "`Ply.IsWritten` `Ply.*Written` `Of/Plys.AreRead` `Of/*` `Typed/*.Holds` `Ply.IsRead` `Plys.IsRead` "
         "`test_mesh_slow` `test_ply` `mesh/ply.cpp` "
-        "`ply.cpp` `mesh/obj.cpp` `obj.cpp` `mesh::write_ply` `Ply::close()` `read_ply` `Obj` `word` `a = b_c`\n");
+        "`ply.cpp` `mesh/obj.cpp` `obj.cpp` `mesh::write_ply` `Ply::close()` `read_ply` `Plate::close` `Obj` `word` `a "
+        "= b_c`\n");
   EXPECT_EQ(unknown_names(folder_, "README.md", read_known(folder_)),
             "README.md: Ply.IsRead\nREADME.md: Plys.IsRead\nREADME.md: test_ply\nREADME.md: mesh/obj.cpp\nREADME.md: "
             "obj.cpp\n"
-            "README.md: read_ply\nREADME.md: Obj\n");
+            "README.md: read_ply\nREADME.md: Plate::close\nREADME.md: Obj\n");
 }
 
 TEST(MadePage, TablesCutInTwoAndCodeThatNoTestSeesAreReported) {

@@ -21,8 +21,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+// Bars would end the cell, and what is between < and > would not be seen.
 std::string in_cell(const std::string& text) {
-  return std::regex_replace(text, std::regex(R"(\|)"), R"(\|)");
+  return std::regex_replace(std::regex_replace(text, std::regex(R"(\|)"), R"(\|)"), std::regex("<"), "&lt;");
 }
 
 // --- The command line, as its help says it.
@@ -70,7 +71,7 @@ std::string commands() {
   return table;
 }
 
-// One row for each option and meaning, with the commands that have it.
+// One row for each option and meaning, in order of the names, with the commands that have it.
 std::string options() {
   std::vector<std::pair<std::string, std::vector<std::string>>> rows;
   for (const Entry& command : section(help({}), "Subcommands:")) {
@@ -83,6 +84,10 @@ std::string options() {
       same->second.push_back(command.name);
     }
   }
+  std::stable_sort(rows.begin(), rows.end(), [](const auto& a, const auto& b) {
+    const auto name = [](const std::string& row) { return row.substr(0, row.find(' ', 2)); };
+    return name(a.first) < name(b.first);
+  });
   std::string table = "| option | | commands |\n|---|---|---|\n";
   for (const auto& [row, names] : rows) table += fmt::format("{} {} |\n", row, fmt::join(names, ", "));
   return table;
@@ -161,12 +166,13 @@ std::string side_by_side(const fs::path& folder, const std::string& arguments) {
   std::vector<std::string> columns;
   for (std::string name; std::getline(names >> std::ws, name, ',');) columns.push_back(name);
   std::vector<std::pair<std::string, std::vector<std::string>>> lines;
+  const bool several = arguments.find(' ') < colon;
   bool first = true;
   for (std::string file; files >> file; first = false) {
     const auto rows = printed_table(folder / file);
     std::map<std::string, std::vector<std::string>> cells;
     for (const auto& row : rows) cells[row[0]] = chosen(row, rows[0], columns);
-    for (std::string& cell : cells[rows[0][0]]) cell = fs::path(file).stem().string() + ": " + cell;
+    for (std::string& cell : cells[rows[0][0]]) cell = (several ? fs::path(file).stem().string() + ": " : "") + cell;
     if (first) {
       for (const auto& row : rows) lines.push_back({row[0], {}});
     }

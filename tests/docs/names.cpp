@@ -73,6 +73,16 @@ bool is_file(const std::string& name, const fs::path& root, const fs::path& page
                      [&](const fs::path& folder) { return fs::exists(root / folder / name); });
 }
 
+// Each part of a::b. Plain words may be of any kind; what is written as only programs are must be in them.
+bool is_name(const std::string& name, const Known& known) {
+  static const std::regex kPart(R"(\w+)");
+  const std::vector<std::string> parts(std::sregex_token_iterator(name.begin(), name.end(), kPart), {});
+  const auto plain = [](char c) { return c >= 'a' && c <= 'z'; };
+  return std::all_of(parts.begin(), parts.end(), [&](const std::string& part) {
+    return std::all_of(part.begin(), part.end(), plain) || known.words.contains(part);
+  });
+}
+
 // test_mesh is that of tests/mesh, test_mesh_slow of its slow files.
 bool is_test_program(const std::string& name, const fs::path& root) {
   static const std::regex kProgram(R"(test_(\w+?)(?:_slow)?)");
@@ -109,7 +119,7 @@ Known read_known(const fs::path& root) {
 std::string unknown_names(const fs::path& root, const fs::path& page, const Known& known) {
   static const std::regex kTest(R"([A-Z]\w*(?:[*/][\w*/]*)?\.[A-Z*][\w*]*)");
   static const std::regex kFile(R"(\.?[\w./-]+\.(?:cpp|hpp|c|toml|md|sh|py|txt|glsl|vert|frag|cmake))");
-  static const std::regex kName(R"((?:[A-Za-z]\w*::)*([A-Za-z]\w*)(?:\(.*\))?)");
+  static const std::regex kName(R"(((?:[A-Za-z]\w*::)*[A-Za-z]\w*)(?:\(.*\))?)");
   std::string unknown;
   for (const std::string& code : read_page(read_file(root / page)).code) {
     std::smatch match;
@@ -119,10 +129,7 @@ std::string unknown_names(const fs::path& root, const fs::path& page, const Know
     } else if (std::regex_match(code, kFile)) {
       good = is_file(code, root, page, known);
     } else if (std::regex_match(code, match, kName)) {
-      // Plain words may be of any kind; what is written as only programs are must be in them.
-      const std::string name = match[1];
-      const bool plain = std::all_of(name.begin(), name.end(), [](char c) { return c >= 'a' && c <= 'z'; });
-      good = plain || known.words.contains(name) || is_test_program(name, root);
+      good = is_name(match[1], known) || is_test_program(code, root);
     }
     if (!good) unknown += fmt::format("{}: {}\n", page.string(), code);
   }
