@@ -270,7 +270,7 @@ CachedFrame decode_frame(std::string_view payload, int frame, const Surfaces& su
     for (const float heat : state.heat) check_finite(heat);
   }
   check_end(reader);
-  return {std::move(snapshot), std::move(head.report)};
+  return {std::move(snapshot), std::move(head.report), 0};
 }
 
 }  // namespace weft::cache

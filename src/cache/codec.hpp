@@ -15,6 +15,7 @@
 // 3 × f64, 4 for heat). Signs and exponents of neighbours are alike: this is what makes them shrink.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -35,6 +36,7 @@ struct Surfaces {
 struct CachedFrame {
   frame::SnapshotPtr snapshot;
   frame::FrameReport report;
+  std::uint64_t scene_hash = 0;  ///< of the scene whose looks it has
 };
 
 Surfaces surfaces_of(const frame::FrameSnapshot& first);

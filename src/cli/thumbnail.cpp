@@ -55,7 +55,7 @@ ExitCode thumbnail(const ThumbnailOptions& options) {
   const std::vector<int>& frames = stills->frames();
   if (options.frame) check_frame(*options.frame, frames);
   const std::filesystem::path file =
-      still_file(options.output, stills->scene().scene + ".png", options.common.overwrite);
+      still_file(*stills, options.output, stills->scene().scene + ".png", options.common.overwrite);
   std::string text;
   {
     Progress progress(options.common.progress, {stills->cost(options.frame.value_or(frames.back())), 1, 1});

@@ -1,8 +1,10 @@
 // From the environment to what a frame shows.
 #pragma once
 
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "environment/environment.hpp"
@@ -11,6 +13,31 @@
 #include "scene/scene.hpp"
 
 namespace weft::simulation {
+
+/// What of a scene is drawn and not simulated: colours, surroundings, cameras and lights.
+class Looks {
+ public:
+  explicit Looks(const scene::Scene& scene);
+
+  /// The same frame with these looks; it is of a scene that has the same objects.
+  frame::SnapshotPtr put_on(const frame::FrameSnapshot& snapshot);
+  /// Stage, cameras and lights.
+  void surround(frame::FrameSnapshot& snapshot) const;
+
+ private:
+  std::shared_ptr<const frame::Surface> dressed(const frame::Surface& surface) const;
+  std::vector<frame::Camera> cameras_at(double time) const;
+  std::vector<frame::Light> lights_at(double time) const;
+
+  std::map<std::string, scene::Look> looks_;  // by the name of the object
+  std::shared_ptr<const frame::Stage> stage_;
+  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;  // dressed for the first snapshot, shared by the others
+  std::vector<frame::Camera> cameras_;
+  std::vector<frame::Light> lights_;
+  // Through their keys: position, target, field of view; direction, position, target, intensity.
+  std::vector<environment::Spline<7>> camera_tracks_;
+  std::vector<environment::Spline<10>> light_tracks_;
+};
 
 /// Makes the snapshots of a run; what stays the same over the run is made once and shared.
 class SnapshotMaker {
@@ -22,16 +49,8 @@ class SnapshotMaker {
                           std::span<const Vec3> particles, std::vector<std::vector<float>> heat) const;
 
  private:
-  std::vector<frame::Camera> cameras_at(double time) const;
-  std::vector<frame::Light> lights_at(double time) const;
-
-  std::shared_ptr<const frame::Stage> stage_;
+  const Looks looks_;
   std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
-  std::vector<frame::Camera> cameras_;
-  std::vector<frame::Light> lights_;
-  // Through their keys: position, target, field of view; direction, position, target, intensity.
-  std::vector<environment::Spline<7>> camera_tracks_;
-  std::vector<environment::Spline<10>> light_tracks_;
 };
 
 }  // namespace weft::simulation

@@ -222,8 +222,13 @@ TEST_F(KilledRun, WithNothingThereResumeStartsAtTheBeginning) {
   const Outcome outcome = resume();
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_TRUE(contains(outcome.err, "nothing to resume; starting at the beginning")) << outcome.err;
+  const auto written = fs::last_write_time(folder_ / "a.mp4");
   const Outcome again = resume();
-  EXPECT_EQ(again.exit_code, 6) << "a finished video was replaced";
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(again.err, "note: a.mp4 is whole already: frames 0:21\n");
+  EXPECT_EQ(fs::last_write_time(folder_ / "a.mp4"), written) << "a finished video was replaced";
+  EXPECT_EQ(weft({"run", "s.toml", "-o", "a.mp4", "--resume", "--set", "time.duration=0.4"}).exit_code, 6)
+      << "another film has this name";
 }
 
 TEST_F(KilledRun, ThatWasEditedIsNotResumedAndNotLost) {

@@ -1,5 +1,5 @@
-// The pipeline with made-up stages: what is kept, what is stopped, whichever stage fails.
-#include "cli/pipeline.hpp"
+// A film of made-up stages: what is kept, what is stopped, whichever stage fails.
+#include "cli/film.hpp"
 
 #include <gtest/gtest.h>
 
@@ -49,7 +49,7 @@ class Life {
 class Source : public FrameSource {
  public:
   explicit Source(Script& script) : script_(script), life_(script) {}
-  SimulatedFrame next() override {
+  MadeFrame next() override {
     if (frame_ == script_.simulation_fails_at) fail(ExitCode::simulation_failed, "no convergence");
     if (frame_ == script_.stop_at) *script_.stop = true;
     script_.simulated.push_back(frame_);
@@ -59,7 +59,7 @@ class Source : public FrameSource {
     report.frame = frame_;
     report.steps = 10 * frame_;
     ++frame_;
-    return {snapshot, report};
+    return {snapshot, std::move(report)};
   }
 
  private:
@@ -104,23 +104,27 @@ class Writer : public FrameWriter {
   Life life_;
 };
 
-PipelineResult play(Script& script, const FrameRange& wanted) {
+FilmResult play(Script& script, const FrameRange& wanted) {
   static std::atomic<bool> never{false};
-  const PipelineParts parts{[&]() -> std::unique_ptr<FrameSource> {
-                              if (script.source_missing) fail(ExitCode::asset_unreadable, "no mesh");
-                              return std::make_unique<Source>(script);
-                            },
-                            [&]() -> std::unique_ptr<FramePainter> {
-                              if (script.painter_missing) fail(ExitCode::internal, "no OpenGL");
-                              return std::make_unique<Painter>(script);
-                            },
-                            [&](const std::string& description) -> std::unique_ptr<FrameWriter> {
-                              EXPECT_EQ(description, "brush");
-                              ++script.writers_made;
-                              return std::make_unique<Writer>(script);
-                            }};
-  PipelineResult result = run_pipeline(parts, {0, wanted.last() + 1, 1}, wanted, script.stop ? *script.stop : never,
-                                       {[](Stage) {}, [](const FrameRecord&) {}});
+  const FilmParts parts{[&]() -> std::unique_ptr<FrameSource> {
+                          if (script.source_missing) fail(ExitCode::asset_unreadable, "no mesh");
+                          return std::make_unique<Source>(script);
+                        },
+                        [&]() -> std::unique_ptr<FramePainter> {
+                          if (script.painter_missing) fail(ExitCode::internal, "no OpenGL");
+                          return std::make_unique<Painter>(script);
+                        },
+                        [&](const std::string& description) -> std::unique_ptr<FrameWriter> {
+                          EXPECT_EQ(description, "brush");
+                          ++script.writers_made;
+                          return std::make_unique<Writer>(script);
+                        },
+                        nullptr,
+                        {}};
+  Progress progress(Progress::Style::none, {});
+  EventLog log("");
+  FilmResult result =
+      make_film(parts, {0, wanted.last() + 1, 1}, wanted, script.stop ? *script.stop : never, progress, log);
   EXPECT_EQ(script.alive, 0) << "a stage was left behind";
   EXPECT_EQ(result.frames.size(), script.simulated.size());
   EXPECT_EQ(static_cast<std::size_t>(result.written), script.written.size());
@@ -133,9 +137,9 @@ std::vector<int> up_to(int end) {
   return frames;
 }
 
-TEST(Pipeline, TakesEveryFrameThroughAllStagesInOrder) {
+TEST(Film, TakesEveryFrameThroughAllStagesInOrder) {
   Script script;
-  const PipelineResult result = play(script, {0, 50, 1});
+  const FilmResult result = play(script, {0, 50, 1});
   EXPECT_EQ(script.simulated, up_to(50));
   EXPECT_EQ(script.drawn, up_to(50));
   EXPECT_EQ(script.written, up_to(50));
@@ -152,9 +156,9 @@ TEST(Pipeline, TakesEveryFrameThroughAllStagesInOrder) {
   }
 }
 
-TEST(Pipeline, SimulatesFramesThatAreNotWantedButDoesNotDrawThem) {
+TEST(Film, SimulatesFramesThatAreNotWantedButDoesNotDrawThem) {
   Script script;
-  const PipelineResult result = play(script, {3, 10, 3});
+  const FilmResult result = play(script, {3, 10, 3});
   EXPECT_EQ(script.simulated, up_to(10));
   EXPECT_EQ(script.drawn, (std::vector<int>{3, 6, 9}));
   EXPECT_EQ(script.written, (std::vector<int>{3, 6, 9}));
@@ -162,7 +166,7 @@ TEST(Pipeline, SimulatesFramesThatAreNotWantedButDoesNotDrawThem) {
   EXPECT_TRUE(result.frames[6].written);
 }
 
-TEST(Pipeline, EndsWithTheLastWantedFrame) {
+TEST(Film, EndsWithTheLastWantedFrame) {
   Script script;
   play(script, {0, 9, 4});
   EXPECT_EQ(script.simulated, up_to(9));
@@ -172,10 +176,10 @@ TEST(Pipeline, EndsWithTheLastWantedFrame) {
   EXPECT_EQ(script.simulated, up_to(5));
 }
 
-TEST(Pipeline, KeepsAllGoodFramesWhenTheSimulationFails) {
+TEST(Film, KeepsAllGoodFramesWhenTheSimulationFails) {
   Script script;
   script.simulation_fails_at = 17;
-  const PipelineResult result = play(script, {0, 50, 1});
+  const FilmResult result = play(script, {0, 50, 1});
   EXPECT_EQ(script.written, up_to(17));
   EXPECT_EQ(script.finished, 1);
   EXPECT_TRUE(result.finished_output);
@@ -184,20 +188,20 @@ TEST(Pipeline, KeepsAllGoodFramesWhenTheSimulationFails) {
   EXPECT_EQ(describe_failure(result.failure).text, "no convergence");
 }
 
-TEST(Pipeline, FinishesWhatWasDrawnWhenDrawingFails) {
+TEST(Film, FinishesWhatWasDrawnWhenDrawingFails) {
   Script script;
   script.drawing_fails_at = 5;
-  const PipelineResult result = play(script, {0, 1000, 1});
+  const FilmResult result = play(script, {0, 1000, 1});
   EXPECT_EQ(script.written, up_to(5));
   EXPECT_EQ(script.finished, 1);
   EXPECT_LT(script.simulated.size(), 1000u) << "the simulation went on for nobody";
   EXPECT_EQ(describe_failure(result.failure).text, "context lost");
 }
 
-TEST(Pipeline, StopsAllStagesWhenTheOutputFails) {
+TEST(Film, StopsAllStagesWhenTheOutputFails) {
   Script script;
   script.writing_fails_at = 5;
-  const PipelineResult result = play(script, {0, 1000, 1});
+  const FilmResult result = play(script, {0, 1000, 1});
   EXPECT_EQ(script.written, up_to(5));
   EXPECT_EQ(script.finished, 0) << "finished a file that could not be written";
   EXPECT_FALSE(result.finished_output);
@@ -205,49 +209,49 @@ TEST(Pipeline, StopsAllStagesWhenTheOutputFails) {
   EXPECT_EQ(describe_failure(result.failure).code, ExitCode::output_failed);
 }
 
-TEST(Pipeline, TellsThatTheOutputCouldNotBeFinished) {
+TEST(Film, TellsThatTheOutputCouldNotBeFinished) {
   Script script;
   script.finish_fails = true;
   script.simulation_fails_at = 3;  // the output is nearer to the user: its failure counts
-  const PipelineResult result = play(script, {0, 10, 1});
+  const FilmResult result = play(script, {0, 10, 1});
   EXPECT_FALSE(result.finished_output);
   EXPECT_EQ(describe_failure(result.failure).text, "no space for the index");
 }
 
-TEST(Pipeline, MakesNoOutputWithoutAPicture) {
+TEST(Film, MakesNoOutputWithoutAPicture) {
   for (const bool source : {false, true}) {
     Script script;
     script.source_missing = source;
     script.painter_missing = !source;
-    const PipelineResult result = play(script, {0, 10, 1});
+    const FilmResult result = play(script, {0, 10, 1});
     EXPECT_EQ(script.writers_made, 0);
     EXPECT_FALSE(result.finished_output);
     EXPECT_EQ(describe_failure(result.failure).text, source ? "no mesh" : "no OpenGL");
   }
 }
 
-TEST(Pipeline, StopFinishesTheFrameInHandAndEverythingBefore) {
+TEST(Film, StopFinishesTheFrameInHandAndEverythingBefore) {
   std::atomic<bool> stop{false};
   Script script;
   script.stop = &stop;
   script.stop_at = 12;
-  const PipelineResult result = play(script, {0, 1000, 1});
+  const FilmResult result = play(script, {0, 1000, 1});
   EXPECT_EQ(script.written, up_to(13));
   EXPECT_EQ(script.finished, 1);
   EXPECT_TRUE(result.interrupted);
   EXPECT_FALSE(result.failure);
 }
 
-TEST(Pipeline, StopBeforeTheStartStillGivesTheFirstFrame) {
+TEST(Film, StopBeforeTheStartStillGivesTheFirstFrame) {
   std::atomic<bool> stop{true};
   Script script;
   script.stop = &stop;
-  const PipelineResult result = play(script, {0, 10, 1});
+  const FilmResult result = play(script, {0, 10, 1});
   EXPECT_EQ(script.written, up_to(1));
   EXPECT_TRUE(result.interrupted);
 }
 
-TEST(Pipeline, StopDuringTheLastFrameIsNoInterruption) {
+TEST(Film, StopDuringTheLastFrameIsNoInterruption) {
   std::atomic<bool> stop{false};
   Script script;
   script.stop = &stop;
