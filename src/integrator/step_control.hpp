@@ -31,7 +31,7 @@ class StepControl {
 
   /// What it remembers after an accepted step. Throws std::runtime_error where that cannot be.
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     exchange_values(archive, wanted_, last_share_);
     // Half of the shortest step may be wanted after it failed.
     if constexpr (Archive::kReads)

@@ -92,7 +92,7 @@ class Stepper {
 
   /// The history, of so many particles. Throws std::runtime_error where it cannot be.
   template <class Archive>
-  void exchange(Archive& archive, std::size_t particles) {
+  void serialize(Archive& archive, std::size_t particles) {
     archive.value(previous_h_);
     if constexpr (Archive::kReads) require(previous_h_ >= 0 && std::isfinite(previous_h_), "a step length");
     if (previous_h_ == 0) return;

@@ -182,7 +182,7 @@ bool ClothSystem::sew(double t) {
 }
 
 template <class Archive>
-void ClothSystem::exchange(Archive& archive) {
+void ClothSystem::serialize(Archive& archive) {
   for (Sewing& sewing : sewing_) {
     archive.value(sewing.share);
     if constexpr (!Archive::kReads) continue;
@@ -191,8 +191,8 @@ void ClothSystem::exchange(Archive& archive) {
   }
 }
 
-template void ClothSystem::exchange(ByteWriter&);
-template void ClothSystem::exchange(ByteReader&);
+template void ClothSystem::serialize(ByteWriter&);
+template void ClothSystem::serialize(ByteReader&);
 
 // What is being sewn has no weight: it would fall before it fits.
 void ClothSystem::take_weight_off(std::span<Vec3> force) const {

@@ -48,7 +48,7 @@ class ClothSystem {
 
   /// What lasts from frame to frame: how far cloths are sewn.
   template <class Archive>
-  void exchange(Archive& archive);
+  void serialize(Archive& archive);
 
   double elastic_energy(std::span<const Vec3> x) const;
   double kinetic_energy(std::span<const Vec3> v) const;

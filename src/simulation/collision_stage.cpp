@@ -193,7 +193,7 @@ CollisionStage::Pinches CollisionStage::take_pinches(const Moment& last_start) {
 }
 
 template <class Archive>
-void CollisionStage::exchange(Archive& archive, double t, Moment& now) {
+void CollisionStage::serialize(Archive& archive, double t, Moment& now) {
   place_bodies(t, now);
   engine_.serialize(archive, now.x);
   std::vector<PinchingObjects> before(pinching_before_.begin(), pinching_before_.end());
@@ -202,7 +202,7 @@ void CollisionStage::exchange(Archive& archive, double t, Moment& now) {
   pinching_before_ = {before.begin(), before.end()};
 }
 
-template void CollisionStage::exchange(ByteWriter&, double, Moment&);
-template void CollisionStage::exchange(ByteReader&, double, Moment&);
+template void CollisionStage::serialize(ByteWriter&, double, Moment&);
+template void CollisionStage::serialize(ByteReader&, double, Moment&);
 
 }  // namespace weft::simulation

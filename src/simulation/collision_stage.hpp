@@ -61,7 +61,7 @@ class CollisionStage {
     int pairs = 0;                   ///< most triangles at once that are exempted from non-penetration
     std::vector<std::string> begun;  ///< those not in the frame before, by object: "'a' has no room between ..."
   };
-  Pinches take_pinches(const Moment& last_start);
+  Pinches take_pinches(const Moment& last_start);  ///< where the last step began
 
   /// Before a frame: see Engine::forget.
   void forget() { engine_.forget(); }
@@ -69,7 +69,7 @@ class CollisionStage {
   /// What the next step from `now`, at time t [s], depends on. Throws std::runtime_error where this scene cannot have
   /// it.
   template <class Archive>
-  void exchange(Archive& archive, double t, Moment& now);
+  void serialize(Archive& archive, double t, Moment& now);
 
   int proximities() const { return engine_.proximities(); }
   double min_distance() const { return engine_.min_distance(); }

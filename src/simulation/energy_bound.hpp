@@ -18,7 +18,7 @@ class EnergyBound {
   void check(int frame, const FrameReport& energies);
 
   template <class Archive>
-  void exchange(Archive& archive) {
+  void serialize(Archive& archive) {
     exchange_values(archive, potential_low_, potential_high_);
   }
 

@@ -21,7 +21,7 @@ constexpr int kMostFrames = 1 << 30;
 
 // Times are not part of a state: two runs take different ones.
 template <class Archive>
-void exchange(Archive& archive, FrameReport& report) {
+void serialize(Archive& archive, FrameReport& report) {
   exchange_values(archive, report.frame, report.time, report.steps, report.rejected_steps, report.inexact_steps,
                   report.error_estimate, report.newton_iterations, report.linear_iterations, report.proximities,
                   report.constraints, report.min_distance, report.max_strain, report.kinetic_energy,
@@ -41,7 +41,7 @@ struct Simulation::Impl {
   void report_pinches(FrameReport& report);
   frame::SnapshotPtr make_snapshot() const;
   template <class Archive>
-  void exchange(Archive& archive);
+  void serialize(Archive& archive);
 
   scene::Scene scene;
   environment::Environment environment;
@@ -130,14 +130,14 @@ frame::SnapshotPtr Simulation::Impl::make_snapshot() const {
 }
 
 template <class Archive>
-void Simulation::Impl::exchange(Archive& archive) {
+void Simulation::Impl::serialize(Archive& archive) {
   archive.value(frame);
   if constexpr (Archive::kReads)
     require(frame >= -scene.preroll_frames() && frame < kMostFrames, "a frame of the scene");
-  steps.exchange(archive);
-  energy_bound->exchange(archive);
-  simulation::exchange(archive, start_report);
-  steps.exchange_contacts(archive, time());
+  steps.serialize(archive);
+  energy_bound->serialize(archive);
+  simulation::serialize(archive, start_report);
+  steps.serialize_contacts(archive, time());
 }
 
 Simulation::Simulation(const scene::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}
@@ -171,13 +171,13 @@ bool Simulation::run_preroll(const std::function<bool()>& proceed) {
 
 void Simulation::save(std::string& bytes) const {
   ByteWriter writer{std::move(bytes)};
-  impl_->exchange(writer);
+  impl_->serialize(writer);
   bytes = std::move(writer.bytes);
 }
 
 void Simulation::restore(std::string_view bytes) {
   ByteReader reader{bytes};
-  impl_->exchange(reader);
+  impl_->serialize(reader);
   require(reader.bytes.empty(), "an end");
   impl_->current = impl_->make_snapshot();
 }

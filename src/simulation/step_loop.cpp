@@ -193,19 +193,19 @@ void StepLoop::accept(double h, FrameReport& report) {
 }
 
 template <class Archive>
-void StepLoop::exchange(Archive& archive) {
+void StepLoop::serialize(Archive& archive) {
   Moment& now = progress_.now;
   const std::size_t particles = cloth_.masses().size();
   std::vector<Vec3> x(now.particles().begin(), now.particles().end());
   exchange_points(archive, x, particles);
   std::ranges::copy(x, now.x.begin());
   exchange_points(archive, now.v, particles);
-  progress_.stepper.exchange(archive, particles);
-  if (progress_.control) progress_.control->exchange(archive);
-  cloth_.exchange(archive);
+  progress_.stepper.serialize(archive, particles);
+  if (progress_.control) progress_.control->serialize(archive);
+  cloth_.serialize(archive);
 }
 
-template void StepLoop::exchange(ByteWriter&);
-template void StepLoop::exchange(ByteReader&);
+template void StepLoop::serialize(ByteWriter&);
+template void StepLoop::serialize(ByteReader&);
 
 }  // namespace weft::simulation

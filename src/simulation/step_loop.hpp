@@ -53,10 +53,10 @@ class StepLoop {
 
   /// Two parts of what later frames depend on; of contacts at the time of a frame [s].
   template <class Archive>
-  void exchange(Archive& archive);
+  void serialize(Archive& archive);
   template <class Archive>
-  void exchange_contacts(Archive& archive, double t) {
-    if (collisions_) collisions_->exchange(archive, t, progress_.now);
+  void serialize_contacts(Archive& archive, double t) {
+    if (collisions_) collisions_->serialize(archive, t, progress_.now);
   }
 
  private:
