@@ -32,7 +32,7 @@ class StepControl {
   /// What it remembers after an accepted step. Throws std::runtime_error where that cannot be.
   template <class Archive>
   void serialize(Archive& archive) {
-    exchange_values(archive, wanted_, last_share_);
+    serialize_values(archive, wanted_, last_share_);
     // Half of the shortest step may be wanted after it failed.
     if constexpr (Archive::kReads)
       require(wanted_ >= 0.1 * kShortestStep && std::isfinite(wanted_) && std::isfinite(last_share_), "a step length");

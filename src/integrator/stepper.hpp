@@ -96,8 +96,8 @@ class Stepper {
     archive.value(previous_h_);
     if constexpr (Archive::kReads) require(previous_h_ >= 0 && std::isfinite(previous_h_), "a step length");
     if (previous_h_ == 0) return;
-    exchange_points(archive, previous_.x, particles);
-    exchange_points(archive, previous_.v, particles);
+    serialize_points(archive, previous_.x, particles);
+    serialize_points(archive, previous_.v, particles);
   }
 
  private:

@@ -197,8 +197,8 @@ void CollisionStage::serialize(Archive& archive, double t, Moment& now) {
   place_bodies(t, now);
   engine_.serialize(archive, now.x);
   std::vector<PinchingObjects> before(pinching_before_.begin(), pinching_before_.end());
-  exchange_each(archive, before,
-                [&](PinchingObjects& objects) { exchange_values(archive, objects.first, objects.second); });
+  serialize_each(archive, before,
+                 [&](PinchingObjects& objects) { serialize_values(archive, objects.first, objects.second); });
   pinching_before_ = {before.begin(), before.end()};
 }
 

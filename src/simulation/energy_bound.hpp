@@ -19,7 +19,7 @@ class EnergyBound {
 
   template <class Archive>
   void serialize(Archive& archive) {
-    exchange_values(archive, potential_low_, potential_high_);
+    serialize_values(archive, potential_low_, potential_high_);
   }
 
  private:

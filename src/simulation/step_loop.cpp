@@ -197,9 +197,9 @@ void StepLoop::serialize(Archive& archive) {
   Moment& now = progress_.now;
   const std::size_t particles = cloth_.masses().size();
   std::vector<Vec3> x(now.particles().begin(), now.particles().end());
-  exchange_points(archive, x, particles);
+  serialize_points(archive, x, particles);
   std::ranges::copy(x, now.x.begin());
-  exchange_points(archive, now.v, particles);
+  serialize_points(archive, now.v, particles);
   progress_.stepper.serialize(archive, particles);
   if (progress_.control) progress_.control->serialize(archive);
   cloth_.serialize(archive);
