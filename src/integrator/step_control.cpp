@@ -17,7 +17,7 @@ constexpr double kKeepFrom = 0.9, kKeepTo = 1.1;
 // bound, that is four fifths, here half.
 constexpr double kLeastFactor = 0.2, kLargestFactor = 1.5;
 // Least error that counts, as a share of the tolerance.
-constexpr double kNoError = 1e-6;
+constexpr double kLeastError = 1e-6;
 
 }  // namespace
 
@@ -30,7 +30,7 @@ bool StepControl::accepts(double h, double error) const {
 
 // What was aimed at over what came.
 double StepControl::aim_over(double error) const {
-  return kAim * tolerance_ / std::max(error, kNoError * tolerance_);
+  return kAim * tolerance_ / std::max(error, kLeastError * tolerance_);
 }
 
 void StepControl::accepted(double h, double error) {

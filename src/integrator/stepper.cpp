@@ -12,7 +12,7 @@ namespace {
 constexpr double kLinearShare = 0.3;
 constexpr double kLeastLinear = 0.3;
 // Share of the weight below which a change of velocity counts as none.
-constexpr double kRest = 0.3;
+constexpr double kRestShare = 0.3;
 // Slope behind the minimum, against that at the start, from which a step counts as overshooting.
 constexpr double kOvershoot = 0.7;
 constexpr int kLineTrials = 6;
@@ -21,7 +21,7 @@ constexpr double kSolvedShare = 0.5;
 // What Newton leaves is a wrong velocity, the same way in step after step: a force that is not there. Within this time
 // [s] it may move the cloth by this share of the tolerance of one step. The time is that of a swing of cloth of a
 // metre, in which the method's own errors of velocity do as much as those of position.
-constexpr double kSwing = 0.3;
+constexpr double kSwingTime = 0.3;
 constexpr double kResidualShare = 0.1;
 
 double dot(std::span<const double> a, std::span<const double> b) {
@@ -103,7 +103,7 @@ double Stepper::weight(std::span<const double> masses, const Vec3& gravity) {
   if (!(dot(scale_, scale_) > 1e-12 * least * least * dot(masses, masses)))
     for (std::size_t i = 0; i < masses.size(); ++i) scale_[i] = Vec3::Constant(masses[i] * least);
   cg_.filter(scale_);
-  return kRest * cg_.norm(scale_);
+  return kRestShare * cg_.norm(scale_);
 }
 
 // Norm of what the residual is measured against: the weight, or the force that the change of velocity takes, whichever
@@ -116,9 +116,10 @@ double Stepper::force_scale(std::span<const double> masses, double weight, const
 
 // Norm of a residual that still matters beside the tolerance of positions; infinite where there is none. In this norm
 // the residual is the energy norm of the displacement δ that it stands for, and √(δᵀ M δ) / β is not more than that. δ
-// leaves behind a velocity of δ / β: for that to move a part by a share of the tolerance within kSwing, δ itself must
-// be smaller than that by h / kSwing. A share of the tolerance alone would not do: with steps h that follow the
-// tolerance as h^(p+1), the force that is left, M δ / β², would shrink as h^(p-1) only, and cost the method an order.
+// leaves behind a velocity of δ / β: for that to move a part by a share of the tolerance within kSwingTime, δ itself
+// must be smaller than that by h / kSwingTime. A share of the tolerance alone would not do: with steps h that follow
+// the tolerance as h^(p+1), the force that is left, M δ / β², would shrink as h^(p-1) only, and cost the method an
+// order.
 double Stepper::residual_that_matters(std::span<const double> masses, double h, const Stage& stage,
                                       std::span<const solver::Part> parts) const {
   if (parameters_.position_tolerance == 0) return std::numeric_limits<double>::infinity();
@@ -128,7 +129,7 @@ double Stepper::residual_that_matters(std::span<const double> masses, double h, 
     for (auto i = static_cast<std::size_t>(part.begin); i < static_cast<std::size_t>(part.end); ++i) mass += masses[i];
     least = std::min(least, mass);
   }
-  const double displacement = kResidualShare * parameters_.position_tolerance * (h / kSwing) / stage.end_rate;
+  const double displacement = kResidualShare * parameters_.position_tolerance * (h / kSwingTime) / stage.end_rate;
   return displacement * std::sqrt(least) / stage.beta;
 }
 

@@ -61,7 +61,7 @@ class CollisionStage {
     int pairs = 0;                   ///< most triangles at once that are exempted from non-penetration
     std::vector<std::string> begun;  ///< those not in the frame before, by object: "'a' has no room between ..."
   };
-  Pinches take_pinches(const Moment& last_start);
+  Pinches take_pinches(const Moment& last_start);  ///< where the last step began
 
   /// Before a frame: see Engine::forget.
   void forget() { engine_.forget(); }

@@ -12,7 +12,7 @@ namespace {
 // within some frames; the worst of what the tolerance of Newton's method did on the stability map is 0.07.
 constexpr double kGain = 0.3;
 // Below this it is rounding [J].
-constexpr double kNothing = 1e-9;
+constexpr double kRounding = 1e-9;
 
 bool is_alone(const scene::Scene& scene) {
   if (CollisionStage::needed(scene)) return false;
@@ -46,7 +46,7 @@ void EnergyBound::check(int frame, const FrameReport& energies) {
   potential_high_ = std::max(potential_high_, energies.potential_energy);
   const double in_play = moving_ + elastic_ + potential_high_ - potential_low_;
   const double gain = mechanical(energies) - start_;
-  if (!(gain > kGain * in_play + kNothing)) return;
+  if (!(gain > kGain * in_play + kRounding)) return;
   throw Error(ExitCode::simulation_failed,
               "frame {}: the cloth has {:.3g} J more than at the start, with {:.3g} J in play and nothing that drives "
               "it; try a smaller time.step or solver.newton_tolerance{}",

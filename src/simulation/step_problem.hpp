@@ -12,8 +12,7 @@ namespace weft::simulation {
 
 /// All that evaluations leave behind for those that follow: with the same of it the same arguments give the same bits.
 struct SolveMemory {
-  // Changes with linearisations. Cloth at rest does with the rows of the matrix that it has; residuals are exact
-  // always.
+  // Changed by linearisations. Cloth at rest does with the rows of the matrix that it has.
   solver::LinearSystem system;
   double rate = 0;                  ///< of `system` and `base` [1/s]; 0: of none
   std::vector<Vec3> linearised_at;  ///< where each cloth's rows were put together; empty: nowhere
@@ -22,13 +21,14 @@ struct SolveMemory {
   // Saves time only. Of the forces within the cloths: most cloths of a scene are solved, and do not move, while one
   // goes on.
   solver::BlockMatrix base;  ///< what all matrices of this rate begin with
-  std::vector<Vec3> x, v;    ///< where each cloth's forces were last evaluated; empty: nowhere
+  std::vector<Vec3> x, v;    ///< where each cloth's forces were last evaluated; not a number: nowhere
   std::vector<Vec3> force;   ///< what they were [N]
 };
 
+/// ClothSystem computes, ContactResponse too; here is what they are given of the past.
 class StepProblem final : public integrator::System {
  public:
-  /// Must not outlive the cloth.
+  /// The cloth must outlive it.
   explicit StepProblem(ClothSystem& cloth);
 
   /// What the cloth meets, or nullptr where the scene has nothing. Must outlive the steps.

@@ -225,17 +225,6 @@ TEST(ContactSet, FrictionOfAContactThatIsNewInAStepBeginsWithTheLoadOfItsStart) 
   EXPECT_NEAR(lag.loads[1], load_at(0.6), 1e-12);
 }
 
-TEST(ContactSet, ForcesChangeNothingThatTheyDependOn) {
-  const VertexOnFace pair(0.4);
-  const ContactSet contacts = pair.set();
-  const std::vector<Vec3> x = pair.jittered(0.0003), elsewhere = pair.jittered(0.0003);
-  FrictionLag lag = lag_at_start(contacts, x);
-  contacts.update(elsewhere, lag);
-  const std::vector<Vec3> before = forces_of(contacts, x, lag);
-  forces_of(contacts, elsewhere, lag);
-  EXPECT_EQ(forces_of(contacts, x, lag), before);
-}
-
 // −∂f/∂x of one contact, as linearise leaves it in the system.
 Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
   const Index rows = system.matrix.rows();
