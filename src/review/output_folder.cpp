@@ -43,7 +43,7 @@ bool exchange(const fs::path& fresh, const fs::path& former) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path final_name, bool overwrite) {
+OutputFolder::OutputFolder(const fs::path& final_name, bool overwrite) {
   std::error_code error;
   final_name_ = fs::absolute(final_name, error).lexically_normal();
   if (!final_name_.has_filename()) final_name_ = final_name_.parent_path();  // "review/"

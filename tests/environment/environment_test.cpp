@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "mesh/geometry.hpp"
+#include "support/mesh_measures.hpp"
 
 namespace weft::environment {
 namespace {
@@ -109,7 +110,7 @@ TEST(Shapes, TurnTheirAxisUpWhereYIsUp) {
   // The tip: alone at the top.
   const auto& body = y_up.bodies[0].mesh.positions;
   EXPECT_EQ(std::count_if(body.begin(), body.end(), [](const Vec3& x) { return x.y() > 1.499; }), 1);
-  EXPECT_GT(mesh::enclosed_volume(y_up.bodies[0].mesh.topology.triangles, body), 0);
+  EXPECT_GT(support::enclosed_volume(y_up.bodies[0].mesh.topology.triangles, body), 0);
 }
 
 TEST(Shapes, AreMadeAsTheSceneSaysInTheSameOrder) {

@@ -8,7 +8,7 @@
 namespace weft::render {
 
 /// What a picture of a frame would show of its cloth, found without drawing it; each from 0 to 1.
-struct Telling {
+struct Saliency {
   double coverage = 0;  ///< share of the picture that shows cloth, not hidden by anything
   double folding = 0;   ///< 0: all cloth is flat; 1: its front sides point everywhere alike
   double motion = 0;    ///< how fast the cloth changes shape: 0 not at all, 1/2 by its own size in two seconds
@@ -19,7 +19,7 @@ struct Telling {
 
 /// `previous`: the frame before, `seconds` earlier; null at the first. Camera as in Settings; without one the frame is
 /// framed by itself.
-Telling how_telling(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* previous, double seconds,
-                    const std::string& camera, double aspect);
+Saliency saliency_of(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* previous, double seconds,
+                     const std::string& camera, double aspect);
 
 }  // namespace weft::render

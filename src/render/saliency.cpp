@@ -1,4 +1,4 @@
-#include "render/telling.hpp"
+#include "render/saliency.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -113,10 +113,10 @@ double speed_within(const std::vector<Vec3>& now, const std::vector<Vec3>& befor
 
 }  // namespace
 
-Telling how_telling(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* previous, double seconds,
-                    const std::string& camera, double aspect) {
-  Telling telling;
-  telling.coverage = coverage(snapshot, camera, aspect);
+Saliency saliency_of(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* previous, double seconds,
+                     const std::string& camera, double aspect) {
+  Saliency saliency;
+  saliency.coverage = coverage(snapshot, camera, aspect);
   double area = 0, flat = 0, rate = 0;  // rate: sizes of the cloth per second, weighted by area
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
@@ -129,10 +129,10 @@ Telling how_telling(const frame::FrameSnapshot& snapshot, const frame::FrameSnap
     if (previous)
       rate += front.area * speed_within(positions, previous->states[i].positions, seconds) / std::sqrt(front.area);
   }
-  if (!(area > 0)) return telling;
-  telling.folding = 1 - flat / area;
-  telling.motion = rate / (rate + kHalfMotion * area);
-  return telling;
+  if (!(area > 0)) return saliency;
+  saliency.folding = 1 - flat / area;
+  saliency.motion = rate / (rate + kHalfMotion * area);
+  return saliency;
 }
 
 }  // namespace weft::render

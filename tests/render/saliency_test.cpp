@@ -1,4 +1,4 @@
-#include "render/telling.hpp"
+#include "render/saliency.hpp"
 
 #include <gtest/gtest.h>
 
@@ -28,11 +28,11 @@ void add_upright(frame::FrameSnapshot& snapshot, frame::ObjectKind kind, const V
   add_square(snapshot, kind, center, -Vec3::UnitY(), Vec3::UnitX(), half);
 }
 
-Telling judge(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* previous = nullptr) {
-  return how_telling(snapshot, previous, 0.1, "", 2);
+Saliency judge(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* previous = nullptr) {
+  return saliency_of(snapshot, previous, 0.1, "", 2);
 }
 
-TEST(Telling, CoverageIsTheShareOfThePictureThatShowsCloth) {
+TEST(Saliency, CoverageIsTheShareOfThePictureThatShowsCloth) {
   frame::FrameSnapshot snapshot = seen_from_before();
   EXPECT_EQ(judge(snapshot).score(), 0);
   add_upright(snapshot, kCloth, {1, 0, 0.5}, 1);
@@ -42,7 +42,7 @@ TEST(Telling, CoverageIsTheShareOfThePictureThatShowsCloth) {
   EXPECT_NEAR(judge(snapshot).coverage, 6.0 / 32, 1e-12);
 }
 
-TEST(Telling, ClothBehindSomethingOrBehindTheCameraDoesNotCount) {
+TEST(Saliency, ClothBehindSomethingOrBehindTheCameraDoesNotCount) {
   frame::FrameSnapshot snapshot = seen_from_before();
   add_upright(snapshot, kCloth, {0, 0, 0}, 1);
   add_upright(snapshot, kObstacle, {0, -5, 0}, 0.25);  // half as far, so it hides 1 m by 1 m
@@ -53,14 +53,14 @@ TEST(Telling, ClothBehindSomethingOrBehindTheCameraDoesNotCount) {
   EXPECT_NEAR(judge(snapshot).coverage, 3.0 / 32, 1e-12);
 }
 
-TEST(Telling, WithoutACameraTheFrameIsFramedByItself) {
+TEST(Saliency, WithoutACameraTheFrameIsFramedByItself) {
   frame::FrameSnapshot snapshot = seen_from_before();
   snapshot.cameras.clear();
   add_square(snapshot, kCloth, {100, 0, 0}, -Vec3::UnitY(), Vec3::UnitX(), 0.01);
   EXPECT_GT(judge(snapshot).coverage, 0.1);
 }
 
-TEST(Telling, FoldingIsNoneForFlatClothAndThatOfAnAngleForABentOne) {
+TEST(Saliency, FoldingIsNoneForFlatClothAndThatOfAnAngleForABentOne) {
   frame::FrameSnapshot snapshot = seen_from_before();
   add_surface(snapshot, kCloth, {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}, {{0, 1, 2}, {0, 2, 3}});
   EXPECT_NEAR(judge(snapshot).folding, 0, 1e-12);
@@ -70,7 +70,7 @@ TEST(Telling, FoldingIsNoneForFlatClothAndThatOfAnAngleForABentOne) {
   EXPECT_NEAR(judge(bent).folding, 1 - std::numbers::sqrt2 / 2, 1e-12);
 }
 
-TEST(Telling, MotionIsThatOfTheShapeNotOfTheWhole) {
+TEST(Saliency, MotionIsThatOfTheShapeNotOfTheWhole) {
   frame::FrameSnapshot before = seen_from_before();
   add_surface(before, kCloth, {{0, 0, 0}, {1, 0, 0}, {1, 0, 1}, {0, 0, 1}}, {{0, 1, 2}, {0, 2, 3}});
   frame::FrameSnapshot after = before;
