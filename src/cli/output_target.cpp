@@ -60,8 +60,7 @@ void FramePattern::remove_others(const FrameRange& frames) const {
     if (problem != std::errc() || frame < 0 || frames.contains(frame)) continue;
     std::error_code ignored;
     const fs::path file = name(frame);
-    const bool exact = fs::path(folder) / found == file || (after_.find('/') != std::string::npos);
-    if (exact && fs::is_regular_file(fs::symlink_status(file, ignored))) fs::remove(file, ignored);
+    if (fs::is_regular_file(fs::symlink_status(file, ignored))) fs::remove(file, ignored);
   }
 }
 
