@@ -105,7 +105,7 @@ void StepProblem::put_together(std::size_t cloth, const integrator::StagePoint& 
   memory_.system.matrix.copy_rows(memory_.base, part.begin, part.end);
   ++part.version;
   evaluate(cloth, at, &memory_.system.matrix,
-           iteration < kPlainIterations ? forces::Linearisation::definite : forces::Linearisation::cautious);
+           iteration < kPlainIterations ? forces::Linearisation::definite : forces::Linearisation::abs_projected);
 }
 
 }  // namespace weft::simulation
