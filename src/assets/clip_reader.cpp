@@ -116,7 +116,7 @@ struct ClipReader {
 };
 
 /// assimp adds "*0" and the like to names of meshes that several parts share.
-std::string plain_name(std::string name) {
+std::string plain_name(const std::string& name) {
   return name.substr(0, name.find('*'));
 }
 

@@ -13,7 +13,6 @@ namespace weft::bench {
 namespace {
 
 using scene::Integrator;
-constexpr Integrator kIntegrators[] = {Integrator::implicit_euler, Integrator::implicit_midpoint, Integrator::bdf2};
 
 // Fixed steps: from four times the scene's on, each half of the one before.
 constexpr int kSteps = 6;

@@ -12,6 +12,9 @@
 
 namespace weft::bench {
 
+inline constexpr scene::Integrator kIntegrators[] = {scene::Integrator::implicit_euler,
+                                                     scene::Integrator::implicit_midpoint, scene::Integrator::bdf2};
+
 /// What an error is measured in. The first three compare whole motions: the largest value of all frames counts. The
 /// others are single numbers of the last frame, which converge even where contact lets the paths of particles part.
 enum class Quantity : std::size_t {
@@ -61,6 +64,10 @@ struct Run {
 
   bool failed() const { return !failure.empty(); }
 };
+
+inline double error_of(const Run& run, Quantity quantity) {
+  return run.errors[static_cast<std::size_t>(quantity)];
+}
 
 /// What the error of a run depends on: its step, tolerance or spacing.
 double control_of(const Run& run);

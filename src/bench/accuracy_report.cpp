@@ -11,7 +11,6 @@ namespace weft::bench {
 namespace {
 
 using scene::Integrator;
-constexpr Integrator kIntegrators[] = {Integrator::implicit_euler, Integrator::implicit_midpoint, Integrator::bdf2};
 constexpr Axis kAxesInOrder[kAxes] = {Axis::step,   Axis::scene_step, Axis::tolerance,
                                       Axis::newton, Axis::linear,     Axis::mesh};
 
@@ -22,10 +21,6 @@ std::vector<Quantity> quantities_of(const Accuracy& accuracy) {
     for (Quantity q : {Quantity::shadow, Quantity::top, Quantity::rest_energy, Quantity::centre})
       quantities.push_back(q);
   return quantities;
-}
-
-double error_of(const Run& run, Quantity quantity) {
-  return run.errors[static_cast<std::size_t>(quantity)];
 }
 
 std::string_view axis_name(Axis axis) {

@@ -18,10 +18,6 @@ constexpr double kTargets[] = {1e-2, 1e-3, 1e-4};
 constexpr std::size_t kLast = 4;
 const double kShipped = scene::Solver{}.newton_tolerance;
 
-double error_of(const Run& run, Quantity quantity) {
-  return run.errors[static_cast<std::size_t>(quantity)];
-}
-
 bool in_the_race(const Run& run) {
   return !run.failed() && (run.axis == Axis::step || run.axis == Axis::scene_step || run.axis == Axis::tolerance);
 }

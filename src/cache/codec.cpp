@@ -20,7 +20,7 @@ constexpr bool kReading = std::is_same_v<Archive, ByteReader>;
 
 // Values that memory may not hold in any state.
 template <class Archive, class Value>
-void exchange_byte(Archive& archive, Value& value, Value last) {
+void serialize_byte(Archive& archive, Value& value, Value last) {
   auto byte = static_cast<std::uint8_t>(value);
   archive.value(byte);
   if (byte > static_cast<std::uint8_t>(last)) throw std::runtime_error(fmt::format("{} stands for nothing", byte));
@@ -28,8 +28,8 @@ void exchange_byte(Archive& archive, Value& value, Value last) {
 }
 
 template <class Archive>
-void exchange_flag(Archive& archive, bool& flag) {
-  exchange_byte(archive, flag, true);
+void serialize_flag(Archive& archive, bool& flag) {
+  serialize_byte(archive, flag, true);
 }
 
 void check_finite(double number) {
@@ -37,19 +37,19 @@ void check_finite(double number) {
 }
 
 template <class Archive>
-void exchange_finite(Archive& archive, double& number) {
+void serialize_finite(Archive& archive, double& number) {
   archive.value(number);
   if constexpr (kReading<Archive>) check_finite(number);
 }
 
 template <class Archive>
-void exchange_finite(Archive& archive, Vec3& vector) {
-  for (double& number : vector) exchange_finite(archive, number);
+void serialize_finite(Archive& archive, Vec3& vector) {
+  for (double& number : vector) serialize_finite(archive, number);
 }
 
 // In planes; the number of entries is known.
 template <class Entry>
-void exchange_planes(ByteWriter& archive, std::vector<Entry>& list) {
+void serialize_planes(ByteWriter& archive, std::vector<Entry>& list) {
   const std::size_t count = list.size(), start = archive.bytes.size();
   archive.bytes.resize(start + count * sizeof(Entry));
   char* to = archive.bytes.data() + start;
@@ -59,7 +59,7 @@ void exchange_planes(ByteWriter& archive, std::vector<Entry>& list) {
 }
 
 template <class Entry>
-void exchange_planes(ByteReader& archive, std::vector<Entry>& list) {
+void serialize_planes(ByteReader& archive, std::vector<Entry>& list) {
   const std::size_t count = list.size();
   if (archive.bytes.size() / sizeof(Entry) < count) throw std::runtime_error("the data was cut short");
   const char* from = archive.bytes.data();
@@ -79,56 +79,56 @@ void check_end(const ByteReader& reader) {
 }
 
 template <class Archive>
-void exchange(Archive& archive, frame::Stage& stage) {
-  exchange_finite(archive, stage.up);
-  exchange_finite(archive, stage.sky_color);
-  exchange_finite(archive, stage.ground_color);
-  exchange_finite(archive, stage.sky_intensity);
-  exchange_byte(archive, stage.heat, frame::Stage::Heat::speed);
-  exchange_finite(archive, stage.heat_max);
+void serialize(Archive& archive, frame::Stage& stage) {
+  serialize_finite(archive, stage.up);
+  serialize_finite(archive, stage.sky_color);
+  serialize_finite(archive, stage.ground_color);
+  serialize_finite(archive, stage.sky_intensity);
+  serialize_byte(archive, stage.heat, frame::Stage::Heat::speed);
+  serialize_finite(archive, stage.heat_max);
 }
 
 template <class Archive>
-void exchange(Archive& archive, frame::Surface& surface) {
-  exchange_plain(archive, surface.name);
-  exchange_byte(archive, surface.kind, frame::ObjectKind::character);
-  exchange_flag(archive, surface.visible);
-  exchange_flag(archive, surface.infinite_floor);
-  exchange_plain(archive, surface.triangles);
-  exchange_plain(archive, surface.quads);
-  exchange_plain(archive, surface.uv);
-  exchange_finite(archive, surface.crease_angle);
-  exchange_finite(archive, surface.appearance.color);
-  exchange_finite(archive, surface.appearance.back_color);
-  exchange_finite(archive, surface.appearance.roughness);
-  exchange_finite(archive, surface.appearance.thread_spacing);
-  exchange_flag(archive, surface.appearance.checker);
+void serialize(Archive& archive, frame::Surface& surface) {
+  serialize_plain(archive, surface.name);
+  serialize_byte(archive, surface.kind, frame::ObjectKind::character);
+  serialize_flag(archive, surface.visible);
+  serialize_flag(archive, surface.infinite_floor);
+  serialize_plain(archive, surface.triangles);
+  serialize_plain(archive, surface.quads);
+  serialize_plain(archive, surface.uv);
+  serialize_finite(archive, surface.crease_angle);
+  serialize_finite(archive, surface.appearance.color);
+  serialize_finite(archive, surface.appearance.back_color);
+  serialize_finite(archive, surface.appearance.roughness);
+  serialize_finite(archive, surface.appearance.thread_spacing);
+  serialize_flag(archive, surface.appearance.checker);
 }
 
 template <class Archive>
-void exchange(Archive& archive, frame::Camera& camera) {
-  exchange_plain(archive, camera.name);
-  exchange_finite(archive, camera.position);
-  exchange_finite(archive, camera.target);
-  exchange_finite(archive, camera.field_of_view);
+void serialize(Archive& archive, frame::Camera& camera) {
+  serialize_plain(archive, camera.name);
+  serialize_finite(archive, camera.position);
+  serialize_finite(archive, camera.target);
+  serialize_finite(archive, camera.field_of_view);
 }
 
 template <class Archive>
-void exchange(Archive& archive, frame::Light& light) {
-  exchange_plain(archive, light.name);
-  exchange_byte(archive, light.kind, frame::Light::Kind::spot);
-  exchange_finite(archive, light.direction);
-  exchange_finite(archive, light.position);
-  exchange_finite(archive, light.target);
-  exchange_finite(archive, light.cone_angle);
-  exchange_finite(archive, light.color);
-  exchange_finite(archive, light.intensity);
-  exchange_finite(archive, light.softness);
+void serialize(Archive& archive, frame::Light& light) {
+  serialize_plain(archive, light.name);
+  serialize_byte(archive, light.kind, frame::Light::Kind::spot);
+  serialize_finite(archive, light.direction);
+  serialize_finite(archive, light.position);
+  serialize_finite(archive, light.target);
+  serialize_finite(archive, light.cone_angle);
+  serialize_finite(archive, light.color);
+  serialize_finite(archive, light.intensity);
+  serialize_finite(archive, light.softness);
 }
 
 // Its frame and time are those of the snapshot.
 template <class Archive>
-void exchange(Archive& archive, frame::FrameReport& report) {
+void serialize(Archive& archive, frame::FrameReport& report) {
   for (double* number : {&report.simulate_wall_s, &report.simulate_cpu_s, &report.collide_wall_s, &report.collide_cpu_s,
                          &report.error_estimate, &report.min_distance, &report.max_strain, &report.kinetic_energy,
                          &report.potential_energy, &report.elastic_energy})
@@ -136,8 +136,8 @@ void exchange(Archive& archive, frame::FrameReport& report) {
   for (int* number : {&report.steps, &report.rejected_steps, &report.inexact_steps, &report.newton_iterations,
                       &report.linear_iterations, &report.proximities, &report.constraints, &report.pinched_pairs})
     archive.value(*number);
-  exchange_each(
-      archive, report.pinches, [&](std::string& text) { exchange_plain(archive, text); }, sizeof(std::size_t));
+  serialize_each(
+      archive, report.pinches, [&](std::string& text) { serialize_plain(archive, text); }, sizeof(std::size_t));
 }
 
 // What is shared and what a frame has of its own, but for the points of its surfaces.
@@ -149,14 +149,14 @@ struct FrameHead {
 };
 
 template <class Archive>
-void exchange(Archive& archive, FrameHead& head) {
+void serialize(Archive& archive, FrameHead& head) {
   constexpr std::size_t kLeastCamera = 64, kLeastLight = 129;  // [bytes], without a name
-  exchange_finite(archive, head.time);
-  exchange_each(
-      archive, head.cameras, [&](frame::Camera& camera) { exchange(archive, camera); }, kLeastCamera);
-  exchange_each(
-      archive, head.lights, [&](frame::Light& light) { exchange(archive, light); }, kLeastLight);
-  exchange(archive, head.report);
+  serialize_finite(archive, head.time);
+  serialize_each(
+      archive, head.cameras, [&](frame::Camera& camera) { serialize(archive, camera); }, kLeastCamera);
+  serialize_each(
+      archive, head.lights, [&](frame::Light& light) { serialize(archive, light); }, kLeastLight);
+  serialize(archive, head.report);
 }
 
 void check(const frame::Surface& surface, std::size_t vertices) {
@@ -187,15 +187,15 @@ Surfaces surfaces_of(const frame::FrameSnapshot& first) {
 std::string encode_surfaces(const Surfaces& surfaces) {
   ByteWriter writer;
   frame::Stage stage = *surfaces.stage;
-  exchange(writer, stage);
+  serialize(writer, stage);
   writer.size(surfaces.surfaces);
   for (const auto& pointer : surfaces.surfaces) {
     frame::Surface surface = *pointer;
-    exchange(writer, surface);
+    serialize(writer, surface);
   }
   for (std::vector<Vec3> positions : surfaces.positions) {
     writer.size(positions);
-    exchange_planes(writer, positions);
+    serialize_planes(writer, positions);
   }
   return std::move(writer.bytes);
 }
@@ -204,15 +204,15 @@ Surfaces decode_surfaces(std::string_view payload) {
   constexpr std::size_t kLeastSurface = 116;  // [bytes], without name, faces and uv
   ByteReader reader{payload};
   frame::Stage stage;
-  exchange(reader, stage);
+  serialize(reader, stage);
   std::vector<frame::Surface> list;
-  exchange_each(
-      reader, list, [&](frame::Surface& surface) { exchange(reader, surface); }, kLeastSurface);
+  serialize_each(
+      reader, list, [&](frame::Surface& surface) { serialize(reader, surface); }, kLeastSurface);
   Surfaces surfaces{std::make_shared<const frame::Stage>(stage), {}, {}};
   for (frame::Surface& surface : list) {
     std::vector<Vec3>& positions = surfaces.positions.emplace_back();
     reader.size(positions, sizeof(Vec3));
-    exchange_planes(reader, positions);
+    serialize_planes(reader, positions);
     check_finite(positions);
     check(surface, positions.size());
     surfaces.surfaces.push_back(std::make_shared<const frame::Surface>(std::move(surface)));
@@ -225,18 +225,18 @@ std::string encode_frame(const frame::FrameSnapshot& snapshot, const frame::Fram
                          const Surfaces& surfaces) {
   ByteWriter writer;
   FrameHead head{snapshot.time, snapshot.cameras, snapshot.lights, report};
-  exchange(writer, head);
+  serialize(writer, head);
   for (std::size_t s = 0; s < snapshot.states.size(); ++s) {
     frame::SurfaceState state = snapshot.states[s];
     const std::vector<Vec3>& start = surfaces.positions.at(s);
     if (state.positions.size() != start.size()) throw std::logic_error("a surface has lost or gained vertices");
     // Bit for bit: -0 is not 0.
     bool moved = std::memcmp(state.positions.data(), start.data(), start.size() * sizeof(Vec3)) != 0;
-    exchange_flag(writer, moved);
-    if (moved) exchange_planes(writer, state.positions);
+    serialize_flag(writer, moved);
+    if (moved) serialize_planes(writer, state.positions);
     bool heated = !state.heat.empty();
-    exchange_flag(writer, heated);
-    if (heated) exchange_planes(writer, state.heat);
+    serialize_flag(writer, heated);
+    if (heated) serialize_planes(writer, state.heat);
   }
   return std::move(writer.bytes);
 }
@@ -244,7 +244,7 @@ std::string encode_frame(const frame::FrameSnapshot& snapshot, const frame::Fram
 CachedFrame decode_frame(std::string_view payload, int frame, const Surfaces& surfaces) {
   ByteReader reader{payload};
   FrameHead head;
-  exchange(reader, head);
+  serialize(reader, head);
   head.report.frame = frame;
   head.report.time = head.time;
   auto snapshot = std::make_shared<frame::FrameSnapshot>();
@@ -257,20 +257,20 @@ CachedFrame decode_frame(std::string_view payload, int frame, const Surfaces& su
   for (const std::vector<Vec3>& start : surfaces.positions) {
     frame::SurfaceState& state = snapshot->states.emplace_back();
     bool moved = false, heated = false;
-    exchange_flag(reader, moved);
+    serialize_flag(reader, moved);
     state.positions = start;
     if (moved) {
-      exchange_planes(reader, state.positions);
+      serialize_planes(reader, state.positions);
       check_finite(state.positions);
     }
-    exchange_flag(reader, heated);
+    serialize_flag(reader, heated);
     if (!heated) continue;
     state.heat.resize(start.size());
-    exchange_planes(reader, state.heat);
+    serialize_planes(reader, state.heat);
     for (const float heat : state.heat) check_finite(heat);
   }
   check_end(reader);
-  return {std::move(snapshot), std::move(head.report)};
+  return {std::move(snapshot), std::move(head.report), 0};
 }
 
 }  // namespace weft::cache

@@ -6,7 +6,7 @@
 //             4 × i32), uv (list of 2 × f64), crease angle, colour, back colour, roughness, thread spacing, checker;
 //             for each surface the positions in frame 0 (count u64, then planes)
 //   frame     time; cameras (list of name, position, target, field of view); lights (list of name, kind, direction,
-//             position, target, cone angle, colour, intensity, softness); the report (see exchange(FrameReport) in
+//             position, target, cone angle, colour, intensity, softness); the report (see serialize(FrameReport) in
 //             codec.cpp); for each surface a byte: 0 as in frame 0, 1 positions follow (planes);
 //             and a byte: 0 no heat, 1 heat follows (planes of f32)
 //   state     the solver's own bytes
@@ -15,6 +15,7 @@
 // 3 × f64, 4 for heat). Signs and exponents of neighbours are alike: this is what makes them shrink.
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <string_view>
@@ -35,6 +36,7 @@ struct Surfaces {
 struct CachedFrame {
   frame::SnapshotPtr snapshot;
   frame::FrameReport report;
+  std::uint64_t scene_hash = 0;  ///< of the scene whose looks it has
 };
 
 Surfaces surfaces_of(const frame::FrameSnapshot& first);

@@ -33,7 +33,7 @@ struct Header {
 };
 
 template <class Archive>
-void exchange(Archive& archive, Header& header) {
+void serialize(Archive& archive, Header& header) {
   archive.value(header.magic);
   archive.value(header.version);
   archive.value(header.label.kind);
@@ -59,7 +59,7 @@ Header check(std::string_view bytes) {
   if (!bytes.starts_with(kMagic)) throw std::runtime_error("it is no file of a frame cache");
   ByteReader reader{bytes};
   Header header;
-  exchange(reader, header);
+  serialize(reader, header);
   if (header.version != kFormatVersion)
     throw std::runtime_error(fmt::format("expected version {} of the format, got {}", kFormatVersion, header.version));
   if (header.stored_size > reader.bytes.size()) throw std::runtime_error("it was cut short");
@@ -81,11 +81,11 @@ std::string pack(const Label& label, std::string_view payload) {
   header.size = payload.size();
   header.stored_size = stored.size();
   ByteWriter writer;
-  exchange(writer, header);
+  serialize(writer, header);
   header.checksum = checksum_of(writer.bytes, stored);
   writer.bytes.clear();
   writer.bytes.reserve(kHeaderSize + stored.size());
-  exchange(writer, header);
+  serialize(writer, header);
   writer.bytes += stored;
   return std::move(writer.bytes);
 }

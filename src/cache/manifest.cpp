@@ -27,8 +27,12 @@ void require(bool good, const char* what) {
 std::uint64_t parse_hash(const std::string& text) {
   std::uint64_t hash = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), hash, 16);
-  require(error == std::errc() && end == text.data() + text.size(), "scene_hash: expected 16 hexadecimal digits");
+  require(error == std::errc() && end == text.data() + text.size(), "hash: expected 16 hexadecimal digits");
   return hash;
+}
+
+std::string hash_text(std::uint64_t hash) {
+  return fmt::format("{:016x}", hash);
 }
 
 int parse_count(const Json& json, const char* key, int low, int high) {
@@ -60,6 +64,12 @@ Manifest parse(const Json& json) {
   require(is_plain_name(manifest.scene), "scene: expected a name");
   manifest.title = json.at("title").get<std::string>();
   manifest.scene_hash = parse_hash(json.at("scene_hash").get<std::string>());
+  // Caches of before know neither.
+  if (json.contains("simulation_hash"))
+    manifest.simulation_hash = parse_hash(json.at("simulation_hash").get<std::string>());
+  if (json.contains("former_hashes"))
+    for (const Json& hash : json.at("former_hashes"))
+      manifest.former_hashes.push_back(parse_hash(hash.get<std::string>()));
   manifest.fps = json.at("fps").get<double>();
   require(std::isfinite(manifest.fps) && manifest.fps > 0, "fps: expected > 0 frames a second");
   manifest.frame_count = parse_count(json, "frame_count", 1, kMostFrames);
@@ -85,11 +95,15 @@ std::string manifest_text(const Manifest& manifest) {
                        {"vertices", object.vertices},
                        {"faces", object.faces}});
   }
+  Json former = Json::array();
+  for (const std::uint64_t hash : manifest.former_hashes) former.push_back(hash_text(hash));
   const Json json{{"format", kFormat},
                   {"format_version", kFormatVersion},
                   {"scene", manifest.scene},
                   {"title", manifest.title},
-                  {"scene_hash", fmt::format("{:016x}", manifest.scene_hash)},
+                  {"scene_hash", hash_text(manifest.scene_hash)},
+                  {"simulation_hash", hash_text(manifest.simulation_hash)},
+                  {"former_hashes", std::move(former)},
                   {"fps", manifest.fps},
                   {"frame_count", manifest.frame_count},
                   {"preroll_frames", manifest.preroll_frames},

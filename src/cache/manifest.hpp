@@ -15,6 +15,8 @@ struct Manifest {
   std::string scene;  ///< its name
   std::string title;  ///< may be empty
   std::uint64_t scene_hash = 0;
+  std::uint64_t simulation_hash = 0;  ///< of what counts for the simulation; scenes that are alike there share frames
+  std::vector<std::uint64_t> former_hashes;  ///< scenes of the same simulation whose looks some frames may still have
   double fps = 25;
   int frame_count = 1;               ///< of the scene; the cache may hold fewer
   int preroll_frames = 0;            ///< simulated before frame 0 and not kept

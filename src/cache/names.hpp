@@ -12,7 +12,8 @@
 namespace weft::cache {
 
 inline constexpr const char *kManifestFile = "manifest.json", *kSceneFile = "scene.effective.toml",
-                            *kSurfacesFile = "surfaces.weft", *kStateFile = "state.weft", *kLockFile = "lock";
+                            *kSurfacesFile = "surfaces.weft", *kStateFile = "state.weft", *kLockFile = "lock",
+                            *kOutputsFile = "outputs.txt";  // of the run that fills it
 
 inline std::string frame_file(int frame) {
   return fmt::format("frame_{:05}.weft", frame);

@@ -50,7 +50,7 @@ bool is_cache(const fs::path& folder) {
   return fs::is_regular_file(folder / kManifestFile, ignored);
 }
 
-Reader::Reader(fs::path folder) : folder_(std::move(folder)) {
+Reader::Reader(fs::path folder, Looks looks) : folder_(std::move(folder)), looks_(looks) {
   if (!is_cache(folder_))
     throw Error(ExitCode::asset_unreadable, "{}: expected a frame cache, a folder with a {}; weft simulate makes one",
                 folder_.string(), kManifestFile);
@@ -75,13 +75,21 @@ void Reader::check_objects() const {
                                            surfaces_->positions[i].size()));
 }
 
+void Reader::check_scene(std::uint64_t hash) const {
+  const std::vector<std::uint64_t>& former = manifest_.former_hashes;
+  if (hash == manifest_.scene_hash) return;
+  if (std::find(former.begin(), former.end(), hash) == former.end())
+    throw std::runtime_error(
+        fmt::format("expected a file of scene {:016x}, got one of {:016x}", manifest_.scene_hash, hash));
+  if (looks_ == Looks::of_scene)
+    throw std::runtime_error("it has the looks from before the scene was changed; weft simulate --resume goes on");
+}
+
 std::string Reader::read_part(const char* name, Kind kind, std::optional<int> frame, Label* label) const {
   const fs::path file = folder_ / name;
   return blame(file, [&] {
     Content content = unpack(read_file(file));
-    if (content.label.scene_hash != manifest_.scene_hash)
-      throw std::runtime_error(fmt::format("expected a file of scene {:016x}, got one of {:016x}", manifest_.scene_hash,
-                                           content.label.scene_hash));
+    check_scene(content.label.scene_hash);
     if (content.label.kind != kind || (frame && content.label.frame != *frame))
       throw std::runtime_error("it is another file of the cache under this name");
     if (label != nullptr) *label = content.label;
@@ -113,15 +121,19 @@ bool Reader::has(int frame) const {
 CachedFrame Reader::read(int frame) const {
   const std::string name = frame_file(frame);
   if (!surfaces_) throw Error(ExitCode::asset_unreadable, "{}: holds no frame yet", folder_.string());
-  const std::string payload = read_part(name.c_str(), Kind::frame, frame);
-  return blame(folder_ / name, [&] { return decode_frame(payload, frame, *surfaces_); });
+  Label label;
+  const std::string payload = read_part(name.c_str(), Kind::frame, frame, &label);
+  CachedFrame cached = blame(folder_ / name, [&] { return decode_frame(payload, frame, *surfaces_); });
+  cached.scene_hash = label.scene_hash;
+  return cached;
 }
 
 void Reader::verify(int frame) const {
   const fs::path file = folder_ / frame_file(frame);
   blame(file, [&] {
     const Label label = cache::verify(read_file(file));
-    if (label.scene_hash != manifest_.scene_hash || label.kind != Kind::frame || label.frame != frame)
+    check_scene(label.scene_hash);
+    if (label.kind != Kind::frame || label.frame != frame)
       throw std::runtime_error("it is another file under this name");
   });
 }

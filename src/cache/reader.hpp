@@ -18,12 +18,16 @@ struct SolverState {
   std::string bytes;
 };
 
+/// Whose looks (colours, cameras, lights) the frames may have: those of the scene, or also those that it had before,
+/// which a --resume has not come to yet.
+enum class Looks { of_scene, any };
+
 /// All functions may be called from several threads, and throw Error(asset_unreadable) with the name of the file and
 /// what is wrong with it.
 class Reader {
  public:
   /// Reads what all frames share. A cache that has no frame yet is none that is broken.
-  explicit Reader(std::filesystem::path folder);
+  explicit Reader(std::filesystem::path folder, Looks looks = Looks::of_scene);
 
   const std::filesystem::path& folder() const { return folder_; }
   const Manifest& manifest() const { return manifest_; }
@@ -47,8 +51,10 @@ class Reader {
  private:
   std::string read_part(const char* name, Kind kind, std::optional<int> frame, Label* label = nullptr) const;
   void check_objects() const;
+  void check_scene(std::uint64_t hash) const;
 
   std::filesystem::path folder_;
+  Looks looks_;
   Manifest manifest_;
   std::optional<Surfaces> surfaces_;  // absent before frame 0 is there
 };

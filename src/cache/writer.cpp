@@ -5,6 +5,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <system_error>
@@ -28,7 +29,7 @@ bool is_temporary(const std::string& name) {
 
 bool is_ours(const std::string& name) {
   return name == kManifestFile || name == kSceneFile || name == kSurfacesFile || name == kStateFile ||
-         name == kLockFile || frame_of(name) || is_temporary(name);
+         name == kLockFile || name == kOutputsFile || frame_of(name) || is_temporary(name);
 }
 
 std::vector<std::string> names_in(const fs::path& folder) {
@@ -89,7 +90,7 @@ Lock::~Lock() {
 
 bool Lock::empty() const {
   const std::vector<std::string> names = names_in(folder_);
-  return names.empty() || (names.size() == 1 && names[0] == kLockFile);
+  return std::ranges::all_of(names, [](const auto& name) { return name == kLockFile || name == kOutputsFile; });
 }
 
 void Lock::clear() const {

@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-#include <string>
 
 #include "character/gait_curves.hpp"
 #include "character/gait_feet.hpp"
@@ -13,7 +11,6 @@
 namespace weft::character {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kHipSwing = 1.6;  ///< share of the recorded turn of the pelvis: longer legs, and a catwalk
 // In a turn the head leads, then the chest, then the hips (Patla, Adkin & Ballard, "Online steering: coordination and
 // control of body center of mass, head and body reorientation", 1999) [s].
@@ -35,23 +32,23 @@ struct Sway {
 /// A walk key by key, put together of feet, track and curves.
 class Walker {
  public:
-  /// Of the plan, `keys` keys from `begin` on.
-  Walker(const Physique& body, const StepPlan& plan, double arms_out, int begin, int keys)
-      : body_(body), plan_(plan), arms_out_(arms_out), begin_(begin), keys_(keys) {
+  /// Of the plan, the first `keys` keys.
+  Walker(const Physique& body, const StepPlan& plan, double arms_out, int keys)
+      : body_(body), plan_(plan), arms_out_(arms_out), keys_(keys) {
     // Steps look beyond both ends.
     const int spare = 2 * plan.period();
-    track_ = lay_track(body, plan, begin - spare, begin + keys + spare);
+    track_ = lay_track(body, plan, -spare, keys + spare);
     for (int key = track_.first; key <= track_.last(); ++key) hips_.push_back({hip_offset(key, 0), hip_offset(key, 1)});
   }
 
-  Clip clip(std::string name) const {
+  Clip clip() const {
     const Feet feet(body_, plan_, track_, hips_);
     Clip clip;
-    clip.name = std::move(name);
+    clip.name = "walk";
     clip.duration = (keys_ - 1) * plan_.key_time;
     clip.channels.resize(kJointCount);
     for (std::size_t j = 0; j < kJointCount; ++j) clip.channels[j].node = static_cast<Index>(j);
-    for (int k = 0; k < keys_; ++k) add_key(clip, feet, k);
+    for (int key = 0; key < keys_; ++key) add_key(clip, feet, key);
     return clip;
   }
 
@@ -162,12 +159,11 @@ class Walker {
     global[z(of_side(Joint::left_toes, side))] = turned(-foot.pitch - foot.toes, across) * foot_yaw;
   }
 
-  void add_key(Clip& clip, const Feet& feet, int k) const {
-    const int key = begin_ + k;
+  void add_key(Clip& clip, const Feet& feet, int key) const {
     const Vec2& place = track_.place[track_.index(key)];
     const Vec3 pelvis(place.x(), place.y(), feet.pelvis_height(key));
     const auto global = rotations(feet, key, pelvis);
-    const double t = k * plan_.key_time;
+    const double t = key * plan_.key_time;
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto joint = static_cast<Joint>(j);
       const Quat local = joint == Joint::hips ? global[j] : global[z(parent(joint))].conjugate() * global[j];
@@ -181,7 +177,7 @@ class Walker {
   const Physique& body_;
   const StepPlan& plan_;
   double arms_out_;
-  int begin_, keys_;
+  int keys_;
   Track track_;
   HipOffsets hips_;
 };
@@ -192,15 +188,7 @@ Clip make_walk(const Character& mannequin, const Walk& walk) {
   const Physique body = physique_of(mannequin);
   const StepPlan plan = plan_walk(body, walk);
   const int stand = static_cast<int>(std::round(walk.stand / plan.key_time));
-  return Walker(body, plan, walk.arms_out, 0, plan.strikes.back().key + plan.period() * 9 / 10 + stand + 1)
-      .clip("walk");
-}
-
-Clip make_stride(const Character& mannequin, const Walk& walk) {
-  const Physique body = physique_of(mannequin);
-  constexpr int before = 4;  // strides until nothing of the start is left, and as many until the end is felt
-  const StepPlan plan = plan_even_steps(body, walk.speed, 2 * before);
-  return Walker(body, plan, walk.arms_out, plan.plants[0][before].strike, plan.period() + 1).clip("stride");
+  return Walker(body, plan, walk.arms_out, plan.strikes.back().key + plan.period() * 9 / 10 + stand + 1).clip();
 }
 
 }  // namespace weft::character

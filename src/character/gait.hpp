@@ -19,8 +19,4 @@ struct Walk {
 /// whole number of them.
 Clip make_walk(const Character& mannequin, const Walk& walk);
 
-/// One stride of even walking, from left heel strike to left heel strike: the end is the start, farther by the length
-/// of a stride. To be looped; distance, turn and standing are left out.
-Clip make_stride(const Character& mannequin, const Walk& walk);
-
 }  // namespace weft::character

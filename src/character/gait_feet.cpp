@@ -10,7 +10,6 @@
 namespace weft::character {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kStandingKnee = 6;   ///< [degrees]; legs that snap straight look stiff, and could not reach
 constexpr double kPitchShare = 0.79;  ///< the recorded walker lifts the toes more than a mannequin should
 constexpr double kRelease = 0.17;     ///< share of a stride before a strike from which the leg behind is led

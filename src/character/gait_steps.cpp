@@ -2,14 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "character/gait_curves.hpp"
 
 namespace weft::character {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
 constexpr double kKeysPerSecond = 60;
 constexpr double kHalfTrack = 0.048;  ///< ankle from the middle line, of the height; the recording has 0.038, which
                                       ///< would have the thighs touch
@@ -195,13 +193,6 @@ StepPlan plan_walk(const Physique& body, const Walk& walk) {
     side = go_ahead(planner, body, pace, steps, side, 0, 0);
   }
   planner.step(side, {0, 0, 0, 0.6});
-  return std::move(planner.plan);
-}
-
-StepPlan plan_even_steps(const Physique& body, double speed, int count) {
-  const Pace pace = pace_of(speed, body.height);
-  Planner planner(body, pace, 0);
-  for (int k = 0; k < 2 * count; ++k) planner.step(k % 2, {pace.step_length, 0, 0, step_size(body, pace)});
   return std::move(planner.plan);
 }
 

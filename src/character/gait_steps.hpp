@@ -2,12 +2,15 @@
 #pragma once
 
 #include <array>
+#include <numbers>
 #include <vector>
 
 #include "character/gait.hpp"
 #include "character/mannequin.hpp"
 
 namespace weft::character {
+
+inline constexpr double kDegree = std::numbers::pi / 180;  ///< [rad]
 
 /// What a walk needs to know of a body; a foot at rest has its sole flat on z = 0; lengths in metres.
 struct Physique {
@@ -77,8 +80,5 @@ struct StepPlan {
 
 /// From standing to standing, with a turn halfway where the walk has one; `pace` as adjusted to the distance.
 StepPlan plan_walk(const Physique& body, const Walk& walk);
-
-/// Even steps, `count` of each foot.
-StepPlan plan_even_steps(const Physique& body, double speed, int count);
 
 }  // namespace weft::character

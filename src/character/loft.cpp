@@ -37,7 +37,7 @@ std::vector<double> spline_slopes(const std::vector<double>& at, const std::vect
 
 }  // namespace
 
-Loft::Loft(const LoftFrame& frame, std::vector<Section> sections, double first_cap, double last_cap)
+Loft::Loft(const LoftFrame& frame, const std::vector<Section>& sections, double first_cap, double last_cap)
     : frame_(frame), first_cap_(first_cap), last_cap_(last_cap) {
   for (const Section& s : sections) {
     at_.push_back(s.at);

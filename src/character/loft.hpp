@@ -30,7 +30,7 @@ struct LoftFrame {
 class Loft {
  public:
   /// Sections in ascending order; caps are lengths > 0 [m] beyond the first and the last one.
-  Loft(const LoftFrame& frame, std::vector<Section> sections, double first_cap, double last_cap);
+  Loft(const LoftFrame& frame, const std::vector<Section>& sections, double first_cap, double last_cap);
 
   /// Negative inside, 0 on the surface; the distance along the ray from the nearest point of the axis [m].
   double value(const Vec3& p) const;

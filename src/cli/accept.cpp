@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "cli/commands.hpp"
+#include "cli/path_ledger.hpp"
 #include "compare/acceptance.hpp"
 #include "compare/files.hpp"
 #include "core/log.hpp"
@@ -42,6 +43,11 @@ ExitCode accept(const AcceptOptions& options) {
     plans.back().reason = options.reason;
     plans.back().user = user_name();
   }
+  PathLedger paths;
+  for (const compare::Acceptance& plan : plans) paths.reads(plan.test, "a picture to accept");
+  for (const compare::Acceptance& plan : plans) paths.writes("REFERENCE", plan.reference);
+  if (!plans.empty()) paths.writes("the log", plans.front().log);
+  paths.check_absent(true);  // to be replaced is what they are named for
   for (const compare::Acceptance& plan : plans) {
     const bool changed = plan.carry_out();
     log::info(fmt::format("{}: {}", plan.reference.string(),

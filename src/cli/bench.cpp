@@ -7,7 +7,7 @@
 #include "bench/report.hpp"
 #include "bench/stability.hpp"
 #include "cli/commands.hpp"
-#include "cli/output_target.hpp"
+#include "cli/path_ledger.hpp"
 #include "cli/scene_input.hpp"
 #include "core/log.hpp"
 #include "core/parallel.hpp"
@@ -53,8 +53,19 @@ bench::Table try_cases(const std::filesystem::path& folder, Count& count) {
   return table;
 }
 
-ExitCode bench_stability(const std::filesystem::path& folder) {
-  check_writable(folder / "stability.md");
+/// Refuses before anything is measured.
+void check_outputs(PathLedger& paths, const BenchOptions& options, const std::filesystem::path& folder,
+                   const std::vector<std::string>& names) {
+  for (const std::string& name : names) paths.writes("-o", folder / name);
+  paths.check_absent(options.overwrite);
+  paths.check_writable();
+}
+
+ExitCode bench_stability(const BenchOptions& options, const std::filesystem::path& folder) {
+  PathLedger paths;
+  std::vector<std::string> names{"stability.md", "stability_map.csv", "stability_map.svg", "stability_cases.csv"};
+  for (const bench::ExtremeCase& extreme : bench::extreme_cases()) names.push_back("scenes/" + extreme.name + ".toml");
+  check_outputs(paths, options, folder, names);
   Count map_count, case_count;
   log::info("stability: the map");
   const auto cells = bench::stability_map([&](const bench::MapCell& cell) { map_count.add(cell.outcome.verdict); });
@@ -105,12 +116,14 @@ class AccuracyProgress {
 ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path& folder) {
   const scene::Scene scene = scene_of(options);
   const std::string name = "accuracy_" + scene.name, title = scene.title.empty() ? scene.name : scene.title;
-  check_writable(folder / (name + ".md"));
+  const std::string work = name + ".svg", settings = name + "_settings.svg";
+  PathLedger paths;
+  if (!options.scene.empty()) add_inputs(paths, scene);
+  check_outputs(paths, options, folder, {name + ".md", name + ".csv", work, settings});
   // So that CPU seconds mean the same everywhere.
   set_thread_count(1);
   AccuracyProgress progress;
   const bench::Accuracy accuracy = bench::measure_accuracy(scene, std::ref(progress));
-  const std::string work = name + ".svg", settings = name + "_settings.svg";
   write_file(folder / (name + ".csv"), bench::csv(bench::accuracy_table(accuracy)));
   write_file(folder / work, bench::work_svg(title, accuracy));
   write_file(folder / settings, bench::settings_svg(title, accuracy));
@@ -123,7 +136,8 @@ ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path
 
 ExitCode bench(const BenchOptions& options) {
   const std::filesystem::path folder = options.output.empty() ? "output/bench" : options.output;
-  return options.kind == BenchOptions::Kind::accuracy ? bench_accuracy(options, folder) : bench_stability(folder);
+  return options.kind == BenchOptions::Kind::accuracy ? bench_accuracy(options, folder)
+                                                      : bench_stability(options, folder);
 }
 
 }  // namespace weft::cli

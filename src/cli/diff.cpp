@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdio>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/path_ledger.hpp"
 #include "compare/files.hpp"
 #include "compare/references.hpp"
 #include "image/png.hpp"
@@ -33,15 +35,20 @@ void check_exists(const fs::path& path, ExitCode code, const char* what) {
   if (!fs::exists(path)) throw Error(code, "{}: the {} does not exist", path.string(), what);
 }
 
-FileComparison compare_by_name(const fs::path& folder, const fs::path& test, const std::string& machine,
-                               const compare::Limits& limits) {
-  const auto reference = compare::find_reference(folder, test.filename(), machine);
-  if (!reference) return only_one(test.filename(), folder, test, Outcome::no_reference);
-  if (!fs::exists(test)) return only_one(test.filename(), *reference, test, Outcome::no_test);
-  return compare::compare_files(*reference, test, limits);
-}
+/// What is to be compared. Nothing is read yet.
+struct Pair {
+  std::string name;
+  std::optional<fs::path> reference;
+  fs::path test;
 
-std::vector<FileComparison> compare_folders(const DiffOptions& options) {
+  FileComparison compare(const DiffOptions& options) const {
+    if (!reference) return only_one(name, options.reference, test, Outcome::no_reference);
+    if (!fs::exists(test)) return only_one(name, *reference, test, Outcome::no_test);
+    return compare::compare_files(*reference, test, options.limits);
+  }
+};
+
+std::vector<Pair> pairs_of_folders(const DiffOptions& options) {
   std::vector<std::string> names = compare::comparable_names(options.test);
   // The pictures of one folder come from one machine.
   const std::string machine = names.empty() ? "" : compare::machine_class_of(options.test / names.front());
@@ -53,23 +60,24 @@ std::vector<FileComparison> compare_folders(const DiffOptions& options) {
   names.insert(names.end(), references.begin(), references.end());
   std::sort(names.begin(), names.end());
   names.erase(std::unique(names.begin(), names.end()), names.end());
-  std::vector<FileComparison> results;
-  for (const std::string& name : names) {
-    results.push_back(compare_by_name(options.reference, options.test / name, machine, options.limits));
-  }
-  return results;
+  std::vector<Pair> pairs;
+  for (const std::string& name : names)
+    pairs.push_back({name, compare::find_reference(options.reference, name, machine), options.test / name});
+  return pairs;
 }
 
-std::vector<FileComparison> compare_all(const DiffOptions& options) {
+std::vector<Pair> all_pairs(const DiffOptions& options) {
   check_exists(options.reference, ExitCode::reference_missing, "reference");
   check_exists(options.test, ExitCode::asset_unreadable, "picture to test");
   if (fs::is_directory(options.reference)) {
-    if (fs::is_directory(options.test)) return compare_folders(options);
-    return {compare_by_name(options.reference, options.test, compare::machine_class_of(options.test), options.limits)};
+    if (fs::is_directory(options.test)) return pairs_of_folders(options);
+    const std::string name = options.test.filename();
+    return {{name, compare::find_reference(options.reference, name, compare::machine_class_of(options.test)),
+             options.test}};
   }
   const fs::path test = fs::is_directory(options.test) ? options.test / options.reference.filename() : options.test;
   check_exists(test, ExitCode::asset_unreadable, "picture to test");
-  return {compare::compare_files(options.reference, test, options.limits)};
+  return {{test.filename(), options.reference, test}};
 }
 
 // Of the whole comparison: what hides most comes first.
@@ -147,11 +155,28 @@ Json describe_json(const FileComparison& result, const fs::path& heatmap) {
   return json;
 }
 
-// Where the heat map of a result goes; empty where none is asked for or nothing was compared.
-fs::path heatmap_file(const DiffOptions& options, const FileComparison& result) {
-  if (options.heatmap.empty() || result.frames == 0) return {};
-  if (options.heatmap.extension() == ".png") return options.heatmap;
-  return options.heatmap / fs::path(result.name).replace_extension(".png");
+// Where the heat map of a pair goes; empty where none is asked for. A video that has the name of a picture keeps its
+// ending.
+fs::path heatmap_file(const DiffOptions& options, const std::vector<Pair>& pairs, const std::string& name) {
+  if (options.heatmap.empty() || options.heatmap.extension() == ".png") return options.heatmap;
+  const std::string picture = fs::path(name).replace_extension(".png").string();
+  const bool taken =
+      picture != name && std::ranges::any_of(pairs, [&](const Pair& pair) { return pair.name == picture; });
+  return options.heatmap / (taken ? name + ".png" : picture);
+}
+
+void check_heatmaps(const DiffOptions& options, const std::vector<Pair>& pairs) {
+  if (options.heatmap.empty()) return;
+  PathLedger paths;
+  for (const fs::path& folder : {options.reference, options.test})
+    if (fs::is_directory(folder)) paths.searches(folder, "a folder to compare");
+  for (const Pair& pair : pairs) {
+    if (pair.reference) paths.reads(*pair.reference, "a reference");
+    paths.reads(pair.test, "a picture to test");
+  }
+  for (const Pair& pair : pairs) paths.writes("--heatmap", heatmap_file(options, pairs, pair.name));
+  paths.check_absent(options.overwrite);
+  paths.check_writable();
 }
 
 }  // namespace
@@ -162,7 +187,10 @@ ExitCode diff(const DiffOptions& options) {
     throw Error(ExitCode::usage, "--heatmap: expected a folder for the pictures of folders, got {}",
                 options.heatmap.string());
   }
-  const std::vector<FileComparison> results = compare_all(options);
+  const std::vector<Pair> pairs = all_pairs(options);
+  check_heatmaps(options, pairs);
+  std::vector<FileComparison> results;
+  for (const Pair& pair : pairs) results.push_back(pair.compare(options));
   const ExitCode code = exit_code(results);
   Json json{{"exit_code", static_cast<int>(code)},
             {"limits",
@@ -173,7 +201,7 @@ ExitCode diff(const DiffOptions& options) {
             {"results", Json::array()}};
   std::string text;
   for (const FileComparison& result : results) {
-    const fs::path heatmap = heatmap_file(options, result);
+    const fs::path heatmap = result.frames > 0 ? heatmap_file(options, pairs, result.name) : fs::path();
     if (!heatmap.empty()) image::write_png(heatmap, compare::heat_map(result.worst.flip));
     json["results"].push_back(describe_json(result, heatmap));
     text += describe(result, options.limits) + "\n";

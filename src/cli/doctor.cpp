@@ -56,13 +56,15 @@ std::string libraries() {
       NLOHMANN_JSON_VERSION_PATCH);
 }
 
-// Which of the levels of the x86-64 psABI the processor has, and which one this program was built for.
+// Which of the levels of the x86-64 psABI the processor has, and which one this program was built for. By features that
+// came with each level: clang before 16 does not know the levels by name.
 std::string cpu_level() {
 #if defined(__x86_64__)
-  const char* has = __builtin_cpu_supports("x86-64-v4")   ? "x86-64-v4"
-                    : __builtin_cpu_supports("x86-64-v3") ? "x86-64-v3"
-                    : __builtin_cpu_supports("x86-64-v2") ? "x86-64-v2"
-                                                          : "x86-64";
+  const bool v2 = __builtin_cpu_supports("sse4.2") && __builtin_cpu_supports("popcnt");
+  const bool v3 =
+      v2 && __builtin_cpu_supports("avx2") && __builtin_cpu_supports("bmi2") && __builtin_cpu_supports("fma");
+  const bool v4 = v3 && __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512vl");
+  const char* has = v4 ? "x86-64-v4" : v3 ? "x86-64-v3" : v2 ? "x86-64-v2" : "x86-64";
 #if defined(__AVX512F__)
   const char* built = "x86-64-v4";
 #elif defined(__AVX2__)

@@ -4,8 +4,8 @@
 #include <cstring>
 #include <utility>
 
-#include "cli/output_target.hpp"
 #include "core/error.hpp"
+#include "core/temporary_file.hpp"
 
 namespace weft::cli {
 
@@ -17,8 +17,9 @@ EventLog::EventLog(std::string destination) : destination_(std::move(destination
     file_ = stdout;
     return;
   }
-  check_writable(destination_);  // makes the folder too
-  file_ = std::fopen(destination_.c_str(), "wbe");
+  check_writable(destination_);       // makes the folder too
+  std::remove(destination_.c_str());  // not emptied: it may have another name, which keeps what is in it
+  file_ = std::fopen(destination_.c_str(), "wbxe");
   if (file_ == nullptr) {
     throw Error(ExitCode::output_failed, "{}: cannot be written: {}", destination_, std::strerror(errno));
   }

@@ -12,7 +12,7 @@ namespace weft::cli {
 /// is whole in itself and is there to be followed. Safe from all threads.
 class EventLog {
  public:
-  /// `destination`: a file, which is replaced; "-" for standard output; empty for none. Throws Error(output_failed).
+  /// `destination`: a file, made anew; "-" for standard output; empty for none. Throws Error(output_failed).
   explicit EventLog(std::string destination);
   ~EventLog();
   EventLog(const EventLog&) = delete;

@@ -308,6 +308,7 @@ struct Parser {
     add_overrides(command, bench.overrides);
     add_value(command, "-o,--output", "DIR", "Folder for tables and plots [output/bench]",
               [this](const std::string& text) { bench.output = text; });
+    command.add_flag("--overwrite", bench.overwrite, "Replace files that exist already");
     command.footer(
         "\nExamples:\n"
         "  weft bench stability -o stability\n"
@@ -330,6 +331,7 @@ struct Parser {
     add_share("--max-spot", diff.limits.spot, "Largest value of FLIP at any pixel");
     add_value(command, "--heatmap", "FILE.png|DIR", "Also paint where it differs; a video's worst frame",
               [this](const std::string& text) { diff.heatmap = text; });
+    command.add_flag("--overwrite", diff.overwrite, "Replace heat maps that exist already");
     command.add_flag("--json", diff.json, "Print JSON instead of text");
     command.footer(
         "\nExamples:\n"

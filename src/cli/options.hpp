@@ -83,12 +83,14 @@ struct BenchOptions {
   std::filesystem::path scene;         ///< of accuracy; empty: a sheet that swings
   std::vector<std::string> overrides;  ///< of --set
   std::filesystem::path output;        ///< folder; empty: output/bench
+  bool overwrite = false;
 };
 
 struct DiffOptions {
   std::filesystem::path reference, test;  ///< files or folders
   compare::Limits limits;
   std::filesystem::path heatmap;  ///< picture or folder; empty: none
+  bool overwrite = false;
   bool json = false;
 };
 

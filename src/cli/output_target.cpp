@@ -1,13 +1,9 @@
 #include "cli/output_target.hpp"
 
-#include <cerrno>
 #include <charconv>
-#include <cstdio>
-#include <cstring>
-#include <regex>
+#include <system_error>
 
 #include "core/error.hpp"
-#include "core/temporary_file.hpp"
 
 namespace weft::cli {
 namespace {
@@ -44,6 +40,31 @@ fs::path FramePattern::name(int frame) const {
   return fmt::format("{}{:0{}}{}", before_, frame, digits_, after_);
 }
 
+std::vector<fs::path> FramePattern::names(const FrameRange& frames) const {
+  std::vector<fs::path> names;
+  for (int frame = frames.begin; frame < frames.end; frame += frames.step) names.push_back(name(frame));
+  return names;
+}
+
+void FramePattern::remove_others(const FrameRange& frames) const {
+  // The number may stand in the name of a folder.
+  const std::size_t slash = before_.rfind('/');
+  const std::string folder = slash == std::string::npos ? "." : before_.substr(0, slash + 1);
+  const std::string start = slash == std::string::npos ? before_ : before_.substr(slash + 1);
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    const std::string found = entry->path().filename().string();
+    int frame = 0;
+    if (!found.starts_with(start)) continue;
+    const auto [stop, problem] = std::from_chars(found.data() + start.size(), found.data() + found.size(), frame);
+    if (problem != std::errc() || frame < 0 || frames.contains(frame)) continue;
+    std::error_code ignored;
+    const fs::path file = name(frame);
+    const bool exact = fs::path(folder) / found == file || (after_.find('/') != std::string::npos);
+    if (exact && fs::is_regular_file(fs::symlink_status(file, ignored))) fs::remove(file, ignored);
+  }
+}
+
 fs::path OutputTarget::file(int frame) const {
   return kind == Kind::images ? FramePattern(text).name(frame) : fs::path(text);
 }
@@ -64,45 +85,8 @@ OutputTarget parse_output(const std::string& text, const std::string& scene_name
   throw Error(ExitCode::usage, "-o: expected a name ending in .mp4, or in .png with {{frame:05}} in it, got {}", text);
 }
 
-void check_writable(const fs::path& file) {
-  const TemporaryFile temporary(file);
-  std::FILE* out = std::fopen(temporary.path().c_str(), "wbe");
-  if (out == nullptr) {
-    throw Error(ExitCode::output_failed, "{}: cannot be written: {}", file.string(), std::strerror(errno));
-  }
-  std::fclose(out);
-}
-
-void check_absent(const fs::path& file, bool overwrite) {
-  std::error_code ignored;  // what cannot be looked at is found by check_writable
-  if (fs::is_directory(file, ignored)) {
-    throw Error(ExitCode::output_failed, "{}: is a folder, expected a file name", file.string());
-  }
-  if (!overwrite && fs::exists(file, ignored)) {
-    throw Error(ExitCode::output_failed, "{}: exists already; give --overwrite to replace it, or another name",
-                file.string());
-  }
-}
-
-void remove_half_files(const fs::path& folder, const std::set<std::string>& names) {
-  static const std::regex kTemporary(R"(\.(.+)\.[0-9]+\.tmp)");  // as TemporaryFile names them
-  std::error_code error;
-  for (fs::directory_iterator entry(folder.empty() ? "." : folder, error), end; !error && entry != end;
-       entry.increment(error)) {
-    const std::string name = entry->path().filename().string();
-    std::smatch match;
-    std::error_code ignored;
-    if (std::regex_match(name, match, kTemporary) && names.contains(match[1])) fs::remove(entry->path(), ignored);
-  }
-}
-
-void prepare_output(const OutputTarget& target, const FrameRange& frames, bool overwrite) {
-  const bool video = target.kind == OutputTarget::Kind::video;
-  for (int frame = frames.begin; frame < frames.end; frame += frames.step) {
-    check_absent(target.file(frame), overwrite);
-    if (video) break;
-  }
-  check_writable(target.file(frames.begin));
+std::vector<fs::path> OutputTarget::files(const FrameRange& frames) const {
+  return kind == Kind::images ? FramePattern(text).names(frames) : std::vector{fs::path(text)};
 }
 
 }  // namespace weft::cli

@@ -2,9 +2,10 @@
 #pragma once
 
 #include <filesystem>
-#include <set>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "cli/frame_range.hpp"
 
@@ -15,8 +16,13 @@ class FramePattern {
  public:
   /// Throws Error(usage) if the text has no such place, several, or other braces.
   explicit FramePattern(std::string_view text);
+  FramePattern(std::string before, int digits, std::string after)
+      : before_(std::move(before)), after_(std::move(after)), digits_(digits) {}
 
   std::filesystem::path name(int frame) const;
+  std::vector<std::filesystem::path> names(const FrameRange& frames) const;
+  /// Removes files that have the name of a frame, but none of these: a longer run has left them.
+  void remove_others(const FrameRange& frames) const;
 
  private:
   std::string before_, after_;
@@ -30,23 +36,10 @@ struct OutputTarget {
 
   /// The file of one frame (images) or of all of them (video).
   std::filesystem::path file(int frame) const;
+  std::vector<std::filesystem::path> files(const FrameRange& frames) const;
 };
 
 /// Understands `-o`; empty: `output/<scene>.mp4`. Throws Error(usage) for endings that cannot be written.
 OutputTarget parse_output(const std::string& text, const std::string& scene_name);
-
-/// Opens a temporary file beside `file` for a moment: permissions alone do not tell (read-only mounts, root, quotas).
-/// Makes missing folders. Throws Error(output_failed) with the system's reason.
-void check_writable(const std::filesystem::path& file);
-
-/// Throws Error(output_failed) if `file` exists and `overwrite` is not set, or if it is a folder.
-void check_absent(const std::filesystem::path& file, bool overwrite);
-
-/// Removes from `folder` what a killed process has left of files with these names under their temporary ones. The
-/// caller has made sure that no other process writes them.
-void remove_half_files(const std::filesystem::path& folder, const std::set<std::string>& names);
-
-/// Both checks for the files of the target.
-void prepare_output(const OutputTarget& target, const FrameRange& frames, bool overwrite);
 
 }  // namespace weft::cli

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "cli/commands.hpp"
+#include "cli/path_ledger.hpp"
 #include "cli/signals.hpp"
 #include "core/log.hpp"
 
@@ -15,6 +16,10 @@ ExitCode review(const ReviewOptions& options) {
   request.reference = options.reference;
   request.output = options.output.empty() ? "output/review" : options.output;
   request.overwrite = options.overwrite;
+  PathLedger paths;
+  for (const std::filesystem::path& folder : options.folders) paths.searches(folder, "a folder of runs");
+  if (!options.reference.empty()) paths.searches(options.reference, "the folder of references");
+  paths.fills("-o", request.output);
   request.stop = [&signals] { return signals.requested().load(); };
   const review::Outcome outcome = review::write_review(request);
   std::string line = fmt::format("{}: {} run{}", outcome.page.string(), outcome.runs, outcome.runs == 1 ? "" : "s");

@@ -1,73 +1,345 @@
-#include <set>
+// run, simulate and render: each puts a film together from parts, from the options to the exit code. The way of a frame
+// is in film.cpp.
+#include <algorithm>
+#include <optional>
 #include <utility>
 
+#include "cache/reader.hpp"
+#include "cli/cached_frames.hpp"
 #include "cli/commands.hpp"
-#include "cli/simulating.hpp"
-#include "cli/stages.hpp"
+#include "cli/failure.hpp"
+#include "cli/film.hpp"
+#include "cli/path_ledger.hpp"
+#include "cli/scene_input.hpp"
+#include "cli/signals.hpp"
+#include "cli/stats.hpp"
+#include "cli/summary.hpp"
+#include "cli/system_info.hpp"
+#include "cli/whole_output.hpp"
 #include "core/log.hpp"
+#include "core/parallel.hpp"
+#include "core/temporary_file.hpp"
 #include "video/encoder.hpp"
 
 namespace weft::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using Kind = OutputTarget::Kind;
+
+/// What is made and where it goes.
+struct FilmPlan {
+  cache::Manifest scene;
+  std::string scene_text;  ///< the effective scene
+  FrameRange made;         ///< by the source
+  FrameRange wanted;       ///< of those: drawn, or written as meshes
+  int simulated = 0;       ///< frames that are, those before frame 0 too; 0 where frames are only read
+  bool whole_film = true;  ///< else a part, beside which other commands may put theirs
+  OutputTarget target;
+  render::Settings settings;
+  std::vector<std::string> objects;  ///< names
+
+  bool draws() const { return target.kind != Kind::none; }
+
+  /// Beside the output: the checked scene with every default filled in.
+  fs::path effective_scene_file() const {
+    const fs::path file = target.file(wanted.begin);
+    return file.parent_path() / ((target.kind == Kind::video ? file.stem().string() : scene.scene) + ".effective.toml");
+  }
+};
+
+FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {
+  FilmPlan plan;
+  plan.settings = render_settings(scene, options.common);
+  plan.scene = manifest_of(scene, plan.settings);
+  plan.scene_text = scene::effective_scene(scene);
+  plan.wanted = resolve_frames(options.frames, scene.frame_count());
+  plan.made = {0, plan.wanted.last() + 1, 1};
+  plan.simulated = scene.preroll_frames() + plan.made.count();
+  for (const scene::Cloth& cloth : scene.cloths) plan.objects.push_back(cloth.name);
+  for (const scene::Obstacle& obstacle : scene.obstacles) plan.objects.push_back(obstacle.name);
+  for (const scene::Character& character : scene.characters) plan.objects.push_back(character.name);
+  return plan;
+}
+
+FilmPlan plan_of(const cache::Reader& reader, const RunOptions& options) {
+  FilmPlan plan;
+  plan.scene = reader.manifest();
+  plan.scene_text = reader.scene_text();
+  if (!options.common.camera.empty()) check_camera(plan.scene.cameras, options.common.camera);
+  plan.settings = render_settings({plan.scene.width, plan.scene.height}, plan.scene.camera, options.common);
+  plan.wanted = plan.made = cached_frames(reader, options.frames);
+  plan.whole_film = !options.frames.begin && !options.frames.end;
+  plan.target = parse_output(options.output, plan.scene.scene);
+  for (const frame::ObjectInfo& object : plan.scene.objects) plan.objects.push_back(object.name);
+  return plan;
+}
+
+void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& options) {
+  if (plan.draws()) {
+    paths.writes("-o", plan.target.text, plan.target.files(plan.wanted));
+    if (plan.target.kind == Kind::video) paths.writes("-o", video::partial_name(plan.target.file(0)));
+    paths.writes_content("-o, for the effective scene,", plan.effective_scene_file(), plan.scene_text);
+  }
+  if (!options.meshes.empty()) {
+    std::vector<fs::path> files;
+    for (const std::string& object : plan.objects)
+      for (fs::path& file : mesh_files(options.meshes, object).names(plan.wanted)) files.push_back(std::move(file));
+    paths.writes("--meshes", options.meshes, files);
+  }
+  if (!options.stats.empty()) paths.writes("--stats", options.stats);
+  if (!options.log_json.empty() && options.log_json != "-") paths.writes("--log-json", options.log_json);
+}
+
+/// What a longer run has left under the names of this one.
+void remove_stale(const FilmPlan& plan, const RunOptions& options) {
+  if (!options.common.overwrite || !plan.whole_film) return;
+  if (plan.target.kind == Kind::images) FramePattern(plan.target.text).remove_others(plan.wanted);
+  if (options.meshes.empty()) return;
+  for (const std::string& object : plan.objects) mesh_files(options.meshes, object).remove_others(plan.wanted);
+}
+
+/// What all three commands have from their first moment to their last.
+class Session {
+ public:
+  explicit Session(const RunOptions& options) : options_(options) { set_thread_count(options.common.threads); }
+
+  const std::atomic<bool>& stop() const { return signals_.requested(); }
+  Progress& progress() { return *progress_; }
+
+  /// After all that could be refused was.
+  void begin(const FilmPlan& plan);
+  void make(const FilmPlan& plan, FilmParts parts);
+  /// Tells it all, and how to go on after an early end.
+  ExitCode end(const FilmPlan& plan, const Store* store);
+
+ private:
+  void sum_up(const FilmPlan& plan, FilmResult result);
+  void end_early(const FilmPlan& plan, const Store* store);
+  template <class Write>
+  void try_side_file(const Write& write);
+
+  const RunOptions& options_;
+  const WallTimer wall_;
+  const double cpu_ = thread_cpu_seconds();
+  const StopSignals signals_;
+  std::optional<EventLog> log_;
+  std::optional<Progress> progress_;
+  RunReport report_;
+};
+
+void Session::begin(const FilmPlan& plan) {
+  log_.emplace(options_.log_json);
+  report_.setup = {wall_.seconds(), thread_cpu_seconds() - cpu_};
+  report_.scene = plan.scene.scene;
+  report_.scene_file = options_.common.scene.string();
+  report_.scene_hash = plan.scene.scene_hash;
+  report_.threads = thread_count();
+  report_.width = plan.draws() ? plan.settings.width : 0;
+  report_.height = plan.draws() ? plan.settings.height : 0;
+  report_.fps = plan.scene.fps;
+  report_.output = plan.target.text;
+  report_.wanted = plan.wanted;
+  report_.replayed = plan.simulated == 0;
+  log_->write("scene_loaded", {{"scene", report_.scene},
+                               {"scene_file", report_.scene_file},
+                               {"scene_hash", fmt::format("{:016x}", report_.scene_hash)},
+                               {"frames", plan.scene.frame_count},
+                               {"fps", plan.scene.fps}});
+}
+
+void Session::make(const FilmPlan& plan, FilmParts parts) {
+  if (plan.draws()) {
+    parts.open_painter = [&] { return make_gl_painter(plan.settings); };
+    parts.open_writer = [&](const std::string& gl) {
+      return make_writer({plan.target, plan.wanted, plan.settings.width, plan.settings.height, plan.scene.fps,
+                          describe_pictures(plan.scene, plan.settings, gl)});
+    };
+  }
+  parts.meshes = options_.meshes;
+  const int drawn = plan.draws() ? plan.wanted.count() : 0;
+  progress_.emplace(options_.common.progress, StageCounts{plan.simulated, drawn, drawn});
+  FilmResult result = make_film(parts, plan.made, plan.wanted, stop(), *progress_, *log_);
+  progress_.reset();
+  sum_up(plan, std::move(result));
+}
+
+void Session::sum_up(const FilmPlan& plan, FilmResult result) {
+  report_.objects = std::move(result.objects);
+  report_.particles = count_particles(report_.objects);
+  report_.setup += result.setup;
+  report_.frames = std::move(result.frames);
+  report_.written = result.written;
+  report_.gl = result.painter;
+  // A video that could not be finished holds nothing; pictures are whole one by one.
+  if (plan.target.kind == Kind::video && !result.finished_output) {
+    report_.written = 0;
+    for (FrameRecord& record : report_.frames) record.written = false;
+  } else if (plan.target.kind == Kind::video) {
+    std::error_code error;
+    const std::uintmax_t bytes = fs::file_size(plan.target.file(0), error);
+    report_.output_bytes = error ? 0 : bytes;
+  }
+  if (result.failure) {
+    const Failure failure = describe_failure(result.failure);
+    report_.exit_code = failure.code;
+    report_.message =
+        failure.code == ExitCode::simulation_failed ? "the simulation failed: " + failure.text : failure.text;
+  } else if (result.interrupted) {
+    report_.exit_code = ExitCode::interrupted;
+    report_.message =
+        fmt::format("interrupted after frame {} of {}", report_.frames.back().report.frame, plan.wanted.last());
+  }
+}
+
+void Session::end_early(const FilmPlan& plan, const Store* store) {
+  const int kept = plan.draws() ? report_.written : static_cast<int>(report_.frames.size());
+  report_.message += kept > 0
+                         ? fmt::format("; {} frame{} kept in {}", kept, kept == 1 ? " is" : "s are", report_.output)
+                         : "; no frame was written";
+  // A simulation that cannot go on will not be able to again.
+  if (store != nullptr && store->can_resume() && report_.exit_code != ExitCode::simulation_failed)
+    report_.message += "; the same command with --resume goes on from there";
+}
+
+// Side files first: what they cannot take must show in the exit code. The message comes last, where it is seen.
+ExitCode Session::end(const FilmPlan& plan, const Store* store) {
+  if (report_.exit_code != ExitCode::ok) end_early(plan, store);
+  if (store != nullptr) {
+    report_.cache = store->time();
+    report_.cache_bytes = store->bytes();
+  }
+  report_.warnings = log::warnings();
+  for (std::string& warning : find_warnings(report_.frames)) report_.warnings.push_back(std::move(warning));
+  report_.wall_s = wall_.seconds();
+  report_.cpu_s = process_cpu_seconds();
+  report_.peak_memory = peak_memory_bytes();
+  try_side_file([&] {
+    if (report_.written > 0 && plan.draws()) write_file(plan.effective_scene_file(), plan.scene_text);
+  });
+  try_side_file([&] {
+    if (!options_.stats.empty()) write_file(options_.stats, stats_json(report_).dump(2) + "\n");
+  });
+  log_->write("finished", {{"exit_code", static_cast<int>(report_.exit_code)},
+                           {"message", report_.message},
+                           {"output", report_.output},
+                           {"frames_written", report_.written},
+                           {"frames_simulated", report_.frames.size()},
+                           {"wall_s", report_.wall_s},
+                           {"cpu_s", report_.cpu_s}});
+  try_side_file([&] { log_->check(); });
+  if (!report_.frames.empty()) log::info(summary(report_));
+  if (!report_.message.empty()) log::info("weft: " + report_.message);
+  if (report_.exit_code == ExitCode::ok) remove_stale(plan, options_);
+  return report_.exit_code;
+}
+
+template <class Write>
+void Session::try_side_file(const Write& write) {
+  try {
+    write();
+  } catch (...) {
+    const Failure failure = describe_failure(std::current_exception());
+    log::info("weft: " + failure.text);
+    if (report_.exit_code == ExitCode::ok) report_.exit_code = failure.code;
+  }
+}
 
 // Beside the output, hidden: `output/.falling_band.weft-cache`. Pictures have a folder, and one run at a time for each
 // scene in it.
 fs::path working_cache(const OutputTarget& target, const std::string& scene) {
   const fs::path file = target.file(0);
-  const std::string name = target.kind == OutputTarget::Kind::video ? file.stem().string() : scene;
+  const std::string name = target.kind == Kind::video ? file.stem().string() : scene;
   return file.parent_path() / ("." + name + ".weft-cache");
 }
 
-// Simulates, draws and writes side by side. What is simulated is kept until the output is whole.
-class Run : public SimulatingJob {
- public:
-  using SimulatingJob::SimulatingJob;
-
- private:
-  Plan prepare() override {
-    Plan plan = load();
-    plan.target = parse_output(options_.output, scene_.name);
-    check_writable(plan.target.file(plan.wanted.begin));
-    open_store(working_cache(plan.target, scene_.name), Store::Need::helpful, plan);
-    // What is there already are then the first frames of the same run.
-    const bool overwrite = options_.common.overwrite || store_->resumes();
-    prepare_output(plan.target, plan.wanted, overwrite);
-    prepare_meshes(object_names(), plan.wanted, overwrite);
-    if (store_->has_leftover()) clean_up(plan);
-    return plan;
-  }
-
-  void clean_up(const Plan& plan) const {
-    if (!store_->resumes()) {
-      if (!options_.resume)
-        log::info(
-            fmt::format("note: {} frames of a run that did not end well are thrown away; with --resume it would "
-                        "have gone on",
-                        store_->leftover_frames()));
-      store_->clear();
-    }
-    std::set<std::string> pictures{video::partial_name(plan.target.file(0)).filename().string()}, meshes;
-    for (int frame = plan.wanted.begin; frame < plan.wanted.end; frame += plan.wanted.step) {
-      pictures.insert(plan.target.file(frame).filename().string());
-      if (options_.meshes.empty()) continue;
-      for (const std::string& name : object_names())
-        meshes.insert(mesh_file(options_.meshes, name, frame).filename().string());
-    }
-    remove_half_files(plan.target.file(0).parent_path(), pictures);
-    if (!options_.meshes.empty()) remove_half_files(options_.meshes, meshes);
-  }
-
-  void finish(ExitCode code) override {
-    if (code == ExitCode::ok) store_->remove();
-  }
-};
+/// Simulates into `store`, which may have the first frames already.
+ExitCode make_from_scene(Session& session, const scene::Scene& scene, const FilmPlan& plan, const PathLedger& paths,
+                         Store& store) {
+  if (!store.resumes()) store.clear();
+  store.note_outputs(paths.outputs());
+  session.begin(plan);
+  FilmParts parts;
+  parts.open_source = [&] { return std::make_unique<SceneSource>(scene, store, session.stop(), session.progress()); };
+  parts.store = &store;
+  session.make(plan, std::move(parts));
+  return session.end(plan, &store);
+}
 
 }  // namespace
 
+// Simulates, draws and writes side by side. What is simulated is kept until the output is whole.
 ExitCode run(const RunOptions& options) {
-  return Run(options).execute();
+  Session session(options);
+  const scene::Scene scene = load_scene(options.common);
+  FilmPlan plan = plan_of(scene, options);
+  plan.target = parse_output(options.output, scene.name);
+  PathLedger paths;
+  add_inputs(paths, scene);
+  add_outputs(paths, plan, options);
+  const fs::path cache = working_cache(plan.target, scene.name);
+  paths.fills("-o, for its working cache,", cache);
+  const bool overwrite = options.common.overwrite;
+  if (options.resume && !overwrite && !cache::is_cache(cache) &&
+      is_whole(plan.target, plan.wanted, plan.settings, plan.scene, options.meshes, plan.objects)) {
+    log::info(fmt::format("note: {} is whole already: frames {}", plan.target.text, plan.wanted.text()));
+    return ExitCode::ok;
+  }
+  if (!options.resume) paths.check_absent(overwrite);
+  paths.check_writable();
+  Store store(cache, Store::Need::helpful, plan.scene, plan.scene_text);
+  if (options.resume) {
+    store.find_start();
+    paths.check_absent(overwrite, store.outputs());
+  } else if (store.has_leftover()) {
+    log::info(fmt::format(
+        "note: {} frames of a run that did not end well are thrown away; with --resume it would have gone on",
+        store.leftover_frames()));
+  }
+  const ExitCode code = make_from_scene(session, scene, plan, paths, store);
+  if (code == ExitCode::ok) store.remove();
+  return code;
+}
+
+// Into a frame cache, and meshes where they are asked for.
+ExitCode simulate(const SimulateOptions& options) {
+  Session session(options);
+  const scene::Scene scene = load_scene(options.common);
+  FilmPlan plan = plan_of(scene, options);
+  plan.target = {Kind::none, options.cache.string()};
+  PathLedger paths;
+  add_inputs(paths, scene);
+  paths.fills("--cache", options.cache);
+  add_outputs(paths, plan, options);
+  Store store(options.cache, Store::Need::required, plan.scene, plan.scene_text);
+  if (options.resume) store.find_start();
+  if (store.has_leftover() && !options.common.overwrite && !options.resume)
+    throw Error(ExitCode::output_failed,
+                "{}: holds a cache already; give --resume to go on with it, --overwrite to start again, or another "
+                "name",
+                options.cache.string());
+  paths.check_absent(options.common.overwrite, options.resume ? store.outputs() : std::set<std::string>{});
+  paths.check_writable();
+  if (store.resumes() && store.holds(plan.wanted.last()))
+    log::info(fmt::format("note: {} is whole already: frames 0:{}", options.cache.string(), plan.made.end));
+  return make_from_scene(session, scene, plan, paths, store);
+}
+
+// Draws what a cache holds; several processes may, each its own frames.
+ExitCode render(const RenderOptions& options) {
+  Session session(options);
+  const cache::Reader reader(options.common.scene);
+  const FilmPlan plan = plan_of(reader, options);
+  PathLedger paths;
+  paths.reads_folder(options.common.scene, "the cache");
+  add_outputs(paths, plan, options);
+  paths.check_absent(options.common.overwrite);
+  paths.check_writable();
+  session.begin(plan);
+  FilmParts parts;
+  parts.open_source = [&] { return std::make_unique<CacheSource>(reader, plan.made); };
+  session.make(plan, std::move(parts));
+  return session.end(plan, nullptr);
 }
 
 }  // namespace weft::cli

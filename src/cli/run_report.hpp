@@ -5,11 +5,41 @@
 #include <string>
 #include <vector>
 
-#include "cli/pipeline.hpp"
+#include "cli/frame_range.hpp"
 #include "core/error.hpp"
+#include "core/timer.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::cli {
+
+struct StageTime {
+  double wall_s = 0, cpu_s = 0;
+
+  StageTime& operator+=(const StageTime& other) {
+    wall_s += other.wall_s;
+    cpu_s += other.cpu_s;
+    return *this;
+  }
+};
+
+/// What `work` takes, in this thread.
+template <class Work>
+StageTime timed(const Work& work) {
+  const WallTimer wall;
+  const double cpu = thread_cpu_seconds();
+  work();
+  return {wall.seconds(), thread_cpu_seconds() - cpu};
+}
+
+/// What became of one frame.
+struct FrameRecord {
+  simulation::FrameReport report;
+  bool written = false;  ///< drawn and written; false outside the wanted frames or after a failure
+  StageTime render, encode, meshes;
+};
+
+/// Of all cloths.
+std::size_t count_particles(const std::vector<simulation::ObjectInfo>& objects);
 
 struct RunReport {
   std::string scene;  ///< its name

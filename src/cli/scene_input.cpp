@@ -40,6 +40,11 @@ scene::Scene load_scene(const SceneOptions& options) {
   return std::move(loaded.scene);
 }
 
+void add_inputs(PathLedger& paths, const scene::Scene& scene) {
+  paths.reads(scene.file, "the scene");
+  for (const std::filesystem::path& file : scene.files) paths.reads(file, "a file of the scene");
+}
+
 std::string mistakes_text(const scene::LoadResult& loaded) {
   std::string text = loaded.describe();
   text.erase(text.find_last_not_of('\n') + 1);
@@ -66,6 +71,7 @@ cache::Manifest manifest_of(const scene::Scene& scene, const render::Settings& s
   manifest.scene = scene.name;
   manifest.title = scene.title;
   manifest.scene_hash = scene.hash;
+  manifest.simulation_hash = scene.simulation_hash;
   manifest.fps = scene.time.fps;
   manifest.frame_count = scene.frame_count();
   manifest.preroll_frames = scene.preroll_frames();

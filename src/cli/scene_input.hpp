@@ -6,6 +6,7 @@
 
 #include "cache/manifest.hpp"
 #include "cli/options.hpp"
+#include "cli/path_ledger.hpp"
 #include "render/renderer.hpp"
 #include "scene/loader.hpp"
 #include "scene/scene.hpp"
@@ -15,6 +16,9 @@ namespace weft::cli {
 /// Reads the scene with the changes of the command line. Throws Error(scene_invalid) with all mistakes, one a line, and
 /// Error(usage) for a camera that the scene does not have.
 scene::Scene load_scene(const SceneOptions& options);
+
+/// The scene's own file and all that it names.
+void add_inputs(PathLedger& paths, const scene::Scene& scene);
 
 /// The mistakes of a scene, one a line, without a line feed at the end.
 std::string mistakes_text(const scene::LoadResult& loaded);

@@ -53,7 +53,7 @@ ExitCode sheet(const SheetOptions& options) {
   settings.width = size.width;
   settings.height = size.height;
   const std::vector<int> frames = evenly_spaced(stills->frames(), options.count);
-  const auto file = still_file(options.output, stills->scene().scene + ".sheet.png", options.common.overwrite);
+  const auto file = still_file(*stills, options.output, stills->scene().scene + ".sheet.png", options.common.overwrite);
   {
     const auto count = static_cast<int>(frames.size());
     Progress progress(options.common.progress, {stills->cost(frames.back()), count, 1});

@@ -7,7 +7,6 @@
 #include <utility>
 
 #include "core/log.hpp"
-#include "core/timer.hpp"
 #include "core/version.hpp"
 #include "image/png.hpp"
 #include "mesh/ply.hpp"
@@ -48,13 +47,6 @@ class GlPainter : public FramePainter {
   bool warned_ = false;
 };
 
-class IdlePainter : public FramePainter {
- public:
-  image::Image draw(const frame::FrameSnapshot&) override { return {}; }
-  StageTime last_time() const override { return {}; }
-  std::string description() const override { return "none"; }
-};
-
 class OutputWriter : public FrameWriter {
  public:
   explicit OutputWriter(const WriterSettings& settings) : settings_(settings) {
@@ -68,19 +60,11 @@ class OutputWriter : public FrameWriter {
       image::write_png(settings_.target.file(snapshot.frame), image,
                        describe_still(settings_.metadata, snapshot.frame, snapshot.time));
     }
-    if (!settings_.meshes.empty()) {
-      const WallTimer wall;
-      const double cpu = thread_cpu_seconds();
-      write_meshes(settings_.meshes, snapshot);
-      mesh_time_ = {wall.seconds(), thread_cpu_seconds() - cpu};
-    }
   }
 
   void finish() override {
     if (video_) video_->finish();
   }
-
-  StageTime last_extra_time() const override { return mesh_time_; }
 
  private:
   void open_video() {
@@ -96,17 +80,12 @@ class OutputWriter : public FrameWriter {
 
   const WriterSettings settings_;
   std::optional<video::Encoder> video_;
-  StageTime mesh_time_;
 };
 
 }  // namespace
 
 std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings) {
   return std::make_unique<GlPainter>(settings);
-}
-
-std::unique_ptr<FramePainter> make_idle_painter() {
-  return std::make_unique<IdlePainter>();
 }
 
 Metadata describe_pictures(const cache::Manifest& scene, const render::Settings& settings, const std::string& gl) {
@@ -131,14 +110,15 @@ std::unique_ptr<FrameWriter> make_writer(const WriterSettings& settings) {
   return std::make_unique<OutputWriter>(settings);
 }
 
-std::filesystem::path mesh_file(const std::filesystem::path& folder, const std::string& object, int frame) {
-  return folder / fmt::format("{}_{:05}.ply", object, frame);
+FramePattern mesh_files(const std::filesystem::path& folder, const std::string& object) {
+  return {(folder / (object + "_")).string(), 5, ".ply"};
 }
 
 void write_meshes(const std::filesystem::path& folder, const frame::FrameSnapshot& snapshot) {
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
-    mesh::write_ply(mesh_file(folder, surface.name, snapshot.frame), snapshot.states[i].positions, surface.triangles);
+    mesh::write_ply(mesh_files(folder, surface.name).name(snapshot.frame), snapshot.states[i].positions,
+                    surface.triangles);
   }
 }
 

@@ -9,18 +9,34 @@
 
 #include "cache/manifest.hpp"
 #include "cli/output_target.hpp"
-#include "cli/pipeline.hpp"
+#include "cli/run_report.hpp"
+#include "frame/frame_snapshot.hpp"
 #include "image/image.hpp"
 #include "render/renderer.hpp"
-#include "simulation/simulation.hpp"
 
 namespace weft::cli {
 
+/// Draws frames.
+class FramePainter {
+ public:
+  virtual ~FramePainter() = default;
+  /// What automatic framing looks at; without it, at the first frame that is drawn.
+  virtual void frame_on(const frame::FrameSnapshot&) {}
+  virtual image::Image draw(const frame::FrameSnapshot& snapshot) = 0;
+  virtual StageTime last_time() const = 0;
+  virtual std::string description() const = 0;
+};
+
+/// Takes pictures. Without finish() it must leave no half file.
+class FrameWriter {
+ public:
+  virtual ~FrameWriter() = default;
+  virtual void write(const frame::FrameSnapshot& snapshot, const image::Image& image) = 0;
+  virtual void finish() = 0;
+};
+
 /// Draws with OpenGL; warns of the first picture that shows a single colour.
 std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings);
-
-/// Draws nothing, for runs that keep frames and meshes only.
-std::unique_ptr<FramePainter> make_idle_painter();
 
 using Metadata = std::map<std::string, std::string>;
 
@@ -33,17 +49,16 @@ Metadata describe_still(Metadata metadata, int frame, double time_s);
 struct WriterSettings {
   OutputTarget target;
   FrameRange frames;
-  int width = 0, height = 0;     ///< pixels
-  double fps = 0;                ///< of the scene
-  std::filesystem::path meshes;  ///< folder; empty: none
+  int width = 0, height = 0;  ///< pixels
+  double fps = 0;             ///< of the scene
   Metadata metadata;
 };
 
-/// Writes the video or the pictures, if any, and the meshes.
+/// Writes the video or the pictures.
 std::unique_ptr<FrameWriter> make_writer(const WriterSettings& settings);
 
 /// `DIR/<object>_<frame:05>.ply`.
-std::filesystem::path mesh_file(const std::filesystem::path& folder, const std::string& object, int frame);
+FramePattern mesh_files(const std::filesystem::path& folder, const std::string& object);
 
 /// Writes each object of the snapshot. Throws Error(output_failed).
 void write_meshes(const std::filesystem::path& folder, const frame::FrameSnapshot& snapshot);

@@ -56,6 +56,13 @@ Json totals_json(const RunReport& report) {
 
 }  // namespace
 
+std::size_t count_particles(const std::vector<simulation::ObjectInfo>& objects) {
+  std::size_t particles = 0;
+  for (const simulation::ObjectInfo& object : objects)
+    if (object.kind == frame::ObjectKind::cloth) particles += object.vertices;
+  return particles;
+}
+
 StageTotals total_times(const std::vector<FrameRecord>& frames) {
   StageTotals totals;
   for (const FrameRecord& record : frames) {

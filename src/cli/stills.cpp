@@ -4,7 +4,6 @@
 #include <optional>
 
 #include "cache/reader.hpp"
-#include "cli/output_target.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/signals.hpp"
 #include "core/error.hpp"
@@ -23,6 +22,7 @@ class SceneStills : public Stills {
     std::iota(frames_.begin(), frames_.end(), 0);
   }
 
+  void add_inputs(PathLedger& paths) const override { cli::add_inputs(paths, input_); }
   int cost(int last) const override { return input_.preroll_frames() + last + 1; }
 
   frame::SnapshotPtr at(int frame, Progress& progress) override {
@@ -70,6 +70,7 @@ class CacheStills : public Stills {
     if (frames_.empty()) throw Error(ExitCode::asset_unreadable, "{}: holds no frame yet", options.scene.string());
   }
 
+  void add_inputs(PathLedger& paths) const override { paths.reads_folder(reader_.folder(), "the cache"); }
   int cost(int) const override { return 0; }
   frame::SnapshotPtr at(int frame, Progress&) override {
     if (signals_.requested()) throw Error(ExitCode::interrupted, "interrupted at frame {}; no picture", frame);
@@ -88,12 +89,16 @@ std::unique_ptr<Stills> open_stills(const SceneOptions& options) {
   return std::make_unique<SceneStills>(options);
 }
 
-std::filesystem::path still_file(const std::filesystem::path& output, const std::string& default_name, bool overwrite) {
+std::filesystem::path still_file(const Stills& stills, const std::filesystem::path& output,
+                                 const std::string& default_name, bool overwrite) {
   const auto file = output.empty() ? std::filesystem::path("output") / default_name : output;
   if (file.extension() != ".png")
     throw Error(ExitCode::usage, "-o: expected a name ending in .png, got {}", file.string());
-  check_absent(file, overwrite);
-  check_writable(file);
+  PathLedger paths;
+  stills.add_inputs(paths);
+  paths.writes("-o", file);
+  paths.check_absent(overwrite);
+  paths.check_writable();
   return file;
 }
 

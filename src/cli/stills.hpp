@@ -8,6 +8,7 @@
 
 #include "cache/manifest.hpp"
 #include "cli/options.hpp"
+#include "cli/path_ledger.hpp"
 #include "core/progress.hpp"
 #include "frame/frame_snapshot.hpp"
 #include "render/renderer.hpp"
@@ -24,6 +25,7 @@ class Stills {
   /// The frames that can be had, ascending; one at least.
   const std::vector<int>& frames() const { return frames_; }
 
+  virtual void add_inputs(PathLedger& paths) const = 0;
   /// Frames to simulate before `last` can be had.
   virtual int cost(int last) const = 0;
   /// To be called with ascending numbers. Throws Error(interrupted) once SIGINT or the like asked for it.
@@ -39,7 +41,8 @@ class Stills {
 std::unique_ptr<Stills> open_stills(const SceneOptions& options);
 
 /// The file that `-o` names, or output/<default_name>, checked before any work is done. Throws Error(usage) where it is
-/// no PNG, Error(output_failed) where it cannot be written.
-std::filesystem::path still_file(const std::filesystem::path& output, const std::string& default_name, bool overwrite);
+/// no PNG or one of the inputs, Error(output_failed) where it cannot be written.
+std::filesystem::path still_file(const Stills& stills, const std::filesystem::path& output,
+                                 const std::string& default_name, bool overwrite);
 
 }  // namespace weft::cli

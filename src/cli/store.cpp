@@ -1,10 +1,13 @@
 #include "cli/store.hpp"
 
+#include <fstream>
 #include <system_error>
 #include <utility>
 
+#include "cache/names.hpp"
 #include "core/error.hpp"
 #include "core/log.hpp"
+#include "core/temporary_file.hpp"
 
 namespace weft::cli {
 namespace {
@@ -38,9 +41,9 @@ void Store::find_start() {
   if (!has_leftover())
     return log::info(fmt::format("note: {}: nothing to resume; starting at the beginning", folder().string()));
   try {
-    auto reader = std::make_unique<cache::Reader>(folder());
+    auto reader = std::make_unique<cache::Reader>(folder(), cache::Looks::any);
     const cache::Manifest& found = reader->manifest();
-    if (found.scene_hash != manifest_.scene_hash)
+    if (found.simulation_hash != manifest_.simulation_hash)
       throw Error(ExitCode::output_failed,
                   "--resume: {} is of scene {:016x}, which has changed since (now {:016x}); leave --resume away to "
                   "start again, or undo the change",
@@ -54,10 +57,43 @@ void Store::find_start() {
     if (!state) return;
     for (int frame = 0; frame <= state->frame; ++frame) reader->verify(frame);
     start_ = std::move(*state);
+    note_former_looks(found);
     reader_ = std::move(reader);
   } catch (const Error& error) {
     if (error.code() != ExitCode::asset_unreadable) throw;
     log::info(fmt::format("note: {}; starting at the beginning", error.what()));
+  }
+}
+
+// Frames that are there keep the looks of their scene until they pass by and are dressed anew.
+void Store::note_former_looks(const cache::Manifest& found) {
+  std::set<std::uint64_t> former(found.former_hashes.begin(), found.former_hashes.end());
+  former.insert(found.scene_hash);
+  former.erase(manifest_.scene_hash);
+  manifest_.former_hashes.assign(former.begin(), former.end());
+  if (found.scene_hash != manifest_.scene_hash)
+    log::info(fmt::format("note: {}: the looks of the scene have changed, not its simulation, which is gone on with",
+                          folder().string()));
+}
+
+bool Store::holds(int frame) const {
+  return frame <= start_.frame && manifest_.scene_hash == earlier().manifest().scene_hash;
+}
+
+std::set<std::string> Store::outputs() const {
+  std::set<std::string> outputs;
+  std::ifstream in(folder() / cache::kOutputsFile);
+  for (std::string line; std::getline(in, line);) outputs.insert(line);
+  return outputs;
+}
+
+void Store::note_outputs(std::set<std::string> outputs) const {
+  outputs.merge(this->outputs());
+  if (outputs.empty()) return;
+  try {
+    write_file(folder() / cache::kOutputsFile, fmt::format("{}\n", fmt::join(outputs, "\n")), Flush::no);
+  } catch (const Error&) {
+    if (need_ == Need::required) throw;
   }
 }
 
@@ -92,14 +128,26 @@ void Store::open(std::vector<frame::ObjectInfo> objects) {
   }
 }
 
-void Store::add(const SimulatedFrame& frame) {
-  attempt([&] {
-    std::error_code error;
-    const std::filesystem::space_info space = std::filesystem::space(folder(), error);
-    if (need_ == Need::helpful && !error && space.available < bytes())
-      return give_up(fmt::format("{}: the rest of the disk is left to the output", folder().string()));
-    writer_->add(*frame.snapshot, frame.report);
-  });
+void Store::keep(const MadeFrame& frame) {
+  if (frame.fresh)
+    attempt([&] {
+      std::error_code error;
+      const std::filesystem::space_info space = std::filesystem::space(folder(), error);
+      if (need_ == Need::helpful && !error && space.available < bytes())
+        return give_up(fmt::format("{}: the rest of the disk is left to the output", folder().string()));
+      writer_->add(*frame.snapshot, frame.report);
+    });
+  simulation_ = frame.simulation;
+  last_ = frame.snapshot->frame;
+  if (simulation_) save_if_cheap(*simulation_, last_);
+}
+
+void Store::keep_last_state() {
+  try {
+    if (simulation_) save(*simulation_, last_);
+  } catch (const Error&) {
+    return;
+  }
 }
 
 void Store::save_if_cheap(const simulation::Simulation& simulation, int frame) {
@@ -123,79 +171,6 @@ void Store::remove() {
   writer_.reset();
   reader_.reset();
   lock_.remove();
-}
-
-StoredSimulation::StoredSimulation(const scene::Scene& scene, Store& store, std::function<bool()> proceed)
-    : scene_(scene), store_(store), proceed_(std::move(proceed)) {
-  if (!store.resumes()) {
-    prepare_simulation();
-    store.open(simulation_->objects());
-  } else {
-    store.open(store.earlier().manifest().objects);
-  }
-}
-
-StoredSimulation::~StoredSimulation() {
-  try {
-    if (good_) store_.save(*simulation_, next_ - 1);
-  } catch (...) {
-    return;  // an earlier state is there
-  }
-}
-
-SimulatedFrame StoredSimulation::next() {
-  const bool stored = store_.resumes() && next_ <= store_.start().frame;
-  SimulatedFrame frame;
-  if (stored) {
-    cache::CachedFrame cached = store_.earlier().read(next_);
-    frame = {std::move(cached.snapshot), std::move(cached.report)};
-  } else {
-    frame = make();
-    store_.add(frame);
-  }
-  for (const std::string& pinch : frame.report.pinches) log::warn(pinch);
-  if (next_ == 0) first_frame_ = frame.snapshot;
-  if (!stored) store_.save_if_cheap(*simulation_, next_);
-  ++next_;
-  return frame;
-}
-
-SimulatedFrame StoredSimulation::make() {
-  good_ = false;
-  if (!simulation_) prepare_simulation();
-  simulation::FrameReport report;
-  if (next_ == 0) {
-    run_preroll();
-    report = simulation_->initial_report();
-  } else {
-    report = simulation_->advance();
-  }
-  good_ = true;
-  return {simulation_->snapshot(), std::move(report)};
-}
-
-void StoredSimulation::prepare_simulation() {
-  simulation_ = std::make_unique<simulation::Simulation>(scene_);
-  if (!store_.resumes()) return;
-  try {
-    simulation_->restore(store_.start().bytes);
-  } catch (const std::runtime_error& error) {
-    throw Error(ExitCode::asset_unreadable, "{}: the state of the solver is broken: {}; leave --resume away",
-                store_.folder().string(), error.what());
-  }
-}
-
-void StoredSimulation::run_preroll() {
-  int frame = store_.resumes() ? store_.start().frame : -scene_.preroll_frames();
-  const bool whole = simulation_->run_preroll([&] {
-    if (frame > -scene_.preroll_frames()) store_.save_if_cheap(*simulation_, frame);
-    const bool proceed = proceed_();
-    // Nothing is drawn, but nothing is lost either.
-    if (!proceed) store_.save(*simulation_, frame);
-    ++frame;
-    return proceed;
-  });
-  if (!whole) throw Error(ExitCode::interrupted, "interrupted before frame 0");
 }
 
 }  // namespace weft::cli

@@ -2,20 +2,27 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
 #include "cache/reader.hpp"
 #include "cache/writer.hpp"
-#include "cli/pipeline.hpp"
+#include "cli/run_report.hpp"
 #include "core/timer.hpp"
-#include "scene/scene.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::cli {
+
+/// A frame from its source.
+struct MadeFrame {
+  frame::SnapshotPtr snapshot;
+  simulation::FrameReport report;
+  bool fresh = false;                                  ///< not in the cache yet, or with other looks
+  const simulation::Simulation* simulation = nullptr;  ///< stands at this frame; null where the frame was read
+};
 
 class Store {
  public:
@@ -43,14 +50,24 @@ class Store {
   /// Takes away what an earlier run has left.
   void clear() const { lock_.clear(); }
 
+  /// The outputs of the run that goes on here: what is there of them is its own, and may be replaced when it goes on.
+  std::set<std::string> outputs() const;
+  /// Adds some.
+  void note_outputs(std::set<std::string> outputs) const;
+
   /// The cache of the earlier run; call resumes() first.
   const cache::Reader& earlier() const { return *reader_; }
+  /// Has it, and all before it, with the looks of now; call resumes() first.
+  bool holds(int frame) const;
   /// Of the last frame that is not simulated again; call resumes() first.
   const cache::SolverState& start() const { return start_; }
 
   /// Everything from here on is called by one thread, the simulating one.
   void open(std::vector<frame::ObjectInfo> objects);
-  void add(const SimulatedFrame& frame);
+  /// Keeps what is fresh, and now and then the state of the simulation.
+  void keep(const MadeFrame& frame);
+  /// That of the last frame. An earlier one is there where this one cannot be kept.
+  void keep_last_state();
   /// Keeps the state where that has cost little so far for the work that it saves.
   void save_if_cheap(const simulation::Simulation& simulation, int frame);
   void save(const simulation::Simulation& simulation, int frame);
@@ -65,6 +82,7 @@ class Store {
   std::uintmax_t bytes() const { return writer_ ? writer_->bytes_added() : 0; }
 
  private:
+  void note_former_looks(const cache::Manifest& found);
   void give_up(const std::string& reason);
   template <class Write>
   void attempt(const Write& write);
@@ -80,32 +98,9 @@ class Store {
   WallTimer since_save_;
   double save_seconds_ = 0;  // of the last save
   std::optional<int> saved_frame_;
+  const simulation::Simulation* simulation_ = nullptr;  // stands at last_
+  int last_ = 0;
   StageTime time_;
-};
-
-/// Frames of a scene: those that the store has, then those that are simulated, which it is given.
-class StoredSimulation : public FrameSource {
- public:
-  /// `proceed` is asked before each frame of the preroll.
-  StoredSimulation(const scene::Scene& scene, Store& store, std::function<bool()> proceed);
-  /// Keeps the state of the last frame.
-  ~StoredSimulation() override;
-
-  SimulatedFrame next() override;
-  frame::SnapshotPtr first_frame() const override { return first_frame_; }
-
- private:
-  SimulatedFrame make();
-  void prepare_simulation();
-  void run_preroll();
-
-  const scene::Scene& scene_;
-  Store& store_;
-  const std::function<bool()> proceed_;
-  std::unique_ptr<simulation::Simulation> simulation_;
-  frame::SnapshotPtr first_frame_;
-  int next_ = 0;
-  bool good_ = false;  // the simulation stands at a whole frame
 };
 
 }  // namespace weft::cli

@@ -1,4 +1,4 @@
-// Values to plain bytes and back. A type is described once, as `template <class Archive> void exchange(Archive&, T&)`,
+// Values to plain bytes and back. A type is described once, as `template <class Archive> void serialize(Archive&, T&)`,
 // so that writing and reading cannot differ.
 #pragma once
 
@@ -68,31 +68,49 @@ inline void require(bool holds, const char* expected) {
 
 /// Plain values, one after the other.
 template <class Archive, class... Values>
-void exchange_values(Archive& archive, Values&... values) {
+void serialize_values(Archive& archive, Values&... values) {
   (archive.value(values), ...);
 }
 
 /// A list of plain values, or a text.
 template <class Archive, class List>
-void exchange_plain(Archive& archive, List& list) {
+void serialize_plain(Archive& archive, List& list) {
   archive.size(list, sizeof list[0]);
   if (!list.empty()) archive.raw(static_cast<void*>(list.data()), list.size() * sizeof list[0]);
 }
 
-template <class Archive, class List, class Exchange>
-void exchange_each(Archive& archive, List& list, const Exchange& exchange_one, std::size_t least = 1) {
+template <class Archive, class List, class Serialize>
+void serialize_each(Archive& archive, List& list, const Serialize& serialize_one, std::size_t least = 1) {
   archive.size(list, least);
-  for (auto& entry : list) exchange_one(entry);
+  for (auto& entry : list) serialize_one(entry);
 }
 
 /// A list whose length is known before it is read, of finite points or vectors.
 template <class Archive>
-void exchange_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
-  exchange_plain(archive, points);
+void serialize_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
+  serialize_plain(archive, points);
   if constexpr (Archive::kReads) {
     require(points.size() == count, "as many points as the scene has");
     for (const Vec3& point : points) require(point.allFinite(), "finite points");
   }
+}
+
+// The names of before, for the modules that still use them.
+template <class Archive, class... Values>
+void exchange_values(Archive& archive, Values&... values) {
+  serialize_values(archive, values...);
+}
+template <class Archive, class List>
+void exchange_plain(Archive& archive, List& list) {
+  serialize_plain(archive, list);
+}
+template <class Archive, class List, class Serialize>
+void exchange_each(Archive& archive, List& list, const Serialize& serialize_one, std::size_t least = 1) {
+  serialize_each(archive, list, serialize_one, least);
+}
+template <class Archive>
+void exchange_points(Archive& archive, std::vector<Vec3>& points, std::size_t count) {
+  serialize_points(archive, points, count);
 }
 
 }  // namespace weft

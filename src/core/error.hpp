@@ -11,16 +11,16 @@ namespace weft {
 
 /// Exit codes of the program; part of its contract with scripts.
 enum class ExitCode : int {
-  ok = 0,
+  ok = 0,                 ///< well
   internal = 1,           ///< our own fault
-  usage = 2,              ///< command line not understood
+  usage = 2,              ///< command line not understood, or packages are missing
   scene_invalid = 3,      ///< the scene file has mistakes
-  asset_unreadable = 4,   ///< a mesh or motion file cannot be used
+  asset_unreadable = 4,   ///< a mesh, motion or picture file cannot be used
   simulation_failed = 5,  ///< the simulation cannot go on; finished frames are kept
   output_failed = 6,      ///< disk, encoder or image writer
-  images_differ = 7,
-  reference_missing = 8,
-  interrupted = 75,  ///< Ctrl-C or SIGTERM; what is finished is kept
+  images_differ = 7,      ///< pictures differ by more than the limits
+  reference_missing = 8,  ///< a picture has no reference
+  interrupted = 75,       ///< Ctrl-C or SIGTERM; what is finished is kept, and `--resume` goes on
 };
 
 /// A failure with its exit code. The text says where, what was expected with its unit, what came, what to change.

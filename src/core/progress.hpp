@@ -61,8 +61,11 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
-  /// One more frame went through `stage`. Safe from all threads.
-  void advance(Stage stage) { done_[static_cast<std::size_t>(stage)].fetch_add(1, std::memory_order_relaxed); }
+  /// One more frame went through `stage`; one that has none to handle counts none. Safe from all threads.
+  void advance(Stage stage) {
+    const auto s = static_cast<std::size_t>(stage);
+    if (totals_[s] > 0) done_[s].fetch_add(1, std::memory_order_relaxed);
+  }
 
  private:
   StageCounts done() const;

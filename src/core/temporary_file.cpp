@@ -1,6 +1,8 @@
 #include "core/temporary_file.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <array>
@@ -9,13 +11,18 @@
 #include <cstdio>
 #include <cstring>
 #include <memory>
+#include <mutex>
+#include <set>
 #include <string>
 #include <system_error>
+#include <utility>
 
 #include "core/error.hpp"
 
 namespace weft {
 namespace {
+
+namespace fs = std::filesystem;
 
 // What the signal handler may read: fixed memory, no locks. 64 is far above the few files a run has open at once.
 struct Slot {
@@ -41,49 +48,118 @@ std::string reason(int error) {
   return std::generic_category().message(error);
 }
 
-// Without it a crash of the machine soon after the rename can leave an empty file under the final name.
-int flush_to_disk(const std::filesystem::path& file) {
-  const int descriptor = ::open(file.c_str(), O_RDONLY | O_CLOEXEC);
-  if (descriptor < 0) return errno;
-  const int error = ::fsync(descriptor) != 0 && errno != EINVAL ? errno : 0;
+[[noreturn]] void fail(const fs::path& file, const char* what, const std::string& why) {
+  throw Error(ExitCode::output_failed, "{}: {}: {}", file.string(), what, why);
+}
+
+// `.<name>.weft-<digits>.tmp`
+bool is_temporary(const std::string& name) {
+  constexpr std::string_view kMark = ".weft-", kEnding = ".tmp";
+  const std::size_t mark = name.rfind(kMark);
+  if (!name.starts_with('.') || !name.ends_with(kEnding) || mark == std::string::npos) return false;
+  const std::size_t first = mark + kMark.size(), last = name.size() - kEnding.size();
+  return first < last && name.find_first_not_of("0123456789", first) == last;
+}
+
+bool is_called(const fs::path& path, int descriptor) {
+  struct stat open {
+  }, named{};
+  return ::fstat(descriptor, &open) == 0 && ::lstat(path.c_str(), &named) == 0 && open.st_ino == named.st_ino &&
+         open.st_dev == named.st_dev;
+}
+
+bool lock(int descriptor) {
+  return ::flock(descriptor, LOCK_EX | LOCK_NB) == 0;
+}
+
+// What nobody has locked is of a process that was killed.
+void remove_abandoned(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0) return;
+  std::error_code ignored;
+  if (lock(descriptor) && is_called(path, descriptor)) fs::remove_all(path, ignored);
   ::close(descriptor);
-  return error;
+}
+
+// Once for each folder: with every file of thousands it would take its time.
+void clean_once(const fs::path& folder) {
+  static std::mutex mutex;
+  static std::set<fs::path> clean;
+  const std::lock_guard lock(mutex);
+  if (!clean.insert(folder).second) return;
+  std::error_code error;
+  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (is_temporary(entry->path().filename().string())) remove_abandoned(entry->path());
+}
+
+// Makes what the name stands for and locks it. A cleaning process may take it away before it is locked: then again.
+int hold(const fs::path& path, TemporaryName::Kind kind) {
+  constexpr int kAttempts = 10;
+  for (int attempt = 0; attempt < kAttempts; ++attempt) {
+    if (kind == TemporaryName::Kind::folder && ::mkdir(path.c_str(), 0777) != 0 && errno != EEXIST) return -1;
+    const int flags = kind == TemporaryName::Kind::file ? O_RDWR | O_CREAT : O_RDONLY | O_DIRECTORY;
+    const int descriptor = ::open(path.c_str(), flags | O_CLOEXEC, 0666);
+    if (descriptor < 0 && errno != ENOENT) return -1;
+    if (descriptor < 0) continue;
+    // A file system without locks has no cleaning either.
+    if ((lock(descriptor) || errno != EWOULDBLOCK) && is_called(path, descriptor)) return descriptor;
+    ::close(descriptor);
+    errno = EBUSY;
+  }
+  return -1;
 }
 
 }  // namespace
 
-TemporaryFile::TemporaryFile(std::filesystem::path final_name) : final_name_(std::move(final_name)) {
-  // A rename onto a folder would fail after all the work, and one onto /dev/null would replace the device.
-  std::error_code status_error;
-  const auto status = std::filesystem::status(final_name_, status_error);
-  if (!final_name_.has_filename() || (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))) {
-    throw Error(ExitCode::output_failed, "{}: expected the name of a file to write, got a folder or a device",
-                final_name_.string());
-  }
+TemporaryName::TemporaryName(const fs::path& final_name, Kind kind) {
   // Absolute, so that the name stays right whatever happens to the working folder.
   std::error_code error;
-  const std::filesystem::path absolute = std::filesystem::absolute(final_name_, error);
-  if (!error) std::filesystem::create_directories(absolute.parent_path(), error);
-  if (error) {
-    throw Error(ExitCode::output_failed, "{}: cannot make the folder: {}", final_name_.string(), error.message());
-  }
-  path_ = absolute.parent_path() / fmt::format(".{}.{}.tmp", absolute.filename().string(), ::getpid());
-  slot_ = claim_slot(path_.string());
+  const fs::path absolute = fs::absolute(final_name, error);
+  if (!error) fs::create_directories(absolute.parent_path(), error);
+  if (error) fail(final_name, "cannot make the folder", error.message());
+  clean_once(absolute.parent_path());
+  path_ = absolute.parent_path() / fmt::format(".{}.weft-{}.tmp", absolute.filename().string(), ::getpid());
+  descriptor_ = hold(path_, kind);
+  if (descriptor_ < 0) fail(final_name, "cannot be written", reason(errno));
+  if (kind == Kind::file) slot_ = claim_slot(path_.string());
 }
 
-TemporaryFile::~TemporaryFile() {
-  if (path_.empty()) return;
-  ::unlink(path_.c_str());
-  if (slot_ >= 0) g_slots[static_cast<std::size_t>(slot_)].state.store(Slot::free);
+TemporaryName::~TemporaryName() {
+  std::error_code ignored;
+  if (!path_.empty()) fs::remove_all(path_, ignored);
+  release();
 }
+
+void TemporaryName::release() {
+  if (slot_ >= 0) g_slots[static_cast<std::size_t>(slot_)].state.store(Slot::free);
+  if (descriptor_ >= 0) ::close(descriptor_);
+  slot_ = descriptor_ = -1;
+  path_.clear();
+}
+
+namespace {
+
+// A rename onto a folder would fail after all the work, and one onto /dev/null would replace the device.
+const fs::path& checked(const fs::path& final_name) {
+  std::error_code ignored;
+  const auto status = fs::status(final_name, ignored);
+  if (!final_name.has_filename() || (fs::exists(status) && !fs::is_regular_file(status)))
+    throw Error(ExitCode::output_failed, "{}: expected the name of a file to write, got a folder or a device",
+                final_name.string());
+  return final_name;
+}
+
+}  // namespace
+
+TemporaryFile::TemporaryFile(fs::path final_name)
+    : final_name_(std::move(final_name)), temporary_(checked(final_name_), TemporaryName::Kind::file) {}
 
 void TemporaryFile::commit(Flush flush) {
-  int error = flush == Flush::yes ? flush_to_disk(path_) : 0;
-  if (error == 0 && std::rename(path_.c_str(), final_name_.c_str()) != 0) error = errno;
-  if (error != 0)
-    throw Error(ExitCode::output_failed, "{}: cannot be written: {}", final_name_.string(), reason(error));
-  if (slot_ >= 0) g_slots[static_cast<std::size_t>(slot_)].state.store(Slot::free);
-  path_.clear();
+  // Without the flush a crash of the machine soon after the rename can leave an empty file under the final name.
+  const bool good = (flush == Flush::no || ::fsync(temporary_.descriptor()) == 0 || errno == EINVAL) &&
+                    std::rename(path().c_str(), final_name_.c_str()) == 0;
+  if (!good) fail(final_name_, "cannot be written", reason(errno));
+  temporary_.release();
 }
 
 void remove_temporary_files() noexcept {
@@ -92,14 +168,18 @@ void remove_temporary_files() noexcept {
   }
 }
 
-void write_file(const std::filesystem::path& file, std::string_view content, Flush flush) {
+void write_file(const fs::path& file, std::string_view content, Flush flush) {
   TemporaryFile temporary(file);
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> out(std::fopen(temporary.path().c_str(), "wbe"),
                                                             [](std::FILE* f) { return std::fclose(f); });
   bool good = out && std::fwrite(content.data(), 1, content.size(), out.get()) == content.size();
   good = good && std::fflush(out.get()) == 0;
-  if (!good) throw Error(ExitCode::output_failed, "{}: cannot be written: {}", file.string(), reason(errno));
+  if (!good) fail(file, "cannot be written", reason(errno));
   temporary.commit(flush);
+}
+
+void check_writable(const fs::path& file) {
+  const TemporaryFile probe(file);
 }
 
 }  // namespace weft

@@ -10,24 +10,46 @@ namespace weft {
 /// that dies leaves whole files all the same; a machine that dies may leave empty ones, so the reader has to notice.
 enum class Flush { yes, no };
 
-/// A name beside the final one to write to first: `.<name>.<process>.tmp` in the same folder, so that the rename stays
-/// within one file system. Unless committed, the file is removed by the destructor, and by remove_temporary_files().
-class TemporaryFile {
+/// A name that is held while something is written under it: `.<name>.weft-<process>.tmp` in the folder of the final
+/// name, so that the rename stays within one file system. What is there is locked (flock) as long as its process lives:
+/// the next one that writes into the folder removes what is not. Process numbers alone would not do: containers that
+/// share a folder do not share them.
+class TemporaryName {
  public:
-  /// Makes missing folders, not the file. Throws Error(output_failed) with the system's reason.
-  explicit TemporaryFile(std::filesystem::path final_name);
-  ~TemporaryFile();
-  TemporaryFile(const TemporaryFile&) = delete;
-  TemporaryFile& operator=(const TemporaryFile&) = delete;
+  enum class Kind { file, folder };
+
+  /// Makes missing folders and the file or folder itself, empty. Throws Error(output_failed) with the system's reason.
+  TemporaryName(const std::filesystem::path& final_name, Kind kind);
+  /// Removes what is still there under the temporary name.
+  ~TemporaryName();
+  TemporaryName(const TemporaryName&) = delete;
+  TemporaryName& operator=(const TemporaryName&) = delete;
 
   const std::filesystem::path& path() const { return path_; }
+  int descriptor() const { return descriptor_; }
+  /// There is nothing left to remove.
+  void release();
+
+ private:
+  std::filesystem::path path_;
+  int descriptor_ = -1;  // holds the lock
+  int slot_ = -1;  // in the table that the signal handler reads; -1: table full, the destructor still removes the file
+};
+
+/// A file to write to first. Unless committed, it is removed by the destructor, and by remove_temporary_files().
+class TemporaryFile {
+ public:
+  /// As TemporaryName, and refuses a final name that is a folder or a device.
+  explicit TemporaryFile(std::filesystem::path final_name);
+
+  const std::filesystem::path& path() const { return temporary_.path(); }
 
   /// Gives the closed file its final name, replacing what was there. Throws Error(output_failed).
   void commit(Flush flush = Flush::yes);
 
  private:
-  std::filesystem::path final_name_, path_;
-  int slot_ = -1;  // in the table that the signal handler reads; -1: table full, the destructor still removes the file
+  std::filesystem::path final_name_;
+  TemporaryName temporary_;
 };
 
 /// Removes every temporary file of this process. Async-signal-safe: for the moment before _exit().
@@ -35,5 +57,9 @@ void remove_temporary_files() noexcept;
 
 /// Writes `content` to `file` through a TemporaryFile. Throws Error(output_failed) with the system's reason.
 void write_file(const std::filesystem::path& file, std::string_view content, Flush flush = Flush::yes);
+
+/// Makes a file for a moment beside `file`: permissions alone do not tell whether it can be written (read-only mounts,
+/// root, quotas). Makes missing folders. Throws Error(output_failed) with the system's reason.
+void check_writable(const std::filesystem::path& file);
 
 }  // namespace weft

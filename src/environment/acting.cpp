@@ -222,15 +222,6 @@ KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
           cast.settings.dressing > 0};
 }
 
-/// The mesh as it starts.
-mesh::Mesh at_start(mesh::Mesh mesh, const KeyFrames& keys) {
-  const std::vector<Vec3> zero(mesh.positions.size(), Vec3::Zero());
-  Motion motion{zero, zero, zero};
-  keys.at(0, motion);
-  mesh.positions = std::move(motion.positions);
-  return mesh;
-}
-
 template <class Source>
 Actor act(const Cast& cast, const Source& source) {
   Body body = cast_body(cast, source);
@@ -247,22 +238,19 @@ Actor act(const Cast& cast, const Source& source) {
   KeyFrames keys =
       sample(cast, key_times(cast, character::key_rate(clip)), body.character.mesh.positions.size(),
              [&](double t, std::vector<Vec3>& x) { character::skin(body.character, performance.at(t), x); });
-  mesh::Mesh mesh = at_start(std::move(body.character.mesh), keys);
+  mesh::Mesh mesh = std::move(body.character.mesh);
+  keys.at(0, mesh.positions);
   return {std::move(mesh), std::move(keys), std::move(body.warnings)};
 }
 
 Actor act(const Cast& cast, const scene::MeshSequence& source) {
   assets::LoadedSequence loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
   const std::size_t vertices = loaded.mesh.positions.size();
-  const std::vector<Vec3> zero(vertices, Vec3::Zero());
-  Motion motion{zero, zero, zero};
   const KeyFrames files(cast.settings.interpolation, 0, 1 / source.fps, std::move(loaded.positions), false);
-  KeyFrames keys = sample(cast, key_times(cast, source.fps), vertices, [&](double t, std::vector<Vec3>& x) {
-    files.at(character::clip_time(cast.timing(), t), motion);
-    x = motion.positions;
-  });
-  mesh::Mesh mesh = at_start(std::move(loaded.mesh), keys);
-  return {std::move(mesh), std::move(keys), {}};
+  KeyFrames keys = sample(cast, key_times(cast, source.fps), vertices,
+                          [&](double t, std::vector<Vec3>& x) { files.at(character::clip_time(cast.timing(), t), x); });
+  keys.at(0, loaded.mesh.positions);
+  return {std::move(loaded.mesh), std::move(keys), {}};
 }
 
 KeyFrameCount count(const Cast& cast, const KeyTimes& times, std::size_t vertices) {

@@ -150,9 +150,8 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth) {
       break;
   }
   for (Vec3& x : object.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
-  const std::size_t n = object.mesh.positions.size();
-  object.motion = {start_positions(cloth, object.mesh), std::vector<Vec3>(n, cloth.velocity),
-                   std::vector<Vec3>(n, Vec3::Zero())};
+  object.start = start_positions(cloth, object.mesh);
+  object.velocity = cloth.velocity;
   return object;
 }
 
@@ -198,38 +197,26 @@ BodyObject make_obstacle(const scene::Scene& scene, const scene::Obstacle& obsta
   object.look = obstacle.look;
   const auto* plane = std::get_if<scene::Plane>(&obstacle.shape);
   object.infinite_floor = plane != nullptr && plane->infinite;
-  const std::size_t n = object.mesh.positions.size();
-  const std::vector<Vec3> zero(n, Vec3::Zero());
-  object.motion = {zero, zero, zero};
   return object;
 }
 
-/// Writes world positions, velocities and accelerations of all vertices of a body.
-void place(BodyObject& object, const PoseSample& pose) {
-  const Mat3 rotation = pose.rotation.toRotationMatrix();
-  const std::vector<Vec3>& body = object.mesh.positions;
-  Motion& motion = object.motion;
-  parallel_for(body.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const Vec3 arm = rotation * body[i];
-      motion.positions[i] = pose.position + arm;
-      motion.velocities[i] = pose.velocity_at(arm);
-      motion.accelerations[i] = pose.acceleration_at(arm);
-    }
-  });
-}
-
-/// The same for a body that one thing or the other moves.
+/// Writes where the vertices of a body are that one thing or the other moves.
 struct Place {
-  BodyObject& object;
+  const std::vector<Vec3>& mesh;
   double t;
+  std::span<Vec3> positions;
 
-  void operator()(const Track& track) const { place(object, track.at(t)); }
-  void operator()(const KeyFrames& keys) const { keys.at(t, object.motion); }
+  void operator()(const Track& track) const {
+    const PoseSample pose = track.at(t);
+    const Mat3 rotation = pose.rotation.toRotationMatrix();
+    parallel_for(mesh.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) positions[i] = pose.position + rotation * mesh[i];
+    });
+  }
+  void operator()(const KeyFrames& keys) const { keys.at(t, positions); }
 };
 
 BodyObject make_character(const scene::Character& character, const Actor& actor) {
-  const std::vector<Vec3> zero(actor.mesh.positions.size(), Vec3::Zero());
   return {.name = character.name,
           .mesh = actor.mesh,
           .character = true,
@@ -237,8 +224,7 @@ BodyObject make_character(const scene::Character& character, const Actor& actor)
           .collide = character.collide,
           .infinite_floor = false,
           .friction = character.friction,
-          .look = character.look,
-          .motion = {zero, zero, zero}};
+          .look = character.look};
 }
 
 }  // namespace
@@ -264,12 +250,10 @@ Environment::Environment(const scene::Scene& scene) {
     bodies.push_back(make_character(character, actor));
     movers_.emplace_back(std::move(actor.keys));
   }
-  for (std::size_t k = 0; k < bodies.size(); ++k) std::visit(Place{bodies[k], 0}, movers_[k]);
 }
 
-void Environment::move_to(double t) {
-  for (std::size_t k = 0; k < bodies.size(); ++k)
-    if (bodies[k].moving) std::visit(Place{bodies[k], t}, movers_[k]);
+void Environment::place(std::size_t body, double t, std::span<Vec3> positions) const {
+  std::visit(Place{bodies[body].mesh.positions, bodies[body].moving ? t : 0, positions}, movers_[body]);
 }
 
 }  // namespace weft::environment

@@ -1,6 +1,7 @@
-// All objects of a scene now (seed, Fig. 1): topology, geometry, positions, velocities, accelerations.
+// All objects of a scene (seed, Fig. 1): topology, geometry, how cloth starts, and where its bodies are at any time.
 #pragma once
 
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -14,7 +15,7 @@
 
 namespace weft::environment {
 
-/// A deformable sheet, of quads or of triangles. The solver owns the truth while it steps and writes it back here.
+/// A deformable sheet, of quads or of triangles, as it starts.
 struct ClothObject {
   std::string name;
   mesh::Grid grid;              ///< of quads
@@ -24,7 +25,8 @@ struct ClothObject {
   /// Least distance between particles of a grid [m]; of triangles √2 times the least height, which is the same for the
   /// two halves of a square.
   double spacing = 0;
-  Motion motion;
+  std::vector<Vec3> start;  ///< positions of the particles [m]
+  Vec3 velocity{0, 0, 0};   ///< of all of them [m/s]
 };
 
 /// A body that moves cloth and is not moved by it: an obstacle, still or moved as a rigid body, or a character.
@@ -38,7 +40,6 @@ struct BodyObject {
   bool infinite_floor = false;
   double friction = 0.3;
   scene::Look look;
-  Motion motion;
 };
 
 /// Rest places of the particles of a rectangle of cloth.
@@ -48,16 +49,17 @@ mesh::Grid grid_of(const scene::Cloth& cloth);
 /// line.
 ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth);
 
+/// Does not change: who steps through time keeps what it asks for.
 class Environment {
  public:
-  /// Makes meshes and the state at time 0. Throws Error(asset_unreadable, scene_invalid) naming file and scene line.
+  /// Makes meshes and motions. Throws Error(asset_unreadable, scene_invalid) naming file and scene line.
   explicit Environment(const scene::Scene& scene);
 
-  /// Puts the moving bodies where they are at time t [s], with exact velocities and accelerations. Linear in the
-  /// vertices of moving bodies; allocates nothing.
-  void move_to(double t);
+  /// Writes where the vertices of a body are at time t [s], as many as its mesh has. Linear in them, in parallel;
+  /// allocates nothing. A body that does not move is where it is at time 0.
+  void place(std::size_t body, double t, std::span<Vec3> positions) const;
 
-  /// Pose of an obstacle at any time [s], whatever the last move_to was.
+  /// Pose of an obstacle at any time [s], and how it changes.
   PoseSample pose(std::size_t obstacle, double t) const { return std::get<Track>(movers_[obstacle]).at(t); }
 
   /// The same of one vertex of a character.

@@ -71,15 +71,10 @@ VertexMotion KeyFrames::at(const Piece& piece, std::size_t v) const {
           bend + s * jerk};
 }
 
-void KeyFrames::at(double t, Motion& motion) const {
+void KeyFrames::at(double t, std::span<Vec3> positions) const {
   const Piece now = piece(t);
-  parallel_for(motion.positions.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      const VertexMotion vertex = at(now, v);
-      motion.positions[v] = vertex.position;
-      motion.velocities[v] = vertex.velocity;
-      motion.accelerations[v] = vertex.acceleration;
-    }
+  parallel_for(positions.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) positions[v] = at(now, v).position;
   });
 }
 

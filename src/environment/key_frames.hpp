@@ -10,14 +10,7 @@
 
 namespace weft::environment {
 
-/// State of the vertices of one object in world space.
-struct Motion {
-  std::vector<Vec3> positions;      ///< [m]
-  std::vector<Vec3> velocities;     ///< [m/s]
-  std::vector<Vec3> accelerations;  ///< [m/s²]
-};
-
-/// State of one vertex, likewise.
+/// State of one vertex in world space [m, m/s, m/s²].
 struct VertexMotion {
   Vec3 position, velocity, acceleration;
 };
@@ -31,11 +24,10 @@ class KeyFrames {
   KeyFrames(scene::Interpolation interpolation, double first_time, double interval, std::vector<std::vector<Vec3>> keys,
             bool from_rest);
 
-  /// Writes positions and their exact derivatives; at a corner of linear motion those of the later piece. Parallel over
-  /// vertices, allocates nothing.
-  void at(double t, Motion& motion) const;
+  /// Writes the positions of all vertices. Parallel over them, allocates nothing.
+  void at(double t, std::span<Vec3> positions) const;
 
-  /// The same of a single vertex.
+  /// A single vertex with its exact derivatives; at a corner of linear motion those of the later piece.
   VertexMotion at(double t, std::size_t vertex) const { return at(piece(t), vertex); }
 
   bool moving() const { return keys_.size() > 1; }

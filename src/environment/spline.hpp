@@ -56,8 +56,9 @@ class Spline {
       lengths_.push_back(times_[i + 1] - times_[i]);
       slopes_.push_back((values_[i + 1] - values_[i]) / lengths_.back());
     }
-    bends_ = interpolation == scene::Interpolation::cubic ? natural_second_derivatives<Value>(lengths_, slopes_)
-                                                          : std::vector<Value>(times_.size(), Value::Zero());
+    second_derivatives_ = interpolation == scene::Interpolation::cubic
+                              ? natural_second_derivatives<Value>(lengths_, slopes_)
+                              : std::vector<Value>(times_.size(), Value::Zero());
   }
 
   /// Time O(log keys); allocates nothing.
@@ -66,18 +67,18 @@ class Spline {
     if (t >= times_.back()) return {values_.back()};
     const std::size_t i = find_segment(times_, t);
     const double s = t - times_[i], h = lengths_[i];
-    const Value jerk = (bends_[i + 1] - bends_[i]) / h;
-    const Value start_slope = slopes_[i] - h / 6 * (2 * bends_[i] + bends_[i + 1]);
-    return {values_[i] + s * (start_slope + s * (bends_[i] / 2 + s / 6 * jerk)),
-            start_slope + s * (bends_[i] + s / 2 * jerk), bends_[i] + s * jerk};
+    const Value jerk = (second_derivatives_[i + 1] - second_derivatives_[i]) / h;
+    const Value start_slope = slopes_[i] - h / 6 * (2 * second_derivatives_[i] + second_derivatives_[i + 1]);
+    return {values_[i] + s * (start_slope + s * (second_derivatives_[i] / 2 + s / 6 * jerk)),
+            start_slope + s * (second_derivatives_[i] + s / 2 * jerk), second_derivatives_[i] + s * jerk};
   }
 
  private:
   std::vector<double> times_;
   std::vector<Value> values_;
-  std::vector<double> lengths_;  ///< of the segments [s]
-  std::vector<Value> slopes_;    ///< of the chords
-  std::vector<Value> bends_;     ///< second derivatives at the keys; zero for linear tracks
+  std::vector<double> lengths_;            ///< of the segments [s]
+  std::vector<Value> slopes_;              ///< of the chords
+  std::vector<Value> second_derivatives_;  ///< at the keys; zero for linear tracks
 };
 
 }  // namespace weft::environment

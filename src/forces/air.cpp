@@ -61,8 +61,7 @@ void Air::add(std::span<const Vec3> x, std::span<const Vec3> v, std::span<const 
     push(cell, area, 0.25 * (v[a] + v[b] + v[c] + v[d]), mass, flow);
   }
   for (const auto& [t, mass] : triangles_) {
-    const auto velocity = [&](std::size_t k) -> const Vec3& { return v[static_cast<std::size_t>(t[k])]; };
-    push(t, mesh::area_vector(t, x), (velocity(0) + velocity(1) + velocity(2)) / 3, mass, flow);
+    push(t, mesh::area_vector(t, x), (v[t[0]] + v[t[1]] + v[t[2]]) / 3, mass, flow);
   }
 }
 

@@ -10,13 +10,13 @@ namespace {
 constexpr double kFlatCurvature = 0.1;
 
 // Rate of curvature at which friction has reached most of its size [1/(m·s)]: a fold of 10 cm then moves at 5 mm/s.
-// Smaller holds better and makes the system stiffer: friction / kRestRate acts like a viscosity.
-constexpr double kRestRate = 0.5;
+// Smaller holds better and makes the system stiffer: friction / kStickRate acts like a viscosity.
+constexpr double kStickRate = 0.5;
 
 }  // namespace
 
 BendDamping::BendDamping(const BendParameters& p) : viscosity_(p.viscosity), friction_(p.friction) {
-  kept_curvature_ = std::max(kFlatCurvature, p.rigidity > 0 ? friction_ / p.rigidity : 0.0);
+  residual_curvature_ = std::max(kFlatCurvature, p.rigidity > 0 ? friction_ / p.rigidity : 0.0);
 }
 
 template <class Scalar>
@@ -25,10 +25,10 @@ BendDamping::Terms<Scalar> BendDamping::terms(const Scalar& c_sq, const Scalar& 
   Terms<Scalar> t;
   t.rate = rate;
   t.flat_sq = c_sq + kFlatCurvature * kFlatCurvature;
-  t.kept_sq = c_sq + kept_curvature_ * kept_curvature_;
-  t.smooth_sq = rate * rate + kRestRate * kRestRate * t.kept_sq;
+  t.residual_sq = c_sq + residual_curvature_ * residual_curvature_;
+  t.smooth_sq = rate * rate + kStickRate * kStickRate * t.residual_sq;
   t.viscous = viscosity_ / t.flat_sq;
-  t.dry = friction_ / sqrt(t.kept_sq * t.smooth_sq);
+  t.dry = friction_ / sqrt(t.residual_sq * t.smooth_sq);
   return t;
 }
 
@@ -50,7 +50,7 @@ BendDamping::Linearised BendDamping::linearised(const Vec3& curvature, const Vec
   Mat3 jacobian = rate * (t.viscous + t.dry) * curvature * curvature.transpose();
   if (linearisation == Linearisation::exact) {
     const double dry_by_rate = -t.dry * t.rate * t.rate / t.smooth_sq;  // d dry/d rate · rate
-    const double dry_by_c_sq = -0.5 * t.dry * (1 / t.kept_sq + kRestRate * kRestRate / t.smooth_sq);
+    const double dry_by_c_sq = -0.5 * t.dry * (1 / t.residual_sq + kStickRate * kStickRate / t.smooth_sq);
     jacobian += dry_by_rate * curvature * (velocity + rate * curvature).transpose();
     jacobian += (t.viscous + t.dry) * (t.rate * Mat3::Identity() + curvature * velocity.transpose());
     jacobian += 2 * t.rate * (dry_by_c_sq - t.viscous / t.flat_sq) * curvature * curvature.transpose();

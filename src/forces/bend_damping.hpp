@@ -14,7 +14,7 @@ struct BendParameters {
 /// Viscosity and friction act on the rate of ‖s_uu‖ and so on, along the unit vector of the curvature itself, so that a
 /// curved piece may turn rigidly without loss. Friction is that of Kawabata's hysteresis of bending ("The
 /// Standardization and Analysis of Hand Evaluation", 1980): a moment of constant size against the change, smooth below
-/// a rate of kRestRate. Without it the hem of a draped sheet tips over at a few centimetres a second for seconds on
+/// a rate of kStickRate. Without it the hem of a draped sheet tips over at a few centimetres a second for seconds on
 /// end; with it the sheet lies still.
 ///
 /// Moment per area [N/m] against the rate of curvature κ̇ along c, the curvature itself:
@@ -44,13 +44,13 @@ class BendDamping {
   /// Scalar: double, or an array of them.
   template <class Scalar>
   struct Terms {
-    Scalar rate, flat_sq, kept_sq, smooth_sq, viscous, dry;
+    Scalar rate, flat_sq, residual_sq, smooth_sq, viscous, dry;
   };
   template <class Scalar>
   Terms<Scalar> terms(const Scalar& c_sq, const Scalar& rate) const;
 
   double viscosity_, friction_;
-  double kept_curvature_;  // below which friction fades [1/m]
+  double residual_curvature_;  // below which friction fades [1/m]
 };
 
 }  // namespace weft::forces

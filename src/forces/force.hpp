@@ -14,9 +14,10 @@ namespace weft::forces {
 
 /// Which derivative goes into the matrix.
 enum class Linearisation {
-  exact,     ///< the Jacobian itself, indefinite under compression and unsymmetric with viscosity
-  definite,  ///< made symmetric and positive semidefinite term by term: what conjugate gradients and descent need
-  cautious,  ///< likewise, and stiffer where edges are compressed: shorter steps, where definite ones overshoot
+  exact,          ///< the Jacobian itself, indefinite under compression and unsymmetric with viscosity
+  definite,       ///< made symmetric and positive semidefinite term by term: what conjugate gradients and descent need
+  abs_projected,  ///< likewise, by absolute values where edges are compressed: shorter steps, where clamped to
+                  ///< zero they overshoot
 };
 
 /// One evaluation of the forces at (x, v).

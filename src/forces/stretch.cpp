@@ -35,12 +35,12 @@ Mat3 Stretch::stiffness(const Edge& edge, const Vec3& n, double length, const Ve
                         const Evaluation& at) const {
   const Mat3 along = n * n.transpose();
   const Mat3 across = Mat3::Identity() - along;
-  // Across the edge the tension stiffens a stretched edge and, as compression, softens a short one. The cautious form
-  // takes the absolute value (Chen, Liu, Levin, Zheng & Jacobson, "Stabler Neo-Hookean Simulation: Absolute Eigenvalue
-  // Filtering for Projected Newton", 2024), but no more than the stiffness along the edge.
+  // Across the edge the tension stiffens a stretched edge and, as compression, softens a short one. The absolute-
+  // value projection takes its modulus (Chen, Liu, Levin, Zheng & Jacobson, "Stabler Neo-Hookean Simulation: Absolute
+  // Eigenvalue Filtering for Projected Newton", 2024), but no more than the stiffness along the edge.
   double lateral = 1 - edge.rest_length / length;
   if (at.linearisation == Linearisation::definite) lateral = std::max(lateral, 0.0);
-  if (at.linearisation == Linearisation::cautious) lateral = std::min(std::abs(lateral), 1.0);
+  if (at.linearisation == Linearisation::abs_projected) lateral = std::min(std::abs(lateral), 1.0);
   Mat3 k = (edge.elasticity + at.rate * edge.viscosity) * along + (edge.elasticity * lateral) * across;
   if (at.linearisation == Linearisation::exact && edge.viscosity > 0) {
     // d/dd of (n·w) n: the direction turns with the edge. Unsymmetric, and O(η‖w‖/l), so the definite form does

@@ -152,7 +152,7 @@ PackedBlock TriangleMembrane::stretch_hessian(double k, const Vec3& s, const Vec
   const Vec3 n = s / length;
   double lateral = 1 - 1 / length;
   if (at.linearisation == Linearisation::definite) lateral = std::max(lateral, 0.0);
-  if (at.linearisation == Linearisation::cautious) lateral = std::min(std::abs(lateral), 1.0);
+  if (at.linearisation == Linearisation::abs_projected) lateral = std::min(std::abs(lateral), 1.0);
   PackedBlock hessian =
       packed_outer((k * (1 - lateral) + at.rate * stretch_.viscosity) * n, n) + packed_scalar(k * lateral);
   if (at.linearisation == Linearisation::exact && stretch_.viscosity > 0) {

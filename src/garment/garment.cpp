@@ -21,9 +21,9 @@ std::size_t at(Index i) {
 }
 
 /// Sets of vertices that become one; the least index stands for each set.
-class Unions {
+class DisjointSets {
  public:
-  explicit Unions(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
+  explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
   Index root(Index v) {
     while (parents_[at(v)] != v) v = parents_[at(v)] = parents_[at(parents_[at(v)])];
     return v;
@@ -119,7 +119,7 @@ class Sewing {
 
   // Which ends meet shows in where the panels lie.
   void join_seams() {
-    unions_ = Unions(at(total_));
+    sewn_together_ = DisjointSets(at(total_));
     for (const Seam& seam : pattern_.seams) {
       const auto [p, e] = pattern_.find(seam.a);
       const auto [q, f] = pattern_.find(seam.b);
@@ -132,7 +132,7 @@ class Sewing {
       const double straight = apart();
       std::ranges::reverse(b);
       if (straight < apart()) std::ranges::reverse(b);
-      for (std::size_t k = 0; k < a.size(); ++k) unions_.join(a[k], b[k]);
+      for (std::size_t k = 0; k < a.size(); ++k) sewn_together_.join(a[k], b[k]);
       garment_.seams.push_back({a, length(p, e), length(q, f)});
     }
   }
@@ -140,7 +140,7 @@ class Sewing {
   void number_vertices() {
     number_.assign(at(total_), -1);
     for (Index v = 0; v < total_; ++v) {
-      const Index root = unions_.root(v);
+      const Index root = sewn_together_.root(v);
       number_[at(v)] = root == v ? vertices_++ : number_[at(root)];
     }
     for (SewnSeam& seam : garment_.seams)
@@ -178,7 +178,7 @@ class Sewing {
     check_surface();
     garment_.uv = lay_together(laid, at(vertices_));
     check_plane(laid);
-    garment_.sheet.rest = puff_up(laid, garment_.uv, pattern_.depth);
+    garment_.sheet.rest = inflate(laid, garment_.uv, pattern_.depth);
     garment_.sheet.sewn = true;
   }
   static Vec2 along_grain(const Panel& panel, const Vec2& p) {
@@ -252,7 +252,7 @@ class Sewing {
   std::vector<FlatMesh> meshes_;            // per panel
   std::vector<Index> first_;                // point of each panel, numbered through all
   Index total_ = 0, vertices_ = 0;
-  Unions unions_{0};
+  DisjointSets sewn_together_{0};
   std::vector<Index> number_;  // of the vertex that each point is part of
   Garment garment_;
 };

@@ -81,7 +81,7 @@ std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t ve
   return plane;
 }
 
-std::vector<Vec3> puff_up(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth) {
+std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth) {
   const auto sides = sides_of(panels);
   std::vector<Side> shared;
   std::ranges::set_intersection(sides[0], sides[1], std::back_inserter(shared));

@@ -25,6 +25,6 @@ std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t ve
 /// panels go to −f(d) and back panels to +f(d), f(d) = √(d (2 depth − d)), and f = depth from d = depth on: a pillow
 /// with round edges. Then each vertex inside moves between its neighbours a few times. Both halves are graphs over the
 /// plane, on either side of it: they meet in the seams alone. Returns (across, depth, up) [m].
-std::vector<Vec3> puff_up(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth);
+std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth);
 
 }  // namespace weft::garment

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "mesh/polygon.hpp"
 
@@ -231,16 +230,6 @@ std::optional<std::pair<std::size_t, std::size_t>> self_crossing(std::span<const
         return std::pair(i, j);
     }
   return std::nullopt;
-}
-
-double smallest_angle(const mesh::Triangle& triangle, std::span<const Vec2> points) {
-  double least = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < 3; ++k) {
-    const Vec2& p = points[at(triangle[k])];
-    const Vec2 a = points[at(triangle[(k + 1) % 3])] - p, b = points[at(triangle[(k + 2) % 3])] - p;
-    least = std::min(least, std::atan2(cross(a, b), a.dot(b)));
-  }
-  return least * 180 / std::numbers::pi;
 }
 
 }  // namespace weft::garment

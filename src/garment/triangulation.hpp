@@ -35,7 +35,4 @@ double polygon_area(std::span<const Vec2> outline);
 /// The first two sides of a closed polygon that cross or touch without being neighbours, by their starts.
 std::optional<std::pair<std::size_t, std::size_t>> self_crossing(std::span<const Vec2> outline);
 
-/// Smallest angle of a triangle [degrees].
-double smallest_angle(const mesh::Triangle& triangle, std::span<const Vec2> points);
-
 }  // namespace weft::garment

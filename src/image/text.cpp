@@ -82,14 +82,6 @@ Font::Font(int pixels) : face_(std::make_unique<Face>()) {
 
 Font::~Font() = default;
 
-int Font::ascent() const {
-  return static_cast<int>(face_->face->size->metrics.ascender >> 6);
-}
-
-int Font::line_height() const {
-  return static_cast<int>(face_->face->size->metrics.height >> 6);
-}
-
 int Font::width(std::string_view text) const {
   return face_->layout(text, FT_LOAD_DEFAULT, [](const FT_GlyphSlotRec&, int) {});
 }

@@ -21,8 +21,6 @@ class Font {
   Font(const Font&) = delete;
   Font& operator=(const Font&) = delete;
 
-  int ascent() const;                      ///< from the baseline to the top of the tallest letter [pixels]
-  int line_height() const;                 ///< from baseline to baseline [pixels]
   int width(std::string_view text) const;  ///< [pixels]
 
   /// Draws a line that starts at x on this baseline; what lies outside the picture is left out.

@@ -53,10 +53,10 @@ std::string_view describe(Verdict verdict) {
 }
 
 Stepper::Stage Stepper::begin(const State& now, double h) {
-  const std::size_t n = now.x.size();
+  const std::size_t n = now.v.size();
   for (auto* vector : {&x_hat_, &v_hat_, &x_, &v_, &x_end_, &constant_force_, &force_, &residual_, &delta_, &scale_})
     vector->resize(n);
-  x_hat_ = now.x;
+  std::copy_n(now.x.begin(), n, x_hat_.begin());
   v_hat_ = now.v;
   if (method_ == Method::implicit_midpoint) return {0.5 * h, 2.0, 0.5};
   if (method_ == Method::implicit_euler || previous_h_ == 0) return {h, 1.0, 1.0};
@@ -86,7 +86,7 @@ void Stepper::gather_residual(std::span<const double> masses, const Stage& stage
 }
 
 // Norm of the residual at the current stage, with the preconditioner at hand.
-double Stepper::residual(const System& system, const State& now, const Stage& stage) {
+double Stepper::residual(System& system, const State& now, const Stage& stage) {
   evaluate(now, stage);
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
   system.forces({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, force_);
@@ -143,7 +143,7 @@ std::span<const std::size_t> Stepper::unsolved_parts(double goal) {
 }
 
 // Moves x along delta_: the whole way, or less where the whole way overshoots. Returns the norm of the residual there.
-double Stepper::search_along_delta(const System& system, const State& now, const Stage& stage) {
+double Stepper::search_along_delta(System& system, const State& now, const Stage& stage) {
   // The residual is minus the gradient of the step's energy (where there is one), so residual · delta is the slope:
   // positive before the minimum along delta, negative behind. Where contacts or compressed edges switch on the way it
   // can turn steeply negative, and full steps would then go to and fro.
@@ -171,7 +171,7 @@ double Stepper::search_along_delta(const System& system, const State& now, const
 // First guess: unchanged velocity. It is also where the non-stiff forces are taken, with the velocity extrapolated from
 // the last step, so that they keep the method's order.
 void Stepper::prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity) {
-  const std::size_t n = now.x.size();
+  const std::size_t n = now.v.size();
   const auto masses = system.masses();
   guess_.x.resize(n);
   guess_.v.resize(n);
@@ -187,36 +187,37 @@ void Stepper::prepare_guess(const System& system, const State& now, const Stage&
 
 // Held directions start at their target and stay there.
 void Stepper::hold(const State& now, const Stage& stage, std::span<const HeldParticle> held,
-                   solver::LinearSystem& scratch) {
-  scratch.constraints.clear();
+                   std::vector<solver::ParticleConstraint>& constraints) {
+  constraints.clear();
   for (const HeldParticle& particle : held) {
     const auto i = static_cast<std::size_t>(particle.constraint.particle);
     const Vec3 target = now.x[i] + (particle.x_end - now.x[i]) / stage.end_rate;
     x_[i] = target + particle.constraint.free * (x_[i] - target);
-    scratch.constraints.push_back(particle.constraint);
+    constraints.push_back(particle.constraint);
   }
 }
 
-StepReport Stepper::step(const System& system, const State& now, double h, const Vec3& gravity,
-                         std::span<const HeldParticle> held, solver::LinearSystem& scratch, State& next, Start start) {
-  const std::size_t n = now.x.size();
+StepReport Stepper::step(System& system, const State& now, double h, const Vec3& gravity,
+                         std::span<const HeldParticle> held, State& next, Start start) {
+  const std::size_t n = now.v.size();
+  solver::LinearSystem& linear = system.linear_system();
   const auto masses = system.masses();
   const Stage stage = begin(now, h);
   beta_ = stage.beta;
   prepare_guess(system, now, stage, h, gravity);
   if (start == Start::next)
     for (std::size_t i = 0; i < n; ++i) x_[i] = now.x[i] + (next.x[i] - now.x[i]) / stage.end_rate;
-  next.x.resize(n);
+  next.x.resize(now.x.size());
   next.v.resize(n);
-  hold(now, stage, held, scratch);
+  hold(now, stage, held, linear.constraints);
 
   StepReport report;
-  const double matters = residual_that_matters(masses, h, stage, solver::parts_of(scratch));
+  const double matters = residual_that_matters(masses, h, stage, solver::parts_of(linear));
   for (;;) {
     evaluate(now, stage);
     std::fill(force_.begin(), force_.end(), Vec3::Zero());
-    system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, report.newton_iterations}, force_, scratch);
-    cg_.prepare(scratch);
+    system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, report.newton_iterations, force_);
+    cg_.prepare(linear);
     gather_residual(masses, stage);
     const double before = cg_.norm(residual_), at_rest = weight(masses, gravity);
     const auto goal = [&] { return std::min(parameters_.tolerance * force_scale(masses, at_rest, stage), matters); };
@@ -225,18 +226,18 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
         std::min(std::max(parameters_.linear_tolerance * before, kLinearShare * goal()), kLeastLinear * before);
     // The first iteration is for all: cloth that creeps within the tolerance would never stop.
     const bool all = report.newton_iterations == 0 || unsolved_parts(goal()).empty();
-    const solver::LinearReport linear =
+    const solver::LinearReport solved =
         all ? cg_.solve(residual_, target, parameters_.max_linear_iterations, delta_)
             : cg_.solve(residual_, target, parameters_.max_linear_iterations, delta_, unsolved_);
     ++report.newton_iterations;
-    report.linear_iterations += linear.iterations;
+    report.linear_iterations += solved.iterations;
 
     report.last_residual = search_along_delta(system, now, stage);
     if (!std::isfinite(report.last_residual))
       report.verdict = Verdict::not_finite;
     else if (report.last_residual <= goal())
       break;
-    else if (!linear.definite)
+    else if (!solved.definite)
       report.verdict = Verdict::indefinite;
     else if (report.newton_iterations >= parameters_.max_iterations)
       report.verdict = Verdict::newton_stalled;
@@ -253,7 +254,7 @@ StepReport Stepper::step(const System& system, const State& now, double h, const
     next.x[i] = particle.x_end + free * (next.x[i] - particle.x_end);
     next.v[i] = particle.v_end + free * (next.v[i] - particle.v_end);
   }
-  report.local_error = local_error(masses, now, next, h, solver::parts_of(scratch));
+  report.local_error = local_error(masses, now, next, h, solver::parts_of(linear));
   return report;
 }
 
@@ -297,7 +298,8 @@ double Stepper::longest_step() const {
 
 void Stepper::accept(const State& before, double h) {
   if (method_ == Method::implicit_euler) return;
-  previous_ = before;
+  previous_.x.assign(before.x.begin(), before.x.begin() + std::ssize(before.v));
+  previous_.v = before.v;
   previous_h_ = h;
 }
 

@@ -75,9 +75,8 @@ class Stepper {
 
   /// Computes `next` from `now` over h [s]. Nothing is remembered: see accept().
   /// `gravity` [m/s²] acts on all particles and is also what residuals are measured against.
-  StepReport step(const System& system, const State& now, double h, const Vec3& gravity,
-                  std::span<const HeldParticle> held, solver::LinearSystem& scratch, State& next,
-                  Start start = Start::unchanged_velocity);
+  StepReport step(System& system, const State& now, double h, const Vec3& gravity, std::span<const HeldParticle> held,
+                  State& next, Start start = Start::unchanged_velocity);
 
   /// Force [N] with which its constraint acted on a particle of this mass [kg] at the end of the last step computed.
   Vec3 constraint_force(Index particle, double mass) const;
@@ -108,7 +107,8 @@ class Stepper {
   };
   Stage begin(const State& now, double h);
   void prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity);
-  void hold(const State& now, const Stage& stage, std::span<const HeldParticle> held, solver::LinearSystem& scratch);
+  void hold(const State& now, const Stage& stage, std::span<const HeldParticle> held,
+            std::vector<solver::ParticleConstraint>& constraints);
   double weight(std::span<const double> masses, const Vec3& gravity);
   double force_scale(std::span<const double> masses, double weight, const Stage& stage);
   double residual_that_matters(std::span<const double> masses, double h, const Stage& stage,
@@ -116,8 +116,8 @@ class Stepper {
   double local_error(std::span<const double> masses, const State& now, const State& next, double h,
                      std::span<const solver::Part> parts);
   std::span<const std::size_t> unsolved_parts(double goal);
-  double search_along_delta(const System& system, const State& now, const Stage& stage);
-  double residual(const System& system, const State& now, const Stage& stage);
+  double search_along_delta(System& system, const State& now, const Stage& stage);
+  double residual(System& system, const State& now, const Stage& stage);
   void evaluate(const State& now, const Stage& stage);
   void gather_residual(std::span<const double> masses, const Stage& stage);
 

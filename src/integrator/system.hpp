@@ -9,7 +9,8 @@
 
 namespace weft::integrator {
 
-/// Positions [m] and velocities [m/s] of all particles.
+/// Positions [m] and velocities [m/s] of all particles. Behind the particles' positions others may stand, of what is
+/// not integrated: they are left alone.
 struct State {
   std::vector<Vec3> x, v;
 };
@@ -21,7 +22,6 @@ struct StagePoint {
   std::span<const Vec3> x_end;  ///< positions at the end of the step that this stage leads to; contacts act there
   double rate = 0;              ///< dv/dx = 1/β [1/s]
   double end_rate = 1;          ///< dx_end/dx: 1, or 2 for the midpoint rule
-  int iteration = 0;            ///< of Newton's method, from 0 in each step
 };
 
 class System {
@@ -35,12 +35,17 @@ class System {
   /// they are means over the step.
   virtual void explicit_forces(const State& at, double h, bool extrapolated, std::span<Vec3> force) const = 0;
 
-  /// Stiff forces at a stage [N].
-  virtual void forces(const StagePoint& at, std::span<Vec3> force) const = 0;
+  /// Adds the stiff forces at a stage [N]. What a system remembers between calls may change here only as far as it does
+  /// not change results.
+  virtual void forces(const StagePoint& at, std::span<Vec3> force) = 0;
 
-  /// As `forces`, and fills system.matrix with rate² M − ∂f/∂x − rate ∂f/∂v and system.terms with what stands beside
-  /// it.
-  virtual void linearise(const StagePoint& at, std::span<Vec3> force, solver::LinearSystem& system) const = 0;
+  /// As `forces`, and fills the matrix of linear_system() with rate² M − ∂f/∂x − rate ∂f/∂v and its terms with what
+  /// stands beside it. `iteration`: of Newton's method, from 0 in each solve. Forces that lag behind the positions
+  /// catch up here, before they are added.
+  virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
+
+  /// What linearise() fills; its constraints are the integrator's.
+  virtual solver::LinearSystem& linear_system() = 0;
 };
 
 /// A particle held in some directions: at the end of the step it is at `x_end`, moving with `v_end`, as far as the

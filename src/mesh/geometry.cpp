@@ -10,16 +10,6 @@ double surface_area(std::span<const Triangle> triangles, std::span<const Vec3> p
   return sum;
 }
 
-double enclosed_volume(std::span<const Triangle> triangles, std::span<const Vec3> positions) {
-  if (positions.empty()) return 0;
-  // Signed tetrahedra over each triangle. Their common tip lies on the mesh: far from it, large terms would cancel.
-  const Vec3 tip = positions.front();
-  double sum = 0;
-  for (const Triangle& t : triangles)
-    sum += area_vector(t, positions).dot(positions[static_cast<std::size_t>(t[0])] - tip) / 3;
-  return sum;
-}
-
 void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions, std::span<Vec3> normals) {
   std::fill(normals.begin(), normals.end(), Vec3::Zero());
   for (const Triangle& t : triangles) {

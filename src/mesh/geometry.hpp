@@ -16,9 +16,6 @@ inline Vec3 area_vector(const Triangle& t, std::span<const Vec3> x) {
 /// Sum of the triangle areas [m²].
 double surface_area(std::span<const Triangle> triangles, std::span<const Vec3> positions);
 
-/// Volume [m³] inside a watertight mesh; positive where the triangles are counter-clockwise seen from outside.
-double enclosed_volume(std::span<const Triangle> triangles, std::span<const Vec3> positions);
-
 /// Unit normal per vertex, triangles weighted by area; zero where a vertex has no triangle of any area. Writes
 /// `normals` (one per position) and allocates nothing.
 void vertex_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions, std::span<Vec3> normals);

@@ -4,10 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
-#include <fstream>
-#include <sstream>
 #include <string>
-#include <string_view>
 
 #include "core/error.hpp"
 #include "core/temporary_file.hpp"
@@ -38,26 +35,6 @@ std::string header(std::size_t vertices, std::size_t faces) {
       vertices, faces);
 }
 
-std::string read_file(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::ostringstream content;
-  content << in.rdbuf();
-  if (!in) throw Error(ExitCode::asset_unreadable, "{}: cannot be read", file.string());
-  return std::move(content).str();
-}
-
-/// The number after `element NAME ` in the header; 0 where there is none, which then fails the comparison of headers.
-std::size_t count_of(std::string_view text, std::string_view element) {
-  const std::size_t at = text.find(element);
-  if (at == std::string_view::npos) return 0;
-  std::size_t count = 0;
-  for (const char digit : text.substr(at + element.size(), 10)) {
-    if (digit < '0' || digit > '9') break;
-    count = 10 * count + static_cast<std::size_t>(digit - '0');
-  }
-  return count;
-}
-
 }  // namespace
 
 void write_ply(const std::filesystem::path& file, std::span<const Vec3> positions,
@@ -66,7 +43,8 @@ void write_ply(const std::filesystem::path& file, std::span<const Vec3> position
   const std::size_t vertices_at = content.size();
   const std::size_t faces_at = vertices_at + kVertexBytes * positions.size();
   content.resize(faces_at + kFaceBytes * triangles.size());
-  if (!positions.empty()) std::memcpy(&content[vertices_at], positions.data(), kVertexBytes * positions.size());
+  if (!positions.empty())
+    std::memcpy(&content[vertices_at], static_cast<const void*>(positions.data()), kVertexBytes * positions.size());
   char* face = content.data() + faces_at;
   for (const auto& triangle : triangles) {
     *face = 3;
@@ -74,37 +52,6 @@ void write_ply(const std::filesystem::path& file, std::span<const Vec3> position
     face += kFaceBytes;
   }
   write_file(file, content);
-}
-
-PlyMesh read_ply(const std::filesystem::path& file) {
-  const std::string content = read_file(file);
-  const auto fail = [&](std::string_view why) {
-    throw Error(ExitCode::asset_unreadable, "{}: expected a PLY file written by Weft: {}", file.string(), why);
-  };
-  // The header is the one that write_ply makes for these counts, or the file is not ours.
-  const std::string_view start = std::string_view(content).substr(0, 512);
-  const std::size_t vertices = count_of(start, "element vertex ");
-  const std::size_t faces = count_of(start, "element face ");
-  const std::string expected = header(vertices, faces);
-  if (!start.starts_with(expected)) fail("another header");
-  if (content.size() != expected.size() + kVertexBytes * vertices + kFaceBytes * faces) {
-    fail(fmt::format("{} bytes do not hold {} vertices and {} triangles", content.size(), vertices, faces));
-  }
-  PlyMesh mesh;
-  mesh.positions.resize(vertices);
-  mesh.triangles.resize(faces);
-  const char* at = content.data() + expected.size();
-  if (vertices > 0) std::memcpy(static_cast<void*>(mesh.positions.data()), at, kVertexBytes * vertices);
-  at += kVertexBytes * vertices;
-  for (auto& triangle : mesh.triangles) {
-    if (*at != 3) fail("a face is no triangle");
-    std::memcpy(triangle.data(), at + 1, kFaceBytes - 1);
-    at += kFaceBytes;
-    for (const Index v : triangle)
-      if (static_cast<std::size_t>(v) >= vertices)  // negative ones become huge
-        fail("a face names a vertex that is not there");
-  }
-  return mesh;
 }
 
 }  // namespace weft::mesh

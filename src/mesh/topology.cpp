@@ -60,22 +60,6 @@ EdgeSet collect_edges(std::span<const Triangle> triangles) {
   return set;
 }
 
-Incidence collect_incidence(std::span<const Triangle> triangles, std::size_t vertex_count) {
-  Incidence incidence;
-  incidence.offsets.assign(vertex_count + 1, 0);
-  incidence.triangles.resize(3 * triangles.size());
-  // Counting sort: sizes, then row ends by prefix sums, then filled from the back so that rows come out ascending.
-  for (const Triangle& triangle : triangles)
-    for (Index v : triangle) ++incidence.offsets[static_cast<std::size_t>(v)];
-  Index sum = 0;
-  for (Index& offset : incidence.offsets) offset = sum += offset;
-  for (std::size_t t = triangles.size(); t-- > 0;)
-    for (Index v : triangles[t])
-      incidence.triangles[static_cast<std::size_t>(--incidence.offsets[static_cast<std::size_t>(v)])] =
-          static_cast<Index>(t);
-  return incidence;
-}
-
 TopologyReport inspect(std::span<const Triangle> triangles, std::size_t vertex_count) {
   TopologyReport report;
   std::vector<Triangle> sound;

@@ -1,4 +1,4 @@
-// Who touches whom on a triangle mesh: edges, incidence, and what is wrong with an index list.
+// Who touches whom on a triangle mesh: edges, and what is wrong with an index list.
 #pragma once
 
 #include <array>
@@ -29,21 +29,6 @@ struct EdgeSet {
 /// Collects each edge once. Indices must be in range (see `inspect`); time O(n log n).
 EdgeSet collect_edges(std::span<const Triangle> triangles);
 
-/// Triangles around each vertex as one compressed row per vertex, ascending within a row.
-struct Incidence {
-  std::vector<Index> offsets;  ///< vertex v owns [offsets[v], offsets[v + 1]) of `triangles`
-  std::vector<Index> triangles;
-
-  std::span<const Index> around(Index vertex) const {
-    const auto v = static_cast<std::size_t>(vertex);
-    return std::span(triangles).subspan(static_cast<std::size_t>(offsets[v]),
-                                        static_cast<std::size_t>(offsets[v + 1] - offsets[v]));
-  }
-};
-
-/// Indices must be in range; time O(n).
-Incidence collect_incidence(std::span<const Triangle> triangles, std::size_t vertex_count);
-
 /// What is wrong, or merely open, in an index list. The lists hold what is found, in ascending order.
 struct TopologyReport {
   std::vector<Index> out_of_range;                 ///< triangles naming a vertex that is not there
@@ -56,8 +41,6 @@ struct TopologyReport {
   bool manifold() const {
     return out_of_range.empty() && degenerate.empty() && non_manifold.empty() && misoriented.empty();
   }
-  /// Manifold without border: encloses a volume.
-  bool watertight() const { return manifold() && border.empty(); }
 };
 
 /// Checks any index list; edges are judged among the triangles that are neither out of range nor degenerate.

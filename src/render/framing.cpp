@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
 
 #include "core/error.hpp"
 #include "render/transforms.hpp"
@@ -15,10 +14,6 @@ constexpr double kFieldOfView = 30;  // degrees, vertical: a portrait lens, litt
 constexpr double kElevation = 17;    // degrees above the subject: the floor shows, and so does what hangs
 constexpr double kAzimuth = 33;      // degrees to the right of the front: three-quarter view
 constexpr double kMargin = 0.14;     // share of each half picture left free round the subject
-
-double radians(double degrees) {
-  return degrees * std::numbers::pi / 180;
-}
 
 template <class Visit>
 void for_each_subject_vertex(const frame::FrameSnapshot& snapshot, const Visit& visit) {

@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "image/color.hpp"
 
 namespace weft::render {
 namespace {
-
-double radians(double degrees) {
-  return degrees * std::numbers::pi / 180;
-}
 
 // Share of a shadow map left free at each edge, so that penumbrae end inside it.
 constexpr double kBorder = 1.0 / 32;

@@ -39,7 +39,7 @@ struct SkyView {
 SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach, bool from_above);
 
 /// Light block of shaders/lights.glsl, std140.
-struct alignas(16) LightUniform {
+struct LightUniform {
   Eigen::Matrix4f shadow_from_world;
   Eigen::Matrix4f shadow_planes_from_world;  ///< inverse transpose of the above: carries planes instead of points
   Eigen::Vector4f toward_light;              ///< unit; w: 1 for a spot

@@ -1,11 +1,17 @@
 // Matrices of the pipeline. Spaces: world [m], view (right, up, backward [m]), clip (OpenGL, -w to w).
 #pragma once
 
+#include <numbers>
+
 #include "core/types.hpp"
 
 namespace weft::render {
 
 using Mat4 = Eigen::Matrix4d;
+
+inline double radians(double degrees) {
+  return degrees * std::numbers::pi / 180;
+}
 
 /// Orthonormal axes of a viewer; forward points into the picture.
 struct ViewAxes {

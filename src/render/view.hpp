@@ -43,8 +43,8 @@ struct PixelArea {
 PixelArea visible_area(const View& view, std::span<const Vec3> points, int width, int height);
 
 /// Frame block, std140.
-struct alignas(16) FrameUniform {
-  // Matrices first: Eigen aligns them to 32 bytes, std140 to 16.
+struct FrameUniform {
+  // Matrices first: Eigen aligns them to 16 or 32 bytes, as the CPU level has it, std140 to 16.
   Eigen::Matrix4f clip_from_world, view_from_world, above_from_world, below_from_world;
   Eigen::Vector4f eye_world, center_world, up_world, right_world;
   Eigen::Vector4f sky_light, ground_light, backdrop, viewport, frustum;

@@ -43,36 +43,22 @@ bool exchange(const fs::path& fresh, const fs::path& former) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(fs::path final_name, bool overwrite) {
+OutputFolder::OutputFolder(const fs::path& final_name, bool overwrite) {
   std::error_code error;
   final_name_ = fs::absolute(final_name, error).lexically_normal();
   if (!final_name_.has_filename()) final_name_ = final_name_.parent_path();  // "review/"
   check_replaceable(final_name_, overwrite);
-  const fs::path path =
-      final_name_.parent_path() / fmt::format(".{}.{}.tmp", final_name_.filename().string(), ::getpid());
-  fs::remove_all(path, error);
-  fs::create_directories(path, error);
-  if (error) {
-    throw Error(ExitCode::output_failed, "{}: cannot make the folder: {}", final_name.string(), error.message());
-  }
-  path_ = path;
-}
-
-OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  if (!path_.empty()) fs::remove_all(path_, ignored);
+  temporary_ = std::make_unique<TemporaryName>(final_name_, TemporaryName::Kind::folder);
 }
 
 void OutputFolder::commit() {
   // Without the flush a crash of the machine soon after the rename can leave empty files under the final name.
-  const int descriptor = ::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  int error = descriptor < 0 || ::syncfs(descriptor) != 0 ? errno : 0;
-  if (descriptor >= 0) ::close(descriptor);
-  if (error == 0 && std::rename(path_.c_str(), final_name_.c_str()) != 0) {  // takes the place of an empty folder, too
-    error = errno == ENOTEMPTY || errno == EEXIST ? 0 : errno;
-    if (error == 0 && !exchange(path_, final_name_)) error = errno;
+  int error = ::syncfs(temporary_->descriptor()) != 0 ? errno : 0;
+  if (error == 0 && std::rename(path().c_str(), final_name_.c_str()) == 0) {  // takes the place of an empty folder, too
+    temporary_->release();
   } else if (error == 0) {
-    path_.clear();
+    error = errno == ENOTEMPTY || errno == EEXIST ? 0 : errno;
+    if (error == 0 && !exchange(path(), final_name_)) error = errno;
   }
   if (error != 0) {
     throw Error(ExitCode::output_failed, "{}: cannot be written: {}", final_name_.string(),

@@ -2,6 +2,9 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
+
+#include "core/temporary_file.hpp"
 
 namespace weft::review {
 
@@ -11,18 +14,16 @@ class OutputFolder {
   /// Refuses what would lose something: a page that exists, unless `overwrite` is set, and in any case a folder that
   /// holds anything else. Throws Error(output_failed).
   OutputFolder(std::filesystem::path final_name, bool overwrite);
-  ~OutputFolder();
-  OutputFolder(const OutputFolder&) = delete;
-  OutputFolder& operator=(const OutputFolder&) = delete;
 
-  const std::filesystem::path& path() const { return path_; }
+  const std::filesystem::path& path() const { return temporary_->path(); }
 
   /// Flushes everything to disk and gives the folder its final name; a former page is exchanged for it in one step,
   /// then removed. Throws Error(output_failed).
   void commit();
 
  private:
-  std::filesystem::path final_name_, path_;
+  std::filesystem::path final_name_;
+  std::unique_ptr<TemporaryName> temporary_;
 };
 
 }  // namespace weft::review

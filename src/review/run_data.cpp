@@ -12,9 +12,7 @@
 namespace weft::review {
 namespace {
 
-// More than a plot of 1000 pixels can show, at half the size of the file.
-constexpr double kDigits = 1e6;
-
+// To six digits: more than a plot of 1000 pixels can show, at half the size of the file.
 Json rounded(const Json& value) {
   if (!value.is_number_float()) return value.is_number() || value.is_boolean() ? value : Json(nullptr);
   const auto number = value.get<double>();

@@ -86,7 +86,7 @@ std::set<std::string> possible_names(std::string_view content) {
 
 class Walk {
  public:
-  explicit Walk(const std::function<void(std::string_view)>& each) : each_(each) {}
+  explicit Walk(const DependencyVisitor& each) : each_(each) {}
 
   void visit(const fs::path& file) {
     std::error_code error;
@@ -94,20 +94,20 @@ class Walk {
     if (fs::file_size(file, error) > kLargestFile) return;
     std::ifstream in(file, std::ios::binary);
     const std::string content(std::istreambuf_iterator<char>(in), {});
-    each_(content);
+    each_(file, content);
     for (const std::string& name : possible_names(content)) visit(file.parent_path() / name);
     // The one format whose readers find the motion by the name of the mesh.
     if (file.extension() == ".md5mesh") visit(fs::path(file).replace_extension(".md5anim"));
   }
 
  private:
-  const std::function<void(std::string_view)>& each_;
+  const DependencyVisitor& each_;
   std::set<fs::path> visited_;
 };
 
 }  // namespace
 
-void for_each_dependency(const Scene& scene, const std::function<void(std::string_view content)>& each) {
+void for_each_dependency(const Scene& scene, const DependencyVisitor& each) {
   Walk walk(each);
   for (const Obstacle& obstacle : scene.obstacles)
     if (const auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) walk.visit(mesh->path);

@@ -33,8 +33,12 @@ std::string toml_value(const Value& value, const Rule& rule) {
   return rule.components.empty() ? fmt::format("{}", numbers[0]) : fmt::format("[{}]", fmt::join(numbers, ", "));
 }
 
+enum class Part { all, simulated };
+
 class Writer {
  public:
+  explicit Writer(Part part) : part_(part) {}
+
   std::string text;
 
   /// One table: first its own keys, then the tables in it. `path` is empty for the root.
@@ -56,11 +60,13 @@ class Writer {
 
  private:
   template <class Body>
-  static void for_rules(const Table& table, void* target, const Body& body) {
-    for (const Rule& rule : table.rules) body(rule);
-    if (const Variant* variant = table.variant_of(target)) {
-      for (const Rule& rule : variant->rules) body(rule);
-    }
+  void for_rules(const Table& table, void* target, const Body& body) const {
+    const auto visit = [&](const std::vector<Rule>& rules) {
+      for (const Rule& rule : rules)
+        if (part_ == Part::all || rule.simulated) body(rule);
+    };
+    visit(table.rules);
+    if (const Variant* variant = table.variant_of(target)) visit(variant->rules);
   }
 
   void write_value(const Rule& rule, void* target) {
@@ -89,7 +95,17 @@ class Writer {
     }
     text += "]\n";
   }
+
+  const Part part_;
 };
+
+std::string text_of(const Scene& scene, Part part) {
+  // The rules reach members through plain pointers; a copy keeps the scene itself out of their hands.
+  Scene copy = scene;
+  Writer writer(part);
+  writer.write(scene_rules(), &copy, "");
+  return std::move(writer.text);
+}
 
 class Fnv1a {
  public:
@@ -105,18 +121,15 @@ class Fnv1a {
 }  // namespace
 
 std::string effective_scene(const Scene& scene) {
-  // The rules reach members through plain pointers; a copy keeps the scene itself out of their hands.
-  Scene copy = scene;
-  Writer writer;
-  writer.write(scene_rules(), &copy, "");
-  return std::move(writer.text);
+  return text_of(scene, Part::all);
 }
 
-std::uint64_t hash_of(const Scene& scene) {
-  Fnv1a hash;
-  for_each_dependency(scene, [&](std::string_view content) {
-    hash.add(fmt::format("{} ", content.size()));  // so that where one file ends counts
-    hash.add(content);
+void identify(Scene& scene) {
+  Fnv1a files;
+  for_each_dependency(scene, [&](const std::filesystem::path& file, std::string_view content) {
+    scene.files.push_back(file);
+    files.add(fmt::format("{} ", content.size()));  // so that where one file ends counts
+    files.add(content);
   });
   // The content of files counts, and not their folder.
   Scene copy = scene;
@@ -130,8 +143,13 @@ std::uint64_t hash_of(const Scene& scene) {
     if (auto* sequence = std::get_if<MeshSequence>(&character.source))
       sequence->files = std::filesystem::path(sequence->files).filename().string();
   }
-  hash.add(effective_scene(copy));
-  return hash.value();
+  Fnv1a shown = files, simulated = files;
+  shown.add(text_of(copy, Part::all));
+  simulated.add(text_of(copy, Part::simulated));
+  // Characters are sampled up to the end of the film, and the last key frames decide on the motion between them.
+  if (!scene.characters.empty()) simulated.add(fmt::format("{}", scene.time.duration));
+  scene.hash = shown.value();
+  scene.simulation_hash = simulated.value();
 }
 
 }  // namespace weft::scene

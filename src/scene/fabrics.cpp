@@ -36,7 +36,7 @@ namespace {
 constexpr double kBendingTime = 0.1;
 // Bending friction over bending stiffness [1/m], the curvature that a fold may keep for ever: a radius of 25 cm. KES
 // figures of woven fabrics, with 2HB about half of B in gf·cm, are several times that.
-constexpr double kKeptCurvature = 4;
+constexpr double kResidualCurvature = 4;
 
 struct Figures {
   double density, stretch_weft, stretch_warp, shear, bend, thickness, friction;
@@ -51,7 +51,7 @@ Fabric fabric(const char* name, const Figures& figures, const char* note) {
   material.shear = figures.shear;
   material.bend = figures.bend;
   material.bend_viscosity = kBendingTime * figures.bend;
-  material.bend_friction = kKeptCurvature * figures.bend;
+  material.bend_friction = kResidualCurvature * figures.bend;
   material.thickness = figures.thickness;
   material.friction = figures.friction;
   return {material, note};

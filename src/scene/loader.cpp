@@ -52,7 +52,7 @@ LoadResult load_from(const std::optional<std::string_view>& text, const std::fil
     }
   }
   result.mistakes = findings.take_mistakes();
-  if (result.ok()) result.scene.hash = hash_of(result.scene);
+  if (result.ok()) identify(result.scene);
   return result;
 }
 

@@ -36,7 +36,7 @@ std::string join_or(const std::vector<std::string>& words) {
 
 namespace {
 
-std::string with_unit(std::string text, const Rule& rule) {
+std::string with_unit(const std::string& text, const Rule& rule) {
   return rule.unit.empty() ? text : text + " " + rule.unit;
 }
 

@@ -63,6 +63,7 @@ struct Rule {
   Need need = Need::optional;
   std::string default_note;  ///< says what the default is where the struct's initialiser does not
   std::string excludes;      ///< key that must not be given beside this one
+  bool simulated = true;     ///< counts for the simulation; else its change leaves what is simulated as it is
 
   std::function<Value(void*)> get;  ///< monostate: nothing to write
   std::function<void(void*, const Value&)> set;

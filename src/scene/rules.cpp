@@ -35,6 +35,7 @@ const Table& time_rules() {
   static const Table kTable =
       TableBuilder<Time>("Length, frames and time steps.")
           .number("duration", &Time::duration, within(0, 3600), "s", "length of the film; 0 shows the start alone")
+          .not_simulated()
           .number("fps", &Time::fps, above(0, 1000), "Hz", "frames a second; frame k is the state at k / fps")
           .number("preroll", &Time::preroll, within(0, 3600), "s",
                   "simulated before frame 0 and not shown, as for dressing; what moves by keys stands before time 0")
@@ -199,6 +200,7 @@ const Table& cloth_rules() {
                   "most that a particle is off its place at the start, along each axis; the same in every run")
           .table("material", &Cloth::material, material_rules())
           .table("look", &Cloth::look, cloth_look_rules())
+          .not_simulated()
           .list(Type::list, "pin", &Cloth::pins, pin_rules())
           .list(Type::list, "weight", &Cloth::weights, weight_rules())
           .build();
@@ -273,6 +275,7 @@ const Table& obstacle_rules() {
                   "Coulomb coefficient; of a pair, the geometric mean of both")
           .plain(Type::boolean, "collide", &Obstacle::collide, "false lets cloth pass through it")
           .table("look", &Obstacle::look, obstacle_look_rules())
+          .not_simulated()
           .with([](auto& rows) { track_rows(rows, &Obstacle::motion, [](Obstacle& o) { return o.pose; }); })
           .build();
   return kTable;
@@ -411,18 +414,25 @@ const Table& render_rules() {
   static const Table kTable =
       TableBuilder<Render>("The picture.")
           .whole_number("width", &Render::width, within(16, 8192), "of the picture, in pixels")
+          .not_simulated()
           .whole_number("height", &Render::height, within(16, 8192), "of the picture, in pixels")
+          .not_simulated()
           .plain(Type::text, "camera", &Render::camera, "name of the camera that is looked through")
           .by_default("the first camera; automatic framing where there is none")
+          .not_simulated()
           .color("sky_color", &Render::sky_color, "of the light from above")
           .by_default("the renderer's own")
+          .not_simulated()
           .color("ground_color", &Render::ground_color, "of the light from below")
           .by_default("the renderer's own")
+          .not_simulated()
           .number("sky_intensity", &Render::sky_intensity, within(0, 100), "", "share of light from the sky")
           .by_default("the renderer's own")
+          .not_simulated()
           .choice("heat", &Render::heat, {"none", "strain", "speed"}, "quantity that colors the cloth")
           .number("heat_max", &Render::heat_max, within(0, 1e6), "",
                   "value at the hot end (strain: 1, speed: m/s); 0 follows each frame's largest")
+          .not_simulated()
           .build();
   return kTable;
 }
@@ -452,6 +462,7 @@ const Table& scene_rules() {
                                       "up", {"y", "z"}, "axis that points up",
                                       [](Scene& s) { return static_cast<std::size_t>(s.up); }, set_up_axis)
                                   .plain(Type::text, "title", &Scene::title, "for people")
+                                  .not_simulated()
                                   .table("time", &Scene::time, time_rules())
                                   .table("physics", &Scene::physics, physics_rules())
                                   .table("solver", &Scene::solver, solver_rules())
@@ -461,7 +472,9 @@ const Table& scene_rules() {
                                   .list(Type::list, "character", &Scene::characters, character_rules())
                                   .list(Type::list, "cloth", &Scene::cloths, cloth_rules())
                                   .list(Type::list, "camera", &Scene::cameras, camera_rules(), append_camera)
+                                  .not_simulated()
                                   .list(Type::list, "light", &Scene::lights, light_rules(), append_light)
+                                  .not_simulated()
                                   .build();
   return kTable;
 }

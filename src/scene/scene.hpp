@@ -337,7 +337,9 @@ struct Scene {
   std::filesystem::path file;
   std::string name;  ///< file name without its ending; names the output
   std::string title;
-  std::uint64_t hash = 0;  ///< of the checked values, so that comments and order do not count
+  std::uint64_t hash = 0;                    ///< of the checked values, so that comments and order do not count
+  std::uint64_t simulation_hash = 0;         ///< of those that count for the simulation
+  std::vector<std::filesystem::path> files;  ///< all that were read for it, and it depends on
   UpAxis up = UpAxis::z;
   Time time;
   Physics physics;

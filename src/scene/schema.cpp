@@ -22,7 +22,7 @@ Json number_schema(const Rule& rule) {
 }
 
 Json numbers_schema(const Rule& rule) {
-  const Json number = number_schema(rule);
+  Json number = number_schema(rule);
   if (rule.components.empty()) return number;
   const std::size_t count = rule.components.size();
   const Json array = {{"type", "array"}, {"items", number}, {"minItems", count}, {"maxItems", count}};
@@ -80,7 +80,7 @@ void add_rule(Json& schema, const Rule& rule, void* defaults) {
   property["description"] = description(rule);
   const bool has_default = rule.get && rule.need == Need::optional && rule.default_note.empty();
   if (has_default) {
-    if (Json value = default_of(rule, defaults); !value.is_null() && value != "") property["default"] = value;
+    if (Json value = default_of(rule, defaults); !value.is_null() && value != Json("")) property["default"] = value;
   }
   schema["properties"][rule.key] = std::move(property);
   if (rule.need == Need::required) schema["required"].push_back(rule.key);

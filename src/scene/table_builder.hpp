@@ -228,6 +228,10 @@ class TableBuilder {
     last().excludes = std::move(key);
     return *this;
   }
+  TableBuilder& not_simulated() {
+    last().simulated = false;
+    return *this;
+  }
   TableBuilder& selects() {
     table_.selector = last().key;
     return *this;

@@ -19,10 +19,6 @@ namespace {
 // as a few products with the matrix of 4,000 particles.
 constexpr Index kPatches = 70;
 
-// Motion of a particle since the last linearisation, in spacings, up to which the matrix is good enough to find the way
-// with; residuals are exact always.
-constexpr double kStaleMotion = 0.005;
-
 bool bends(const scene::Material& m) {
   return m.bend > 0 || m.bend_viscosity > 0 || m.bend_friction > 0;
 }
@@ -61,11 +57,6 @@ std::vector<Box> boxes_of(const environment::ClothObject& cloth) {
   return boxes;
 }
 
-// Iterations of Newton's method after which its matrix becomes cautious. Where cloth folds it overshoots without: a
-// swing with threads of 1e8 N/m takes twice the iterations, sphere_drape a fifth more. From the first on, cloth that
-// rests takes four iterations a step in place of one (multi_sheet).
-constexpr int kPlainIterations = 4;
-
 // Share of the way to the pattern after a share of the time: begins and ends without a jerk.
 double ease(double s) {
   s = std::clamp(s, 0.0, 1.0);
@@ -100,13 +91,25 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   first_.push_back(first);
   cut_groups(environment);
 
+  const solver::BlockMatrix matrix = lay_out_matrix();
+  for (const auto& of_cloth : forces_)
+    for (const auto& force : of_cloth) force->attach(matrix);
+  sew(0);
+}
+
+solver::BlockMatrix ClothSystem::lay_out_matrix() const {
   solver::BlockMatrix::Couplings couplings, isotropic;
   for (const auto& of_cloth : forces_)
     for (const auto& force : of_cloth) force->couple(force->isotropic() ? isotropic : couplings);
-  base_ = solver::BlockMatrix(first, std::move(couplings), std::move(isotropic));
-  for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->attach(base_);
-  sew(0);
+  return {first_.back(), std::move(couplings), std::move(isotropic)};
+}
+
+solver::LinearSystem ClothSystem::make_linear_system() const {
+  solver::LinearSystem system;
+  system.matrix = lay_out_matrix();
+  system.groupings = groupings_;
+  for (std::size_t c = 0; c < cloths(); ++c) system.parts.push_back({first_[c], first_[c + 1]});
+  return system;
 }
 
 void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, const scene::Material& material,
@@ -167,13 +170,15 @@ void ClothSystem::Sewing::use_share(double new_share) {
   if (bands != nullptr) bands->rest_between_start_and_pattern(share);
 }
 
-void ClothSystem::sew(double t) {
+bool ClothSystem::sew(double t) {
+  bool changed = false;
   for (Sewing& sewing : sewing_) {
     const double share = sewing.duration > 0 ? ease(t / sewing.duration) : 1;
     if (share == sewing.share) continue;
     sewing.use_share(share);
-    forget();
+    changed = true;
   }
+  return changed;
 }
 
 template <class Archive>
@@ -198,93 +203,23 @@ void ClothSystem::take_weight_off(std::span<Vec3> force) const {
   }
 }
 
-void ClothSystem::explicit_forces(const integrator::State& at, double h, bool extrapolated,
-                                  std::span<Vec3> force) const {
+void ClothSystem::add_explicit_forces(std::span<const Vec3> x, std::span<const Vec3> v, double h, bool extrapolated,
+                                      std::span<Vec3> force) const {
   take_weight_off(force);
   const auto taken = extrapolated ? forces::Air::Taken::at_that_moment : forces::Air::Taken::over_the_step;
-  for (const forces::Air& air : air_) air.add(at.x, at.v, masses_, h, taken, force);
+  for (const forces::Air& air : air_) air.add(x, v, masses_, h, taken, force);
 }
 
-void ClothSystem::forces(const integrator::StagePoint& at, std::span<Vec3> force) const {
-  for (std::size_t c = 0; c < forces_.size(); ++c) add_cloth_forces(c, at, force, nullptr);
-  if (contacts_ != nullptr) contacts_->add_forces(at.x_end, force);
-  if (constraints_ != nullptr) constraints_->add_forces(at.x_end, force);
+void ClothSystem::add_forces(std::size_t cloth, const forces::Evaluation& at) const {
+  for (const auto& force : forces_[cloth]) force->add(at);
 }
 
-// force += the forces within a cloth; their Jacobian goes into the matrix, if there is one.
-void ClothSystem::add_cloth_forces(std::size_t cloth, const integrator::StagePoint& at, std::span<Vec3> force,
-                                   solver::BlockMatrix* matrix) const {
-  latest_.resize(forces_.size());
-  Evaluated& latest = latest_[cloth];
-  const auto first = static_cast<std::size_t>(first_[cloth]);
-  const auto count = static_cast<std::size_t>(first_[cloth + 1]) - first;
-  const std::span<const Vec3> x = at.x.subspan(first, count), v = at.v.subspan(first, count);
-  const bool same = std::ranges::equal(x, latest.x) && std::ranges::equal(v, latest.v);
-  if (!same || matrix != nullptr) {
-    // The forces number particles through all cloths.
-    evaluated_.resize(at.x.size());
-    std::fill_n(evaluated_.begin() + first_[cloth], count, Vec3::Zero());
-    const auto form =
-        at.iteration < kPlainIterations ? forces::Linearisation::definite : forces::Linearisation::cautious;
-    for (const auto& f : forces_[cloth]) f->add({at.x, at.v, evaluated_, matrix, at.rate, form});
-    latest.x.assign(x.begin(), x.end());
-    latest.v.assign(v.begin(), v.end());
-    latest.force.assign(evaluated_.begin() + first_[cloth], evaluated_.begin() + first_[cloth + 1]);
-  }
-  for (std::size_t i = 0; i < count; ++i) force[first + i] += latest.force[i];
-}
-
-void ClothSystem::prepare_base(double rate) const {
-  if (rate == base_rate_) return;
-  base_.set_zero();
+void ClothSystem::fill_base(double rate, solver::BlockMatrix& base) const {
+  base.set_zero();
   for (std::size_t i = 0; i < masses_.size(); ++i)
-    base_.add_scalar(base_.diagonal(static_cast<Index>(i)), rate * rate * masses_[i]);
+    base.add_scalar(base.diagonal(static_cast<Index>(i)), rate * rate * masses_[i]);
   for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->add_constant_stiffness(base_);
-  base_rate_ = rate;
-}
-
-void ClothSystem::linearise(const integrator::StagePoint& at, std::span<Vec3> force,
-                            solver::LinearSystem& system) const {
-  if (&system != linearised_into_ || at.rate != linearised_rate_) {
-    linearised_at_.clear();
-    linearised_into_ = &system;
-    linearised_rate_ = at.rate;
-  }
-  const bool all = linearised_at_.empty();
-  if (all) linearised_at_.assign(at.x.begin(), at.x.end());
-  prepare_base(at.rate);
-  for (std::size_t c = 0; c + 1 < first_.size(); ++c) {
-    if (!all && !is_stale(c, at.x)) {
-      add_cloth_forces(c, at, force, nullptr);
-      continue;
-    }
-    const auto first = static_cast<std::size_t>(first_[c]), count = static_cast<std::size_t>(first_[c + 1]) - first;
-    std::copy_n(at.x.begin() + first_[c], count, linearised_at_.begin() + first_[c]);
-    system.matrix.copy_rows(base_, first_[c], first_[c + 1]);
-    ++system.parts[c].version;
-    add_cloth_forces(c, at, force, &system.matrix);
-  }
-  system.terms.clear();
-  system.diagonal_terms.clear();
-  if (contacts_ != nullptr) contacts_->linearise(at.x_end, at.end_rate, force, system);
-  if (constraints_ != nullptr) constraints_->linearise(at.x_end, at.end_rate, force, system);
-}
-
-// Whether a cloth has moved too far from where its rows of the matrix were put together.
-bool ClothSystem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
-  const double most = kStaleMotion * spacing_;
-  for (auto i = static_cast<std::size_t>(first_[cloth]); i < static_cast<std::size_t>(first_[cloth + 1]); ++i)
-    if (!((x[i] - linearised_at_[i]).squaredNorm() <= most * most)) return true;
-  return false;
-}
-
-solver::LinearSystem ClothSystem::make_linear_system() const {
-  solver::LinearSystem system;
-  system.matrix = base_;
-  system.groupings = groupings_;
-  for (std::size_t c = 0; c + 1 < first_.size(); ++c) system.parts.push_back({first_[c], first_[c + 1]});
-  return system;
+    for (const auto& force : of_cloth) force->add_constant_stiffness(base);
 }
 
 double ClothSystem::elastic_energy(std::span<const Vec3> x) const {

@@ -29,14 +29,6 @@ std::vector<std::size_t> colliding_bodies(const scene::Scene& scene, const envir
   return bodies;
 }
 
-// The triangles of a mesh with its vertices numbered from `first`.
-std::vector<collision::Triangle> shifted(const mesh::Mesh& mesh, Index first) {
-  std::vector<collision::Triangle> triangles = mesh.topology.triangles;
-  for (collision::Triangle& t : triangles)
-    for (Index& v : t) v += first;
-  return triangles;
-}
-
 // The engine's bodies are the cloths of the scene and then what else collides.
 std::vector<collision::PairFriction> friction_pairs(const scene::Scene& scene,
                                                     const environment::Environment& environment) {
@@ -71,42 +63,27 @@ collision::BroadPhaseOptions search_options(const scene::Search& search) {
 
 collision::EngineParameters engine_parameters(const scene::Scene& scene, const environment::Environment& environment) {
   const scene::Contact& contact = scene.contact;
-  return {.self = contact.self,
-          .obstacles = contact.obstacles,
-          .stiffness = contact.stiffness,
-          .friction = friction_pairs(scene, environment),
-          .search = search_options(contact.search),
-          .reuse = contact.search.reuse,
-          .velocity_constraints = contact.response == scene::Response::velocity_constraints};
+  const bool velocity = contact.response == scene::Response::velocity_constraints;
+  return {.search = {contact.self, contact.obstacles, contact.search.reuse, search_options(contact.search)},
+          .contact = {contact.stiffness, friction_pairs(scene, environment)},
+          .response = velocity ? collision::ResponseForm::velocity_constraints : collision::ResponseForm::springs};
 }
 
-std::vector<collision::Body> make_bodies(const scene::Scene& scene, const environment::Environment& environment) {
-  std::vector<collision::Body> bodies;
-  Index first = 0;
-  const auto add = [&](const mesh::Mesh& mesh, bool deformable, double thickness, double friction, bool moving = true) {
-    const auto count = static_cast<Index>(mesh.positions.size());
-    bodies.push_back({shifted(mesh, first), first, count, deformable, thickness, friction, moving});
-    first += count;
+collision::Bodies make_bodies(const scene::Scene& scene, const environment::Environment& environment) {
+  collision::Bodies bodies;
+  const auto add = [&](const mesh::Mesh& mesh, const collision::BodyTraits& traits) {
+    bodies.add(mesh.topology.triangles, static_cast<Index>(mesh.positions.size()), traits);
   };
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const scene::Material& material = scene.cloths[c].material;
-    add(environment.cloths[c].mesh, true,
-        std::min(material.thickness, kThicknessOfSpacing * environment.cloths[c].spacing), material.friction);
+    const double thickness = std::min(material.thickness, kThicknessOfSpacing * environment.cloths[c].spacing);
+    add(environment.cloths[c].mesh, {.deformable = true, .thickness = thickness, .friction = material.friction});
   }
-  for (std::size_t b : colliding_bodies(scene, environment))
-    add(environment.bodies[b].mesh, false, 0, environment.bodies[b].friction, environment.bodies[b].moving);
-  return bodies;
-}
-
-std::vector<Vec3> start_positions(const scene::Scene& scene, const environment::Environment& environment) {
-  std::vector<Vec3> x;
-  for (const auto& cloth : environment.cloths)
-    x.insert(x.end(), cloth.motion.positions.begin(), cloth.motion.positions.end());
   for (std::size_t b : colliding_bodies(scene, environment)) {
-    const auto& positions = environment.bodies[b].motion.positions;
-    x.insert(x.end(), positions.begin(), positions.end());
+    const environment::BodyObject& body = environment.bodies[b];
+    add(body.mesh, {.friction = body.friction, .moving = body.moving});
   }
-  return x;
+  return bodies;
 }
 
 }  // namespace
@@ -116,78 +93,75 @@ bool CollisionStage::needed(const scene::Scene& scene) {
 }
 
 CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Environment& environment,
-                               const ClothSystem& system)
-    : bodies_(colliding_bodies(scene, environment)),
-      particles_(system.masses().size()),
-      all_t0_(start_positions(scene, environment)),
-      all_t1_(all_t0_),
-      engine_(make_bodies(scene, environment), engine_parameters(scene, environment), all_t0_,
-              {system.masses().begin(), system.masses().end()}) {
+                               std::span<const double> masses, Moment& start)
+    : environment_(environment),
+      bodies_(colliding_bodies(scene, environment)),
+      particles_(masses.size()),
+      engine_(make_bodies(scene, environment), engine_parameters(scene, environment), append_bodies(start), masses) {
   for (const auto& cloth : environment.cloths) names_.push_back(cloth.name);
   for (std::size_t b : bodies_) names_.push_back(environment.bodies[b].name);
-  if (const auto meeting = engine_.find_meeting(all_t0_))
+  if (const auto meeting = engine_.find_meeting(start.x))
     throw Error(
         ExitCode::scene_invalid,
         "{}: expected surfaces that are apart at the start, got {}; move one of them, or leave it out of contact",
-        scene.file.string(), describe(*meeting));
+        scene.file.string(), describe(*meeting, start));
+}
+
+const std::vector<Vec3>& CollisionStage::append_bodies(Moment& start) const {
+  for (std::size_t b : bodies_) {
+    const std::size_t first = start.x.size();
+    start.x.resize(first + environment_.bodies[b].mesh.positions.size());
+    environment_.place(b, start.placed_for, std::span(start.x).subspan(first));
+  }
+  return start.x;
+}
+
+// Still bodies are where append_bodies() has put them.
+void CollisionStage::place_bodies(double t, Moment& moment) const {
+  if (moment.placed_for == t) return;
+  moment.placed_for = t;
+  std::size_t first = particles_;
+  for (std::size_t b : bodies_) {
+    const std::size_t count = environment_.bodies[b].mesh.positions.size();
+    if (environment_.bodies[b].moving) environment_.place(b, t, std::span(moment.x).subspan(first, count));
+    first += count;
+  }
 }
 
 // Which objects and triangles, and where.
-std::string CollisionStage::describe(const collision::CornerPair& pair) const {
-  const Vec3& at = all_t0_[static_cast<std::size_t>(pair.a[0])];
+std::string CollisionStage::describe(const collision::CornerPair& pair, const Moment& moment) const {
+  const Vec3& at = moment.x[pair.a[0]];
+  const collision::Bodies& bodies = engine_.bodies();
   return fmt::format("'{}' (triangle {}) and '{}' (triangle {}) touching near ({:.4g}, {:.4g}, {:.4g}) m",
-                     names_[engine_.body_of(pair.a[0])], engine_.triangle_of(pair.a),
-                     names_[engine_.body_of(pair.b[0])], engine_.triangle_of(pair.b), at.x(), at.y(), at.z());
+                     names_[bodies.body_of(pair.a[0])], bodies.triangle_of(pair.a), names_[bodies.body_of(pair.b[0])],
+                     bodies.triangle_of(pair.b), at.x(), at.y(), at.z());
 }
 
-void CollisionStage::copy_obstacles(const environment::Environment& environment, std::vector<Vec3>& all) const {
-  auto place = all.begin() + static_cast<std::ptrdiff_t>(particles_);
-  for (std::size_t b : bodies_) {
-    const auto& positions = environment.bodies[b].motion.positions;
-    place = std::copy(positions.begin(), positions.end(), place);
-  }
-}
-
-void CollisionStage::begin_step(environment::Environment& environment, const integrator::State& now,
-                                std::span<const integrator::HeldParticle> held, double t, double h) {
-  environment.move_to(t);
-  copy_obstacles(environment, all_t0_);
-  environment.move_to(t + h);
-  copy_obstacles(environment, all_t1_);
-
-  movable_.assign(all_t0_.size(), 0);
+void CollisionStage::begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now,
+                                Moment& next) {
+  place_bodies(t, now);
+  place_bodies(t + h, next);
+  movable_.assign(now.x.size(), 0);
   std::fill_n(movable_.begin(), particles_, std::uint8_t{1});
-  for (std::size_t i = 0; i < particles_; ++i) {
-    all_t0_[i] = now.x[i];
-    all_t1_[i] = now.x[i] + h * now.v[i];
-  }
+  for (std::size_t i = 0; i < particles_; ++i) next.x[i] = now.x[i] + h * now.v[i];
   for (const integrator::HeldParticle& particle : held) {
-    const auto i = static_cast<std::size_t>(particle.constraint.particle);
-    all_t1_[i] = particle.x_end;
-    movable_[i] = 0;
+    next.x[particle.constraint.particle] = particle.x_end;
+    movable_[particle.constraint.particle] = 0;
   }
-  engine_.begin_step(all_t0_, all_t1_, h);
+  engine_.begin_step(now.x, next.x, h);
 }
 
-void CollisionStage::append_constraints(std::vector<integrator::HeldParticle>& held) const {
-  for (const collision::PrescribedParticle& particle : engine_.constraints().prescribed())
-    if (movable_[static_cast<std::size_t>(particle.constraint.particle)])
-      held.push_back({particle.constraint, particle.x_end, particle.v_end});
+void CollisionStage::append_prescribed(std::vector<integrator::HeldParticle>& held) const {
+  for (const collision::PrescribedParticle& particle : response().prescribed())
+    if (movable_[particle.constraint.particle]) held.push_back({particle.constraint, particle.x_end, particle.v_end});
 }
 
-bool CollisionStage::apart(const integrator::State& next) {
-  std::copy(next.x.begin(), next.x.end(), all_t1_.begin());
-  return engine_.apart(all_t0_, all_t1_);
-}
-
-std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, integrator::State& next) {
-  const collision::SeparationReport report = engine_.push_apart(all_t0_, all_t1_, movable_, may_pinch);
-  if (!report.separated) return "cannot keep " + describe(report.stuck) + " apart";
-  for (std::size_t i = 0; i < particles_; ++i) {
-    next.v[i] += (all_t1_[i] - next.x[i]) / h;
-    next.x[i] = all_t1_[i];
-  }
-  note_pinches();
+std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, const Moment& now, Moment& next) {
+  solved_.assign(next.particles().begin(), next.particles().end());
+  const collision::SeparationReport report = engine_.push_apart(now.x, next.x, movable_, may_pinch);
+  if (!report.separated) return "cannot keep " + describe(report.stuck, now) + " apart";
+  for (std::size_t i = 0; i < particles_; ++i) next.v[i] += (next.x[i] - solved_[i]) / h;
+  note_pinches(now);
   return std::nullopt;
 }
 
@@ -201,37 +175,34 @@ std::string CollisionStage::describe(const collision::Pinch& pinch) const {
                      pinch.place.x(), pinch.place.y(), pinch.place.z());
 }
 
-void CollisionStage::note_pinches() {
+void CollisionStage::note_pinches(const Moment& start) {
   if (engine_.pinched_pairs() == 0) return;
   pinches_.pairs = std::max(pinches_.pairs, engine_.pinched_pairs());
-  for (const collision::Pinch& pinch : engine_.pinches(all_t0_)) {
+  for (const collision::Pinch& pinch : engine_.pinches(start.x)) {
     const PinchingObjects objects{pinch.cloth, pinch.obstacle};
     if (pinching_.insert(objects).second && !pinching_before_.contains(objects))
       pinches_.begun.push_back(describe(pinch));
   }
 }
 
-CollisionStage::Pinches CollisionStage::take_pinches() {
-  note_pinches();
+CollisionStage::Pinches CollisionStage::take_pinches(const Moment& last_start) {
+  note_pinches(last_start);
   pinching_before_ = std::move(pinching_);
   pinching_.clear();
   return std::exchange(pinches_, {});
 }
 
 template <class Archive>
-void CollisionStage::exchange(Archive& archive, const environment::Environment& environment,
-                              const integrator::State& now) {
-  std::vector<Vec3> all = all_t0_;
-  std::copy(now.x.begin(), now.x.end(), all.begin());
-  copy_obstacles(environment, all);
-  engine_.exchange(archive, all);
+void CollisionStage::exchange(Archive& archive, double t, Moment& now) {
+  place_bodies(t, now);
+  engine_.serialize(archive, now.x);
   std::vector<PinchingObjects> before(pinching_before_.begin(), pinching_before_.end());
   exchange_each(archive, before,
                 [&](PinchingObjects& objects) { exchange_values(archive, objects.first, objects.second); });
   pinching_before_ = {before.begin(), before.end()};
 }
 
-template void CollisionStage::exchange(ByteWriter&, const environment::Environment&, const integrator::State&);
-template void CollisionStage::exchange(ByteReader&, const environment::Environment&, const integrator::State&);
+template void CollisionStage::exchange(ByteWriter&, double, Moment&);
+template void CollisionStage::exchange(ByteReader&, double, Moment&);
 
 }  // namespace weft::simulation

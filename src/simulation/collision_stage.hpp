@@ -16,74 +16,77 @@
 
 namespace weft::simulation {
 
+/// Where everything is at one time: particles, and behind them in x the vertices of the bodies that collide.
+struct Moment : integrator::State {
+  double placed_for = 0;  ///< time that the bodies are placed for [s]
+
+  std::span<const Vec3> particles() const { return {x.data(), v.size()}; }
+};
+
 class CollisionStage {
  public:
   /// Whether anything in the scene can collide; else no stage is made.
   static bool needed(const scene::Scene& scene);
 
-  /// Throws Error(scene_invalid) where surfaces touch or cross from the start: what begins apart is kept apart, and
-  /// nothing else can be promised.
-  CollisionStage(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& system);
+  /// Appends the bodies to the moment `start`, for its time. Throws Error(scene_invalid) where surfaces touch or cross
+  /// from the start: what begins apart is kept apart, and nothing else can be promised. The environment must outlive
+  /// it.
+  CollisionStage(const scene::Scene& scene, const environment::Environment& environment, std::span<const double> masses,
+                 Moment& start);
 
-  /// Before the solve: obstacles go from where they are at t to where they are at t + h; contacts are found for the
-  /// particles as they are now and would be with unchanged velocity. Leaves the environment at t + h.
-  void begin_step(environment::Environment& environment, const integrator::State& now,
-                  std::span<const integrator::HeldParticle> held, double t, double h);
+  /// Before the solve: bodies go from where they are at t in `now` to where they are at t + h in `next`; contacts are
+  /// found for the particles as they are now and would be, in `next`, with unchanged velocity.
+  void begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now, Moment& next);
 
-  collision::ContactSet& contacts() { return engine_.contacts(); }
-  const collision::ContactSet& contacts() const { return engine_.contacts(); }
-  const collision::VelocityConstraints& constraints() const { return engine_.constraints(); }
+  collision::ContactResponse& response() { return engine_.response(); }
+  const collision::ContactResponse& response() const { return engine_.response(); }
 
-  /// Appends what the velocity constraints hold of the particles that no pin holds.
-  void append_constraints(std::vector<integrator::HeldParticle>& held) const;
-  /// After a solve that led to `next`: sets and releases velocity constraints; returns how many have changed.
-  int revise_constraints(const integrator::State& next, const collision::VelocityConstraints::ForceOn& force_on) {
-    return engine_.constraints().revise(all_t0_, next.x, force_on);
-  }
-  /// The step is done: its constraints are where the next one starts.
-  void accept_constraints() { engine_.constraints().accept(); }
+  /// Appends what the response prescribes to the particles that no pin holds.
+  void append_prescribed(std::vector<integrator::HeldParticle>& held) const;
 
   /// After the solve: whether nothing meets anything on the way to `next`.
-  bool apart(const integrator::State& next);
+  bool apart(const Moment& now, const Moment& next) { return engine_.apart(now.x, next.x); }
 
   /// Where apart() said no: makes contacts of the pairs that would meet, and says how many were new. If there are some,
   /// solving again lets the forces do what push_apart would do by moving particles.
-  int adopt_failing() { return engine_.adopt_failing(all_t0_, all_t1_); }
+  int adopt_failing(const Moment& now, const Moment& next) { return engine_.adopt_failing(now.x, next.x); }
 
   /// Corrects positions and velocities of `next` so that nothing meets anything, except cloth and the obstacles that
   /// leave it no room; these are then pinched. Without `may_pinch` no cloth becomes pinched by an obstacle that did not
   /// pinch it before. Empty if that worked, else which objects are stuck and where.
-  std::optional<std::string> push_apart(double h, bool may_pinch, integrator::State& next);
+  std::optional<std::string> push_apart(double h, bool may_pinch, const Moment& now, Moment& next);
 
   /// What a frame has pinched, from its steps so far; the next call tells of the next frame.
   struct Pinches {
-    int pairs = 0;                   ///< most triangles at once that are given up to obstacles
+    int pairs = 0;                   ///< most triangles at once that are exempted from non-penetration
     std::vector<std::string> begun;  ///< those not in the frame before, by object: "'a' has no room between ..."
   };
-  Pinches take_pinches();
+  Pinches take_pinches(const Moment& last_start);
 
   /// Before a frame: see Engine::forget.
   void forget() { engine_.forget(); }
 
-  /// What the next step depends on, with the particles at `now` and the bodies where the environment has them. Throws
-  /// std::runtime_error where this scene cannot have it.
+  /// What the next step from `now`, at time t [s], depends on. Throws std::runtime_error where this scene cannot have
+  /// it.
   template <class Archive>
-  void exchange(Archive& archive, const environment::Environment& environment, const integrator::State& now);
+  void exchange(Archive& archive, double t, Moment& now);
 
   int proximities() const { return engine_.proximities(); }
   double min_distance() const { return engine_.min_distance(); }
 
  private:
-  std::string describe(const collision::CornerPair& pair) const;
+  const std::vector<Vec3>& append_bodies(Moment& start) const;
+  void place_bodies(double t, Moment& moment) const;
+  std::string describe(const collision::CornerPair& pair, const Moment& at) const;
   std::string describe(const collision::Pinch& pinch) const;
-  void note_pinches();
-  void copy_obstacles(const environment::Environment& environment, std::vector<Vec3>& all) const;
+  void note_pinches(const Moment& start);
 
+  const environment::Environment& environment_;
   std::vector<std::string> names_;   // per body
   std::vector<std::size_t> bodies_;  // of the environment, those that collide
   std::size_t particles_;
-  std::vector<Vec3> all_t0_, all_t1_;  // particles, then vertices of the obstacles
   std::vector<std::uint8_t> movable_;
+  std::vector<Vec3> solved_;  // scratch: particles before they are pushed apart
   collision::Engine engine_;
 
   using PinchingObjects = std::pair<std::size_t, std::size_t>;  // cloth and obstacle

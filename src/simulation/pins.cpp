@@ -63,7 +63,7 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
       if (group.particles.empty()) continue;
 
       const auto start = [&](Index particle) -> const Vec3& {
-        return cloth.motion.positions[static_cast<std::size_t>(particle - first_particle[c])];
+        return cloth.start[static_cast<std::size_t>(particle - first_particle[c])];
       };
       group.release = pin.release;
       group.follow = pin.follow.empty() ? -1 : body_named(environment, pin.follow);

@@ -1,4 +1,4 @@
-// The step loop: joins environment, forces, integrator and collision; emits snapshots.
+// A scene from frame to frame: snapshots, reports, and states to go on from.
 #pragma once
 
 #include <functional>

@@ -22,21 +22,22 @@ frame::Appearance appearance(const scene::Look& look) {
   return result;
 }
 
+void dress(frame::Surface& surface, const scene::Look& look) {
+  surface.visible = look.visible;
+  surface.appearance = appearance(look);
+  if (surface.kind != frame::ObjectKind::cloth) surface.appearance.thread_spacing = 0;
+}
+
 std::shared_ptr<const frame::Surface> make_surface(const std::string& name, frame::ObjectKind kind,
                                                    const mesh::Mesh& mesh, const scene::Look& look) {
   auto surface = std::make_shared<frame::Surface>();
   surface->name = name;
   surface->kind = kind;
-  surface->visible = look.visible;
   surface->triangles = mesh.topology.triangles;
   surface->quads = mesh.topology.quads;
   surface->uv = mesh.uv;
-  surface->appearance = appearance(look);
-  if (kind == frame::ObjectKind::cloth) {
-    surface->crease_angle = 180;
-  } else {
-    surface->appearance.thread_spacing = 0;
-  }
+  if (kind == frame::ObjectKind::cloth) surface->crease_angle = 180;
+  dress(*surface, look);
   return surface;
 }
 
@@ -83,18 +84,10 @@ environment::Spline<10> light_track(const scene::Light& light) {
 
 }  // namespace
 
-SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment)
-    : stage_(make_stage(scene)) {
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
-    surfaces_.push_back(
-        make_surface(scene.cloths[c].name, frame::ObjectKind::cloth, environment.cloths[c].mesh, scene.cloths[c].look));
-  for (const environment::BodyObject& body : environment.bodies) {
-    const auto kind = body.character ? frame::ObjectKind::character : frame::ObjectKind::obstacle;
-    auto surface = std::make_shared<frame::Surface>(*make_surface(body.name, kind, body.mesh, body.look));
-    surface->infinite_floor = body.infinite_floor;
-    if (body.character) surface->crease_angle = kCharacterCrease;
-    surfaces_.push_back(std::move(surface));
-  }
+Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
+  for (const auto& cloth : scene.cloths) looks_[cloth.name] = cloth.look;
+  for (const auto& obstacle : scene.obstacles) looks_[obstacle.name] = obstacle.look;
+  for (const auto& character : scene.characters) looks_[character.name] = character.look;
   for (const scene::Camera& camera : scene.cameras) {
     cameras_.push_back({.name = camera.name});
     camera_tracks_.push_back(camera_track(camera));
@@ -111,7 +104,7 @@ SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Envir
   }
 }
 
-std::vector<frame::Camera> SnapshotMaker::cameras_at(double time) const {
+std::vector<frame::Camera> Looks::cameras_at(double time) const {
   std::vector<frame::Camera> cameras = cameras_;
   for (std::size_t c = 0; c < cameras.size(); ++c) {
     const CameraValue value = camera_tracks_[c].at(time).value;
@@ -122,7 +115,7 @@ std::vector<frame::Camera> SnapshotMaker::cameras_at(double time) const {
   return cameras;
 }
 
-std::vector<frame::Light> SnapshotMaker::lights_at(double time) const {
+std::vector<frame::Light> Looks::lights_at(double time) const {
   std::vector<frame::Light> lights = lights_;
   for (std::size_t l = 0; l < lights.size(); ++l) {
     const LightValue value = light_tracks_[l].at(time).value;
@@ -134,20 +127,57 @@ std::vector<frame::Light> SnapshotMaker::lights_at(double time) const {
   return lights;
 }
 
+void Looks::surround(frame::FrameSnapshot& snapshot) const {
+  snapshot.stage = stage_;
+  snapshot.cameras = cameras_at(snapshot.time);
+  snapshot.lights = lights_at(snapshot.time);
+}
+
+frame::SnapshotPtr Looks::put_on(const frame::FrameSnapshot& snapshot) {
+  if (surfaces_.empty())
+    for (const auto& surface : snapshot.surfaces) surfaces_.push_back(dressed(*surface));
+  auto copy = std::make_shared<frame::FrameSnapshot>(snapshot);
+  copy->surfaces = surfaces_;
+  surround(*copy);
+  return copy;
+}
+
+std::shared_ptr<const frame::Surface> Looks::dressed(const frame::Surface& surface) const {
+  auto copy = std::make_shared<frame::Surface>(surface);
+  dress(*copy, looks_.at(surface.name));
+  return copy;
+}
+
+SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment) : looks_(scene) {
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    surfaces_.push_back(
+        make_surface(scene.cloths[c].name, frame::ObjectKind::cloth, environment.cloths[c].mesh, scene.cloths[c].look));
+  for (const environment::BodyObject& body : environment.bodies) {
+    const auto kind = body.character ? frame::ObjectKind::character : frame::ObjectKind::obstacle;
+    auto surface = std::make_shared<frame::Surface>(*make_surface(body.name, kind, body.mesh, body.look));
+    surface->infinite_floor = body.infinite_floor;
+    if (body.character) surface->crease_angle = kCharacterCrease;
+    surfaces_.push_back(std::move(surface));
+  }
+}
+
 frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const environment::Environment& environment,
-                                       std::vector<std::vector<float>> heat) const {
+                                       std::span<const Vec3> particles, std::vector<std::vector<float>> heat) const {
   auto snapshot = std::make_shared<frame::FrameSnapshot>();
   snapshot->frame = frame;
   snapshot->time = time;
-  snapshot->stage = stage_;
   snapshot->surfaces = surfaces_;
-  for (const environment::ClothObject& cloth : environment.cloths)
-    snapshot->states.push_back({cloth.motion.positions, {}});
+  for (const environment::ClothObject& cloth : environment.cloths) {
+    const auto of_cloth = particles.first(cloth.start.size());
+    snapshot->states.push_back({{of_cloth.begin(), of_cloth.end()}, {}});
+    particles = particles.subspan(of_cloth.size());
+  }
   for (std::size_t c = 0; c < heat.size(); ++c) snapshot->states[c].heat = std::move(heat[c]);
-  for (const environment::BodyObject& body : environment.bodies)
-    snapshot->states.push_back({body.motion.positions, {}});
-  snapshot->cameras = cameras_at(time);
-  snapshot->lights = lights_at(time);
+  for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
+    snapshot->states.push_back({std::vector<Vec3>(environment.bodies[b].mesh.positions.size()), {}});
+    environment.place(b, time, snapshot->states.back().positions);
+  }
+  looks_.surround(*snapshot);
   return snapshot;
 }
 

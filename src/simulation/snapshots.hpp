@@ -1,7 +1,10 @@
 // From the environment to what a frame shows.
 #pragma once
 
+#include <map>
 #include <memory>
+#include <span>
+#include <string>
 #include <vector>
 
 #include "environment/environment.hpp"
@@ -11,26 +14,43 @@
 
 namespace weft::simulation {
 
-/// Makes the snapshots of a run; what stays the same over the run is made once and shared.
-class SnapshotMaker {
+/// What of a scene is drawn and not simulated: colours, surroundings, cameras and lights.
+class Looks {
  public:
-  SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment);
+  explicit Looks(const scene::Scene& scene);
 
-  /// `heat`: one list per cloth, empty where none is asked for.
-  frame::SnapshotPtr make(int frame, double time, const environment::Environment& environment,
-                          std::vector<std::vector<float>> heat) const;
+  /// The same frame with these looks; it is of a scene that has the same objects.
+  frame::SnapshotPtr put_on(const frame::FrameSnapshot& snapshot);
+  /// Stage, cameras and lights.
+  void surround(frame::FrameSnapshot& snapshot) const;
 
  private:
+  std::shared_ptr<const frame::Surface> dressed(const frame::Surface& surface) const;
   std::vector<frame::Camera> cameras_at(double time) const;
   std::vector<frame::Light> lights_at(double time) const;
 
+  std::map<std::string, scene::Look> looks_;  // by the name of the object
   std::shared_ptr<const frame::Stage> stage_;
-  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
+  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;  // dressed for the first snapshot, shared by the others
   std::vector<frame::Camera> cameras_;
   std::vector<frame::Light> lights_;
   // Through their keys: position, target, field of view; direction, position, target, intensity.
   std::vector<environment::Spline<7>> camera_tracks_;
   std::vector<environment::Spline<10>> light_tracks_;
+};
+
+/// Makes the snapshots of a run; what stays the same over the run is made once and shared.
+class SnapshotMaker {
+ public:
+  SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment);
+
+  /// `particles`: of all cloths [m]; `heat`: one list per cloth, empty where none is asked for.
+  frame::SnapshotPtr make(int frame, double time, const environment::Environment& environment,
+                          std::span<const Vec3> particles, std::vector<std::vector<float>> heat) const;
+
+ private:
+  const Looks looks_;
+  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
 };
 
 }  // namespace weft::simulation

@@ -17,20 +17,20 @@ constexpr std::size_t kChunk = 4096;
 // What it gains, iterations by 1.4 (crumpled cloth of 6·10⁴ particles) to over 100 (taut threads of 1e6 N/m), shows
 // only after long: threads seem to converge at first. So a target below this share of the right hand side takes it at
 // once;
-constexpr double kTight = 1e-3;
-// any other when, at the pace of the last kPatience iterations, more than kLong are still to come. Scenes ask for 0.1
-// and need ten in all.
-constexpr int kPatience = 40;
-constexpr double kLong = 100;
+constexpr double kTightTarget = 1e-3;
+// any other when, at the rate of the last kPaceInterval iterations, more than kMinIterationsLeft are still to come.
+// Scenes ask for 0.1 and need ten in all.
+constexpr int kPaceInterval = 40;
+constexpr double kMinIterationsLeft = 100;
 // Weight of the factor beside the levels: both are right about long waves, and with equal weights these count twice,
 // which took twice the iterations of the factor alone on plain folds; with 16 as many. On crumpled stiff sheets both
 // together need about half of what the factor needs alone.
 constexpr double kFactorWeight = 16;
 
-// Whether a residual that fell from `before` to `now` in kPatience iterations needs more than kLong to reach the
-// target.
-bool is_long(double before, double now, double target) {
-  return !(std::log(now / target) * kPatience < kLong * std::log(before / now));
+// Whether a residual that fell from `before` to `now` in kPaceInterval iterations needs more than kMinIterationsLeft
+// to reach the target.
+bool factor_pays(double before, double now, double target) {
+  return !(std::log(now / target) * kPaceInterval < kMinIterationsLeft * std::log(before / now));
 }
 
 // Calls body(begin, end) for chunks of the rows of a part.
@@ -140,7 +140,7 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, double target, in
   double rz = preconditioner_.apply(r_, p_, parts);
   report.first_residual = report.last_residual = std::sqrt(rz);
   double paced_from = report.first_residual;
-  bool with_factor = target < kTight * report.first_residual && make_factor();
+  bool with_factor = target < kTightTarget * report.first_residual && make_factor();
   if (with_factor) rz += add_factor(p_, parts);
 
   while (!(report.last_residual <= target) && report.iterations < max_iterations) {
@@ -163,8 +163,8 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, double target, in
     ++report.iterations;
     // Directions made without the factor say nothing about those with it.
     bool restart = false;
-    if (!with_factor && report.iterations % kPatience == 0) {
-      restart = with_factor = is_long(paced_from, report.last_residual, target) && make_factor();
+    if (!with_factor && report.iterations % kPaceInterval == 0) {
+      restart = with_factor = factor_pays(paced_from, report.last_residual, target) && make_factor();
       paced_from = report.last_residual;
     }
     if (with_factor) rz_next += add_factor(z_, parts);

@@ -14,9 +14,9 @@ namespace {
 constexpr std::size_t kChunk = 4096;
 // Levels of groups at most, patches included.
 constexpr std::size_t kMaxLevels = 8;
-// Where constraints leave a group no motion its block is zero, and so is its residual: any definite value will do, such
-// as this share of the others.
-constexpr double kStandIn = 1e-9;
+// Where constraints leave a group no motion its block is zero, and so is its residual: a shift of the diagonal by this
+// share of its mean makes it definite.
+constexpr double kSingularShift = 1e-9;
 
 std::size_t index(Index i) {
   return static_cast<std::size_t>(i);
@@ -174,11 +174,12 @@ void Preconditioner::add_terms() {
     std::vector<Mat3>& blocks = levels_[l].inverse;
     double trace = 0;
     for (const Mat3& block : blocks) trace += block.trace();
-    const double stand_in = trace > 0 ? kStandIn * trace / (3 * static_cast<double>(blocks.size())) : 1;
-    for (Mat3& block : blocks) block = (block + stand_in * Mat3::Identity()).inverse().eval();
+    const double shift = trace > 0 ? kSingularShift * trace / (3 * static_cast<double>(blocks.size())) : 1;
+    for (Mat3& block : blocks) block = (block + shift * Mat3::Identity()).inverse().eval();
   }
   const double trace = patch_matrix_.trace();
-  patch_matrix_.diagonal().array() += trace > 0 ? kStandIn * trace / static_cast<double>(patch_matrix_.rows()) : 1;
+  patch_matrix_.diagonal().array() +=
+      trace > 0 ? kSingularShift * trace / static_cast<double>(patch_matrix_.rows()) : 1;
   patch_solver_.compute(patch_matrix_);
 }
 

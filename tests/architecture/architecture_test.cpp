@@ -24,7 +24,8 @@ class MadeTree : public support::TestFolder {
   void SetUp() override {
     TestFolder::SetUp();
     write("src/CMakeLists.txt",
-          "weft_module(core LINKS x)\nweft_module(mesh)\nweft_module(render USES mesh\n  LINKS y)\n");
+          "weft_module(core LINKS x)\nweft_module(mesh)\n"
+          "weft_module(render DOES \"draws (all)\"\n  USES mesh\n  LINKS y)\n");
     write("src/core/error.hpp", "#pragma once\n");
     write("src/mesh/mesh.hpp", "#include \"core/error.hpp\"\n");
     write("src/render/renderer.hpp", "#include <vector>\n#include \"mesh/mesh.hpp\"\n#include \"core/error.hpp\"\n");
@@ -86,6 +87,7 @@ TEST(Architecture, ModulesAreReadWithWhatTheyUse) {
   EXPECT_EQ(modules.front().name, "core");
   EXPECT_TRUE(modules.front().uses.empty());
   EXPECT_EQ(modules.back().name, "cli");
+  for (const Module& module : modules) EXPECT_FALSE(module.does.empty()) << module.name;
 }
 
 TEST(Architecture, ModulesIncludeOnlyWhatTheyUse) {

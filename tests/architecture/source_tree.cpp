@@ -76,12 +76,11 @@ bool has_word(const std::string& line, const std::string& word) {
 
 std::vector<Module> read_modules(const fs::path& root) {
   const std::string text = read(root / "src/CMakeLists.txt");
-  const std::regex declaration(R"(\bweft_module\(([^()]*)\))");
+  const std::regex declaration(R"re(\bweft_module\((\w+)(?:\s+DOES\s+"([^"]*)")?([^()]*)\))re");
   std::vector<Module> modules;
   for (std::sregex_iterator match(text.begin(), text.end(), declaration), end; match != end; ++match) {
-    std::istringstream words((*match)[1]);
-    Module module;
-    words >> module.name;
+    Module module{(*match)[1], (*match)[2], {}};
+    std::istringstream words((*match)[3]);
     bool in_uses = false;
     for (std::string word; words >> word;) {
       if (word == "USES" || word == "LINKS") {

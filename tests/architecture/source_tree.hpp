@@ -7,9 +7,9 @@
 
 namespace weft::architecture {
 
-/// A module as src/CMakeLists.txt declares it: `weft_module(name USES ... LINKS ...)`.
+/// A module as src/CMakeLists.txt declares it: `weft_module(name DOES "..." USES ... LINKS ...)`.
 struct Module {
-  std::string name;
+  std::string name, does;
   std::vector<std::string> uses;  ///< besides core, which all may use
 };
 

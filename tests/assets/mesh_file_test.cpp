@@ -14,6 +14,7 @@
 #include "core/error.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/ply.hpp"
+#include "support/mesh_measures.hpp"
 
 namespace weft::assets {
 namespace {
@@ -64,7 +65,7 @@ mesh::TopologyReport inspected(const LoadedMesh& loaded) {
 }
 
 double volume(const LoadedMesh& loaded) {
-  return mesh::enclosed_volume(loaded.mesh.topology.triangles, loaded.mesh.positions);
+  return support::enclosed_volume(loaded.mesh.topology.triangles, loaded.mesh.positions);
 }
 
 TEST_F(MeshFiles, OfQuadsAloneStayQuadsAndLoseTheirSeams) {
@@ -73,7 +74,7 @@ TEST_F(MeshFiles, OfQuadsAloneStayQuadsAndLoseTheirSeams) {
   EXPECT_EQ(cube.joined_vertices, 16u);  // each corner had three normals
   EXPECT_EQ(cube.mesh.topology.quads.size(), 6u);
   EXPECT_EQ(cube.mesh.topology.triangles.size(), 12u);
-  EXPECT_TRUE(inspected(cube).watertight());
+  EXPECT_TRUE(support::watertight(inspected(cube)));
   EXPECT_NEAR(volume(cube), 1, 1e-15);
   EXPECT_TRUE(cube.mesh.uv.empty());
 }
@@ -117,7 +118,7 @@ TEST_F(MeshFiles, WithLargerPolygonsAreTriangulatedInsideThem) {
 
 TEST_F(MeshFiles, OfAsciiPlyAreReadAndScaled) {
   const LoadedMesh loaded = load("t.ply", ply_tetrahedron(), 10);
-  EXPECT_TRUE(inspected(loaded).watertight());
+  EXPECT_TRUE(support::watertight(inspected(loaded)));
   EXPECT_NEAR(volume(loaded), 1000.0 / 6, 1e-12 * 1000);
 }
 
@@ -125,13 +126,13 @@ TEST_F(MeshFiles, OfStlAreWatertightThoughTheirTrianglesShareNothing) {
   const LoadedMesh loaded = load("t.stl", stl_tetrahedron());
   EXPECT_EQ(loaded.mesh.positions.size(), 4u);
   EXPECT_EQ(loaded.joined_vertices, 8u);
-  EXPECT_TRUE(inspected(loaded).watertight());
+  EXPECT_TRUE(support::watertight(inspected(loaded)));
   EXPECT_NEAR(volume(loaded), 1.0 / 6, 1e-15);
 }
 
 TEST_F(MeshFiles, OfGltfFollowTheirNodesAndFaceOutwardThoughMirrored) {
   const LoadedMesh loaded = load("t.gltf", gltf_tetrahedron());
-  EXPECT_TRUE(inspected(loaded).watertight());
+  EXPECT_TRUE(support::watertight(inspected(loaded)));
   EXPECT_NEAR(volume(loaded), 1.0 / 6, 1e-15);
   const Box3 box = mesh::bounding_box(loaded.mesh.positions);
   EXPECT_EQ(Vec3(box.min()), Vec3(0, 0, 1));

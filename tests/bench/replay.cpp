@@ -8,7 +8,7 @@
 #include "collision/hierarchy/broad_phase.hpp"
 #include "collision/hierarchy/test_motions.hpp"
 #include "collision/proximity/coherence.hpp"
-#include "mesh/ply.hpp"
+#include "support/ply.hpp"
 
 namespace weft::bench {
 
@@ -35,9 +35,9 @@ struct Recording {
 };
 
 /// Whether the shape changes, so that it is cloth.
-bool deforms(const mesh::PlyMesh& first, const mesh::PlyMesh& last) {
+bool deforms(const support::PlyMesh& first, const support::PlyMesh& last) {
   for (const auto& t : first.triangles) {
-    const auto length = [&](const mesh::PlyMesh& m) {
+    const auto length = [&](const support::PlyMesh& m) {
       return (m.positions[static_cast<std::size_t>(t[0])] - m.positions[static_cast<std::size_t>(t[1])]).norm();
     };
     if (std::abs(length(first) - length(last)) > 1e-9 * length(first)) return true;
@@ -52,13 +52,13 @@ Recording read(const std::filesystem::path& folder, int first, int count) {
     if (const std::string name = entry.path().stem().string(); name.size() > 6)
       names.insert(name.substr(0, name.size() - 6));
   const auto load = [&](const std::string& name, int frame) {
-    return mesh::read_ply(folder / fmt::format("{}_{:05}.ply", name, frame));
+    return support::read_ply(folder / fmt::format("{}_{:05}.ply", name, frame));
   };
   Recording recording;
   std::vector<std::string> order;
   for (const bool cloth : {true, false})
     for (const std::string& name : names) {
-      const mesh::PlyMesh mesh = load(name, first);
+      const support::PlyMesh mesh = load(name, first);
       if (deforms(mesh, load(name, first + count - 1)) != cloth) continue;
       order.push_back(name);
       recording.deformable.push_back(cloth);
@@ -67,7 +67,7 @@ Recording read(const std::filesystem::path& folder, int first, int count) {
   for (int frame = first; frame < first + count; ++frame) {
     auto& x = recording.frames.emplace_back();
     for (const std::string& name : order) {
-      const mesh::PlyMesh mesh = load(name, frame);
+      const support::PlyMesh mesh = load(name, frame);
       x.insert(x.end(), mesh.positions.begin(), mesh.positions.end());
     }
   }

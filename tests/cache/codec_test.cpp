@@ -102,10 +102,10 @@ TEST(Codec, FramesComeBackBitForBit) {
   }
 }
 
-// A field that is left out of exchange(FrameReport) leaves the report as long as before this one was added.
+// A field that is left out of serialize(FrameReport) leaves the report as long as before this one was added.
 TEST(Codec, ReportHasNoFieldThatIsForgotten) {
   EXPECT_EQ(sizeof(frame::FrameReport), 160u)
-      << "FrameReport has changed: exchange(FrameReport) in codec.cpp and kFormatVersion have to follow";
+      << "FrameReport has changed: serialize(FrameReport) in codec.cpp and kFormatVersion have to follow";
 }
 
 TEST(Codec, WhatHasNotMovedTakesTwoBytes) {

@@ -12,6 +12,7 @@
 #include "mesh/topology.hpp"
 #include "posed_mannequin.hpp"
 #include "support/intersections.hpp"
+#include "support/mesh_measures.hpp"
 
 namespace weft::character {
 namespace {
@@ -62,11 +63,11 @@ double mean_edge(const mesh::Mesh& mesh) {
 
 void expect_whole(const Character& body) {
   const auto& triangles = body.mesh.topology.triangles;
-  EXPECT_TRUE(mesh::inspect(triangles, body.mesh.positions.size()).watertight());
+  EXPECT_TRUE(support::watertight(mesh::inspect(triangles, body.mesh.positions.size())));
   const auto edges = mesh::collect_edges(triangles).edges.size();
   EXPECT_EQ(body.mesh.positions.size() + triangles.size() - edges, 2U) << "not a sphere with limbs";
   const double height = mesh::bounding_box(body.mesh.positions).max().z();
-  EXPECT_GT(mesh::enclosed_volume(triangles, body.mesh.positions), 0.007 * std::pow(height, 3)) << "inside out";
+  EXPECT_GT(support::enclosed_volume(triangles, body.mesh.positions), 0.007 * std::pow(height, 3)) << "inside out";
   const support::JudgedObject judged{"body", true, body.mesh.positions, triangles};
   const auto judgement = support::judge(std::span(&judged, 1));
   EXPECT_TRUE(judgement.pairs.empty()) << judgement.pairs.size();

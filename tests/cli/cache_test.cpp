@@ -119,6 +119,67 @@ TEST_F(CachedRun, EditedSceneNeverMeetsOldFrames) {
   EXPECT_EQ(cache::Reader(folder_ / "c").frames().size(), 2u) << "frames of the cache before are left";
 }
 
+TEST_F(CachedRun, ChangedLooksGoOnAndDressWhatWasKept) {
+  const Arguments looks{
+      "--set", "cloth.cloth.look.color=[1,0,0]", "--set",
+      "camera=[{name='v',target=[0,0,0],keys=[{time=0,position=[1,-2,1]},{time=0.8,position=[2,-1,1]}]}]"};
+  const auto with_looks = [&](Arguments arguments) {
+    arguments.insert(arguments.end(), looks.begin(), looks.end());
+    return arguments;
+  };
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
+  expect_well(with_looks({"simulate", "s.toml", "--cache", "c", "--resume"}));
+  expect_well(with_looks({"simulate", "s.toml", "--cache", "whole"}));
+  EXPECT_EQ(hash_of_frames("c", kFrames), hash_of_frames("whole", kFrames));
+  expect_well({"render", "c", "-o", std::string("a/") + kPictures});
+  expect_well({"render", "whole", "-o", std::string("b/") + kPictures});
+  expect_same("a", "b", ".png", kFrames);
+  // Longer too, from a whole cache.
+  expect_well(with_looks({"simulate", "s.toml", "--cache", "c", "--resume", "--set", "time.duration=0.88"}));
+  EXPECT_EQ(cache::Reader(folder_ / "c").frames().size(), kFrames + 2u);
+}
+
+TEST_F(CachedRun, FramesThatWereNotDressedYetAreNotDrawn) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
+  const Arguments again{"simulate", "s.toml", "--cache", "c", "--resume", "--set", "cloth.cloth.look.color=[1,0,0]"};
+  Arguments part = again;
+  part.insert(part.end(), {"--frames", ":3"});
+  expect_well(part);
+  expect_well({"render", "c", "-o", "a.mp4", "--frames", ":3"});
+  const Outcome rest = weft({"render", "c", "-o", "b.mp4", "--frames", "3:8"});
+  EXPECT_EQ(rest.exit_code, 4);
+  EXPECT_TRUE(contains(rest.err, "it has the looks from before the scene was changed")) << rest.err;
+  expect_well(again);
+  expect_well({"render", "c", "-o", "b.mp4"});
+}
+
+TEST_F(CachedRun, WholeCacheSaysSoAndStaysAsItIs) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  const auto before = contents("c", ".weft");
+  const Outcome again = weft({"simulate", "s.toml", "--cache", "c", "--resume"});
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_TRUE(again.err.starts_with("note: c is whole already: frames 0:21\n")) << again.err;
+  EXPECT_EQ(contents("c", ".weft"), before);
+}
+
+TEST_F(CachedRun, OverwriteOfAShorterRunLeavesNoFrameOfTheLongerOne) {
+  const auto run = [](Arguments more) {
+    more.insert(more.begin(), {"run", "s.toml", "-o", std::string("p/") + kPictures, "--meshes", "m"});
+    return more;
+  };
+  expect_well(run({}));
+  support::write_bytes(folder_ / "p/00077.jpg", "precious");
+  expect_well(run({"--overwrite", "--set", "time.duration=0.12"}));
+  EXPECT_EQ(contents("p", ".png").size(), 4u);
+  EXPECT_EQ(contents("m", ".ply").size(), 3u * 4);
+  EXPECT_TRUE(fs::exists(folder_ / "p/00077.jpg"));
+  // A part that is drawn anew is no shorter film.
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  expect_well({"render", "c", "-o", std::string("q/") + kPictures});
+  expect_well({"render", "c", "-o", std::string("q/") + kPictures, "--frames", "3:5", "--overwrite"});
+  EXPECT_EQ(contents("q", ".png").size(), static_cast<std::size_t>(kFrames));
+}
+
 TEST_F(CachedRun, AnotherBuildDoesNotGoOn) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":5"});
   cache::Manifest manifest = cache::Reader(folder_ / "c").manifest();
@@ -222,8 +283,37 @@ TEST_F(KilledRun, WithNothingThereResumeStartsAtTheBeginning) {
   const Outcome outcome = resume();
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_TRUE(contains(outcome.err, "nothing to resume; starting at the beginning")) << outcome.err;
+  const auto written = fs::last_write_time(folder_ / "a.mp4");
   const Outcome again = resume();
-  EXPECT_EQ(again.exit_code, 6) << "a finished video was replaced";
+  EXPECT_EQ(again.exit_code, 0);
+  EXPECT_EQ(again.err, "note: a.mp4 is whole already: frames 0:21\n");
+  EXPECT_EQ(fs::last_write_time(folder_ / "a.mp4"), written) << "a finished video was replaced";
+  EXPECT_EQ(weft({"run", "s.toml", "-o", "a.mp4", "--resume", "--set", "time.duration=0.4"}).exit_code, 6)
+      << "another film has this name";
+}
+
+TEST_F(KilledRun, ReplacesOnlyItsOwnOutputsWhenItGoesOn) {
+  kill_after(5);
+  support::write_bytes(folder_ / "precious.json", "precious");
+  const Outcome other = weft({"run", "s.toml", "-o", "a.mp4", "--meshes", "m", "--resume", "--stats", "precious.json"});
+  EXPECT_EQ(other.exit_code, 6);
+  EXPECT_TRUE(contains(other.err, "precious.json: exists already")) << other.err;
+  EXPECT_EQ(support::read_bytes(folder_ / "precious.json"), "precious");
+  EXPECT_EQ(resume().exit_code, 0);
+}
+
+TEST_F(KilledRun, GoesOnWithOtherLooksToTheVideoThatHasThemFromTheStart) {
+  const Arguments run{"run", "s.toml", "-o", "a.mp4", "--set", "cloth.cloth.look.color=[1,0,0]"};
+  kill_after(5);
+  Arguments resumed = run;
+  resumed.push_back("--resume");
+  const Outcome outcome = weft(resumed);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(contains(outcome.err, "the looks of the scene have changed, not its simulation")) << outcome.err;
+  const std::string pictures = decoded("a.mp4");
+  fs::remove(folder_ / "a.mp4");
+  expect_well(run);
+  EXPECT_EQ(decoded("a.mp4"), pictures);
 }
 
 TEST_F(KilledRun, ThatWasEditedIsNotResumedAndNotLost) {

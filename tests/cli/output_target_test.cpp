@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::cli {
 namespace {
@@ -19,6 +20,33 @@ TEST(FramePattern, RefusesNamesThatAllFramesWouldShareOrThatMeanSomethingElse) {
                            "{frame:0}.png", "{frame:-3}.png", "{frame:99}.png", "{}.png"}) {
     EXPECT_THROW(FramePattern{text}, Error) << text;
   }
+}
+
+class FramesOnDisk : public support::TestFolder {};
+
+TEST_F(FramesOnDisk, OfALongerRunAreRemovedByTheirExactNamesOnly) {
+  std::filesystem::create_directories(folder_ / "a_00009.png");
+  const std::vector<std::string> stays{"a_00002.png",  "a_00004.png", "a_3.png",     "a_000003.png", "a_-0003.png",
+                                       "a_00003x.png", "a_00003.jpg", "b_00003.png", "a_.png",       "xa_00003.png"};
+  const std::vector<std::string> goes{"a_00000.png", "a_00003.png", "a_00005.png", "a_123456.png"};
+  for (const auto& names : {stays, goes})
+    for (const std::string& name : names) support::write_bytes(folder_ / name, "x");
+  FramePattern((folder_ / "a_{frame:05}.png").string()).remove_others({2, 5, 2});
+  for (const std::string& name : stays) EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
+  for (const std::string& name : goes) EXPECT_FALSE(std::filesystem::exists(folder_ / name)) << name;
+  EXPECT_TRUE(std::filesystem::is_directory(folder_ / "a_00009.png"));
+}
+
+TEST_F(FramesOnDisk, InFoldersOfTheirOwnAreFoundToo) {
+  for (const char* name : {"00001/a.png", "00002/a.png", "00002/b.png", "x/a.png"}) {
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    support::write_bytes(folder_ / name, "x");
+  }
+  FramePattern((folder_ / "{frame:05}/a.png").string()).remove_others({0, 2, 1});
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "00001/a.png"));
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "00002/a.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "00002/b.png"));
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "x/a.png"));
 }
 
 TEST(OutputTarget, IsChosenByTheEnding) {

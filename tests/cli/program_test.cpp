@@ -13,7 +13,7 @@
 #include "cli/video_probe.hpp"
 #include "core/version.hpp"
 #include "image/png.hpp"
-#include "mesh/ply.hpp"
+#include "support/ply.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::cli {
@@ -211,10 +211,10 @@ TEST_F(Program, MeshesHoldEachObjectOfEachDrawnFrame) {
   for (const auto& entry : fs::directory_iterator(folder_ / "m")) meshes.insert(entry.path().filename());
   EXPECT_EQ(meshes, (std::set<std::string>{"ball_00000.ply", "ball_00004.ply", "cloth_00000.ply", "cloth_00004.ply",
                                            "floor_00000.ply", "floor_00004.ply"}));
-  const mesh::PlyMesh start = mesh::read_ply(folder_ / "m/cloth_00000.ply");
+  const support::PlyMesh start = support::read_ply(folder_ / "m/cloth_00000.ply");
   EXPECT_EQ(start.positions.size(), 20u);
   EXPECT_EQ(start.triangles.size(), 24u);  // 4 by 3 quads, each split in two
-  const mesh::PlyMesh end = mesh::read_ply(folder_ / "m/cloth_00004.ply");
+  const support::PlyMesh end = support::read_ply(folder_ / "m/cloth_00004.ply");
   EXPECT_LT(end.positions[0].z(), start.positions[0].z() - 0.05) << "the cloth did not fall";
   const Outcome again = run({"--meshes", "m", "--frames", "0:1", "-o", "other.mp4"});
   EXPECT_EQ(again.exit_code, 6);

@@ -15,7 +15,7 @@
 #include "cli/cached_run.hpp"
 #include "cli/video_probe.hpp"
 #include "image/png.hpp"
-#include "mesh/ply.hpp"
+#include "support/ply.hpp"
 
 namespace weft::cli {
 namespace {
@@ -38,7 +38,7 @@ class Robustness : public CachedRun {
       if (file.extension() == ".png") {
         EXPECT_NO_THROW(image::read_png(file));
       } else if (file.extension() == ".ply") {
-        EXPECT_NO_THROW(mesh::read_ply(file));
+        EXPECT_NO_THROW(support::read_ply(file));
       } else if (file.extension() == ".json") {
         EXPECT_TRUE(nlohmann::json::accept(support::read_bytes(file))) << file;
       } else if (file.extension() == ".mp4") {

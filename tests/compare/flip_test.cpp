@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "compare/pictures.hpp"
 
@@ -104,6 +105,108 @@ TEST(Flip, BlackAgainstWhiteIsTheDistanceOfItsColours) {
   const double largest = std::pow(203.3, 0.7), bend = 0.4 * largest;  // green to blue, from the table above
   const double expected = 0.95 + 0.05 * (std::pow(100, 0.7) - bend) / (largest - bend);
   for (const float value : map.values) ASSERT_NEAR(value, expected, 1e-4);
+}
+
+// The rest of the paper once more, straight from its formulas: kernels over the plane, in double, pixel by pixel. All
+// constants stand here again.
+namespace paper {
+
+constexpr double kPi = std::numbers::pi;
+using Map = std::vector<double>;
+
+struct Picture {
+  int width, height;
+  double at(const Map& map, int x, int y) const {
+    return map[static_cast<std::size_t>(std::clamp(y, 0, height - 1) * width + std::clamp(x, 0, width - 1))];
+  }
+  /// Convolution with a kernel whose positive values add up to 1, and the negative ones, if any, to -1.
+  template <class Kernel>
+  Map filtered(const Map& map, int radius, const Kernel& kernel) const {
+    double positive = 0, negative = 0;
+    for (int dy = -radius; dy <= radius; ++dy)
+      for (int dx = -radius; dx <= radius; ++dx) (kernel(dx, dy) > 0 ? positive : negative) += std::abs(kernel(dx, dy));
+    Map out(map.size());
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        for (int dy = -radius; dy <= radius; ++dy)
+          for (int dx = -radius; dx <= radius; ++dx) {
+            const double value = kernel(dx, dy);
+            out[static_cast<std::size_t>(y * width + x)] +=
+                value / (value > 0 ? positive : negative) * at(map, x - dx, y - dy);
+          }
+    return out;
+  }
+};
+
+// Table 1 and Section 4.1.1. The radius is three standard deviations of the widest Gaussian, exp(-pi^2 x^2 / 0.04).
+Map as_seen(const Picture& picture, const Map& map, int channel) {
+  struct {
+    double a1, b1, a2, b2;
+  } const table[] = {{1, 0.0047, 0, 1e-5}, {1, 0.0053, 0, 1e-5}, {34.1, 0.04, 13.5, 0.025}};
+  const auto& [a1, b1, a2, b2] = table[channel];
+  const auto kernel = [&, a1 = a1, b1 = b1, a2 = a2, b2 = b2](int dx, int dy) {
+    const double x_sq = (dx * dx + dy * dy) / (kPixelsPerDegree * kPixelsPerDegree);
+    return a1 * std::sqrt(kPi / b1) * std::exp(-kPi * kPi * x_sq / b1) +
+           a2 * std::sqrt(kPi / b2) * std::exp(-kPi * kPi * x_sq / b2);
+  };
+  return picture.filtered(map, static_cast<int>(std::ceil(3 * std::sqrt(0.04 / (2 * kPi * kPi)) * kPixelsPerDegree)),
+                          kernel);
+}
+
+// Section 4.2: the standard deviation is half of 0.082 degrees; ((|dF|) / sqrt 2)^(1/2), the larger of edges and
+// points.
+Map feature_difference(const Picture& picture, const Map& a, const Map& b) {
+  const double sigma = 0.5 * 0.082 * kPixelsPerDegree;
+  const int radius = static_cast<int>(std::ceil(3 * sigma));
+  const auto g = [&](int dx, int dy) { return std::exp(-(dx * dx + dy * dy) / (2 * sigma * sigma)); };
+  const auto strength = [&](const Map& map, const auto& derivative) {
+    Map dx = picture.filtered(map, radius, [&](int x, int y) { return derivative(x) * g(x, y); });
+    const Map dy = picture.filtered(map, radius, [&](int x, int y) { return derivative(y) * g(x, y); });
+    for (std::size_t i = 0; i < dx.size(); ++i) dx[i] = std::sqrt(dx[i] * dx[i] + dy[i] * dy[i]);
+    return dx;
+  };
+  const auto edge = [](int x) { return -static_cast<double>(x); };
+  const auto point = [&](int x) { return x * x / (sigma * sigma) - 1; };
+  const Map edges_a = strength(a, edge), edges_b = strength(b, edge);
+  const Map points_a = strength(a, point), points_b = strength(b, point);
+  Map difference(a.size());
+  for (std::size_t i = 0; i < a.size(); ++i)
+    difference[i] =
+        std::sqrt(std::max(std::abs(edges_a[i] - edges_b[i]), std::abs(points_a[i] - points_b[i])) / std::sqrt(2.0));
+  return difference;
+}
+
+}  // namespace paper
+
+// 1e-4: sums of a thousand terms in float, below a square root.
+TEST(Flip, FeaturesAreThoseOfThePapersKernels) {
+  const paper::Picture size{40, 32};
+  Plane<float> planes[] = {{size.width, size.height}, {size.width, size.height}};
+  Noise noise(7);
+  // Blocks, a line, points: edges of all lengths, between 0 and 1.
+  for (Plane<float>& plane : planes) {
+    std::fill(plane.values.begin(), plane.values.end(), 0.2f);
+    for (int block = 0; block < 6; ++block) {
+      const int left = noise.below(30), top = noise.below(24), wide = 1 + noise.below(9), high = 1 + noise.below(7);
+      for (int y = top; y < top + high; ++y) std::fill_n(plane.row(y) + left, wide, 0.1f * noise.below(11));
+    }
+  }
+  const auto map = [](const Plane<float>& plane) { return paper::Map(plane.values.begin(), plane.values.end()); };
+  const paper::Map expected = paper::feature_difference(size, map(planes[0]), map(planes[1]));
+  const Plane<float> found = flip::feature_difference(planes[0], planes[1]);
+  for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(found.values[i], expected[i], 1e-3) << i;
+}
+
+TEST(Flip, ChannelsAreSeenThroughThePapersKernels) {
+  const paper::Picture size{40, 32};
+  Plane<float> plane(size.width, size.height);
+  Noise noise(8);
+  for (float& value : plane.values) value = static_cast<float>(noise.below(101));
+  for (int channel = 0; channel < 3; ++channel) {
+    const paper::Map expected = paper::as_seen(size, paper::Map(plane.values.begin(), plane.values.end()), channel);
+    const Plane<float> found = flip::as_seen(plane, channel);
+    for (std::size_t i = 0; i < expected.size(); ++i) ASSERT_NEAR(found.values[i], expected[i], 1e-3) << i;
+  }
 }
 
 TEST(Flip, EqualImagesLookTheSame) {

@@ -1,7 +1,12 @@
 #include "core/temporary_file.hpp"
 
 #include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
+#include <array>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -94,11 +99,65 @@ TEST_F(TemporaryFileTest, SaysWhyAFolderCannotBeMade) {
 }
 
 TEST_F(TemporaryFileTest, SaysWhyADiskCannotTakeTheData) {
-  if (!fs::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
-  TemporaryFile temporary(folder_ / "a.txt");
-  fs::create_symlink("/dev/full", temporary.path());
-  EXPECT_THROW(write_file(folder_ / "a.txt", "x"), Error);  // the same temporary name, hence the full device
-  EXPECT_FALSE(fs::exists(folder_ / "a.txt"));
+  const auto handler = ::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const rlimit none{0, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &none), 0);
+  std::string told;
+  try {
+    write_file(folder_ / "a.txt", "x");
+  } catch (const Error& error) {
+    told = error.what();
+  }
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  ::signal(SIGXFSZ, handler);
+  EXPECT_EQ(told, (folder_ / "a.txt").string() + ": cannot be written: File too large");
+  EXPECT_EQ(entries(), 0u);
+}
+
+TEST_F(TemporaryFileTest, OfAKilledProcessIsRemovedByTheNextThatWritesThere) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const TemporaryFile half(folder_ / "a.txt");
+    const TemporaryName half_folder(folder_ / "page", TemporaryName::Kind::folder);
+    std::ofstream(half_folder.path() / "index.html") << "half";
+    ::raise(SIGKILL);
+  }
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  ASSERT_EQ(entries(), 2u);
+  std::ofstream(folder_ / ".notes.weft-12.txt") << "precious";
+  std::ofstream(folder_ / ".a.txt.weft-.tmp") << "precious";
+  std::ofstream(folder_ / "a.weft-12.tmp") << "precious";
+  std::ofstream(folder_ / ".a.txt.weft-1x2.tmp") << "precious";
+  write_file(folder_ / "b.txt", "whole");
+  EXPECT_EQ(entries(), 5u) << "b.txt and what only looks like a temporary name";
+}
+
+TEST_F(TemporaryFileTest, OfALivingProcessStays) {
+  std::array<int, 2> ready{}, done{};
+  ASSERT_EQ(::pipe(ready.data()) | ::pipe(done.data()), 0);
+  const pid_t child = ::fork();
+  char byte = 0;
+  if (child == 0) {
+    ::close(done[1]);
+    TemporaryFile file(folder_ / "a.txt");
+    std::ofstream(file.path()) << "whole";
+    if (::write(ready[1], "x", 1) == 1 && ::read(done[0], &byte, 1) == 0) file.commit();
+    ::_exit(0);
+  }
+  ASSERT_EQ(::read(ready[0], &byte, 1), 1);
+  write_file(folder_ / "b.txt", "other");
+  EXPECT_EQ(entries(), 2u) << "the temporary file of a living process is gone";
+  ::close(done[0]);
+  ::close(done[1]);
+  ASSERT_EQ(::waitpid(child, nullptr, 0), child);
+  EXPECT_EQ(content(folder_ / "a.txt"), "whole");
+}
+
+TEST_F(TemporaryFileTest, IsOneForEachFinalNameAtATime) {
+  const TemporaryFile first(folder_ / "a.txt");
+  EXPECT_THROW(TemporaryFile(folder_ / "a.txt"), Error);
 }
 
 }  // namespace

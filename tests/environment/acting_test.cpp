@@ -56,10 +56,9 @@ class Acting : public support::TestFolder {
     return make_actor(scene_, character_);
   }
   static std::vector<Vec3> at(const Actor& actor, double t) {
-    const std::vector<Vec3> zero(actor.mesh.positions.size(), Vec3::Zero());
-    Motion motion{zero, zero, zero};
-    actor.keys.at(t, motion);
-    return motion.positions;
+    std::vector<Vec3> positions(actor.mesh.positions.size());
+    actor.keys.at(t, positions);
+    return positions;
   }
   void expect_refused(ExitCode code, const std::string& words) {
     support::expect_error(code, words, [&] { make(); });
@@ -243,18 +242,18 @@ TEST_F(Acting, CharactersOfASceneMoveAsBodiesAfterItsObstacles) {
   character_.friction = 0.9;
   character_.source = file_;
   scene_.characters[0] = character_;
-  Environment environment(scene_);
+  const Environment environment(scene_);
   ASSERT_EQ(environment.bodies.size(), 2u);
   const BodyObject& body = environment.bodies[1];
   EXPECT_EQ(body.name, "rod");
   EXPECT_TRUE(body.character && body.moving && body.collide);
   EXPECT_EQ(body.friction, 0.9);
-  const auto start = body.motion.positions;
-  environment.move_to(1);
-  EXPECT_NEAR((body.motion.positions[0] - start[0]).norm(), 2, 1e-5);
-  EXPECT_NEAR(body.motion.velocities[0].norm(), 2, 1e-4);
-  environment.move_to(0);
-  EXPECT_EQ(body.motion.positions, start);
+  std::vector<Vec3> start(body.mesh.positions.size()), later = start;
+  environment.place(1, 0, start);
+  environment.place(1, 1, later);
+  EXPECT_EQ(start, body.mesh.positions);
+  EXPECT_NEAR((later[0] - start[0]).norm(), 2, 1e-5);
+  EXPECT_NEAR(environment.vertex(1, 0, 1).velocity.norm(), 2, 1e-4);
 }
 
 }  // namespace

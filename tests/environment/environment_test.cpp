@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "mesh/geometry.hpp"
+#include "support/mesh_measures.hpp"
 
 namespace weft::environment {
 namespace {
@@ -37,8 +38,15 @@ scene::Scene scene_with(const scene::Shape& shape, scene::UpAxis up = scene::UpA
   return scene;
 }
 
-Box3 bounds_of(const BodyObject& object) {
-  return mesh::bounding_box(object.motion.positions);
+/// Where the vertices of the first body are.
+std::vector<Vec3> placed(const Environment& environment, double t = 0, std::size_t body = 0) {
+  std::vector<Vec3> positions(environment.bodies[body].mesh.positions.size());
+  environment.place(body, t, positions);
+  return positions;
+}
+
+Box3 bounds_of(const Environment& environment, double t = 0, std::size_t body = 0) {
+  return mesh::bounding_box(placed(environment, t, body));
 }
 
 TEST(Cloth, IsGradedAsTheSceneSaysWithFractionsToMatch) {
@@ -87,23 +95,22 @@ TEST(Cloth, LiesInThePlaneOfItsPoseWithWeftAlongXAndWarpAlongY) {
         const Vec3 expected(10 - 1 + 0.5 * i, 20, 30 - 1.5 + 0.5 * j);
         EXPECT_LT((object.mesh.positions[k] - expected).norm(), kRounding);
         EXPECT_EQ(object.mesh.uv[k], Vec2(0.5 * i, 0.5 * j));
-        EXPECT_EQ(object.motion.positions[k], object.mesh.positions[k]);
-        EXPECT_EQ(object.motion.velocities[k], Vec3(1, 2, 3));
-        EXPECT_EQ(object.motion.accelerations[k], Vec3(0, 0, 0));
+        EXPECT_EQ(object.start[k], object.mesh.positions[k]);
       }
     }
+    EXPECT_EQ(object.velocity, Vec3(1, 2, 3));
   }
 }
 
 TEST(Shapes, TurnTheirAxisUpWhereYIsUp) {
   const scene::Cone cone{.radius = 0.5, .height = 3};
   const Environment z_up(scene_with(cone)), y_up(scene_with(cone, scene::UpAxis::y));
-  EXPECT_LT((bounds_of(z_up.bodies[0]).sizes() - Vec3(1, 1, 3)).norm(), kRounding);
-  EXPECT_LT((bounds_of(y_up.bodies[0]).sizes() - Vec3(1, 3, 1)).norm(), kRounding);
+  EXPECT_LT((bounds_of(z_up).sizes() - Vec3(1, 1, 3)).norm(), kRounding);
+  EXPECT_LT((bounds_of(y_up).sizes() - Vec3(1, 3, 1)).norm(), kRounding);
   // The tip: alone at the top.
   const auto& body = y_up.bodies[0].mesh.positions;
   EXPECT_EQ(std::count_if(body.begin(), body.end(), [](const Vec3& x) { return x.y() > 1.499; }), 1);
-  EXPECT_GT(mesh::enclosed_volume(y_up.bodies[0].mesh.topology.triangles, body), 0);
+  EXPECT_GT(support::enclosed_volume(y_up.bodies[0].mesh.topology.triangles, body), 0);
 }
 
 TEST(Shapes, AreMadeAsTheSceneSaysInTheSameOrder) {
@@ -130,7 +137,7 @@ TEST(Shapes, AreMadeAsTheSceneSaysInTheSameOrder) {
     ASSERT_EQ(environment.bodies.size(), cases.size());
     for (std::size_t k = 0; k < cases.size(); ++k) {
       const Vec3& expected = up == scene::UpAxis::z ? cases[k].z_up : cases[k].y_up;
-      EXPECT_LT((bounds_of(environment.bodies[k]).sizes() - expected).norm(), kRounding) << k;
+      EXPECT_LT((bounds_of(environment, 0, k).sizes() - expected).norm(), kRounding) << k;
       EXPECT_EQ(environment.bodies[k].infinite_floor, k == 5);
     }
   }
@@ -138,8 +145,8 @@ TEST(Shapes, AreMadeAsTheSceneSaysInTheSameOrder) {
 
 TEST(HalfPipe, OpensAgainstGravityWhicheverAxisIsUp) {
   const scene::HalfPipe pipe{.radius = 1, .length = 4, .thickness = 0.5};
-  EXPECT_NEAR(bounds_of(Environment(scene_with(pipe)).bodies[0]).max().z(), 0, kRounding);
-  EXPECT_NEAR(bounds_of(Environment(scene_with(pipe, scene::UpAxis::y)).bodies[0]).max().y(), 0, kRounding);
+  EXPECT_NEAR(bounds_of(Environment(scene_with(pipe))).max().z(), 0, kRounding);
+  EXPECT_NEAR(bounds_of(Environment(scene_with(pipe, scene::UpAxis::y))).max().y(), 0, kRounding);
 }
 
 TEST(Plane, FacesUpAndIsNoFloorToTheHorizonIfFinite) {
@@ -149,7 +156,7 @@ TEST(Plane, FacesUpAndIsNoFloorToTheHorizonIfFinite) {
     EXPECT_FALSE(plane.infinite_floor);
     const Vec3 normal = up == scene::UpAxis::z ? Vec3(0, 0, 1) : Vec3(0, 1, 0);
     for (const auto& t : plane.mesh.topology.triangles)
-      EXPECT_LT((mesh::area_vector(t, plane.motion.positions) - 2 * normal).norm(), kRounding);
+      EXPECT_LT((mesh::area_vector(t, placed(environment)) - 2 * normal).norm(), kRounding);
   }
 }
 
@@ -157,17 +164,14 @@ TEST(Obstacle, AtRestStandsAtItsPoseForAllTimes) {
   scene::Scene scene = scene_with(scene::BoxShape{.size = {2, 4, 6}, .bevel = 0});
   scene.obstacles[0].pose = {{1, 2, 3}, about({0, 0, 1}, kPi / 2)};
   scene.obstacles[0].collide = false;
-  Environment environment(scene);
-  const BodyObject& box = environment.bodies[0];
-  EXPECT_FALSE(box.moving);
-  EXPECT_FALSE(box.collide);
+  const Environment environment(scene);
+  EXPECT_FALSE(environment.bodies[0].moving);
+  EXPECT_FALSE(environment.bodies[0].collide);
   for (const double t : {0.0, 5.0}) {
-    environment.move_to(t);
-    EXPECT_LT((bounds_of(box).min() - Vec3(-1, 1, 0)).norm(), kRounding);
-    EXPECT_LT((bounds_of(box).max() - Vec3(3, 3, 6)).norm(), kRounding);
-    for (const Vec3& v : box.motion.velocities) EXPECT_EQ(v, Vec3(0, 0, 0));
-    for (const Vec3& a : box.motion.accelerations) EXPECT_EQ(a, Vec3(0, 0, 0));
+    EXPECT_LT((bounds_of(environment, t).min() - Vec3(-1, 1, 0)).norm(), kRounding);
+    EXPECT_LT((bounds_of(environment, t).max() - Vec3(3, 3, 6)).norm(), kRounding);
   }
+  EXPECT_EQ(placed(environment, 0), placed(environment, 5));
 }
 
 scene::Scene scene_with_tumbling_torus() {
@@ -179,47 +183,33 @@ scene::Scene scene_with_tumbling_torus() {
   return scene;
 }
 
-TEST(Obstacle, InMotionStartsWithTheStateOfTimeZero) {
-  Environment environment(scene_with_tumbling_torus());
+TEST(Obstacle, InMotionIsElsewhereAtAnotherTimeAndKeepsItsShapeAndFollowsItsPose) {
+  const Environment environment(scene_with_tumbling_torus());
   ASSERT_TRUE(environment.bodies[0].moving);
-  const Motion start = environment.bodies[0].motion;
-  EXPECT_GT(start.velocities[0].norm(), 0);
-  environment.move_to(1);
-  EXPECT_NE(environment.bodies[0].motion.positions, start.positions);
-  environment.move_to(0);
-  EXPECT_EQ(environment.bodies[0].motion.positions, start.positions);
-  EXPECT_EQ(environment.bodies[0].motion.velocities, start.velocities);
-}
-
-TEST(Obstacle, InMotionKeepsItsShapeAndFollowsItsPose) {
-  Environment environment(scene_with_tumbling_torus());
-  const BodyObject& torus = environment.bodies[0];
+  EXPECT_NE(placed(environment, 1), placed(environment, 0));
+  const std::vector<Vec3>& torus = environment.bodies[0].mesh.positions;
   for (const double t : {0.2, 0.5, 1.7, 9.0}) {
-    environment.move_to(t);
+    const std::vector<Vec3> x = placed(environment, t);
     const PoseSample pose = environment.pose(0, t);
-    for (std::size_t i = 0; i < torus.mesh.positions.size(); ++i) {
-      const Vec3 expected = pose.position + pose.rotation * torus.mesh.positions[i];
-      EXPECT_LT((torus.motion.positions[i] - expected).norm(), kRounding);
-    }
+    for (std::size_t i = 0; i < x.size(); ++i)
+      EXPECT_LT((x[i] - (pose.position + pose.rotation * torus[i])).norm(), kRounding);
   }
 }
 
 TEST(Obstacle, InMotionHasTheVelocityAndAccelerationOfEachVertex) {
-  Environment environment(scene_with_tumbling_torus());
-  const BodyObject& torus = environment.bodies[0];
+  const Environment environment(scene_with_tumbling_torus());
   const double h = 1e-4;
   for (const double t : {0.25, 1.1}) {
-    environment.move_to(t - h);
-    const auto before = torus.motion.positions;
-    environment.move_to(t + h);
-    const auto after = torus.motion.positions;
-    environment.move_to(t);
+    const std::vector<Vec3> before = placed(environment, t - h), now = placed(environment, t),
+                            after = placed(environment, t + h);
+    const PoseSample pose = environment.pose(0, t);
     for (std::size_t i = 0; i < before.size(); ++i) {
+      const Vec3 arm = now[i] - pose.position;
       const Vec3 velocity = (after[i] - before[i]) / (2 * h);
-      const Vec3 acceleration = (after[i] - 2 * torus.motion.positions[i] + before[i]) / (h * h);
+      const Vec3 acceleration = (after[i] - 2 * now[i] + before[i]) / (h * h);
       // h²/6 and h²/12 times derivatives below 500, and rounding 4e-16 / h² of the second difference.
-      EXPECT_LT((torus.motion.velocities[i] - velocity).norm(), 1e-6);
-      EXPECT_LT((torus.motion.accelerations[i] - acceleration).norm(), 1e-6);
+      EXPECT_LT((pose.velocity_at(arm) - velocity).norm(), 1e-6);
+      EXPECT_LT((pose.acceleration_at(arm) - acceleration).norm(), 1e-6);
     }
   }
 }
@@ -229,7 +219,7 @@ TEST(MeshFile, IsLoadedScaledAndTakenAsItLiesWhicheverAxisIsUp) {
   std::ofstream(file) << "v 0 0 0\nv 1 0 0\nv 0 2 0\nf 1 2 3\n";
   const Environment environment(scene_with(scene::MeshFile{.path = file, .scale = 0.5}, scene::UpAxis::y));
   fs::remove(file);
-  EXPECT_EQ(environment.bodies[0].motion.positions, (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}}));
+  EXPECT_EQ(placed(environment), (std::vector<Vec3>{{0, 0, 0}, {0.5, 0, 0}, {0, 1, 0}}));
 }
 
 TEST(MeshFile, ThatIsMissingIsNamedWithTheSceneLine) {

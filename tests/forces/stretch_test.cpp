@@ -91,10 +91,10 @@ TEST(Stretch, CautiousFormStiffensAShortEdgeByWhatCompressionSoftens) {
   };
   const double along = 500;  // k A / l², half a spacing wide [N/m]
   EXPECT_NEAR(across(0.08, Linearisation::exact), -0.25 * along, 1e-9);
-  EXPECT_NEAR(across(0.08, Linearisation::cautious), 0.25 * along, 1e-9);
+  EXPECT_NEAR(across(0.08, Linearisation::abs_projected), 0.25 * along, 1e-9);
   EXPECT_NEAR(across(0.08, Linearisation::definite), 0, 1e-9);
   EXPECT_NEAR(across(0.01, Linearisation::exact), -9 * along, 1e-9);
-  EXPECT_NEAR(across(0.01, Linearisation::cautious), along, 1e-9);
+  EXPECT_NEAR(across(0.01, Linearisation::abs_projected), along, 1e-9);
 }
 
 }  // namespace

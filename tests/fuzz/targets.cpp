@@ -25,7 +25,6 @@
 #include "garment/pattern.hpp"
 #include "garment/svg.hpp"
 #include "image/png.hpp"
-#include "mesh/ply.hpp"
 #include "scene/loader.hpp"
 
 namespace weft::fuzz {
@@ -132,15 +131,6 @@ void read_image(Bytes bytes) {
   });
 }
 
-void read_ply(Bytes bytes) {
-  may_refuse({ExitCode::asset_unreadable}, [&] {
-    const mesh::PlyMesh read = mesh::read_ply(MemoryFile(bytes).path());
-    for (const auto& triangle : read.triangles)
-      for (const Index v : triangle)
-        require(v >= 0 && static_cast<std::size_t>(v) < read.positions.size(), "vertices of faces exist");
-  });
-}
-
 // What a process of our own sends back after it has read a file; it may have been damaged by that file.
 template <auto decode>
 void read_answer(Bytes bytes) {
@@ -204,7 +194,6 @@ constexpr std::array kTargets{Target{"scene", read_scene},
                               Target{"svg", read_svg},
                               Target{"outline", read_outline},
                               Target{"image", read_image},
-                              Target{"ply", read_ply},
                               Target{"character", read_answer<assets::character_from_bytes>},
                               Target{"mesh", read_answer<assets::from_bytes>},
                               Target{"container", read_container},

@@ -10,6 +10,7 @@
 #include "garment/pattern.hpp"
 #include "garment/triangulation.hpp"
 #include "mesh/topology.hpp"
+#include "support/mesh_measures.hpp"
 
 namespace weft::garment {
 namespace {
@@ -78,7 +79,7 @@ TEST(PanelMeshes, AreDelaunay) {
 TEST(PanelMeshes, OfWholeSquaresAreSquaresUpToTheOutline) {
   const FlatMesh mesh = mesh_panel(cut({{-0.2, 0}, {0.2, 0}, {0.2, 0.3}, {-0.2, 0.3}}, 0.1), {0, 1}, 0.1);
   EXPECT_EQ(mesh.points.size(), 5U * 4U);
-  for (const mesh::Triangle& t : mesh.triangles) EXPECT_NEAR(smallest_angle(t, mesh.points), 45, 1e-9);
+  for (const mesh::Triangle& t : mesh.triangles) EXPECT_NEAR(support::smallest_angle(t, mesh.points), 45, 1e-9);
 }
 
 TEST(PanelMeshes, InnerLatticePointsHaveSixNeighbours) {
@@ -112,7 +113,7 @@ TEST(PanelMeshes, AnglesOfThePatternsThatShipAreAtLeast23Degrees) {
         Index at = 0;
         for (int n : segments) corners.push_back(at), at += n;
         for (const mesh::Triangle& t : mesh.triangles) {
-          const double angle = smallest_angle(t, mesh.points);
+          const double angle = support::smallest_angle(t, mesh.points);
           mean += angle, ++count;
           const bool at_corner =
               std::ranges::any_of(t, [&](Index v) { return std::ranges::find(corners, v) != corners.end(); });

@@ -38,13 +38,12 @@ struct Errors {
 
 // One step from a point of the exact motion, with an exact history or with none (r = 0).
 Errors errors_of_one_step(Method method, double h, double r) {
-  const testing::HardeningSpring spring;
+  testing::HardeningSpring spring;
   const State now{{Vec3(1, 0.2, -0.3)}, {Vec3(0.1, 0.8, 0.4)}};
   Stepper stepper(method, kTight);
-  solver::LinearSystem scratch = spring.make_linear_system();
   if (r > 0) stepper.accept(moved(now, -h / r), h / r);
   State next;
-  const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, scratch, next);
+  const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, next);
   EXPECT_EQ(report.verdict, Verdict::solved);
   return {report.local_error, (next.x[0] - moved(now, h).x[0]).norm()};
 }
@@ -78,9 +77,8 @@ TEST(LocalError, WithoutAHistoryIsThatOfEuler) {
 
 TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
   // Free fall with Euler: every free particle is ahead by ½ h² g.
-  const testing::Spring nothing(0, {1, 3, 2});
-  solver::LinearSystem scratch = nothing.make_linear_system();
-  scratch.parts = {{0, 2}, {2, 3}};
+  testing::Spring nothing(0, {1, 3, 2});
+  nothing.linear_system().parts = {{0, 2}, {2, 3}};
   const Vec3 g(0, 0, -10);
   const double h = 0.1, ahead = 0.5 * h * h * 10;
   const State now{std::vector<Vec3>(3, Vec3::Zero()), std::vector<Vec3>(3, Vec3::Zero())};
@@ -89,7 +87,7 @@ TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
     std::vector<HeldParticle> held;
     for (Index p : held_particles) held.push_back({{p, Mat3::Zero()}, Vec3::Zero(), Vec3::Zero()});
     Stepper stepper(Method::implicit_euler, kTight);
-    return stepper.step(nothing, now, h, g, held, scratch, next).local_error;
+    return stepper.step(nothing, now, h, g, held, next).local_error;
   };
   EXPECT_NEAR(error_with({}), ahead, 1e-12);
   EXPECT_NEAR(error_with({1, 2}), std::sqrt(1.0 / 4) * ahead, 1e-12);
@@ -183,8 +181,7 @@ struct Growth {
 };
 Growth change_while_growing(double r) {
   constexpr double kOmega = 1e4, kOff = 0.1;
-  const testing::Spring spring(kOmega * kOmega);
-  solver::LinearSystem scratch = spring.make_linear_system();
+  testing::Spring spring(kOmega * kOmega);
   // Here x − x̂ = −β² ω² x: to six digits above the rounding of x.
   Stepper stepper(Method::bdf2, {.tolerance = 1e-6, .max_iterations = 40, .linear_tolerance = 1e-12});
   double h = 1e-4 / kOmega, before = 1 + kOff, now = 1, v_before = 0, v_now = 0;
@@ -198,7 +195,7 @@ Growth change_while_growing(double r) {
     const double x = (x_hat + beta * v_hat) / (1 + beta * beta * kOmega * kOmega);
     before = std::exchange(now, x);
     v_before = std::exchange(v_now, (x - x_hat) / beta);
-    EXPECT_EQ(stepper.step(spring, state, h, Vec3::Zero(), {}, scratch, next).verdict, Verdict::solved);
+    EXPECT_EQ(stepper.step(spring, state, h, Vec3::Zero(), {}, next).verdict, Verdict::solved);
     stepper.accept(state, h);
     std::swap(state, next);
     ++steps;
@@ -221,14 +218,13 @@ TEST(Bdf2Ratio, UpToTheBoundErrorsOfTheHistoryFadeAndBeyondTheyGrow) {
 TEST(Bdf2Ratio, StiffOscillatorDecaysWhateverTheStepsWithinTheBound) {
   // Steps that double seven times and then fall back at once, around y = ω h from 1 to 128.
   constexpr double kOmega = 1e3;
-  const testing::Spring spring(kOmega * kOmega);
-  solver::LinearSystem scratch = spring.make_linear_system();
+  testing::Spring spring(kOmega * kOmega);
   Stepper stepper(Method::bdf2, kTight);
   State now{{Vec3(1, 0, 0)}, {Vec3::Zero()}}, next;
   double size = 1;
   for (int s = 0; s < 160; ++s) {
     const double h = std::ldexp(1 / kOmega, s % 8);
-    ASSERT_EQ(stepper.step(spring, now, h, Vec3::Zero(), {}, scratch, next).verdict, Verdict::solved);
+    ASSERT_EQ(stepper.step(spring, now, h, Vec3::Zero(), {}, next).verdict, Verdict::solved);
     stepper.accept(now, h);
     std::swap(now, next);
     size = std::hypot(now.x[0].x(), now.v[0].x() / kOmega);

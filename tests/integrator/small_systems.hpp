@@ -18,29 +18,25 @@ inline const NewtonParameters kTight{
 /// Particles that do not know of each other.
 class Particles : public System {
  public:
-  explicit Particles(std::vector<double> masses) : masses_(std::move(masses)) {}
+  explicit Particles(std::vector<double> masses) : masses_(std::move(masses)) {
+    system_.matrix = solver::BlockMatrix(static_cast<Index>(masses_.size()), {});
+  }
 
   std::span<const double> masses() const override { return masses_; }
   void explicit_forces(const State&, double, bool, std::span<Vec3>) const override {}
-  void forces(const StagePoint& at, std::span<Vec3> force) const override {
+  void forces(const StagePoint& at, std::span<Vec3> force) override {
     for (std::size_t i = 0; i < masses_.size(); ++i) force[i] += force_on(at.x[i]);
   }
-  void linearise(const StagePoint& at, std::span<Vec3> force, solver::LinearSystem& system) const override {
+  void linearise(const StagePoint& at, int, std::span<Vec3> force) override {
     forces(at, force);
-    system.matrix.set_zero();
-    system.terms.clear();
+    system_.matrix.set_zero();
     for (std::size_t i = 0; i < masses_.size(); ++i) {
-      const solver::Slot slot = system.matrix.diagonal(static_cast<Index>(i));
-      system.matrix.add_scalar(slot, at.rate * at.rate * masses_[i]);
-      system.matrix.add(slot, stiffness_of(at.x[i]));
+      const solver::Slot slot = system_.matrix.diagonal(static_cast<Index>(i));
+      system_.matrix.add_scalar(slot, at.rate * at.rate * masses_[i]);
+      system_.matrix.add(slot, stiffness_of(at.x[i]));
     }
   }
-
-  solver::LinearSystem make_linear_system() const {
-    solver::LinearSystem system;
-    system.matrix = solver::BlockMatrix(static_cast<Index>(masses_.size()), {});
-    return system;
-  }
+  solver::LinearSystem& linear_system() override { return system_; }
 
  protected:
   virtual Vec3 force_on(const Vec3& x) const = 0;      ///< [N]
@@ -48,6 +44,7 @@ class Particles : public System {
 
  private:
   std::vector<double> masses_;
+  solver::LinearSystem system_;
 };
 
 /// f = −k x on one particle of 1 kg, or on several.
@@ -83,21 +80,23 @@ class Saddle final : public System {
   explicit Saddle(double s) : s_(s) {}
   std::span<const double> masses() const override { return masses_; }
   void explicit_forces(const State&, double, bool, std::span<Vec3>) const override {}
-  void forces(const StagePoint& at, std::span<Vec3> force) const override {
+  void forces(const StagePoint& at, std::span<Vec3> force) override {
     force[0] -= s_ * at.x[1];
     force[1] -= s_ * at.x[0];
   }
-  void linearise(const StagePoint& at, std::span<Vec3> force, solver::LinearSystem& system) const override {
+  void linearise(const StagePoint& at, int, std::span<Vec3> force) override {
     forces(at, force);
-    system.matrix = solver::BlockMatrix(2, {{0, 1}});
+    system_.matrix = solver::BlockMatrix(2, {{0, 1}});
     for (Index i : {0, 1}) {
-      system.matrix.add_scalar(system.matrix.diagonal(i), at.rate * at.rate);
-      system.matrix.add_scalar(system.matrix.slot(i, 1 - i), s_);
+      system_.matrix.add_scalar(system_.matrix.diagonal(i), at.rate * at.rate);
+      system_.matrix.add_scalar(system_.matrix.slot(i, 1 - i), s_);
     }
   }
+  solver::LinearSystem& linear_system() override { return system_; }
 
  private:
   double s_;
+  solver::LinearSystem system_;
   std::vector<double> masses_{1, 1};
 };
 

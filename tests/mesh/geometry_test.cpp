@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "mesh/shapes.hpp"
+#include "support/mesh_measures.hpp"
 
 namespace weft::mesh {
 namespace {
@@ -21,10 +22,10 @@ TEST(Area, OfATetrahedronIsThatOfItsFourSides) {
 }
 
 TEST(Volume, OfATetrahedronIsASixthOfItsBoxAndNegativeInsideOut) {
-  EXPECT_NEAR(enclosed_volume(kTetrahedron, kCorners), 1, kRounding);
+  EXPECT_NEAR(support::enclosed_volume(kTetrahedron, kCorners), 1, kRounding);
   auto inside_out = kTetrahedron;
   for (Triangle& t : inside_out) std::swap(t[0], t[1]);
-  EXPECT_NEAR(enclosed_volume(inside_out, kCorners), -1, kRounding);
+  EXPECT_NEAR(support::enclosed_volume(inside_out, kCorners), -1, kRounding);
 }
 
 TEST(Volume, OfATinyBodyFarFromTheOriginKeepsItsDigits) {
@@ -32,7 +33,7 @@ TEST(Volume, OfATinyBodyFarFromTheOriginKeepsItsDigits) {
   const double size = std::round(std::ldexp(1.0 / 3, 30)) * std::ldexp(1.0, -40);
   auto far = kCorners;
   for (Vec3& x : far) x = size * x + Vec3(1024, -2048, 4096);
-  EXPECT_NEAR(enclosed_volume(kTetrahedron, far) / (size * size * size), 1, kRounding);
+  EXPECT_NEAR(support::enclosed_volume(kTetrahedron, far) / (size * size * size), 1, kRounding);
 }
 
 TEST(VertexNormals, WeighTrianglesByTheirArea) {

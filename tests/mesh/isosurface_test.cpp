@@ -7,6 +7,7 @@
 
 #include "mesh/geometry.hpp"
 #include "mesh/topology.hpp"
+#include "support/mesh_measures.hpp"
 
 namespace weft::mesh {
 namespace {
@@ -46,7 +47,7 @@ TEST(Isosurface, BorderLiesInThePlaneAndNowhereElse) {
 
 TEST(Isosurface, MirroredSurfaceIsClosedAndItsImageListAnInvolution) {
   const MirroredMesh whole = join_mirror_image(half_of(torus, 0.06));
-  EXPECT_TRUE(inspect(whole.mesh.topology.triangles, whole.mesh.positions.size()).watertight());
+  EXPECT_TRUE(support::watertight(inspect(whole.mesh.topology.triangles, whole.mesh.positions.size())));
   const auto edges = collect_edges(whole.mesh.topology.triangles).edges.size();
   EXPECT_EQ(whole.mesh.positions.size() + whole.mesh.topology.triangles.size(), edges) << "a torus has one hole";
   for (std::size_t v = 0; v < whole.image.size(); ++v) {
@@ -63,7 +64,7 @@ TEST(Isosurface, RemeshedSphereHasEvenTrianglesOnTheSurface) {
   const MirroredMesh whole = join_mirror_image(half);
   const auto& triangles = whole.mesh.topology.triangles;
   const auto& x = whole.mesh.positions;
-  EXPECT_TRUE(inspect(triangles, x.size()).watertight());
+  EXPECT_TRUE(support::watertight(inspect(triangles, x.size())));
   for (const Vec3& p : x) EXPECT_NEAR(p.norm(), 0.5, 1e-9);
   for (const Triangle& t : triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -75,7 +76,7 @@ TEST(Isosurface, RemeshedSphereHasEvenTrianglesOnTheSurface) {
     }
   }
   // An inscribed polyhedron of edges 0.1 r lacks a few thousandths.
-  EXPECT_NEAR(enclosed_volume(triangles, x), std::numbers::pi / 6, 0.005);
+  EXPECT_NEAR(support::enclosed_volume(triangles, x), std::numbers::pi / 6, 0.005);
 }
 
 TEST(Isosurface, FollowsASizeThatChanges) {

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/error.hpp"
+#include "support/ply.hpp"
 
 namespace weft::mesh {
 namespace {
@@ -71,7 +72,7 @@ TEST_F(Ply, FilesHoldLittleEndianDoublesAndTriangles) {
 
 TEST_F(Ply, ReadsBackBitForBit) {
   write_ply(file(), kPositions, kTriangles);
-  const PlyMesh mesh = read_ply(file());
+  const support::PlyMesh mesh = support::read_ply(file());
   ASSERT_EQ(mesh.positions.size(), kPositions.size());
   EXPECT_EQ(std::memcmp(mesh.positions.data(), kPositions.data(), 3 * sizeof(Vec3)), 0);
   EXPECT_EQ(mesh.triangles, kTriangles);
@@ -79,7 +80,7 @@ TEST_F(Ply, ReadsBackBitForBit) {
 
 TEST_F(Ply, OfNothingIsAFileToo) {
   write_ply(file(), {}, {});
-  const PlyMesh mesh = read_ply(file());
+  const support::PlyMesh mesh = support::read_ply(file());
   EXPECT_TRUE(mesh.positions.empty());
   EXPECT_TRUE(mesh.triangles.empty());
 }
@@ -87,7 +88,7 @@ TEST_F(Ply, OfNothingIsAFileToo) {
 TEST_F(Ply, ReplacesAnOlderFileAndLeavesNothingElse) {
   put("older");
   write_ply(file(), kPositions, kTriangles);
-  EXPECT_EQ(read_ply(file()).triangles, kTriangles);
+  EXPECT_EQ(support::read_ply(file()).triangles, kTriangles);
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1);
 }
 
@@ -95,47 +96,6 @@ TEST_F(Ply, ToAPlaceThatCannotBeWrittenIsAnOutputError) {
   put("a file where a folder is needed");
   const std::string text = error_of([&] { write_ply(file() / "mesh.ply", kPositions, kTriangles); });
   EXPECT_EQ(text.substr(0, 2), "6 ") << text;
-}
-
-TEST_F(Ply, ThatIsMissingIsAnAssetError) {
-  EXPECT_EQ(error_of([&] { read_ply(file()); }), "4 " + file().string() + ": cannot be read");
-}
-
-TEST_F(Ply, CutShortAnywhereIsRefused) {
-  write_ply(file(), kPositions, kTriangles);
-  const std::string whole = bytes_of(file());
-  for (std::size_t length = 0; length < whole.size(); ++length) {
-    put(whole.substr(0, length));
-    EXPECT_EQ(error_of([&] { read_ply(file()); }).substr(0, 2), "4 ") << length;
-  }
-  put(whole + "x");
-  EXPECT_EQ(error_of([&] { read_ply(file()); }).substr(0, 2), "4 ");
-}
-
-TEST_F(Ply, WithAVertexIndexOutOfRangeIsRefused) {
-  for (const Index wrong : {3, -1}) {
-    write_ply(file(), kPositions, Triangles{{0, 1, wrong}});
-    EXPECT_EQ(error_of([&] { read_ply(file()); }), "4 " + file().string() +
-                                                       ": expected a PLY file written by Weft: a face names a vertex "
-                                                       "that is not there");
-  }
-}
-
-TEST_F(Ply, WithAFaceOfFourCornersIsRefused) {
-  write_ply(file(), kPositions, kTriangles);
-  std::string bytes = bytes_of(file());
-  bytes[bytes.size() - 13] = 4;
-  put(bytes);
-  EXPECT_EQ(error_of([&] { read_ply(file()); }),
-            "4 " + file().string() + ": expected a PLY file written by Weft: a face is no triangle");
-}
-
-TEST_F(Ply, WithCountsThatOverflowIsRefusedWithoutAllocating) {
-  write_ply(file(), kPositions, kTriangles);
-  std::string bytes = bytes_of(file());
-  bytes.replace(bytes.find("vertex 3"), 8, "vertex 9999999999");
-  put(bytes);
-  EXPECT_EQ(error_of([&] { read_ply(file()); }).substr(0, 2), "4 ");
 }
 
 }  // namespace

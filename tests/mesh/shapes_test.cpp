@@ -10,6 +10,7 @@
 #include <string>
 
 #include "mesh/geometry.hpp"
+#include "support/mesh_measures.hpp"
 
 namespace weft::mesh {
 namespace {
@@ -20,7 +21,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr double kRounding = 1e-12;
 
 double volume(const Mesh& mesh) {
-  return enclosed_volume(mesh.topology.triangles, mesh.positions);
+  return support::enclosed_volume(mesh.topology.triangles, mesh.positions);
 }
 
 /// Area of a regular polygon with its corners on the unit circle.
@@ -91,7 +92,7 @@ class ClosedShapes : public testing::TestWithParam<ClosedShape> {};
 TEST_P(ClosedShapes, AreWatertightOnePieceAndFaceOutward) {
   const Mesh& mesh = GetParam().mesh;
   const TopologyReport report = inspect(mesh.topology.triangles, mesh.positions.size());
-  EXPECT_TRUE(report.watertight());
+  EXPECT_TRUE(support::watertight(report));
   const auto count = [](const auto& list) { return static_cast<int>(list.size()); };
   const EdgeSet edges = collect_edges(mesh.topology.triangles);
   EXPECT_EQ(count(mesh.positions) - count(edges.edges) + count(mesh.topology.triangles), GetParam().euler);

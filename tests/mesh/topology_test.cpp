@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "support/mesh_measures.hpp"
+
 namespace weft::mesh {
 namespace {
 
@@ -48,24 +50,11 @@ TEST(Edges, WithThreeTrianglesAreReportedAndKeepTheFirstTwo) {
   EXPECT_EQ(set.edges[0].triangles, (Pair{0, 1}));
 }
 
-TEST(Incidence, ListsTheTrianglesAroundEachVertexInOrder) {
-  const Incidence incidence = collect_incidence(kSquare, 5);
-  const auto around = [&](Index v) {
-    const auto row = incidence.around(v);
-    return std::vector<Index>(row.begin(), row.end());
-  };
-  EXPECT_EQ(around(0), (std::vector<Index>{0, 1}));
-  EXPECT_EQ(around(1), (std::vector<Index>{0}));
-  EXPECT_EQ(around(2), (std::vector<Index>{0, 1}));
-  EXPECT_EQ(around(3), (std::vector<Index>{1}));
-  EXPECT_TRUE(around(4).empty());
-}
-
 TEST(Inspection, CallsATetrahedronWatertightAndASquareMerelyManifold) {
-  EXPECT_TRUE(inspect(kTetrahedron, 4).watertight());
+  EXPECT_TRUE(support::watertight(inspect(kTetrahedron, 4)));
   const TopologyReport square = inspect(kSquare, 4);
   EXPECT_TRUE(square.manifold());
-  EXPECT_FALSE(square.watertight());
+  EXPECT_FALSE(support::watertight(square));
   EXPECT_EQ(square.border, (Pairs{{0, 1}, {0, 3}, {1, 2}, {2, 3}}));
 }
 

@@ -32,5 +32,5 @@ while read -r line; do
     *) [ -n "$only" ] || draw $line || exit ;;
   esac
 done <"$here/stills.txt"
-[ -n "$only" ] && exec "$weft" diff "$here/references" "$output/$only.png" --heatmap "$output/differences"
-exec "$weft" diff "$here/references" "$output" --heatmap "$output/differences"
+[ -n "$only" ] && exec "$weft" diff "$here/references" "$output/$only.png" --heatmap "$output/differences" --overwrite
+exec "$weft" diff "$here/references" "$output" --heatmap "$output/differences" --overwrite

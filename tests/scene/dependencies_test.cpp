@@ -85,7 +85,7 @@ TEST_F(Dependencies, EachFileIsReadOnce) {
   const LoadResult result =
       load_text("obstacle = [{ name = 'a', shape = 'mesh', file = 'a.obj' }]\n", folder_ / "s.toml");
   int count = 0;
-  for_each_dependency(result.scene, [&](std::string_view) { ++count; });
+  for_each_dependency(result.scene, [&](const auto&, std::string_view) { ++count; });
   EXPECT_EQ(count, 2);
 }
 

@@ -64,7 +64,7 @@ struct Pinned {
     return held;
   }
   const Vec3& start(const integrator::HeldParticle& held) const {
-    return environment.cloths[0].motion.positions[static_cast<std::size_t>(held.constraint.particle)];
+    return environment.cloths[0].start[static_cast<std::size_t>(held.constraint.particle)];
   }
 };
 

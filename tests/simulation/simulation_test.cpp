@@ -190,7 +190,7 @@ TEST_P(EverySearch, FindsTheFirstContactsThatTheDefaultFindsAndKeepsTheSheetApar
 
 INSTANTIATE_TEST_SUITE_P(
     Of, EverySearch,
-    ::testing::Values([](scene::Search& s) { s.bounds = scene::Bounds::dop14; },
+    ::testing::Values([](scene::Search& s) { s.bounds = scene::Bounds::dop18; },
                       [](scene::Search& s) { s.bounds = scene::Bounds::dop18, s.tree = scene::TreeKind::binary; },
                       [](scene::Search& s) { s.bounds = scene::Bounds::dop26, s.tree = scene::TreeKind::quad; },
                       [](scene::Search& s) { s.leaf = 1, s.open_longer_side = true; },

@@ -95,6 +95,40 @@ inline Eigen::MatrixXd dense(const BlockMatrix& matrix) {
   return full;
 }
 
+/// The matrix with what stands beside it.
+inline Eigen::MatrixXd dense_with_terms(const LinearSystem& system) {
+  Eigen::MatrixXd a = dense(system.matrix);
+  for (const DiagonalTerm& term : system.diagonal_terms)
+    a.block<3, 3>(3 * term.particle, 3 * term.particle) += term.stiffness;
+  for (const StencilTerm& term : system.terms)
+    for (std::size_t p = 0; p < 4; ++p)
+      for (std::size_t q = 0; q < 4; ++q)
+        a.block<3, 3>(3 * term.particles[p], 3 * term.particles[q]) +=
+            term.weights[p] * term.weights[q] * term.stiffness;
+  return a;
+}
+
+/// Block-diagonal projection onto the free directions.
+inline Eigen::MatrixXd projection(const LinearSystem& system) {
+  const Eigen::Index size = 3 * system.matrix.rows();
+  Eigen::MatrixXd s = Eigen::MatrixXd::Identity(size, size);
+  for (const ParticleConstraint& c : system.constraints) s.block<3, 3>(3 * c.particle, 3 * c.particle) = c.free;
+  return s;
+}
+
+/// Cuts the particles into groups of consecutive numbers, and these again, a level for each count; with one particle a
+/// group, constraints leave some without motion.
+inline void cut_groups(LinearSystem& system, const std::vector<Index>& counts) {
+  system.groupings.clear();
+  Index members = system.matrix.rows();
+  for (Index count : counts) {
+    Grouping grouping{{}, count};
+    for (Index i = 0; i < members; ++i) grouping.of.push_back(i * count / members);
+    system.groupings.push_back(std::move(grouping));
+    members = count;
+  }
+}
+
 inline Eigen::Map<const Eigen::VectorXd> flat(std::span<const Vec3> x) {
   return {x.data()->data(), static_cast<Eigen::Index>(3 * x.size())};
 }

@@ -11,25 +11,10 @@
 namespace weft::solver {
 namespace {
 
+using testing::cut_groups;
+using testing::dense_with_terms;
+using testing::projection;
 using testing::Random;
-
-// Block-diagonal projection onto the free directions.
-Eigen::MatrixXd projection(const LinearSystem& system) {
-  const Eigen::Index size = 3 * system.matrix.rows();
-  Eigen::MatrixXd s = Eigen::MatrixXd::Identity(size, size);
-  for (const ParticleConstraint& c : system.constraints) s.block<3, 3>(3 * c.particle, 3 * c.particle) = c.free;
-  return s;
-}
-
-Eigen::MatrixXd dense_with_terms(const LinearSystem& system) {
-  Eigen::MatrixXd a = testing::dense(system.matrix);
-  for (const StencilTerm& term : system.terms)
-    for (std::size_t p = 0; p < 4; ++p)
-      for (std::size_t q = 0; q < 4; ++q)
-        a.block<3, 3>(3 * term.particles[p], 3 * term.particles[q]) +=
-            term.weights[p] * term.weights[q] * term.stiffness;
-  return a;
-}
 
 Eigen::VectorXd direct_solution(const LinearSystem& system, std::span<const Vec3> b) {
   const Eigen::MatrixXd s = projection(system);
@@ -54,19 +39,6 @@ TEST(ConjugateGradient, AgreesWithTheDirectSolutionUnderContactsAndConstraints) 
     const Eigen::VectorXd expected = direct_solution(system, b);
     // Residual 1e-13 in the preconditioned norm, times the condition number of that system, about 1e3.
     EXPECT_LT((testing::flat(x) - expected).norm(), 1e-10 * expected.norm()) << "seed " << seed;
-  }
-}
-
-// Cuts the particles into groups of consecutive numbers, and these again, a level for each count; with one particle a
-// group, constraints leave some without motion.
-void cut_groups(LinearSystem& system, const std::vector<Index>& counts) {
-  system.groupings.clear();
-  Index members = system.matrix.rows();
-  for (Index count : counts) {
-    Grouping grouping{{}, count};
-    for (Index i = 0; i < members; ++i) grouping.of.push_back(i * count / members);
-    system.groupings.push_back(std::move(grouping));
-    members = count;
   }
 }
 

@@ -11,8 +11,8 @@
 #include <string>
 #include <vector>
 
-#include "mesh/ply.hpp"
 #include "support/intersections.hpp"
+#include "support/ply.hpp"
 
 namespace {
 
@@ -57,12 +57,12 @@ void check_complete(const Frames& frames, const Request& request) {
 
 // Prints what one frame holds; returns its number of pairs.
 std::size_t judge_frame(int frame, const std::map<std::string, std::filesystem::path>& files, const Request& request) {
-  std::vector<mesh::PlyMesh> meshes;
-  for (const auto& [name, file] : files) meshes.push_back(mesh::read_ply(file));
+  std::vector<support::PlyMesh> meshes;
+  for (const auto& [name, file] : files) meshes.push_back(support::read_ply(file));
   std::vector<support::JudgedObject> objects;
   for (const auto& [name, file] : files) {
     const bool is_obstacle = std::count(request.obstacles.begin(), request.obstacles.end(), name) > 0;
-    const mesh::PlyMesh& mesh = meshes[objects.size()];
+    const support::PlyMesh& mesh = meshes[objects.size()];
     objects.push_back({name, !is_obstacle, mesh.positions, mesh.triangles});
   }
   const support::Judgement judgement = support::judge(objects);

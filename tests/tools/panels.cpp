@@ -14,6 +14,7 @@
 #include "core/temporary_file.hpp"
 #include "garment/garment.hpp"
 #include "garment/triangulation.hpp"
+#include "support/mesh_measures.hpp"
 
 namespace {
 
@@ -34,7 +35,7 @@ std::string quality(const garment::Garment& garment, double spacing) {
   const std::size_t count = garment.sheet.triangles.size();
   for (std::size_t t = 0; t < count; ++t) {
     const auto corners = corners_of(garment, t);
-    const double angle = garment::smallest_angle({0, 1, 2}, corners), size = mesh::rest_area(garment.sheet, t);
+    const double angle = support::smallest_angle({0, 1, 2}, corners), size = mesh::rest_area(garment.sheet, t);
     ++classes[std::min<std::size_t>(11, static_cast<std::size_t>(angle / 5))];
     least = std::min(least, angle);
     mean += angle / static_cast<double>(count);

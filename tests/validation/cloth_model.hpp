@@ -27,7 +27,7 @@ namespace weft::simulation::testing {
 class ClothModel {
  public:
   explicit ClothModel(const scene::Scene& scene)
-      : gravity_(scene.physics.gravity), environment_(scene), x(environment_.cloths[0].motion.positions) {
+      : gravity_(scene.physics.gravity), environment_(scene), x(environment_.cloths[0].start) {
     const scene::Material& m = scene.cloths[0].material;
     const environment::ClothObject& cloth = environment_.cloths[0];
     const forces::StretchParameters stretch{m.stretch_weft, m.stretch_warp, 0};

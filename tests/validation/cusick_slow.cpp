@@ -232,7 +232,7 @@ scene::Scene square(ClothShape shape, const scene::Material& material) {
   cloth.shape = shape;
   cloth.material = material;
   const environment::Environment environment(scene);
-  const std::vector<Vec3>& x = environment.cloths[0].motion.positions;
+  const std::vector<Vec3>& x = environment.cloths[0].start;
   const double reach = kPlates + 0.5 * cloth.size.x() / (particles - 1);
   std::vector<std::size_t> held;
   for (std::size_t i = 0; i < x.size(); ++i)

@@ -29,7 +29,7 @@ double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x)
          std::max({along(pair.b[0]), along(pair.b[1]), along(pair.b[2])});
 }
 
-bool divides(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   return gap_along(n, pair, x_t1) >= kFloor && gap_along(n, pair, x_t0) >= kStartFloor;
 }
 
@@ -40,7 +40,7 @@ std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec
     const double length = direction.stableNorm();
     if (!(length > 0)) return false;
     const Vec3 n = (direction / length).cast<float>().cast<double>();
-    if (divides(n, pair, x_t0, x_t1)) found = n;
+    if (separates(n, pair, x_t0, x_t1)) found = n;
     return found.has_value();
   };
   const auto facing = [&](const Vec3& n) { return n.dot(centres) < 0 ? Vec3(-n) : n; };

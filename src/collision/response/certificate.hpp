@@ -1,4 +1,4 @@
-// Moving dividing planes: when two sets of vertices are apart for a whole step.
+// Moving separating planes: when two sets of vertices are apart for a whole step.
 #pragma once
 
 #include <array>
@@ -30,13 +30,13 @@ double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x)
 
 /// Whether n is a certificate for the linear motion from x_t0 to x_t1: the gap along it is at least kStartFloor at the
 /// start and kFloor at the end. Every n·x is linear in time, so the gap is a minimum of linear functions, concave, and
-/// positive all the way between: a plane normal to n that moves along divides the pair for the whole step. No root is
+/// positive all the way between: a plane normal to n that moves along separates the pair for the whole step. No root is
 /// sought.
-bool divides(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-/// Looks for a certificate, from cheap to dear: the face normals divide layers, the direction between the centres
-/// divides neighbours in the plane, and the closest direction at the start divides whatever hardly moves. The direction
-/// found is rounded to single precision, so that it can be kept in half the space.
+/// Looks for a certificate, by increasing cost: the face normals separate layers, the direction between the centres
+/// separates neighbours in the plane, and the closest direction at the start separates whatever hardly moves. The
+/// direction found is rounded to single precision, so that it can be kept in half the space.
 std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
 /// The closest pair of features of two sides.

@@ -16,13 +16,19 @@ struct Load {
   double force, slope;  // [N], [N/m]
 };
 
-// At a gap below the range.
+// At this gap [m]; none from the range on.
 Load load_at(const Contact& contact, double gap) {
+  if (gap >= contact.range) return {0, 0};
   const double depth = contact.range - gap, full = std::max(contact.full_range, contact.range);
   const double inner = std::min(depth, full), ratio_sq = (inner / full) * (inner / full);
   const double stiffening = ContactSet::kStiffening * ratio_sq * ratio_sq;
   const double slope = contact.stiffness * (1 + 5 * stiffening);
   return {contact.stiffness * inner * (1 + stiffening) + slope * (depth - inner), slope};
+}
+
+// Point a minus point b at the end of the step.
+Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
+  return weighted_sum(contact, x_end) + contact.obstacle_end;
 }
 
 // Coefficient of friction over slip, for a slip in stick slips: 2 − s while sticking, 1/s while sliding, continuous
@@ -35,53 +41,56 @@ double friction_over_slip(const Contact& contact, double slip) {
 
 }  // namespace
 
-void ContactSet::set_step(double h) {
-  stick_slip_ = kStickSpeed * h;
-  linearised_ = 0;
-}
-
 void ContactSet::add(const Contact& contact) {
   contacts_.push_back(contact);
   contacts_.back().static_friction = std::max(contact.friction, contact.static_friction);
-  const double gap = contact.normal.dot(contact.relative_start);
-  contacts_.back().load = gap < contact.range ? load_at(contact, gap).force : 0;
 }
 
-ContactSet::Response ContactSet::respond(const Contact& contact, std::span<const Vec3> x_end) const {
-  const Vec3 relative = weighted_sum(contact, x_end) + contact.obstacle_end;
+void ContactSet::update(std::span<const Vec3> x_end, FrictionLag& lag) const {
+  for (std::size_t c = lag.loads.size(); c < contacts_.size(); ++c)
+    lag.loads.push_back(load_at(contacts_[c], contacts_[c].normal.dot(contacts_[c].relative_start)).force);
+  if (lag.updates > 0 && lag.updates < kLoadUpdates)
+    for (std::size_t c = 0; c < contacts_.size(); ++c)
+      lag.loads[c] = load_at(contacts_[c], contacts_[c].normal.dot(relative_end(contacts_[c], x_end))).force;
+  ++lag.updates;
+}
+
+ContactSet::Response ContactSet::respond(const Contact& contact, std::span<const Vec3> x_end,
+                                         double friction_load) const {
+  const Vec3 relative = relative_end(contact, x_end);
   const double gap = contact.normal.dot(relative);
   Response response;
   if (gap >= contact.range) return response;
 
   response.active = true;
   const Load load = load_at(contact, gap);
-  response.load = load.force;
   response.slope = load.slope;
-  response.force = response.load * contact.normal;
-  if (contact.static_friction > 0 && contact.load > 0) {
+  response.force = load.force * contact.normal;
+  if (contact.static_friction > 0 && friction_load > 0) {
     Vec3 slip = relative - contact.relative_start;
     slip -= contact.normal.dot(slip) * contact.normal;
     const double size = slip.norm();
-    response.sliding = contact.load * friction_over_slip(contact, size / stick_slip_) / stick_slip_;
+    response.sliding = friction_load * friction_over_slip(contact, size / stick_slip_) / stick_slip_;
     response.force -= response.sliding * slip;
   }
   return response;
 }
 
-void ContactSet::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const {
-  for (const Contact& contact : contacts_) {
-    const Response response = respond(contact, x_end);
+void ContactSet::add_forces(std::span<const Vec3> x_end, const FrictionLag& lag, std::span<Vec3> force) const {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_[c];
+    const Response response = respond(contact, x_end, lag.loads[c]);
     if (!response.active) continue;
     for (int k = 0; k < 4; ++k)
       force[static_cast<std::size_t>(contact.particles[k])] += contact.weights[k] * response.force;
   }
 }
 
-void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
-                           solver::LinearSystem& system) {
-  for (Contact& contact : contacts_) {
-    if (linearised_ > 0 && linearised_ < kLoadUpdates) contact.load = respond(contact, x_end).load;
-    const Response response = respond(contact, x_end);
+void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const FrictionLag& lag, std::span<Vec3> force,
+                           solver::LinearSystem& system) const {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_[c];
+    const Response response = respond(contact, x_end, lag.loads[c]);
     if (!response.active) continue;
     int involved = 0, last = 0;
     for (int k = 0; k < 4; ++k) {
@@ -98,13 +107,12 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, std::sp
       system.terms.push_back({contact.particles, contact.weights, stiffness});
     }
   }
-  ++linearised_;
 }
 
 int ContactSet::active(std::span<const Vec3> x_end) const {
-  int count = 0;
-  for (const Contact& contact : contacts_) count += respond(contact, x_end).active ? 1 : 0;
-  return count;
+  return static_cast<int>(std::ranges::count_if(contacts_, [&](const Contact& contact) {
+    return contact.normal.dot(relative_end(contact, x_end)) < contact.range;
+  }));
 }
 
 }  // namespace weft::collision

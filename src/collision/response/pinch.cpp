@@ -95,7 +95,7 @@ std::vector<FeaturePair> PinchedPairs::find_pushes(const BroadPhase& surfaces, s
 }
 
 template <class Archive>
-void PinchedPairs::exchange(Archive& archive) {
+void PinchedPairs::serialize(Archive& archive) {
   std::vector<std::pair<Key, Origin>> pinched(origins_.begin(), origins_.end());
   exchange_each(archive, pinched, [&](auto& pair) {
     auto& [key, origin] = pair;
@@ -113,7 +113,7 @@ void PinchedPairs::exchange(Archive& archive) {
   }
 }
 
-template void PinchedPairs::exchange(ByteWriter&);
-template void PinchedPairs::exchange(ByteReader&);
+template void PinchedPairs::serialize(ByteWriter&);
+template void PinchedPairs::serialize(ByteReader&);
 
 }  // namespace weft::collision

@@ -44,6 +44,8 @@ class PinchedPairs {
   }
   /// Whether a particle is a corner of a triangle that this obstacle pinches.
   bool touches(Index particle, std::size_t body) const { return particles_.contains({particle, body}); }
+  /// Whether two features with these vertices are of such cloth and its obstacle.
+  bool concern(const std::array<Index, 4>& vertices) const;
   void add(const CornerPair& pair) { origins_.emplace(key(pair), Origin{}); }
 
   // `surfaces`: of all bodies, by number; positions lie inside of the bounds of its last refit.
@@ -70,7 +72,7 @@ class PinchedPairs {
 
   /// All that is held. Throws std::runtime_error where these cloths and obstacles cannot have it.
   template <class Archive>
-  void exchange(Archive& archive);
+  void serialize(Archive& archive);
 
  private:
   void list_particles();

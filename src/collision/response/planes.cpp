@@ -119,7 +119,7 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
 
     const CornerPair pair{triangles_[a], triangles_[b]};
     const Vec3 n(plane.n[0], plane.n[1], plane.n[2]);
-    if (plane.is_known() && divides(n, pair, x_t0, x_t1)) continue;
+    if (plane.is_known() && separates(n, pair, x_t0, x_t1)) continue;
     const std::optional<Vec3> found = find_certificate(pair, x_t0, x_t1);
     if (!found) {
       failing.push_back(pair);
@@ -132,7 +132,7 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
 }
 
 template <class Archive>
-void Planes::exchange(Archive& archive, std::span<const Vec3> reference) {
+void Planes::serialize(Archive& archive, std::span<const Vec3> reference) {
   std::vector<std::uint32_t> changed;
   if constexpr (!Archive::kReads) {
     Planes fresh(triangles_);
@@ -147,7 +147,7 @@ void Planes::exchange(Archive& archive, std::span<const Vec3> reference) {
   }
 }
 
-template void Planes::exchange(ByteWriter&, std::span<const Vec3>);
-template void Planes::exchange(ByteReader&, std::span<const Vec3>);
+template void Planes::serialize(ByteWriter&, std::span<const Vec3>);
+template void Planes::serialize(ByteReader&, std::span<const Vec3>);
 
 }  // namespace weft::collision

@@ -1,4 +1,4 @@
-// Dividing planes of triangle pairs, remembered from step to step.
+// Separating planes of triangle pairs, remembered from step to step.
 #pragma once
 
 #include <array>
@@ -19,7 +19,7 @@ namespace weft::collision {
 class Planes {
  public:
   Planes() = default;
-  explicit Planes(std::vector<Triangle> triangles) : triangles_(std::move(triangles)) {}
+  explicit Planes(std::span<const Triangle> triangles) : triangles_(triangles) {}
 
   /// Takes over the pairs, with directions found at x [m].
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
@@ -36,7 +36,7 @@ class Planes {
   /// The planes that are others than watch() has found for these pairs at the reference: all else that a new object
   /// needs, once it watches the same pairs.
   template <class Archive>
-  void exchange(Archive& archive, std::span<const Vec3> reference);
+  void serialize(Archive& archive, std::span<const Vec3> reference);
 
  private:
   struct Plane {
@@ -47,7 +47,7 @@ class Planes {
   };
   void look_at_eight(std::size_t first, std::size_t count, float rounding);
 
-  std::vector<Triangle> triangles_;
+  std::span<const Triangle> triangles_;
   std::vector<TrianglePair> pairs_;
   std::vector<Plane> planes_;
   std::vector<Lanes4> rounded_;  // positions in float, for the first look

@@ -10,7 +10,8 @@ namespace {
 // Gap that a push restores [m], or half of the gap at the start where that is less: a tenth of a fabric's thickness, so
 // that the contact springs of the next step have something to act on.
 constexpr double kKeep = 2e-4;
-// Rounds of pushing before particles are drawn back by halves, before they are drawn back entirely, and before all are.
+// Rounds of pushing before particles are backtracked by halves, before they are backtracked entirely, and before all
+// are.
 constexpr int kPushRounds = 24;
 constexpr int kHalfRounds = 36;
 constexpr int kRounds = 60;
@@ -21,8 +22,8 @@ std::size_t index(Index vertex) {
 
 }  // namespace
 
-Separation::Separation(std::vector<Triangle> triangles, std::span<const Surface> deformable)
-    : triangles_(std::move(triangles)), planes_(triangles_), fans_(deformable) {}
+Separation::Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable)
+    : triangles_(triangles), planes_(triangles_), fans_(deformable) {}
 
 void Separation::watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x) {
   reference_.assign(x.begin(), x.end());
@@ -54,7 +55,7 @@ bool Separation::push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, 
   const Vec3 n = direction / start_gap;
   const double target = std::max(2 * kFloor, std::min(kKeep, 0.5 * start_gap));
 
-  // The dividing plane n·x = c at the end: midway, unless what cannot move stands in the way.
+  // The separating plane n·x = c at the end: midway, unless what cannot move stands in the way.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   double low = -kInfinity, high = kInfinity;  // of c
   double lowest_a = kInfinity, highest_b = -kInfinity;
@@ -83,7 +84,7 @@ bool Separation::push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, 
 }
 
 // Back by a share of the way to where there was no intersection, once a round; false if nothing was moved.
-bool Separation::draw_back(const CornerPair& pair, double share, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
+bool Separation::backtrack(const CornerPair& pair, double share, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                            std::span<const std::uint8_t> movable, SeparationReport& report) {
   bool moved = false;
   for (const Triangle& corners : {pair.a, pair.b}) {
@@ -91,16 +92,16 @@ bool Separation::draw_back(const CornerPair& pair, double share, std::span<const
       const std::size_t v = index(corner);
       if (!movable[v] || x_t1[v] == x_t0[v]) continue;
       moved = true;
-      if (drawn_back_in_[v] == round_) continue;
+      if (backtracked_in_[v] == round_) continue;
       report.largest_push = std::max(report.largest_push, share * (x_t0[v] - x_t1[v]).norm());
       x_t1[v] = share == 1 ? x_t0[v] : Vec3(x_t1[v] + share * (x_t0[v] - x_t1[v]));
-      drawn_back_in_[v] = round_;
+      backtracked_in_[v] = round_;
     }
   }
   return moved;
 }
 
-bool Separation::draw_all_back(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
+bool Separation::backtrack_all(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                std::span<const std::uint8_t> movable) {
   bool moved = false;
   for (std::size_t v = 0; v < x_t0.size(); ++v) {
@@ -124,11 +125,11 @@ void Separation::look_again(std::span<const Vec3> x_t0, std::span<const Vec3> x_
 SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                      std::span<const std::uint8_t> movable, PinchedPairs* pinched) {
   SeparationReport report;
-  drawn_back_in_.assign(x_t0.size(), 0);
+  backtracked_in_.assign(x_t0.size(), 0);
   look_again(x_t0, x_t1, pinched);
   report.corrected_pairs = static_cast<int>(failing_.size());
   for (round_ = 1; !failing_.empty(); ++round_) {
-    bool changed = round_ >= kRounds && draw_all_back(x_t0, x_t1, movable);
+    bool changed = round_ >= kRounds && backtrack_all(x_t0, x_t1, movable);
     for (const CornerPair& pair : failing_) {
       if (round_ <= kPushRounds) {
         if (find_certificate(pair, x_t0, x_t1)) continue;  // an earlier push of this round was enough
@@ -138,7 +139,7 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
       if (last && pinched != nullptr && pinched->may_hold(pair)) {
         pinched->add(pair);
         changed = true;
-      } else if (draw_back(pair, last ? 1 : 0.5, x_t0, x_t1, movable, report)) {
+      } else if (backtrack(pair, last ? 1 : 0.5, x_t0, x_t1, movable, report)) {
         changed = true;
       }
     }

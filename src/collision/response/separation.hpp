@@ -21,21 +21,22 @@ struct SeparationReport {
   CornerPair stuck{};       ///< a pair that could not be separated, where not `separated`
 };
 
-/// Keeps triangles apart over the linear motion from x_t0 to x_t1 by moving dividing planes (see `divides`): those
+/// Keeps triangles apart over the linear motion from x_t0 to x_t1 by moving separating planes (see `separates`): those
 /// without a common vertex pair by pair, those of a surface that share one by the fans around their vertices. Triangles
 /// that share an edge meet only where they are folded onto each other exactly; the triangles around keep them from
 /// that.
 ///
 /// A pair without certificate has its end positions pushed apart along n, the closest direction at the start, until a
 /// gap remains: by half each, obstacles and held particles not at all. What was moved is checked again, until nothing
-/// fails. Particles that keep failing are drawn back towards where they started, and at last all the way. There nothing
-/// met, so what stays is as far apart as it was, and a growing cluster of free particles that stay ends the rounds;
-/// what an obstacle or a held particle is driven into is left over. Of that, cloth can be given up to obstacles.
+/// fails. Particles that keep failing are backtracked towards where they started, and at last all the way. There
+/// nothing met, so what stays is as far apart as it was, and a growing cluster of free particles that stay ends the
+/// rounds; what an obstacle or a held particle is driven into is left over. Of that, cloth can be given up to
+/// obstacles.
 class Separation {
  public:
   Separation() = default;
   /// `triangles`: of all surfaces, by global number; `deformable`: those that can meet themselves.
-  Separation(std::vector<Triangle> triangles, std::span<const Surface> deformable);
+  Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable);
 
   /// From now on looks after these pairs without a common vertex, and after all fans, with x [m] as the positions that
   /// motion is measured from. The pairs must hold all that can meet; where motion or a correction carries a vertex out
@@ -57,24 +58,24 @@ class Separation {
 
   /// What has been found since watch(), for an object that watches the same pairs from the same positions.
   template <class Archive>
-  void exchange(Archive& archive) {
-    planes_.exchange(archive, reference_);
+  void serialize(Archive& archive) {
+    planes_.serialize(archive, reference_);
   }
 
  private:
   bool push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                   std::span<const std::uint8_t> movable, SeparationReport& report);
-  bool draw_back(const CornerPair& pair, double share, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
+  bool backtrack(const CornerPair& pair, double share, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                  std::span<const std::uint8_t> movable, SeparationReport& report);
-  bool draw_all_back(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
+  bool backtrack_all(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
   void look_again(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, const PinchedPairs* pinched);
 
-  std::vector<Triangle> triangles_;
+  std::span<const Triangle> triangles_;
   std::vector<Vec3> reference_;
   Planes planes_;
   Fans fans_;
-  std::vector<float> moved_;        // per vertex: bound of its distance from the reference at both ends [m]
-  std::vector<int> drawn_back_in_;  // per vertex: round in which it was last drawn back, 0 never
+  std::vector<float> moved_;         // per vertex: bound of its distance from the reference at both ends [m]
+  std::vector<int> backtracked_in_;  // per vertex: round in which it was last backtracked, 0 never
   int round_ = 0;
   std::vector<CornerPair> failing_;
 };

@@ -27,7 +27,7 @@ constexpr double kSameWall = 1 - 1e-6;
 constexpr int kFlips = 3;
 // Acceleration by a change of friction or by a released pull, from which a step is solved again [m/s²]: a twentieth of
 // the weight. Of friction, a fifth of what it was besides.
-constexpr double kLittle = 0.5;
+constexpr double kNegligibleAcceleration = 0.5;
 constexpr double kLoadChange = 0.2;
 // Walls that are looked at for one particle, the most violated ones.
 constexpr std::size_t kMostWalls = 8;
@@ -200,7 +200,7 @@ int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3
 bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec3& force) {
   Memory& memory = particle.memory;
   const Vec3 u = x_end - particle.x_t0;
-  const double little = kLittle * masses_[index(particle.particle)];
+  const double negligible = kNegligibleAcceleration * masses_[index(particle.particle)];
   Held next;
   if (memory.state == State::away) {
     const Vec3 held_at = project(particle, u, false, next);
@@ -218,11 +218,11 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   const double push = memory.push.norm();
   const Vec3 held_at = project(particle, push > 0 ? Vec3(u - kNudge / push * memory.push) : u, false, next);
   if (next.count == 0) {
-    if (left.norm() > little && particle.flips++ >= kFlips) return false;
+    if (left.norm() > negligible && particle.flips++ >= kFlips) return false;
     memory = {};
     particle.held = {};
     particle.friction_load = 0;
-    return left.norm() > little;
+    return left.norm() > negligible;
   }
 
   Held passed;
@@ -242,12 +242,12 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
 
   const bool other_walls = !next.same_walls(particle.held);
   const double change = wall.friction * std::abs(memory.load - particle.friction_load);
-  const bool other_load = change > little && change > kLoadChange * limit;
+  const bool other_load = change > negligible && change > kLoadChange * limit;
   particle.stops =
       limit > 0 && !other_load && !other_walls && slip(particle, x_end).norm() < ContactSet::kStickSpeed * step_;
   hold(particle, held_at, next);
   particle.friction_load = memory.load;
-  const bool matters = other_load || (other_walls && (passed.load() >= kPassed || left.norm() > little));
+  const bool matters = other_load || (other_walls && (passed.load() >= kPassed || left.norm() > negligible));
   return matters && particle.flips++ < kFlips;
 }
 
@@ -336,7 +336,7 @@ void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate
 }
 
 template <class Archive>
-void VelocityConstraints::exchange(Archive& archive) {
+void VelocityConstraints::serialize(Archive& archive) {
   exchange_each(archive, remembered_, [&](Index& particle) {
     archive.value(particle);
     if constexpr (Archive::kReads) require(particle >= 0 && index(particle) < masses_.size(), "particles of the scene");
@@ -346,7 +346,7 @@ void VelocityConstraints::exchange(Archive& archive) {
   });
 }
 
-template void VelocityConstraints::exchange(ByteWriter&);
-template void VelocityConstraints::exchange(ByteReader&);
+template void VelocityConstraints::serialize(ByteWriter&);
+template void VelocityConstraints::serialize(ByteReader&);
 
 }  // namespace weft::collision

@@ -77,7 +77,7 @@ class VelocityConstraints {
 
   /// What accept() has remembered. Throws std::runtime_error where these particles cannot have it.
   template <class Archive>
-  void exchange(Archive& archive);
+  void serialize(Archive& archive);
 
  private:
   enum class State : std::uint8_t { away, sticking, sliding };

@@ -9,8 +9,8 @@
 namespace weft::bench {
 namespace {
 
-constexpr Index kDense = 100;      // blocks on the last level at most
-constexpr double kStandIn = 1e-9;  // for motion that constraints leave to no particle, of the mean diagonal
+constexpr Index kDense = 100;            // blocks on the last level at most
+constexpr double kSingularShift = 1e-9;  // for motion that constraints leave to no particle, of the mean diagonal
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -36,10 +36,10 @@ struct Level {
     left.assign(rows, Column<N>::Zero());
     double trace = 0;
     for (std::size_t i = 0; i < rows; ++i) trace += diagonal(i).trace();
-    const double stand_in = kStandIn * trace / (N * static_cast<double>(rows));
+    const double shift = kSingularShift * trace / (N * static_cast<double>(rows));
     for (std::size_t i = 0; i < rows; ++i) {
-      if (N > 3) diagonal(i).diagonal().array() += stand_in;
-      inverse_diagonal[i] = (diagonal(i) + stand_in * Square<N>::Identity()).inverse();
+      if (N > 3) diagonal(i).diagonal().array() += shift;
+      inverse_diagonal[i] = (diagonal(i) + shift * Square<N>::Identity()).inverse();
     }
   }
   Square<N>& diagonal(std::size_t i) {
@@ -134,7 +134,7 @@ class Multigrid : public Inverse {
     for (Index i = 0; i < last.rows(); ++i)
       for (std::size_t s = last.start[at(i)]; s < last.start[at(i) + 1]; ++s)
         dense.template block<N, N>(N * i, N * last.column[s]) = last.value[s];
-    dense.diagonal().array() += kStandIn * dense.trace() / static_cast<double>(dense.rows());
+    dense.diagonal().array() += kSingularShift * dense.trace() / static_cast<double>(dense.rows());
     dense_.compute(dense);
   }
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "simulation/cloth_system.hpp"
+#include "simulation/step_problem.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::bench {
@@ -73,7 +73,8 @@ SheetSystem sheet_system(int side, double stiffness, Pose pose) {
                   "material = {{ stretch = {1}, shear = {2} }}\n",
                   side, stiffness, shear));
   const environment::Environment environment(scene);
-  const simulation::ClothSystem cloth(scene, environment);
+  simulation::ClothSystem cloth(scene, environment);
+  simulation::StepProblem problem(cloth);
   const mesh::Grid& grid = environment.cloths[0].grid;
 
   SheetSystem sheet;
@@ -83,8 +84,8 @@ SheetSystem sheet_system(int side, double stiffness, Pose pose) {
   if (pose == Pose::lying) crumple(grid, sheet.x);
   const std::vector<Vec3> still(sheet.x.size(), Vec3::Zero());
   sheet.b = still;
-  sheet.system = cloth.make_linear_system();
-  cloth.linearise({sheet.x, still, sheet.x, 1 / kStep, 1}, sheet.b, sheet.system);
+  problem.linearise({sheet.x, still, sheet.x, 1 / kStep, 1}, 0, sheet.b);
+  sheet.system = problem.linear_system();
   if (pose == Pose::hanging)
     for (int i : {0, side - 1}) sheet.system.constraints.push_back({grid.index(i, 0), Mat3::Zero()});
   else

@@ -75,10 +75,20 @@ struct VertexOnFace {
   }
 };
 
-std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
+/// As before the first linearisation of a step.
+FrictionLag lag_at_start(const ContactSet& contacts, const std::vector<Vec3>& x) {
+  FrictionLag lag;
+  contacts.update(x, lag);
+  return lag;
+}
+
+std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x, const FrictionLag& lag) {
   std::vector<Vec3> f(x.size(), Vec3::Zero());
-  contacts.add_forces(x, f);
+  contacts.add_forces(x, lag, f);
   return f;
+}
+std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
+  return forces_of(contacts, x, lag_at_start(contacts, x));
 }
 
 TEST(ContactSet, ForceWithoutFrictionIsMinusTheGradientOfTheEnergy) {
@@ -177,32 +187,53 @@ TEST(ContactSet, MotionAlongTheNormalIsNoSlip) {
   EXPECT_LT(friction.norm(), 1e-12);
 }
 
-TEST(ContactSet, FrictionGoesByTheLoadOfTheLastSolveAfterTheFirstAndInTheEndKeepsIt) {
+TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKeepsIt) {
   const double mu = 0.4;
   const VertexOnFace pair(mu);
-  ContactSet contacts = pair.set();
-  solver::LinearSystem system;
-  system.matrix = solver::BlockMatrix(4, {});
+  const ContactSet contacts = pair.set();
+  FrictionLag lag;
   std::vector<Vec3> x = pair.x;
   x[0] += 0.4 * kRange * pair.contact.normal + 0.01 * pair.contact.normal.unitOrthogonal();  // load down to a third
   const auto tangential = [&] {
-    const Vec3 f = forces_of(contacts, x)[0];
+    const Vec3 f = forces_of(contacts, x, lag)[0];
     return (f - pair.contact.normal.dot(f) * pair.contact.normal).norm();
   };
-  std::vector<Vec3> f(4, Vec3::Zero());
-  contacts.linearise(x, 1, f, system);
+  contacts.update(x, lag);
   EXPECT_NEAR(tangential(), mu * load_at(0.6), 1e-12);
-  contacts.linearise(x, 1, f, system);
+  contacts.update(x, lag);
   EXPECT_NEAR(tangential(), mu * load_at(0.2), 1e-12);
-  // Up to a number of solves, so that load and slip do not chase each other for ever; the next step begins anew.
-  for (int k = 2; k < ContactSet::kLoadUpdates; ++k) contacts.linearise(x, 1, f, system);
+  // Up to a number of updates, so that load and slip do not chase each other for ever; the next step begins anew.
+  for (int k = 2; k < ContactSet::kLoadUpdates; ++k) contacts.update(x, lag);
   x[0] -= 0.2 * kRange * pair.contact.normal;
-  contacts.linearise(x, 1, f, system);
+  contacts.update(x, lag);
   EXPECT_NEAR(tangential(), mu * load_at(0.2), 1e-12);
-  contacts.set_step(kStep);
-  contacts.linearise(x, 1, f, system);
-  contacts.linearise(x, 1, f, system);
+  lag = {};
+  contacts.update(x, lag);
+  contacts.update(x, lag);
   EXPECT_NEAR(tangential(), mu * load_at(0.4), 1e-12);
+}
+
+TEST(ContactSet, FrictionOfAContactThatIsNewInAStepBeginsWithTheLoadOfItsStart) {
+  const VertexOnFace pair(0.4);
+  ContactSet contacts = pair.set();
+  FrictionLag lag{{}, ContactSet::kLoadUpdates};
+  contacts.update(pair.x, lag);
+  lag.loads[0] = 7;
+  contacts.add(pair.contact);
+  contacts.update(pair.jittered(0.0003), lag);
+  EXPECT_EQ(lag.loads[0], 7);
+  EXPECT_NEAR(lag.loads[1], load_at(0.6), 1e-12);
+}
+
+TEST(ContactSet, ForcesChangeNothingThatTheyDependOn) {
+  const VertexOnFace pair(0.4);
+  const ContactSet contacts = pair.set();
+  const std::vector<Vec3> x = pair.jittered(0.0003), elsewhere = pair.jittered(0.0003);
+  FrictionLag lag = lag_at_start(contacts, x);
+  contacts.update(elsewhere, lag);
+  const std::vector<Vec3> before = forces_of(contacts, x, lag);
+  forces_of(contacts, elsewhere, lag);
+  EXPECT_EQ(forces_of(contacts, x, lag), before);
 }
 
 // −∂f/∂x of one contact, as linearise leaves it in the system.
@@ -220,7 +251,7 @@ Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
   return k;
 }
 
-// −∂f/∂x by central differences with the loads as they are, times `rate`.
+// −∂f/∂x by central differences with the loads of the start, times `rate`.
 Eigen::MatrixXd differences(const ContactSet& contacts, std::vector<Vec3> x, double rate) {
   constexpr double kEpsilon = 1e-10;
   const auto size = static_cast<Eigen::Index>(3 * x.size());
@@ -240,11 +271,11 @@ Eigen::MatrixXd differences(const ContactSet& contacts, std::vector<Vec3> x, dou
   return k;
 }
 
-solver::LinearSystem linearised(ContactSet contacts, const std::vector<Vec3>& x, double rate) {
+solver::LinearSystem linearised(const ContactSet& contacts, const std::vector<Vec3>& x, double rate) {
   solver::LinearSystem system;
   system.matrix = solver::BlockMatrix(static_cast<Index>(x.size()), {});
   std::vector<Vec3> f(x.size(), Vec3::Zero());
-  contacts.linearise(x, rate, f, system);
+  contacts.linearise(x, rate, lag_at_start(contacts, x), f, system);
   EXPECT_EQ(f, forces_of(contacts, x));
   return system;
 }

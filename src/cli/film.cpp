@@ -1,0 +1,160 @@
+#include "cli/film.hpp"
+
+#include <optional>
+#include <thread>
+#include <utility>
+
+#include "cli/stats.hpp"
+#include "core/bounded_queue.hpp"
+#include "core/log.hpp"
+#include "core/timer.hpp"
+
+namespace weft::cli {
+namespace {
+
+// Enough for one stage to ride out a slow frame of another; a picture of 1280×720 takes 2.7 MB.
+constexpr std::size_t kQueueLength = 4;
+
+struct DrawnFrame {
+  frame::SnapshotPtr snapshot;
+  image::Image image;
+};
+
+// A frame goes through make_frames(), draw_frames() and write_frames(), each in a thread of its own. Fields of a
+// FrameRecord are written by the stage they belong to; the queues order writes before reads.
+class Film {
+ public:
+  Film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted, const std::atomic<bool>& stop,
+       Progress& progress, EventLog& log)
+      : parts_(parts), made_(made), wanted_(wanted), stop_(stop), progress_(progress), log_(log) {
+    result_.frames.resize(made.count());
+  }
+
+  FilmResult make() {
+    {
+      const std::jthread making([this] { make_frames(); });
+      std::jthread drawing;
+      try {
+        drawing = std::jthread([this] { draw_frames(); });
+      } catch (...) {
+        snapshots_.cancel();  // else the simulation would wait for ever for someone to draw
+        throw;
+      }
+      write_frames();
+    }
+    result_.frames.resize(made_so_far_);
+    return std::move(result_);
+  }
+
+ private:
+  void make_frames() noexcept {
+    try {
+      const std::unique_ptr<FrameSource> source = open_source();
+      // The first one costs little more, so even a run that is stopped at once has a picture.
+      for (int frame = made_.begin; frame <= wanted_.last(); frame += made_.step) {
+        if (frame > made_.begin && stop_) {
+          result_.interrupted = true;
+          break;
+        }
+        MadeFrame made = source->next();             // simulated, or read
+        if (parts_.store) parts_.store->keep(made);  // so that it is not simulated again
+        for (const std::string& pinch : made.report.pinches) log::warn(pinch);
+        record(frame).report = std::move(made.report);
+        if (++made_so_far_ == 1) first_frame_ = source->first_frame();
+        progress_.advance(Stage::simulate);
+        if (!wanted_.contains(frame)) {
+          log_.write("frame_done", frame_json(record(frame)));
+        } else if (!snapshots_.push(std::move(made.snapshot))) {
+          break;
+        }
+      }
+      if (parts_.store) parts_.store->keep_last_state();
+      snapshots_.close();
+    } catch (...) {
+      snapshots_.close(std::current_exception());
+    }
+  }
+
+  void draw_frames() noexcept {
+    try {
+      const std::unique_ptr<FramePainter> painter = parts_.open_painter ? parts_.open_painter() : nullptr;
+      if (painter) result_.painter = painter->description();
+      while (frame::SnapshotPtr snapshot = snapshots_.pop().value_or(nullptr)) {
+        DrawnFrame drawn{snapshot, {}};
+        if (painter) {
+          if (first_frame_) painter->frame_on(*std::exchange(first_frame_, nullptr));
+          drawn.image = painter->draw(*snapshot);
+          record(snapshot->frame).render = painter->last_time();
+        }
+        progress_.advance(Stage::draw);
+        if (!pictures_.push(std::move(drawn))) break;
+      }
+      pictures_.close();
+    } catch (...) {
+      pictures_.close(std::current_exception());
+    }
+    snapshots_.cancel();
+  }
+
+  void write_frames() {
+    std::unique_ptr<FrameWriter> writer;
+    try {
+      while (const std::optional<DrawnFrame> drawn = next_picture()) {
+        if (!writer && parts_.open_writer) writer = parts_.open_writer(result_.painter);
+        FrameRecord& frame = record(drawn->snapshot->frame);
+        if (writer) frame.encode = timed([&] { writer->write(*drawn->snapshot, drawn->image); });
+        if (!parts_.meshes.empty()) frame.meshes = timed([&] { write_meshes(parts_.meshes, *drawn->snapshot); });
+        frame.written = true;
+        ++result_.written;
+        progress_.advance(Stage::write);
+        log_.write("frame_done", frame_json(frame));
+      }
+      if (writer) writer->finish();
+      result_.finished_output = writer != nullptr;
+    } catch (...) {
+      result_.failure = std::current_exception();
+    }
+    pictures_.cancel();
+  }
+
+  std::unique_ptr<FrameSource> open_source() {
+    std::unique_ptr<FrameSource> source;
+    result_.setup = timed([&] { source = parts_.open_source(); });
+    result_.objects = source->objects();
+    log_.write("simulation_ready",
+               {{"objects", result_.objects.size()}, {"particles", count_particles(result_.objects)}});
+    return source;
+  }
+
+  // A failure upstream ends the line like its last frame does: what came before is still finished.
+  std::optional<DrawnFrame> next_picture() {
+    try {
+      return pictures_.pop();
+    } catch (...) {
+      result_.failure = std::current_exception();
+      return std::nullopt;
+    }
+  }
+
+  FrameRecord& record(int frame) { return result_.frames[(frame - made_.begin) / made_.step]; }
+
+  const FilmParts& parts_;
+  const FrameRange made_, wanted_;
+  const std::atomic<bool>& stop_;
+  Progress& progress_;
+  EventLog& log_;
+  BoundedQueue<frame::SnapshotPtr> snapshots_{kQueueLength};
+  BoundedQueue<DrawnFrame> pictures_{kQueueLength};
+  frame::SnapshotPtr first_frame_;  // from the making to the drawing thread, before the first snapshot
+  int made_so_far_ = 0;             // by the making thread; read after it has ended
+  FilmResult result_;
+};
+
+}  // namespace
+
+FilmResult make_film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted,
+                     const std::atomic<bool>& stop, Progress& progress, EventLog& log) {
+  return Film(parts, made, wanted, stop, progress, log).make();
+}
+
+}  // namespace weft::cli

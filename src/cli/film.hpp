@@ -1,0 +1,50 @@
+// The way of a frame: made, kept, drawn, written, told of. Three threads side by side; bounded queues between them keep
+// the memory small.
+#pragma once
+
+#include <atomic>
+#include <exception>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/event_log.hpp"
+#include "cli/frame_range.hpp"
+#include "cli/frame_source.hpp"
+#include "cli/run_report.hpp"
+#include "cli/stages.hpp"
+#include "cli/store.hpp"
+#include "core/progress.hpp"
+
+namespace weft::cli {
+
+/// What a film is put together from. Each is opened in the thread in which it works, lives and dies: an OpenGL context
+/// belongs to one. The writer is opened for the first picture, when the painter's description is known.
+struct FilmParts {
+  std::function<std::unique_ptr<FrameSource>()> open_source;
+  std::function<std::unique_ptr<FramePainter>()> open_painter;  ///< empty: nothing is drawn
+  std::function<std::unique_ptr<FrameWriter>(const std::string& painter_description)> open_writer;  ///< likewise
+  Store* store = nullptr;        ///< keeps what is simulated
+  std::filesystem::path meshes;  ///< folder; empty: none
+};
+
+struct FilmResult {
+  std::vector<frame::ObjectInfo> objects;
+  StageTime setup;                  ///< opening the source
+  std::vector<FrameRecord> frames;  ///< all that were made, in order
+  int written = 0;
+  bool interrupted = false;      ///< stopped on request before the last wanted frame
+  std::string painter = "none";  ///< its description
+  std::exception_ptr failure;    ///< of the stage nearest to the output, if any failed
+  bool finished_output = false;  ///< what was written is whole, under its final name
+};
+
+/// Goes through the frames that the source makes until the last of `wanted`, `stop`, or a failure; `made` has all of
+/// `wanted`. Whatever ends it, the frames that were written are finished and kept if the writer itself works. Never
+/// throws for a failure of a stage: see `failure`.
+FilmResult make_film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted,
+                     const std::atomic<bool>& stop, Progress& progress, EventLog& log);
+
+}  // namespace weft::cli

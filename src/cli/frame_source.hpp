@@ -1,0 +1,70 @@
+// Where frames come from: a simulation, or a cache.
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <vector>
+
+#include "cache/reader.hpp"
+#include "cli/frame_range.hpp"
+#include "cli/store.hpp"
+#include "core/progress.hpp"
+#include "scene/scene.hpp"
+#include "simulation/simulation.hpp"
+#include "simulation/snapshots.hpp"
+
+namespace weft::cli {
+
+/// Yields one frame after the other.
+class FrameSource {
+ public:
+  virtual ~FrameSource() = default;
+  /// Throws where it cannot go on.
+  virtual MadeFrame next() = 0;
+  /// Frame 0, once next() was called: automatic framing looks at it whichever frames are drawn.
+  virtual frame::SnapshotPtr first_frame() const { return nullptr; }
+  virtual std::vector<frame::ObjectInfo> objects() const { return {}; }
+};
+
+/// Frames of a scene: those that the store has from an earlier run, with the looks of now, then those it simulates.
+class SceneSource : public FrameSource {
+ public:
+  /// Opens `store` for what is made. `stop` ends a preroll, which `progress` is told of.
+  SceneSource(const scene::Scene& scene, Store& store, const std::atomic<bool>& stop, Progress& progress);
+
+  MadeFrame next() override;
+  frame::SnapshotPtr first_frame() const override { return first_frame_; }
+  std::vector<frame::ObjectInfo> objects() const override { return store_.objects(); }
+
+ private:
+  MadeFrame read_stored();
+  MadeFrame simulate();
+  void prepare_simulation();
+  void run_preroll();
+
+  const scene::Scene& scene_;
+  Store& store_;
+  const std::atomic<bool>& stop_;
+  Progress& progress_;
+  std::unique_ptr<simulation::Simulation> simulation_;
+  std::optional<simulation::Looks> looks_;  // of the scene, where frames of the store have others
+  frame::SnapshotPtr first_frame_;
+  int next_ = 0;
+};
+
+class CacheSource : public FrameSource {
+ public:
+  CacheSource(const cache::Reader& reader, const FrameRange& frames)
+      : reader_(reader), first_frame_(reader.snapshot(0)), next_(frames.begin), step_(frames.step) {}
+
+  MadeFrame next() override;
+  frame::SnapshotPtr first_frame() const override { return first_frame_; }
+  std::vector<frame::ObjectInfo> objects() const override { return reader_.manifest().objects; }
+
+ private:
+  const cache::Reader& reader_;
+  const frame::SnapshotPtr first_frame_;
+  int next_, step_;
+};
+
+}  // namespace weft::cli

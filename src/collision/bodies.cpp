@@ -1,0 +1,35 @@
+#include "collision/bodies.hpp"
+
+#include <algorithm>
+
+#include "collision/proximity/features.hpp"
+
+namespace weft::collision {
+
+void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits) {
+  const auto first_triangle = static_cast<Index>(triangles_.size()), first_vertex = static_cast<Index>(body_of_.size());
+  for (Triangle t : triangles) {
+    for (Index& corner : t) corner += first_vertex;
+    triangles_.push_back(t);
+  }
+  body_of_.insert(body_of_.end(), vertex_count, traits_.size());
+  traits_.push_back(traits);
+  deformable_ += traits.deformable ? 1 : 0;
+  surfaces_.push_back({{}, first_triangle, first_vertex, vertex_count});
+  // The triangles may have moved in memory.
+  for (std::size_t b = 0; b < surfaces_.size(); ++b) {
+    const std::size_t begin = surfaces_[b].first_triangle,
+                      end = b + 1 < surfaces_.size() ? surfaces_[b + 1].first_triangle : triangles_.size();
+    surfaces_[b].triangles = std::span(triangles_).subspan(begin, end - begin);
+  }
+}
+
+Index Bodies::triangle_of(const Triangle& corners) const {
+  const std::span<const Triangle> triangles = surfaces_[body_of(corners[0])].triangles;
+  const auto has_all = [&](const Triangle& t) {
+    return std::ranges::all_of(corners, [&](Index v) { return has_vertex(t, v); });
+  };
+  return static_cast<Index>(std::ranges::find_if(triangles, has_all) - triangles.begin());
+}
+
+}  // namespace weft::collision

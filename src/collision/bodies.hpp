@@ -1,0 +1,59 @@
+// All surfaces that collide, in one numbering of vertices and of triangles.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "collision/hierarchy/surface.hpp"
+#include "core/types.hpp"
+
+namespace weft::collision {
+
+/// How a surface collides.
+struct BodyTraits {
+  bool deformable = false;
+  double thickness = 0;  ///< of cloth [m]; 0 for obstacles
+  double friction = 0;   ///< Coulomb coefficient; of a pair: the geometric mean
+  bool moving = true;    ///< false: its vertices stay where they are at the start
+};
+
+/// The owner of the triangles, which all other parts of the engine view. Vertices of all bodies share one numbering,
+/// that of the arrays of positions: particles first, so bodies that deform are added before the obstacles.
+class Bodies {
+ public:
+  /// `triangles`: by vertex number within the body, from 0 to vertex_count − 1.
+  void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits);
+
+  std::size_t size() const { return traits_.size(); }
+  const BodyTraits& operator[](std::size_t body) const { return traits_[body]; }
+
+  /// Valid until the next add(), and in a Bodies that this one is moved to.
+  std::span<const Triangle> triangles() const { return triangles_; }
+  std::span<const Surface> surfaces() const { return surfaces_; }
+  /// The surfaces of those that deform, which come first.
+  std::span<const Surface> deformable() const { return std::span(surfaces_).first(deformable_); }
+
+  Index vertex_count() const { return static_cast<Index>(body_of_.size()); }
+  const std::vector<std::size_t>& body_of_vertices() const { return body_of_; }
+  std::size_t body_of(Index vertex) const { return body_of_[vertex]; }
+
+  /// Number within its body of a triangle with these corners, an edge's second end being named twice.
+  Index triangle_of(const Triangle& corners) const;
+
+  /// The part of a global array that is of this body.
+  template <class T>
+  std::span<T> part(std::size_t body, std::span<T> values) const {
+    return values.subspan(surfaces_[body].first_vertex, surfaces_[body].vertex_count);
+  }
+
+ private:
+  std::vector<BodyTraits> traits_;
+  std::vector<Triangle> triangles_;
+  std::vector<Surface> surfaces_;
+  std::vector<std::size_t> body_of_;  // per vertex
+  std::size_t deformable_ = 0;
+};
+
+}  // namespace weft::collision

@@ -1,0 +1,144 @@
+#include "collision/contact_builder.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace weft::collision {
+namespace {
+
+// Stiffness of a contact against m/h² of its particles: a particle that arrives with speed v then comes to rest within
+// v h / 100, so even a heavy cloth stops well inside the range.
+constexpr double kInertialStiffness = 100;
+
+// Sum of sines from which two edges are sharp: their pair has its whole share.
+constexpr double kSharp = 0.2;
+// Sine of the angle outside of a wedge at which the share of a pair of edges has faded out.
+constexpr double kOutsideWedge = 0.1;
+// Part of an edge, from its end, over which the share of a closest point there fades out.
+constexpr double kEndOfEdge = 0.1;
+
+// Speed at which cloth is pushed out of an obstacle that it was pinched into [m/s]: out of 5 mm within a frame, and not
+// enough to hop over 2 mm.
+constexpr double kHealingSpeed = 0.2;
+// Share of the stiffness of a contact that does so: it has nothing to stop, and full stiffness between two obstacles
+// clamps the cloth and costs twice the Newton iterations.
+constexpr double kHealingShare = 0.05;
+
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
+
+double ramp(double from, double to, double value) {
+  return std::clamp((value - from) / (to - from), 0.0, 1.0);
+}
+
+std::array<Index, 4> sorted(std::array<Index, 4> vertices) {
+  std::ranges::sort(vertices);
+  return vertices;
+}
+
+}  // namespace
+
+double stiffness_share(const Proximity& proximity) {
+  if (proximity.kind == ProximityKind::vertex_face) return 1;
+  const auto& outside = proximity.outside_wedge;
+  double least = 1;
+  for (double weight : proximity.weights) least = std::min(least, std::abs(weight));
+  return ramp(kFlattest, kSharp, -outside[0] - outside[1]) *
+         ramp(-kOutsideWedge, 0, -std::max(outside[0], outside[1])) * ramp(0, kEndOfEdge, least);
+}
+
+// Friction of a pair: the geometric mean of both coefficients, or what the pair has of its own.
+ContactBuilder::ContactBuilder(const Bodies& bodies, const ContactParameters& parameters,
+                               std::span<const double> masses)
+    : bodies_(bodies), stiffness_(parameters.stiffness), masses_(masses) {
+  for (std::size_t a = 0; a < bodies.size(); ++a) {
+    for (std::size_t b = 0; b < bodies.size(); ++b) {
+      const double mean = std::sqrt(bodies[a].friction * bodies[b].friction);
+      friction_.push_back({mean, mean});
+    }
+  }
+  for (const PairFriction& pair : parameters.friction)
+    friction_[pair.a * bodies.size() + pair.b] = friction_[pair.b * bodies.size() + pair.a] = pair.friction;
+}
+
+void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
+                         ContactResponse& response) {
+  for (const Proximity& proximity : proximities) {
+    const double share = stiffness_share(proximity);
+    if (share == 0 || pinched.concern(proximity.vertices)) continue;
+    if (const auto contact = build(proximity, share, kNoLimit, motion)) response.add(*contact, motion.x_t0);
+    if (share == 1) in_contact_.push_back(sorted(proximity.vertices));
+  }
+  std::ranges::sort(in_contact_);
+}
+
+void ContactBuilder::add_pinched(const FeaturePair& pair, const StepMotion& motion, ContactResponse& response) const {
+  const auto contact = build(pair, kHealingShare, pair.distance + kHealingSpeed * motion.h, motion);
+  if (contact) response.add(*contact, motion.x_t0);
+}
+
+bool ContactBuilder::add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response) {
+  const ClosestFeatures features = closest_features(pair, motion.x_t0);
+  const std::array<Index, 4> vertices = sorted(features.vertices);
+  const auto place = std::ranges::lower_bound(in_contact_, vertices);
+  if (place != in_contact_.end() && *place == vertices) return false;
+  in_contact_.insert(place, vertices);
+  // What is closer than the range already, without being pushed, is only kept from coming closer.
+  const double distance = std::sqrt(features.points.distance_sq);
+  const FeaturePair closest{features.vertices, features.points.weights, features.points.difference / distance,
+                            distance};
+  const bool a_is_cloth = is_particle(pair.a[0]), b_is_cloth = is_particle(pair.b[0]);
+  if (response.form() == ResponseForm::springs || a_is_cloth == b_is_cloth) {
+    if (const auto contact = build(closest, 1, distance, motion)) response.add(*contact, motion.x_t0);
+    return true;
+  }
+  // All corners of the triangle of cloth are kept beyond the plane through the obstacle's closest point.
+  for (Index corner : a_is_cloth ? pair.a : pair.b) {
+    FeaturePair of_corner = closest;
+    bool placed = false;
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!is_particle(closest.vertices[k])) continue;
+      of_corner.weights[k] = placed ? 0 : a_is_cloth ? 1 : -1;
+      if (!placed) of_corner.vertices[k] = corner;
+      placed = true;
+    }
+    if (const auto contact = build(of_corner, 1, distance, motion)) response.add_wall(*contact, motion.x_t0);
+  }
+  return true;
+}
+
+// Empty where neither side has a particle that can be pushed.
+std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double share, double range_limit,
+                                             const StepMotion& motion) const {
+  Contact contact;
+  contact.normal = pair.normal;
+  double mass = 0, mass_weight = 0;
+  std::array<std::size_t, 2> sides{};
+  for (std::size_t k = 0; k < 4; ++k) {
+    const Index v = pair.vertices[k];
+    const double weight = pair.weights[k];
+    if (weight == 0) continue;
+    sides[weight > 0 ? 0 : 1] = bodies_.body_of(v);
+    contact.relative_start += weight * motion.x_t0[v];
+    if (is_particle(v)) {
+      contact.particles[k] = v;
+      contact.weights[k] = weight;
+      mass += std::abs(weight) * masses_[v];
+      mass_weight += std::abs(weight);
+    } else {
+      contact.against_obstacle = true;
+      contact.obstacle_start += weight * motion.x_t0[v];
+      contact.obstacle_end += weight * motion.x_t1[v];
+    }
+  }
+  if (mass_weight == 0) return std::nullopt;
+  contact.full_range = 0.5 * (bodies_[sides[0]].thickness + bodies_[sides[1]].thickness);
+  contact.range = std::min(range_limit, contact.full_range);
+  contact.stiffness = share * std::max(stiffness_, kInertialStiffness * mass / mass_weight / (motion.h * motion.h));
+  const Friction& friction = friction_of(sides[0], sides[1]);
+  contact.friction = friction.sliding;
+  contact.static_friction = friction.static_friction;
+  return contact;
+}
+
+}  // namespace weft::collision

@@ -1,0 +1,83 @@
+// From features that are near each other to contacts: how stiff they are, from which distance on, and how rough.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "collision/bodies.hpp"
+#include "collision/proximity/proximities.hpp"
+#include "collision/response/certificate.hpp"
+#include "collision/response/contact_response.hpp"
+#include "collision/response/pinch.hpp"
+#include "core/types.hpp"
+
+namespace weft::collision {
+
+/// Coulomb coefficients of two bodies while they slide and before.
+struct Friction {
+  double sliding = 0, static_friction = 0;
+};
+struct PairFriction {
+  std::size_t a = 0, b = 0;  ///< bodies, in any order
+  Friction friction;
+};
+
+struct ContactParameters {
+  double stiffness = 100;                   ///< least stiffness of a contact [N/m]
+  std::vector<PairFriction> friction = {};  ///< of pairs with coefficients of their own
+};
+
+/// The linear motion of all vertices over a step.
+struct StepMotion {
+  std::span<const Vec3> x_t0, x_t1;  ///< [m]
+  double h = 0;                      ///< [s]
+};
+
+/// Share of its stiffness that a proximity pushes with: all of a vertex and a face. An edge pair pushes with all of it
+/// where its direction lies well inside of the wedges of both edges: an edge of a box against smooth cloth, a crease
+/// across a crease. It fades out towards the flat, where vertices and faces keep the layers apart, towards directions
+/// outside of a wedge, where a face at the edge is closer, and towards the ends of either edge: nothing is switched on
+/// or off while cloth rests. Between two smooth layers that leaves a fifth of the contacts.
+double stiffness_share(const Proximity& proximity);
+/// Fold of two edges, as a sum of sines, below which a pair of them has no share.
+inline constexpr double kFlattest = 0.05;
+
+class ContactBuilder {
+ public:
+  /// `bodies` and `masses`, those of the particles [kg], must outlive it.
+  ContactBuilder(const Bodies& bodies, const ContactParameters& parameters, std::span<const double> masses);
+
+  /// Contacts of a step from here on.
+  void begin_step() { in_contact_.clear(); }
+
+  /// Adds the contacts of proximities, as far as they have a share. Those of pinched cloth and its obstacle are left
+  /// out: their direction does not tell the side.
+  void add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
+           ContactResponse& response);
+
+  /// Adds the contact of pinched cloth and its obstacle, which has nothing to stop: it pushes softly, at no more than
+  /// the speed of healing, to the side that the cloth belongs to.
+  void add_pinched(const FeaturePair& pair, const StepMotion& motion, ContactResponse& response) const;
+
+  /// Adds contacts of the closest features of two triangles that would meet; false if these push with all their
+  /// stiffness already.
+  bool add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response);
+
+  const Friction& friction_of(std::size_t a, std::size_t b) const { return friction_[a * bodies_.size() + b]; }
+
+ private:
+  bool is_particle(Index vertex) const { return static_cast<std::size_t>(vertex) < masses_.size(); }
+  std::optional<Contact> build(const FeaturePair& pair, double share, double range_limit,
+                               const StepMotion& motion) const;
+
+  const Bodies& bodies_;
+  double stiffness_;
+  std::vector<Friction> friction_;  // of each pair of bodies
+  std::span<const double> masses_;
+  // Sorted vertices of the features that push with all their stiffness; sorted itself.
+  std::vector<std::array<Index, 4>> in_contact_;
+};
+
+}  // namespace weft::collision

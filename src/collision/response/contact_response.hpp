@@ -1,0 +1,68 @@
+// How contacts push back: as springs inside of the implicit solve, or, those of single particles with obstacles, as
+// constraints of their velocity.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "collision/response/contact_set.hpp"
+#include "collision/response/velocity_constraints.hpp"
+#include "core/archive.hpp"
+#include "core/types.hpp"
+#include "solver/linear_system.hpp"
+
+namespace weft::collision {
+
+enum class ResponseForm { springs, velocity_constraints };
+
+/// The contacts of one step as the solver meets them. With velocity constraints, the walls (see VelocityConstraints)
+/// are set and released between solves of one step; all other contacts are springs in either form.
+class ContactResponse {
+ public:
+  ContactResponse(ResponseForm form, std::vector<double> masses);  ///< of the particles [kg]
+
+  ResponseForm form() const { return walls_ ? ResponseForm::velocity_constraints : ResponseForm::springs; }
+
+  /// Before the contacts of a step over h [s] are added.
+  void begin_step(double h);
+  void add(const Contact& contact, std::span<const Vec3> x_t0);
+  /// Holds a corner of a triangle of cloth that would meet an obstacle; only with velocity constraints.
+  void add_wall(const Contact& contact, std::span<const Vec3> x_t0);
+  /// When all contacts known before the first solve are there.
+  void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+
+  /// Solves of one step with contacts added, or walls set and released, in between; the rest is left to moving
+  /// particles.
+  int most_solves() const;
+  /// What the walls hold in the next solve.
+  std::span<const PrescribedParticle> prescribed() const;
+  /// After a solve that led to x_end: sets and releases walls; returns how many particles are constrained otherwise.
+  int revise(std::span<const Vec3> x_t0, std::span<const Vec3> x_end, const VelocityConstraints::ForceOn& force_on);
+  /// The step is done: its walls are where the next one starts.
+  void accept();
+
+  /// As those of ContactSet.
+  void update(std::span<const Vec3> x_end, FrictionLag& lag) const { springs_.update(x_end, lag); }
+  void add_forces(std::span<const Vec3> x_end, const FrictionLag& lag, std::span<Vec3> force) const;
+  void linearise(std::span<const Vec3> x_end, double end_rate, const FrictionLag& lag, std::span<Vec3> force,
+                 solver::LinearSystem& system) const;
+  int active(std::span<const Vec3> x_end) const { return springs_.active(x_end); }
+
+  std::span<const Contact> springs() const { return springs_.contacts(); }
+
+  /// What accept() has remembered. Throws std::runtime_error where these particles cannot have it.
+  template <class Archive>
+  void serialize(Archive& archive) {
+    if (walls_) return walls_->serialize(archive);
+    std::size_t none = 0;
+    archive.value(none);
+    if constexpr (Archive::kReads) require(none == 0, "no walls");
+  }
+
+ private:
+  ContactSet springs_;
+  std::optional<VelocityConstraints> walls_;
+};
+
+}  // namespace weft::collision

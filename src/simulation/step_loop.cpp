@@ -1,0 +1,211 @@
+#include "simulation/step_loop.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/archive.hpp"
+#include "core/error.hpp"
+#include "simulation/stopwatch.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Halvings of a step before cloth that cannot be kept out of an obstacle is taken for pinched: where there is room a
+// shorter step finds it, where there is none it only costs.
+constexpr int kHalvingsBeforePinch = 3;
+
+integrator::Method method_of(scene::Integrator integrator) {
+  switch (integrator) {
+    case scene::Integrator::implicit_euler:
+      return integrator::Method::implicit_euler;
+    case scene::Integrator::implicit_midpoint:
+      return integrator::Method::implicit_midpoint;
+    case scene::Integrator::bdf2:
+      return integrator::Method::bdf2;
+  }
+  return integrator::Method::implicit_euler;
+}
+
+integrator::NewtonParameters newton_of(const scene::Scene& scene) {
+  return {scene.solver.newton_tolerance, scene.solver.newton_iterations, scene.solver.linear_tolerance,
+          scene.solver.linear_iterations, scene.time.tolerance.value_or(0)};
+}
+
+std::optional<integrator::StepControl> step_control_of(const scene::Scene& scene) {
+  if (!scene.time.tolerance) return std::nullopt;
+  // The first step is one of Euler's, whose error in free fall is ½ h² g.
+  const double first = std::sqrt(2 * *scene.time.tolerance / std::max(scene.physics.gravity.norm(), 1.0));
+  return integrator::StepControl(method_of(scene.time.integrator), *scene.time.tolerance, first);
+}
+
+std::vector<Index> first_particles(const ClothSystem& cloth) {
+  std::vector<Index> first;
+  for (std::size_t c = 0; c < cloth.cloths(); ++c) first.push_back(cloth.first_particle(c));
+  return first;
+}
+
+Moment start_of(const environment::Environment& environment, double t) {
+  Moment start;
+  start.placed_for = t;
+  for (const environment::ClothObject& cloth : environment.cloths) {
+    start.x.insert(start.x.end(), cloth.start.begin(), cloth.start.end());
+    start.v.insert(start.v.end(), cloth.start.size(), cloth.velocity);
+  }
+  return start;
+}
+
+}  // namespace
+
+StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& environment, double start)
+    : scene_(scene),
+      environment_(environment),
+      start_(start),
+      cloth_(scene, environment),
+      problem_(cloth_),
+      pins_(scene, environment, first_particles(cloth_)),
+      progress_{start_of(environment, start), integrator::Stepper(method_of(scene.time.integrator), newton_of(scene)),
+                step_control_of(scene)} {
+  Moment& now = progress_.now;
+  pins_.held_at(start, environment, held_);
+  for (const integrator::HeldParticle& particle : held_) now.v[particle.constraint.particle] = particle.v_end;
+  if (CollisionStage::needed(scene)) {
+    collisions_.emplace(scene, environment, cloth_.masses(), now);
+    problem_.use_contacts(&collisions_->response());
+  }
+  next_ = now;
+}
+
+void StepLoop::advance(double t_t0, double t_t1, FrameReport& report) {
+  problem_.forget();
+  if (collisions_) collisions_->forget();
+  progress_.control ? advance_controlled(t_t0, t_t1, report) : advance_equally(t_t0, t_t1, report);
+}
+
+// In equal steps, no longer than time.step.
+void StepLoop::advance_equally(double t_t0, double t_t1, FrameReport& report) {
+  const int steps = std::max(1, static_cast<int>(std::ceil((t_t1 - t_t0) / scene_.time.step - 1e-9)));
+  const double h = (t_t1 - t_t0) / steps;
+  for (int s = 0; s < steps; ++s) advance_over(t_t0 + s * h, h, scene_.solver.halvings, report);
+}
+
+// Goes from t to t + h, in two halves where one step is rejected, or longer than may follow the last one.
+void StepLoop::advance_over(double t, double h, int halvings, FrameReport& report) {
+  const bool may_pinch = halvings == 0 || scene_.solver.halvings - halvings >= kHalvingsBeforePinch;
+  const bool too_long = h > (1 + 1e-9) * progress_.stepper.longest_step();
+  if (!too_long) {
+    const Rejection rejection = attempt(t, h, may_pinch, report);
+    if (!rejection) return accept(h, report);
+    ++report.rejected_steps;
+    if (halvings == 0) fail(report.frame, t, h, *rejection);
+    --halvings;
+  }
+  advance_over(t, 0.5 * h, halvings, report);
+  advance_over(t + 0.5 * h, 0.5 * h, halvings, report);
+}
+
+// In steps whose error is time.tolerance. What is left of the frame is cut into equal steps no longer than wanted, so
+// that none is much shorter than those before, and the same length is kept while nothing speaks against it.
+void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report) {
+  integrator::StepControl& control = *progress_.control;
+  double t = t_t0, h = 0;
+  int left = 0, retries = 0;
+  for (;;) {
+    const double longest = std::min(control.wanted(), progress_.stepper.longest_step());
+    const int needed = std::max(1, static_cast<int>(std::ceil((t_t1 - t) / longest - 1e-9)));
+    if (needed != left) {
+      left = needed;
+      h = (t_t1 - t) / left;
+    }
+    const bool last_try = retries == scene_.solver.halvings || h < integrator::StepControl::kShortestStep;
+    const Rejection rejection = attempt(t, h, last_try || retries >= kHalvingsBeforePinch, report);
+    if (rejection && last_try) fail(report.frame, t, h, *rejection);
+    // An impact may ask for steps without end: after as many tries its error is taken as it is.
+    if (rejection || !(last_try || control.accepts(h, local_error_))) {
+      ++report.rejected_steps, ++retries;
+      rejection ? control.unsolved(h) : control.too_inexact(h, local_error_);
+      continue;
+    }
+    report.inexact_steps += !control.meets(local_error_);
+    control.accepted(h, local_error_);
+    accept(h, report);
+    retries = 0;
+    if (--left == 0) return;
+    t += h;
+  }
+}
+
+void StepLoop::fail(int frame, double t, double h, const std::string& reason) const {
+  throw Error(ExitCode::simulation_failed,
+              "frame {}: the step at t = {:.6g} s was rejected down to h = {:.3g} s: {}; try a smaller time.{} or "
+              "softer material",
+              frame, t, h, reason, progress_.control ? "tolerance" : "step");
+}
+
+// One step from now at time t [s] over h [s] into `next_`.
+StepLoop::Rejection StepLoop::attempt(double t, double h, bool may_pinch, FrameReport& report) {
+  using Start = integrator::Stepper::Start;
+  const Moment& now = progress_.now;
+  pins_.held_at(t + h, environment_, held_);
+  problem_.begin_step(t + h - start_);
+  if (!collisions_) return solve(h, Start::unchanged_velocity, report);
+  {
+    const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
+    collisions_->begin_step(t, h, held_, progress_.now, next_);
+  }
+  collision::ContactResponse& response = collisions_->response();
+  const auto force_on = [&](Index particle) {
+    return progress_.stepper.constraint_force(particle, cloth_.masses()[particle]);
+  };
+  const std::size_t pinned = held_.size();
+  for (int solves = 1;; ++solves) {
+    held_.resize(pinned);
+    collisions_->append_prescribed(held_);
+    if (Rejection rejection = solve(h, solves == 1 ? Start::unchanged_velocity : Start::next, report)) return rejection;
+    const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
+    const bool last = solves == response.most_solves();
+    if (response.revise(now.x, next_.x, force_on) > 0 && !last) continue;
+    if (collisions_->apart(now, next_)) return std::nullopt;
+    if (last || collisions_->adopt_failing(now, next_) == 0) return collisions_->push_apart(h, may_pinch, now, next_);
+    response.revise(now.x, next_.x, force_on);
+  }
+}
+
+StepLoop::Rejection StepLoop::solve(double h, integrator::Stepper::Start start, FrameReport& report) {
+  const integrator::StepReport step =
+      progress_.stepper.step(problem_, progress_.now, h, scene_.physics.gravity, held_, next_, start);
+  report.newton_iterations += step.newton_iterations;
+  report.linear_iterations += step.linear_iterations;
+  local_error_ = step.local_error;
+  if (step.verdict == integrator::Verdict::solved) return std::nullopt;
+  return fmt::format("{} (residual {:.3g} of {:.3g} after {} iterations)", integrator::describe(step.verdict),
+                     step.last_residual, step.first_residual, step.newton_iterations);
+}
+
+// Makes `next_`, reached over h, the state.
+void StepLoop::accept(double h, FrameReport& report) {
+  progress_.stepper.accept(progress_.now, h);
+  if (collisions_) collisions_->response().accept();
+  std::swap(progress_.now, next_);
+  ++report.steps;
+  report.error_estimate += local_error_;
+}
+
+template <class Archive>
+void StepLoop::exchange(Archive& archive) {
+  Moment& now = progress_.now;
+  const std::size_t particles = cloth_.masses().size();
+  std::vector<Vec3> x(now.particles().begin(), now.particles().end());
+  exchange_points(archive, x, particles);
+  std::ranges::copy(x, now.x.begin());
+  exchange_points(archive, now.v, particles);
+  progress_.stepper.exchange(archive, particles);
+  if (progress_.control) progress_.control->exchange(archive);
+  cloth_.exchange(archive);
+}
+
+template void StepLoop::exchange(ByteWriter&);
+template void StepLoop::exchange(ByteReader&);
+
+}  // namespace weft::simulation

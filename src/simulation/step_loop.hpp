@@ -1,0 +1,87 @@
+// From one frame to the next in steps: how long they are, what is done again, and what one step consists of.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "environment/environment.hpp"
+#include "integrator/step_control.hpp"
+#include "integrator/stepper.hpp"
+#include "scene/scene.hpp"
+#include "simulation/cloth_system.hpp"
+#include "simulation/collision_stage.hpp"
+#include "simulation/pins.hpp"
+#include "simulation/simulation.hpp"
+#include "simulation/step_problem.hpp"
+
+namespace weft::simulation {
+
+/// Parts that a scene does not need are not there: no collision stage where nothing collides, no forces of zero
+/// stiffness.
+class StepLoop {
+ public:
+  /// The start of a simulation at time `start` [s]. Scene and environment must outlive it.
+  StepLoop(const scene::Scene& scene, const environment::Environment& environment, double start);
+
+  StepLoop(const StepLoop&) = delete;  // its parts know each other
+  StepLoop& operator=(const StepLoop&) = delete;
+
+  /// Goes on from the time t_t0 of a frame to that of the next one [s], which is report.frame, and counts in the
+  /// report. Throws Error(simulation_failed) where no step is short enough.
+  void advance(double t_t0, double t_t1, FrameReport& report);
+
+  /// What the next step begins with, besides what follows from it.
+  struct Progress {
+    Moment now;
+    integrator::Stepper stepper;
+    std::optional<integrator::StepControl> control;  // where the scene has a tolerance instead of a step
+  };
+  const Progress& progress() const { return progress_; }
+  /// After a failure, between two frames.
+  void return_to(Progress progress) { progress_ = std::move(progress); }
+
+  const ClothSystem& cloth() const { return cloth_; }
+  /// Particles that are held, by pins or by the response to contacts.
+  std::size_t held() const { return held_.size(); }
+  /// nullptr where nothing collides.
+  const CollisionStage* collisions() const { return collisions_ ? &*collisions_ : nullptr; }
+  /// What the frame that ends now has pinched.
+  CollisionStage::Pinches take_pinches() {
+    return collisions_ ? collisions_->take_pinches(next_) : CollisionStage::Pinches{};
+  }
+
+  /// Two parts of what later frames depend on; of contacts at the time of a frame [s].
+  template <class Archive>
+  void exchange(Archive& archive);
+  template <class Archive>
+  void exchange_contacts(Archive& archive, double t) {
+    if (collisions_) collisions_->exchange(archive, t, progress_.now);
+  }
+
+ private:
+  // Why a step was rejected; empty where it was not.
+  using Rejection = std::optional<std::string>;
+
+  void advance_equally(double t_t0, double t_t1, FrameReport& report);
+  void advance_over(double t, double h, int halvings, FrameReport& report);
+  void advance_controlled(double t_t0, double t_t1, FrameReport& report);
+  Rejection attempt(double t, double h, bool may_pinch, FrameReport& report);
+  Rejection solve(double h, integrator::Stepper::Start start, FrameReport& report);
+  void accept(double h, FrameReport& report);
+  [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
+
+  const scene::Scene& scene_;
+  const environment::Environment& environment_;
+  double start_;  // of the simulation [s]
+  ClothSystem cloth_;
+  StepProblem problem_;
+  Pins pins_;
+  Progress progress_;
+  Moment next_;             // the end of the step at hand; once that is accepted, its start
+  double local_error_ = 0;  // of the step to `next_`, estimated [m]
+  std::vector<integrator::HeldParticle> held_;
+  std::optional<CollisionStage> collisions_;
+};
+
+}  // namespace weft::simulation

@@ -1,0 +1,69 @@
+// The equation of one step as the integrator sees it: cloth, what it meets, and what is remembered between evaluations.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "collision/response/contact_response.hpp"
+#include "integrator/system.hpp"
+#include "simulation/cloth_system.hpp"
+
+namespace weft::simulation {
+
+/// All that evaluations leave behind for those that follow: with the same of it the same arguments give the same bits.
+struct SolveMemory {
+  // Changes with linearisations. Cloth at rest does with the rows of the matrix that it has; residuals are exact
+  // always.
+  solver::LinearSystem system;
+  double rate = 0;                  ///< of `system` and `base` [1/s]; 0: of none
+  std::vector<Vec3> linearised_at;  ///< where each cloth's rows were put together; empty: nowhere
+  collision::FrictionLag friction;
+
+  // Saves time only. Of the forces within the cloths: most cloths of a scene are solved, and do not move, while one
+  // goes on.
+  solver::BlockMatrix base;  ///< what all matrices of this rate begin with
+  std::vector<Vec3> x, v;    ///< where each cloth's forces were last evaluated; empty: nowhere
+  std::vector<Vec3> force;   ///< what they were [N]
+};
+
+class StepProblem final : public integrator::System {
+ public:
+  /// Must not outlive the cloth.
+  explicit StepProblem(ClothSystem& cloth);
+
+  /// What the cloth meets, or nullptr where the scene has nothing. Must outlive the steps.
+  void use_contacts(const collision::ContactResponse* contacts) { contacts_ = contacts; }
+
+  /// Before the first solve of a step that ends at time t [s] of the simulation: sews cloth on to there, and friction
+  /// goes by the loads at the start.
+  void begin_step(double t);
+
+  /// Makes the next linearisation put the matrix together anew: what is computed from here on depends on positions and
+  /// velocities alone.
+  void forget();
+
+  const SolveMemory& memory() const { return memory_; }
+
+  std::span<const double> masses() const override { return cloth_.masses(); }
+  void explicit_forces(const integrator::State& at, double h, bool extrapolated, std::span<Vec3> force) const override {
+    cloth_.add_explicit_forces(at.x, at.v, h, extrapolated, force);
+  }
+  void forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
+  void linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) override;
+  solver::LinearSystem& linear_system() override { return memory_.system; }
+
+ private:
+  void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
+  bool is_known(std::size_t cloth, const integrator::StagePoint& at) const;
+  void evaluate(std::size_t cloth, const integrator::StagePoint& at, solver::BlockMatrix* matrix,
+                forces::Linearisation form);
+  void use_rate(double rate);
+  bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
+  void put_together(std::size_t cloth, const integrator::StagePoint& at, int iteration);
+
+  ClothSystem& cloth_;
+  const collision::ContactResponse* contacts_ = nullptr;
+  SolveMemory memory_;
+};
+
+}  // namespace weft::simulation

@@ -1,0 +1,263 @@
+// A film of made-up stages: what is kept, what is stopped, whichever stage fails.
+#include "cli/film.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <limits>
+#include <mutex>
+#include <set>
+
+#include "cli/failure.hpp"
+
+namespace weft::cli {
+namespace {
+
+constexpr int kNever = std::numeric_limits<int>::max();
+
+// What happened during a run, and where it is to fail.
+struct Script {
+  int simulation_fails_at = kNever, drawing_fails_at = kNever, writing_fails_at = kNever;
+  bool painter_missing = false, source_missing = false, finish_fails = false;
+  std::atomic<bool>* stop = nullptr;
+  int stop_at = kNever;  // requested while this frame is simulated
+
+  std::vector<int> simulated, drawn, written;
+  int finished = 0, alive = 0, writers_made = 0;
+  std::mutex mutex;
+};
+
+[[noreturn]] void fail(ExitCode code, const char* text) {
+  throw Error(code, "{}", text);
+}
+
+class Life {
+ public:
+  explicit Life(Script& script) : script_(script) { count(1); }
+  ~Life() { count(-1); }
+  Life(const Life&) = delete;
+  Life& operator=(const Life&) = delete;
+
+ private:
+  void count(int change) {
+    const std::lock_guard lock(script_.mutex);
+    script_.alive += change;
+  }
+  Script& script_;
+};
+
+class Source : public FrameSource {
+ public:
+  explicit Source(Script& script) : script_(script), life_(script) {}
+  MadeFrame next() override {
+    if (frame_ == script_.simulation_fails_at) fail(ExitCode::simulation_failed, "no convergence");
+    if (frame_ == script_.stop_at) *script_.stop = true;
+    script_.simulated.push_back(frame_);
+    auto snapshot = std::make_shared<frame::FrameSnapshot>();
+    snapshot->frame = frame_;
+    simulation::FrameReport report;
+    report.frame = frame_;
+    report.steps = 10 * frame_;
+    ++frame_;
+    return {snapshot, std::move(report)};
+  }
+
+ private:
+  Script& script_;
+  Life life_;
+  int frame_ = 0;
+};
+
+class Painter : public FramePainter {
+ public:
+  explicit Painter(Script& script) : script_(script), life_(script) {}
+  image::Image draw(const frame::FrameSnapshot& snapshot) override {
+    if (snapshot.frame == script_.drawing_fails_at) fail(ExitCode::internal, "context lost");
+    script_.drawn.push_back(snapshot.frame);
+    image::Image image(1, 1);
+    image.rgb[0] = static_cast<std::uint8_t>(snapshot.frame);
+    return image;
+  }
+  StageTime last_time() const override { return {0.25, 0.5}; }
+  std::string description() const override { return "brush"; }
+
+ private:
+  Script& script_;
+  Life life_;
+};
+
+class Writer : public FrameWriter {
+ public:
+  explicit Writer(Script& script) : script_(script), life_(script) {}
+  void write(const frame::FrameSnapshot& snapshot, const image::Image& image) override {
+    if (snapshot.frame == script_.writing_fails_at) fail(ExitCode::output_failed, "disk full");
+    EXPECT_EQ(image.rgb[0], snapshot.frame) << "picture and frame got mixed up";
+    script_.written.push_back(snapshot.frame);
+  }
+  void finish() override {
+    if (script_.finish_fails) fail(ExitCode::output_failed, "no space for the index");
+    ++script_.finished;
+  }
+
+ private:
+  Script& script_;
+  Life life_;
+};
+
+FilmResult play(Script& script, const FrameRange& wanted) {
+  static std::atomic<bool> never{false};
+  const FilmParts parts{[&]() -> std::unique_ptr<FrameSource> {
+                          if (script.source_missing) fail(ExitCode::asset_unreadable, "no mesh");
+                          return std::make_unique<Source>(script);
+                        },
+                        [&]() -> std::unique_ptr<FramePainter> {
+                          if (script.painter_missing) fail(ExitCode::internal, "no OpenGL");
+                          return std::make_unique<Painter>(script);
+                        },
+                        [&](const std::string& description) -> std::unique_ptr<FrameWriter> {
+                          EXPECT_EQ(description, "brush");
+                          ++script.writers_made;
+                          return std::make_unique<Writer>(script);
+                        },
+                        nullptr,
+                        {}};
+  Progress progress(Progress::Style::none, {});
+  EventLog log("");
+  FilmResult result =
+      make_film(parts, {0, wanted.last() + 1, 1}, wanted, script.stop ? *script.stop : never, progress, log);
+  EXPECT_EQ(script.alive, 0) << "a stage was left behind";
+  EXPECT_EQ(result.frames.size(), script.simulated.size());
+  EXPECT_EQ(static_cast<std::size_t>(result.written), script.written.size());
+  return result;
+}
+
+std::vector<int> up_to(int end) {
+  std::vector<int> frames;
+  for (int frame = 0; frame < end; ++frame) frames.push_back(frame);
+  return frames;
+}
+
+TEST(Film, TakesEveryFrameThroughAllStagesInOrder) {
+  Script script;
+  const FilmResult result = play(script, {0, 50, 1});
+  EXPECT_EQ(script.simulated, up_to(50));
+  EXPECT_EQ(script.drawn, up_to(50));
+  EXPECT_EQ(script.written, up_to(50));
+  EXPECT_EQ(script.finished, 1);
+  EXPECT_TRUE(result.finished_output);
+  EXPECT_FALSE(result.failure || result.interrupted);
+  EXPECT_EQ(result.painter, "brush");
+  for (int frame = 0; frame < 50; ++frame) {
+    const FrameRecord& record = result.frames[static_cast<std::size_t>(frame)];
+    EXPECT_EQ(record.report.steps, 10 * frame);
+    EXPECT_TRUE(record.written);
+    EXPECT_EQ(record.render.wall_s, 0.25);
+    EXPECT_EQ(record.render.cpu_s, 0.5);
+  }
+}
+
+TEST(Film, SimulatesFramesThatAreNotWantedButDoesNotDrawThem) {
+  Script script;
+  const FilmResult result = play(script, {3, 10, 3});
+  EXPECT_EQ(script.simulated, up_to(10));
+  EXPECT_EQ(script.drawn, (std::vector<int>{3, 6, 9}));
+  EXPECT_EQ(script.written, (std::vector<int>{3, 6, 9}));
+  EXPECT_FALSE(result.frames[4].written);
+  EXPECT_TRUE(result.frames[6].written);
+}
+
+TEST(Film, EndsWithTheLastWantedFrame) {
+  Script script;
+  play(script, {0, 9, 4});
+  EXPECT_EQ(script.simulated, up_to(9));
+  script.simulated.clear();
+  script.written.clear();
+  play(script, {0, 8, 4});  // 4 is the last one wanted
+  EXPECT_EQ(script.simulated, up_to(5));
+}
+
+TEST(Film, KeepsAllGoodFramesWhenTheSimulationFails) {
+  Script script;
+  script.simulation_fails_at = 17;
+  const FilmResult result = play(script, {0, 50, 1});
+  EXPECT_EQ(script.written, up_to(17));
+  EXPECT_EQ(script.finished, 1);
+  EXPECT_TRUE(result.finished_output);
+  ASSERT_TRUE(result.failure);
+  EXPECT_EQ(describe_failure(result.failure).code, ExitCode::simulation_failed);
+  EXPECT_EQ(describe_failure(result.failure).text, "no convergence");
+}
+
+TEST(Film, FinishesWhatWasDrawnWhenDrawingFails) {
+  Script script;
+  script.drawing_fails_at = 5;
+  const FilmResult result = play(script, {0, 1000, 1});
+  EXPECT_EQ(script.written, up_to(5));
+  EXPECT_EQ(script.finished, 1);
+  EXPECT_LT(script.simulated.size(), 1000u) << "the simulation went on for nobody";
+  EXPECT_EQ(describe_failure(result.failure).text, "context lost");
+}
+
+TEST(Film, StopsAllStagesWhenTheOutputFails) {
+  Script script;
+  script.writing_fails_at = 5;
+  const FilmResult result = play(script, {0, 1000, 1});
+  EXPECT_EQ(script.written, up_to(5));
+  EXPECT_EQ(script.finished, 0) << "finished a file that could not be written";
+  EXPECT_FALSE(result.finished_output);
+  EXPECT_LT(script.simulated.size(), 1000u);
+  EXPECT_EQ(describe_failure(result.failure).code, ExitCode::output_failed);
+}
+
+TEST(Film, TellsThatTheOutputCouldNotBeFinished) {
+  Script script;
+  script.finish_fails = true;
+  script.simulation_fails_at = 3;  // the output is nearer to the user: its failure counts
+  const FilmResult result = play(script, {0, 10, 1});
+  EXPECT_FALSE(result.finished_output);
+  EXPECT_EQ(describe_failure(result.failure).text, "no space for the index");
+}
+
+TEST(Film, MakesNoOutputWithoutAPicture) {
+  for (const bool source : {false, true}) {
+    Script script;
+    script.source_missing = source;
+    script.painter_missing = !source;
+    const FilmResult result = play(script, {0, 10, 1});
+    EXPECT_EQ(script.writers_made, 0);
+    EXPECT_FALSE(result.finished_output);
+    EXPECT_EQ(describe_failure(result.failure).text, source ? "no mesh" : "no OpenGL");
+  }
+}
+
+TEST(Film, StopFinishesTheFrameInHandAndEverythingBefore) {
+  std::atomic<bool> stop{false};
+  Script script;
+  script.stop = &stop;
+  script.stop_at = 12;
+  const FilmResult result = play(script, {0, 1000, 1});
+  EXPECT_EQ(script.written, up_to(13));
+  EXPECT_EQ(script.finished, 1);
+  EXPECT_TRUE(result.interrupted);
+  EXPECT_FALSE(result.failure);
+}
+
+TEST(Film, StopBeforeTheStartStillGivesTheFirstFrame) {
+  std::atomic<bool> stop{true};
+  Script script;
+  script.stop = &stop;
+  const FilmResult result = play(script, {0, 10, 1});
+  EXPECT_EQ(script.written, up_to(1));
+  EXPECT_TRUE(result.interrupted);
+}
+
+TEST(Film, StopDuringTheLastFrameIsNoInterruption) {
+  std::atomic<bool> stop{false};
+  Script script;
+  script.stop = &stop;
+  script.stop_at = 9;
+  EXPECT_FALSE(play(script, {0, 10, 1}).interrupted);
+}
+
+}  // namespace
+}  // namespace weft::cli

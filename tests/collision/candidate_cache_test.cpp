@@ -1,0 +1,186 @@
+// Which pairs are collected, and that "covered" means what it says: held against brute force.
+#include "collision/candidate_cache.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+#include <set>
+
+#include "collision/proximity/closest_points.hpp"
+#include "collision/proximity/features.hpp"
+
+namespace weft::collision {
+namespace {
+
+constexpr double kReach = 0.01;
+
+Vec3 random_in_ball(std::mt19937& generator, double radius) {
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (;;) {
+    const double a = unit(generator), b = unit(generator), c = unit(generator);
+    if (const Vec3 v(a, b, c); v.norm() <= 1) return radius * v;
+  }
+}
+
+/// Two sheets of n × n squares, one `gap` above the other, and an obstacle of one triangle `gap` below both.
+struct Layers {
+  Bodies bodies;
+  std::vector<Vec3> x;
+
+  explicit Layers(int n, double gap) {
+    for (int layer = 0; layer < 2; ++layer) {
+      std::vector<Triangle> triangles;
+      for (int j = 0; j <= n; ++j)
+        for (int i = 0; i <= n; ++i) x.emplace_back(0.03 * i, 0.03 * j, gap * layer);
+      for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i) {
+          const Index a = i + (n + 1) * j, b = a + n + 1;
+          triangles.push_back({a, a + 1, b + 1});
+          triangles.push_back({a, b + 1, b});
+        }
+      bodies.add(triangles, (n + 1) * (n + 1), {.deformable = true, .thickness = 0.004});
+    }
+    for (const Vec3& corner : {Vec3(-1, -1, -gap), Vec3(2, -1, -gap), Vec3(0, 2, -gap)}) x.push_back(corner);
+    bodies.add(std::vector<Triangle>{{0, 1, 2}}, 3, {});
+  }
+
+  std::vector<Vec3> moved_by(std::mt19937& generator, double most) const {
+    std::vector<Vec3> moved = x;
+    for (Vec3& place : moved) place += random_in_ball(generator, most);
+    return moved;
+  }
+};
+
+std::set<std::pair<Index, Index>> set_of(const PairList& pairs) {
+  std::set<std::pair<Index, Index>> set;
+  for (const TrianglePair& pair : pairs) set.emplace(std::min(pair.a, pair.b), std::max(pair.a, pair.b));
+  return set;
+}
+
+/// Pairs of triangles without a common vertex of which a vertex and a face are closer than `reach`.
+std::set<std::pair<Index, Index>> near(std::span<const Triangle> triangles, std::span<const Vec3> x, double reach) {
+  std::set<std::pair<Index, Index>> found;
+  for (std::size_t a = 0; a < triangles.size(); ++a)
+    for (std::size_t b = 0; b < triangles.size(); ++b) {
+      const Triangle& face = triangles[b];
+      const auto shared = [&](Index v) { return has_vertex(face, v); };
+      if (a == b || std::ranges::any_of(triangles[a], shared)) continue;
+      for (Index v : triangles[a])
+        if (closest_vertex_face(x[v], x[face[0]], x[face[1]], x[face[2]]).distance_sq < reach * reach)
+          found.emplace(std::min(a, b), std::max(a, b));
+    }
+  return found;
+}
+
+TEST(CandidateCache, EveryPairWithinReachAtACoveredEndWasCollected) {
+  const Layers layers(4, 0.5 * kReach);
+  CandidateCache cache(layers.bodies, {}, layers.x, kReach);
+  const std::set<std::pair<Index, Index>> collected = set_of(cache.collect(layers.x, layers.x).apart);
+  std::mt19937 generator(1);
+  int covered = 0;
+  for (int trial = 0; trial < 200; ++trial) {
+    const std::vector<Vec3> end = layers.moved_by(generator, trial % 2 == 0 ? 0.5 * kReach : 2 * kReach);
+    if (!cache.covers_end(end)) continue;
+    ++covered;
+    for (const auto& pair : near(layers.bodies.triangles(), end, kReach)) EXPECT_TRUE(collected.contains(pair));
+  }
+  EXPECT_GE(covered, 100);  // of the short ones all
+}
+
+TEST(CandidateCache, FeaturesWithinReachAtACoveredStartWereWithinTheRadius) {
+  const Layers layers(3, kReach);
+  CandidateCache cache(layers.bodies, {}, layers.x, kReach);
+  cache.collect(layers.x, layers.x);
+  const auto then = near(layers.bodies.triangles(), layers.x, cache.radius());
+  std::mt19937 generator(2);
+  for (int trial = 0; trial < 50; ++trial) {
+    const std::vector<Vec3> start = layers.moved_by(generator, 0.5 * kReach);
+    ASSERT_TRUE(cache.covers_start(start));
+    for (const auto& pair : near(layers.bodies.triangles(), start, kReach)) EXPECT_TRUE(then.contains(pair));
+  }
+}
+
+// Cloth at rest has a skin of half the reach; without reuse, or in a fast step, only the very same start is covered.
+TEST(CandidateCache, TheSkinIsHalfTheReachWhereNothingMovesFast) {
+  const Layers layers(2, kReach);
+  std::vector<Vec3> inside = layers.x, outside = layers.x, fast = layers.x;
+  inside[3].z() += 0.499 * kReach;
+  outside[3].z() += 0.501 * kReach;
+  fast[5].x() += 0.6 * kReach;
+
+  CandidateCache cache(layers.bodies, {}, layers.x, kReach);
+  EXPECT_FALSE(cache.covers_start(layers.x));  // nothing was collected
+  cache.collect(layers.x, layers.x);
+  EXPECT_TRUE(cache.covers_start(inside));
+  EXPECT_FALSE(cache.covers_start(outside));
+  cache.collect(layers.x, fast);
+  EXPECT_TRUE(cache.covers_start(layers.x));
+  EXPECT_FALSE(cache.covers_start(inside));
+  cache.drop();
+  EXPECT_FALSE(cache.covers_start(layers.x));
+
+  CandidateCache every_step(layers.bodies, {.reuse = false}, layers.x, kReach);
+  every_step.collect(layers.x, layers.x);
+  EXPECT_FALSE(every_step.covers_start(inside));
+}
+
+TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundTheWay) {
+  const Layers layers(2, kReach);
+  std::vector<Vec3> to = layers.x;
+  to[4].x() += 3 * kReach;  // fast: the margin is half the reach
+  CandidateCache cache(layers.bodies, {}, layers.x, kReach);
+  cache.collect(layers.x, to);
+  std::vector<Vec3> end = to;
+  end[4].x() += 0.49 * kReach;
+  EXPECT_TRUE(cache.covers_end(end));
+  end[4].x() += 0.02 * kReach;
+  EXPECT_FALSE(cache.covers_end(end));
+  end[4] = layers.x[4] + Vec3(1.5 * kReach, 0, 0.49 * kReach);
+  EXPECT_TRUE(cache.covers_end(end));
+  end[4].z() = layers.x[4].z() - 0.51 * kReach;
+  EXPECT_FALSE(cache.covers_end(end));
+}
+
+TEST(CandidateCache, WhatIsNotWantedIsLeftOut) {
+  const Layers layers(2, 0.5 * kReach);
+  const auto obstacle = static_cast<Index>(layers.bodies.triangles().size() - 1);
+  const auto collected = [&](bool self, bool obstacles) {
+    CandidateCache cache(layers.bodies, {.self = self, .obstacles = obstacles}, layers.x, kReach);
+    return set_of(cache.collect(layers.x, layers.x).apart);
+  };
+  const auto with_obstacle = [&](const auto& pair) { return pair.second == obstacle; };
+  const auto cloth = collected(true, false), obstacles = collected(false, true), both = collected(true, true);
+  EXPECT_TRUE(!cloth.empty() && std::ranges::none_of(cloth, with_obstacle));
+  EXPECT_TRUE(!obstacles.empty() && std::ranges::all_of(obstacles, with_obstacle));
+  EXPECT_EQ(both.size(), cloth.size() + obstacles.size());
+  EXPECT_TRUE(collected(false, false).empty());
+}
+
+// The bounds of a still obstacle stay as they are only while it is where they were fitted.
+TEST(CandidateCache, AnObstacleThatHasMovedIsFoundWhereItIs) {
+  Layers layers(2, 0.5 * kReach);
+  CandidateCache cache(layers.bodies, {}, layers.x, kReach);
+  const std::size_t near_obstacle = cache.collect(layers.x, layers.x).apart.size();
+  std::vector<Vec3> away = layers.x;
+  for (std::size_t v = away.size() - 3; v < away.size(); ++v) away[v].z() -= 1;
+  const std::size_t without = cache.collect(away, away).apart.size();
+  EXPECT_LT(without, near_obstacle);
+  EXPECT_EQ(cache.collect(layers.x, layers.x).apart.size(), near_obstacle);
+  EXPECT_EQ(cache.collect(layers.x, layers.x).apart.size(), near_obstacle);
+}
+
+TEST(Bodies, TrianglesAreNumberedThroughAllBodies) {
+  const Layers layers(1, 0.1);
+  EXPECT_EQ(layers.bodies.size(), 3U);
+  EXPECT_EQ(layers.bodies.vertex_count(), 11);
+  EXPECT_EQ(layers.bodies.deformable().size(), 2U);
+  EXPECT_EQ(layers.bodies.triangles()[2], (Triangle{4, 5, 7}));
+  EXPECT_EQ(layers.bodies.surfaces()[2].first_triangle, 4);
+  EXPECT_EQ(layers.bodies.surfaces()[2].triangles[0], (Triangle{8, 9, 10}));
+  EXPECT_EQ(layers.bodies.body_of(7), 1U);
+  EXPECT_EQ(layers.bodies.triangle_of({7, 6, 4}), 1);  // of the second sheet
+  EXPECT_EQ(layers.bodies.triangle_of({5, 7, 7}), 0);  // an edge
+}
+
+}  // namespace
+}  // namespace weft::collision

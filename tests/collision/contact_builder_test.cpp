@@ -1,0 +1,224 @@
+// From features to contacts: each number of a contact against the formula that it comes from.
+#include "collision/contact_builder.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace weft::collision {
+namespace {
+
+constexpr double kH = 0.01;
+
+/// Two cloths of a triangle each, 1 mm apart, and an obstacle of one, 1 mm below.
+struct Scene {
+  Bodies bodies;
+  std::vector<double> masses{1e-3, 2e-3, 3e-3, 4e-3, 5e-3, 6e-3};  // [kg]
+  std::vector<Vec3> x_t0, x_t1;
+  PinchedPairs pinched;
+
+  Scene() {
+    const std::vector<Triangle> one{{0, 1, 2}};
+    bodies.add(one, 3, {.deformable = true, .thickness = 0.002, .friction = 0.2});
+    bodies.add(one, 3, {.deformable = true, .thickness = 0.003, .friction = 0.8});
+    bodies.add(one, 3, {.friction = 0.45});
+    for (double z : {0.0, 0.001, -0.001})
+      for (const Vec3& corner : {Vec3(0, 0, z), Vec3(0.1, 0, z), Vec3(0, 0.1, z)}) x_t0.push_back(corner);
+    x_t1 = x_t0;
+    for (std::size_t v = 6; v < 9; ++v) x_t1[v].z() += 0.0004;  // the obstacle rises
+    pinched = PinchedPairs(6, bodies.body_of_vertices());
+  }
+
+  StepMotion motion() const { return {x_t0, x_t1, kH}; }
+
+  std::vector<Contact> contacts_of(const std::vector<Proximity>& proximities, const ContactParameters& parameters) {
+    ContactBuilder builder(bodies, parameters, masses);
+    ContactResponse response(ResponseForm::springs, masses);
+    response.begin_step(kH);
+    builder.begin_step();
+    builder.add(proximities, pinched, motion(), response);
+    return {response.springs().begin(), response.springs().end()};
+  }
+};
+
+/// Vertex `v` against a face.
+Proximity vertex_face(Index v, const Triangle& face) {
+  return {{{v, face[0], face[1], face[2]}, {1, -0.5, -0.3, -0.2}, Vec3::UnitZ(), 0.001},
+          ProximityKind::vertex_face,
+          {0, 0}};
+}
+
+Proximity edges(double outside_a, double outside_b, double along_a) {
+  return {{{0, 1, 3, 4}, {1 - along_a, along_a, -0.5, -0.5}, Vec3::UnitZ(), 0.001},
+          ProximityKind::edge_edge,
+          {outside_a, outside_b}};
+}
+
+// With 0.2 and 0.8 the geometric mean, 0.4, is none of arithmetic (0.5), harmonic (0.32), least and largest.
+TEST(ContactBuilder, FrictionOfAPairIsTheGeometricMean) {
+  const Scene scene;
+  const ContactBuilder builder(scene.bodies, {}, scene.masses);
+  EXPECT_DOUBLE_EQ(builder.friction_of(0, 1).sliding, 0.4);
+  EXPECT_DOUBLE_EQ(builder.friction_of(1, 0).static_friction, 0.4);
+  EXPECT_DOUBLE_EQ(builder.friction_of(0, 2).sliding, std::sqrt(0.2 * 0.45));
+  EXPECT_DOUBLE_EQ(builder.friction_of(1, 1).sliding, 0.8);
+}
+
+TEST(ContactBuilder, APairMayHaveFrictionOfItsOwnInEitherOrder) {
+  const Scene scene;
+  const ContactBuilder builder(scene.bodies, {.friction = {{2, 0, {0.1, 0.3}}}}, scene.masses);
+  for (const auto& [a, b] : {std::pair(0, 2), std::pair(2, 0)}) {
+    EXPECT_EQ(builder.friction_of(a, b).sliding, 0.1);
+    EXPECT_EQ(builder.friction_of(a, b).static_friction, 0.3);
+  }
+  EXPECT_DOUBLE_EQ(builder.friction_of(0, 1).sliding, 0.4);
+}
+
+TEST(ContactBuilder, FrictionReachesTheContact) {
+  Scene scene;
+  const auto contacts =
+      scene.contacts_of({vertex_face(0, {3, 4, 5}), vertex_face(1, {6, 7, 8})}, {.friction = {{0, 2, {0.1, 0.3}}}});
+  ASSERT_EQ(contacts.size(), 2U);
+  EXPECT_DOUBLE_EQ(contacts[0].friction, 0.4);
+  EXPECT_DOUBLE_EQ(contacts[1].friction, 0.1);
+  EXPECT_DOUBLE_EQ(contacts[1].static_friction, 0.3);
+}
+
+// The share of an edge pair: all of it well inside of both wedges and away from the ends, and linear in between.
+TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
+  EXPECT_EQ(stiffness_share(vertex_face(0, {3, 4, 5})), 1);
+  EXPECT_EQ(stiffness_share(edges(-0.5, -0.5, 0.5)), 1);
+  // Flat: the sum of the sines from 0.05 to 0.2.
+  EXPECT_EQ(stiffness_share(edges(-0.025, -0.025, 0.5)), 0);
+  EXPECT_NEAR(stiffness_share(edges(0, -0.125, 0.5)), 0.5, 1e-12);
+  EXPECT_NEAR(stiffness_share(edges(-0.1, -0.1, 0.5)), 1, 1e-12);
+  // Outside of a wedge: down from 0 to 0.1, of either edge.
+  EXPECT_EQ(stiffness_share(edges(0, -0.5, 0.5)), 1);
+  EXPECT_NEAR(stiffness_share(edges(0.05, -0.5, 0.5)), 0.5, 1e-12);
+  EXPECT_NEAR(stiffness_share(edges(-0.5, 0.05, 0.5)), 0.5, 1e-12);
+  EXPECT_EQ(stiffness_share(edges(-0.5, 0.1, 0.5)), 0);
+  // Both at once.
+  EXPECT_NEAR(stiffness_share(edges(0.05, -0.175, 0.5)), 0.5 * 0.5, 1e-12);
+  // Within a tenth of an end, of either.
+  EXPECT_NEAR(stiffness_share(edges(-0.5, -0.5, 0.05)), 0.5, 1e-12);
+  EXPECT_NEAR(stiffness_share(edges(-0.5, -0.5, 0.975)), 0.25, 1e-12);
+  EXPECT_EQ(stiffness_share(edges(-0.5, -0.5, 0.1)), 1);
+  EXPECT_EQ(stiffness_share(edges(-0.5, -0.5, 0)), 0);
+}
+
+TEST(ContactBuilder, TheShareScalesTheStiffnessAndNoneMakesNoContact) {
+  Scene scene;
+  const auto contacts =
+      scene.contacts_of({edges(-0.5, -0.5, 0.5), edges(-0.5, -0.5, 0.05), edges(-0.5, -0.5, 0)}, {.stiffness = 1e9});
+  ASSERT_EQ(contacts.size(), 2U);
+  EXPECT_DOUBLE_EQ(contacts[0].stiffness, 1e9);
+  EXPECT_NEAR(contacts[1].stiffness, 0.5e9, 1);
+}
+
+// 100 m / h² with the mean mass of what is pushed, by weight; at least what the scene says.
+TEST(ContactBuilder, StiffnessFollowsTheMassOfWhatIsPushed) {
+  Scene scene;
+  const auto contacts = scene.contacts_of({vertex_face(0, {3, 4, 5}), vertex_face(1, {6, 7, 8})}, {.stiffness = 10});
+  const double mass = (1e-3 + 0.5 * 4e-3 + 0.3 * 5e-3 + 0.2 * 6e-3) / 2;
+  EXPECT_NEAR(contacts[0].stiffness, 100 * mass / (kH * kH), 1e-9);
+  EXPECT_NEAR(contacts[1].stiffness, 100 * 2e-3 / (kH * kH), 1e-9);  // the obstacle has none
+  EXPECT_EQ(scene.contacts_of({vertex_face(1, {6, 7, 8})}, {.stiffness = 1e6})[0].stiffness, 1e6);
+}
+
+TEST(ContactBuilder, TheRangeIsHalfOfBothThicknesses) {
+  Scene scene;
+  const auto contacts = scene.contacts_of({vertex_face(0, {3, 4, 5}), vertex_face(1, {6, 7, 8})}, {});
+  EXPECT_DOUBLE_EQ(contacts[0].range, 0.0025);
+  EXPECT_DOUBLE_EQ(contacts[1].range, 0.001);
+  EXPECT_EQ(contacts[1].range, contacts[1].full_range);
+}
+
+TEST(ContactBuilder, AnObstacleActsByWhereItIsAtBothEndsOfTheStep) {
+  Scene scene;
+  const auto contacts = scene.contacts_of({vertex_face(1, {6, 7, 8}), vertex_face(0, {3, 4, 5})}, {});
+  const Vec3 point_t0(0.03, 0.02, -0.001);  // by the weights 0.5, 0.3, 0.2
+  EXPECT_TRUE(contacts[0].against_obstacle);
+  EXPECT_LT((contacts[0].obstacle_start + point_t0).norm(), 1e-15);
+  EXPECT_LT((contacts[0].obstacle_end + point_t0 + Vec3(0, 0, 0.0004)).norm(), 1e-15);
+  EXPECT_LT((contacts[0].relative_start - (scene.x_t0[1] - point_t0)).norm(), 1e-15);
+  EXPECT_EQ(contacts[0].weights, (std::array<double, 4>{1, 0, 0, 0}));
+  EXPECT_FALSE(contacts[1].against_obstacle);
+  EXPECT_TRUE(contacts[1].obstacle_end.isZero());
+}
+
+TEST(ContactBuilder, PinchedClothAndItsObstacleAreLeftOut) {
+  Scene scene;
+  scene.pinched.add({{0, 1, 2}, {6, 7, 8}});
+  scene.pinched.note_origins(scene.bodies.surfaces(), scene.x_t0);
+  const auto contacts = scene.contacts_of({vertex_face(0, {6, 7, 8}), vertex_face(3, {6, 7, 8})}, {});
+  ASSERT_EQ(contacts.size(), 1U);
+  EXPECT_EQ(contacts[0].particles[0], 3);
+}
+
+// A pinched particle 2 mm deep is pushed out at 0.2 m/s, with a twentieth of the stiffness.
+TEST(ContactBuilder, PinchedClothIsPushedBackSoftlyAndSlowly) {
+  const Scene scene;
+  const ContactBuilder builder(scene.bodies, {.stiffness = 1e6}, scene.masses);
+  ContactResponse response(ResponseForm::springs, scene.masses);
+  response.begin_step(kH);
+  builder.add_pinched({{0, 6, 7, 8}, {1, -0.5, -0.3, -0.2}, -Vec3::UnitZ(), -0.002}, scene.motion(), response);
+  ASSERT_EQ(response.springs().size(), 1U);
+  EXPECT_DOUBLE_EQ(response.springs()[0].range, -0.002 + 0.2 * kH);
+  EXPECT_DOUBLE_EQ(response.springs()[0].stiffness, 0.05e6);
+}
+
+TEST(ContactBuilder, WhatWouldMeetBecomesAContactOnceAtTheDistanceThatItHas) {
+  Scene scene;
+  ContactBuilder builder(scene.bodies, {}, scene.masses);
+  ContactResponse response(ResponseForm::springs, scene.masses);
+  response.begin_step(kH);
+  builder.begin_step();
+  builder.add({}, scene.pinched, scene.motion(), response);
+  const CornerPair pair{{3, 4, 5}, {0, 1, 2}};
+  EXPECT_TRUE(builder.add_failing(pair, scene.motion(), response));
+  EXPECT_FALSE(builder.add_failing(pair, scene.motion(), response));
+  ASSERT_EQ(response.springs().size(), 1U);
+  const Contact& contact = response.springs()[0];
+  EXPECT_DOUBLE_EQ(contact.range, 0.001);  // no less than it is, though the full range is more
+  EXPECT_DOUBLE_EQ(contact.full_range, 0.0025);
+  EXPECT_NEAR((contact.normal - Vec3::UnitZ()).norm(), 0, 1e-12);
+}
+
+TEST(ContactBuilder, WhatIsInContactAlreadyIsNoNewContact) {
+  Scene scene;
+  ContactBuilder builder(scene.bodies, {}, scene.masses);
+  ContactResponse response(ResponseForm::springs, scene.masses);
+  response.begin_step(kH);
+  builder.begin_step();
+  // The closest features of both triangles are the vertex 3 and the face below, or a pair as near.
+  const CornerPair pair{{3, 4, 5}, {0, 1, 2}};
+  Proximity known;
+  known.vertices = closest_features(pair, scene.x_t0).vertices;
+  known.weights = closest_features(pair, scene.x_t0).points.weights;
+  builder.add(std::vector{known}, scene.pinched, scene.motion(), response);
+  EXPECT_FALSE(builder.add_failing(pair, scene.motion(), response));
+  EXPECT_EQ(response.springs().size(), 1U);
+}
+
+// With velocity constraints all corners of the triangle of cloth are kept beyond the obstacle's plane.
+TEST(ContactBuilder, EachCornerThatWouldMeetAnObstacleGetsAWall) {
+  Scene scene;
+  for (std::size_t v = 0; v < 3; ++v) scene.x_t1[v].z() -= 0.01;
+  for (const CornerPair& pair : {CornerPair{{0, 1, 2}, {6, 7, 8}}, CornerPair{{6, 7, 8}, {0, 1, 2}}}) {
+    ContactBuilder builder(scene.bodies, {}, scene.masses);
+    ContactResponse response(ResponseForm::velocity_constraints, scene.masses);
+    response.begin_step(kH);
+    builder.begin_step();
+    EXPECT_TRUE(builder.add_failing(pair, scene.motion(), response));
+    response.prepare(scene.x_t0, scene.x_t1);
+    EXPECT_TRUE(response.springs().empty());
+    ASSERT_EQ(response.prescribed().size(), 3U);
+    for (const PrescribedParticle& held : response.prescribed()) {
+      // 1 mm above, which is the range: it stops there, and the obstacle rises by 0.4 mm.
+      EXPECT_NEAR(held.x_end.z(), 0.0004, 1e-9) << held.constraint.particle;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft::collision

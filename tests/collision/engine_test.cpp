@@ -1,0 +1,167 @@
+// The parts of collision put together, on a square of cloth over a floor.
+#include "collision/engine.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/archive.hpp"
+
+namespace weft::collision {
+namespace {
+
+constexpr double kH = 0.01;
+constexpr double kThickness = 0.002;  // of cloth: it touches a floor at half of that, and is near at 1.5 mm
+
+/// A sheet of n × n squares of 2 cm at `height` [m] over a floor, and perhaps a ceiling.
+struct Sheet {
+  int n;
+  std::vector<Vec3> x;
+  std::vector<double> masses;
+  Bodies bodies;
+
+  Sheet(int squares, double height, std::optional<double> ceiling = std::nullopt) : n(squares) {
+    std::vector<Triangle> triangles;
+    for (int j = 0; j <= n; ++j)
+      for (int i = 0; i <= n; ++i) x.emplace_back(0.02 * i, 0.02 * j, height);
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const Index a = i + (n + 1) * j, b = a + n + 1;
+        triangles.push_back({a, a + 1, b + 1});
+        triangles.push_back({a, b + 1, b});
+      }
+    masses.assign(x.size(), 1e-4);
+    bodies.add(triangles, static_cast<Index>(x.size()), {.deformable = true, .thickness = kThickness, .friction = 0.3});
+    add_plane(0);
+    if (ceiling) add_plane(*ceiling);
+  }
+
+  std::size_t particles() const { return masses.size(); }
+  std::vector<Vec3> falling(double by) const {
+    std::vector<Vec3> end = x;
+    for (std::size_t i = 0; i < particles(); ++i) end[i].z() -= by;
+    return end;
+  }
+  Engine engine(const EngineParameters& parameters = {}) { return {bodies, parameters, x, masses}; }
+
+ private:
+  void add_plane(double z) {
+    for (const Vec3& corner : {Vec3(-1, -1, z), Vec3(2, -1, z), Vec3(2, 2, z), Vec3(-1, 2, z)}) x.push_back(corner);
+    bodies.add(std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}, 4, {.friction = 0.3, .moving = false});
+  }
+};
+
+TEST(Engine, EachParticleNearAFloorIsAProximityAndAContact) {
+  Sheet near(3, 0.0029), far(3, 0.0031);
+  Engine of_near = near.engine(), of_far = far.engine();
+  of_near.begin_step(near.x, near.x, kH);
+  of_far.begin_step(far.x, far.x, kH);
+  EXPECT_EQ(of_near.proximities(), 16);
+  EXPECT_NEAR(of_near.min_distance(), 0.0029, 1e-15);
+  EXPECT_EQ(of_near.response().springs().size(), 16U);
+  EXPECT_EQ(of_far.proximities(), 0);
+  EXPECT_TRUE(std::isinf(of_far.min_distance()));
+}
+
+TEST(Engine, WhatWouldMeetIsFoundAtTheEndOfTheWay) {
+  Sheet sheet(3, 0.05);
+  Engine engine = sheet.engine();
+  engine.begin_step(sheet.x, sheet.x, kH);
+  EXPECT_TRUE(engine.apart(sheet.x, sheet.falling(0.0499)));
+  EXPECT_FALSE(engine.apart(sheet.x, sheet.falling(0.0501)));
+  // Through the floor and out on the other side is no way either.
+  EXPECT_FALSE(engine.apart(sheet.x, sheet.falling(0.1)));
+}
+
+TEST(Engine, WhatWouldMeetBecomesContactsOnce) {
+  Sheet sheet(3, 0.05);
+  Engine engine = sheet.engine();
+  const std::vector<Vec3> end = sheet.falling(0.06);
+  engine.begin_step(sheet.x, sheet.x, kH);
+  EXPECT_TRUE(engine.response().springs().empty());
+  ASSERT_FALSE(engine.apart(sheet.x, end));
+  const int fresh = engine.adopt_failing(sheet.x, end);
+  EXPECT_GT(fresh, 0);
+  EXPECT_EQ(static_cast<int>(engine.response().springs().size()), fresh);
+  EXPECT_EQ(engine.adopt_failing(sheet.x, end), 0);
+}
+
+// A guess that runs into the floor has its contacts before the first solve.
+TEST(Engine, AnExpectedEndThatMeetsGivesContactsAtOnce) {
+  Sheet sheet(3, 0.05);
+  Engine engine = sheet.engine();
+  engine.begin_step(sheet.x, sheet.falling(0.06), kH);
+  EXPECT_FALSE(engine.response().springs().empty());
+}
+
+TEST(Engine, PushingApartLeavesAWayWithoutMeeting) {
+  Sheet sheet(3, 0.05);
+  Engine engine = sheet.engine();
+  std::vector<Vec3> end = sheet.falling(0.06);
+  std::vector<std::uint8_t> movable(sheet.x.size(), 0);
+  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
+  engine.begin_step(sheet.x, sheet.x, kH);
+  ASSERT_FALSE(engine.apart(sheet.x, end));
+  const SeparationReport report = engine.push_apart(sheet.x, end, movable);
+  EXPECT_TRUE(report.separated);
+  EXPECT_GT(report.corrected_pairs, 0);
+  EXPECT_TRUE(engine.apart(sheet.x, end));
+  for (std::size_t i = 0; i < sheet.particles(); ++i) EXPECT_GT(end[i].z(), 0);
+}
+
+// A ceiling that comes down to 0.1 mm below the floor: with `may_pinch` the cloth between is exempted, else refused.
+TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
+  Sheet sheet(2, 0.005, 0.01);
+  std::vector<Vec3> end = sheet.x;
+  for (std::size_t v = end.size() - 4; v < end.size(); ++v) end[v].z() = -0.0001;
+  std::vector<std::uint8_t> movable(sheet.x.size(), 0);
+  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
+
+  Engine engine = sheet.engine();
+  engine.begin_step(sheet.x, end, kH);
+  std::vector<Vec3> refused = end, pinched = end;
+  EXPECT_FALSE(engine.push_apart(sheet.x, refused, movable, false).separated);
+  EXPECT_EQ(engine.pinched_pairs(), 0);
+  EXPECT_TRUE(engine.push_apart(sheet.x, pinched, movable, true).separated);
+  EXPECT_GT(engine.pinched_pairs(), 0);
+  EXPECT_TRUE(engine.apart(sheet.x, pinched));  // but for what is pinched
+}
+
+TEST(Engine, ASheetThroughTheFloorMeetsItAtTheStart) {
+  Sheet apart(2, 0.001), through(2, 0.001);
+  through.x[4].z() = -0.001;
+  Engine of_apart = apart.engine(), of_through = through.engine();
+  EXPECT_FALSE(of_apart.find_meeting(apart.x).has_value());
+  const auto meeting = of_through.find_meeting(through.x);
+  ASSERT_TRUE(meeting.has_value());
+  EXPECT_EQ(of_through.bodies().body_of(meeting->a[0]), 0U);
+  EXPECT_EQ(of_through.bodies().body_of(meeting->b[0]), 1U);
+}
+
+// Saved after a step that began where the candidates still hold, and read by an engine at the start.
+TEST(Engine, ARestoredEngineGoesOnAsTheSavedOne) {
+  Sheet sheet(4, 0.0029);
+  Engine saved = sheet.engine(), restored = sheet.engine();
+  const std::vector<Vec3> lower = sheet.falling(0.0001);
+  saved.begin_step(sheet.x, lower, kH);
+  ASSERT_TRUE(saved.apart(sheet.x, lower));
+  ByteWriter writer;
+  saved.serialize(writer, lower);
+  ByteReader reader{writer.bytes};
+  restored.serialize(reader, lower);
+  EXPECT_TRUE(reader.bytes.empty());
+
+  for (Engine* engine : {&saved, &restored}) engine->begin_step(lower, lower, kH);
+  ASSERT_EQ(saved.response().springs().size(), restored.response().springs().size());
+  for (std::size_t c = 0; c < saved.response().springs().size(); ++c) {
+    EXPECT_EQ(saved.response().springs()[c].particles, restored.response().springs()[c].particles);
+    EXPECT_EQ(saved.response().springs()[c].stiffness, restored.response().springs()[c].stiffness);
+  }
+  ByteWriter again, of_restored;
+  saved.serialize(again, lower);
+  restored.serialize(of_restored, lower);
+  EXPECT_EQ(again.bytes, of_restored.bytes);
+}
+
+}  // namespace
+}  // namespace weft::collision

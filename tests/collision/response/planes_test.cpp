@@ -1,0 +1,118 @@
+// What is remembered of separating planes, and that saving it loses nothing.
+#include "collision/response/planes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "core/archive.hpp"
+
+namespace weft::collision {
+namespace {
+
+/// Pairs of random triangles, 1 m from pair to pair.
+struct Pairs {
+  std::vector<Triangle> triangles;
+  std::vector<TrianglePair> pairs;
+  std::vector<Vec3> x;
+
+  explicit Pairs(int count) {
+    for (Index p = 0; p < count; ++p) {
+      const Vec3 apart = vector(0.08);
+      for (int k = 0; k < 6; ++k) x.push_back(Vec3(p, 0, 0) + vector(0.05) + (k < 3 ? Vec3(Vec3::Zero()) : apart));
+      triangles.push_back({6 * p, 6 * p + 1, 6 * p + 2});
+      triangles.push_back({6 * p + 3, 6 * p + 4, 6 * p + 5});
+      if (find_certificate({triangles[2 * p], triangles[2 * p + 1]}, x, x)) pairs.push_back({2 * p, 2 * p + 1});
+    }
+  }
+  std::vector<Vec3> moved(double by) {
+    std::vector<Vec3> end = x;
+    for (Vec3& place : end) place += vector(by);
+    return end;
+  }
+
+ private:
+  Vec3 vector(double size) {
+    std::uniform_real_distribution<double> number(-size, size);
+    const double a = number(generator), b = number(generator), c = number(generator);
+    return {a, b, c};
+  }
+  std::mt19937 generator{7};
+};
+
+std::vector<CornerPair> failing(Planes& planes, const Pairs& of, std::span<const Vec3> x_t0,
+                                std::span<const Vec3> x_t1) {
+  const std::vector<float> moved(of.x.size(), 1e9F);  // nothing is certified by its gap alone
+  std::vector<CornerPair> found;
+  planes.find_failing(of.x, x_t0, x_t1, moved, found);
+  return found;
+}
+
+std::string saved(Planes& planes, const Pairs& of) {
+  ByteWriter writer;
+  planes.serialize(writer, of.x);
+  return writer.bytes;
+}
+
+TEST(Planes, APlaneFoundForOneStepIsTriedInTheNext) {
+  Pairs pairs(3000);
+  Planes remembers(pairs.triangles), fresh(pairs.triangles);
+  for (Planes* planes : {&remembers, &fresh}) planes->watch(pairs.pairs, pairs.x);
+  const std::vector<Vec3> first = pairs.moved(0.03), second = pairs.moved(0.03);
+  failing(remembers, pairs, pairs.x, first);
+  // For some pairs the plane of the first step separates in the second, and a search from scratch finds none.
+  EXPECT_LT(failing(remembers, pairs, pairs.x, second).size(), failing(fresh, pairs, pairs.x, second).size());
+}
+
+TEST(Planes, SavingKeepsEveryPlaneThatDiffersFromThoseOfWatching) {
+  Pairs pairs(3000);
+  Planes original(pairs.triangles), restored(pairs.triangles), fresh(pairs.triangles);
+  for (Planes* planes : {&original, &restored, &fresh}) planes->watch(pairs.pairs, pairs.x);
+  const std::string of_fresh = saved(original, pairs);
+  EXPECT_EQ(of_fresh.size(), sizeof(std::size_t));  // nothing to say
+  const std::vector<Vec3> first = pairs.moved(0.03), second = pairs.moved(0.03);
+  failing(original, pairs, pairs.x, first);
+  const std::string bytes = saved(original, pairs);
+  EXPECT_GT(bytes.size(), of_fresh.size());
+
+  ByteReader reader{bytes};
+  restored.serialize(reader, pairs.x);
+  EXPECT_TRUE(reader.bytes.empty());
+  EXPECT_EQ(saved(restored, pairs), bytes);
+  EXPECT_EQ(failing(restored, pairs, pairs.x, second), failing(original, pairs, pairs.x, second));
+}
+
+TEST(Planes, APlaneOfAPairThatIsNotWatchedIsRefused) {
+  Pairs pairs(10);
+  Planes planes(pairs.triangles);
+  planes.watch(pairs.pairs, pairs.x);
+  ByteWriter writer;
+  std::vector<std::uint32_t> changed{static_cast<std::uint32_t>(pairs.pairs.size())};
+  exchange_plain(writer, changed);
+  writer.bytes.append(16, '\0');
+  ByteReader reader{writer.bytes};
+  EXPECT_THROW(planes.serialize(reader, pairs.x), std::runtime_error);
+}
+
+// By the gap alone: a pair whose triangles have moved less than that stays apart without a look at it.
+TEST(Planes, TheGapOfAPlaneIsNoMoreThanTheDistance) {
+  Pairs pairs(500);
+  Planes planes(pairs.triangles);
+  planes.watch(pairs.pairs, pairs.x);
+  for (double radius : {0.005, 0.02, 0.05}) {
+    PairList closer;
+    planes.append_closer(radius, closer);
+    std::size_t within = 0;
+    for (const TrianglePair& pair : pairs.pairs) {
+      const CornerPair corners{pairs.triangles[pair.a], pairs.triangles[pair.b]};
+      if (closest_features(corners, pairs.x).points.distance_sq >= radius * radius) continue;
+      ++within;
+      EXPECT_NE(std::ranges::find(closer, pair), closer.end());
+    }
+    EXPECT_GT(within, 0U);
+    EXPECT_LT(closer.size(), pairs.pairs.size());
+  }
+}
+
+}  // namespace
+}  // namespace weft::collision

@@ -1,0 +1,216 @@
+#include "docs/generated.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <regex>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include "architecture/source_tree.hpp"
+#include "cli/options.hpp"
+#include "docs/markdown.hpp"
+#include "docs/scene_keys.hpp"
+#include "scene/fabrics.hpp"
+
+namespace weft::docs {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string in_cell(const std::string& text) {
+  return std::regex_replace(text, std::regex(R"(\|)"), R"(\|)");
+}
+
+// --- The command line, as its help says it.
+
+std::vector<std::string> help(const std::vector<std::string>& words) {
+  std::vector<std::string> arguments = words;
+  arguments.push_back("--help");
+  std::istringstream text(std::get<cli::PrintText>(cli::parse_command_line(arguments)).text);
+  std::vector<std::string> lines;
+  for (std::string line; std::getline(text, line);) lines.push_back(line);
+  return lines;
+}
+
+struct Entry {
+  std::string name, meaning;
+};
+
+// The entries below `heading`, up to an empty line. A name that is too long for its column has its meaning below it.
+std::vector<Entry> section(const std::vector<std::string>& lines, const std::string& heading) {
+  std::vector<Entry> entries;
+  auto line = std::find(lines.begin(), lines.end(), heading);
+  if (line == lines.end()) return {};
+  const std::regex entry(R"(  (\S.*?)(?:  +(.*))?)"), meaning(R"( {3,}(.*))");
+  for (++line; line != lines.end() && !line->empty(); ++line) {
+    std::smatch match;
+    if (std::regex_match(*line, match, meaning)) {
+      entries.back().meaning = match[1];
+    } else if (std::regex_match(*line, match, entry)) {
+      entries.push_back({match[1], match[2]});
+    }
+  }
+  return entries;
+}
+
+std::string commands() {
+  std::string table = "| command | |\n|---|---|\n";
+  for (const Entry& command : section(help({}), "Subcommands:")) {
+    std::string usage = command.name;
+    for (const std::string& line : help({command.name})) {
+      if (line.starts_with("Usage: weft ")) usage = line.substr(std::string("Usage: weft ").size());
+    }
+    usage = std::regex_replace(usage, std::regex(R"( \[OPTIONS\])"), "");
+    table += fmt::format("| `weft {}` | {} |\n", in_cell(usage), in_cell(command.meaning));
+  }
+  return table;
+}
+
+// One row for each option and meaning, with the commands that have it.
+std::string options() {
+  std::vector<std::pair<std::string, std::vector<std::string>>> rows;
+  for (const Entry& command : section(help({}), "Subcommands:")) {
+    for (const Entry& option : section(help({command.name}), "Options:")) {
+      if (option.name == "-h,--help") continue;
+      const std::string name = std::regex_replace(option.name, std::regex(R"( REQUIRED| \.\.\.)"), "");
+      const std::string row = fmt::format("| `{}` | {} |", in_cell(name), in_cell(option.meaning));
+      auto same = std::find_if(rows.begin(), rows.end(), [&](const auto& other) { return other.first == row; });
+      if (same == rows.end()) same = rows.insert(rows.end(), {row, {}});
+      same->second.push_back(command.name);
+    }
+  }
+  std::string table = "| option | | commands |\n|---|---|---|\n";
+  for (const auto& [row, names] : rows) table += fmt::format("{} {} |\n", row, fmt::join(names, ", "));
+  return table;
+}
+
+// --- Tables in the sources.
+
+std::string exit_codes(const fs::path& root) {
+  const std::string text = read_file(root / "src/core/error.hpp");
+  const std::regex code(R"(\n  \w+ = (\d+), +///< (.*))");
+  std::string table = "| exit code | |\n|---|---|\n";
+  for (std::sregex_iterator match(text.begin(), text.end(), code), end; match != end; ++match)
+    table += fmt::format("| {} | {} |\n", (*match)[1].str(), (*match)[2].str());
+  return table;
+}
+
+std::string fabrics() {
+  std::string table =
+      "| fabric | density kg/m² | stretch weft, warp N/m | shear μ N/m | bending B N·m | contact thickness m | "
+      "friction "
+      "|\n|---|---|---|---|---|---|---|\n";
+  for (const scene::Fabric& fabric : scene::fabrics()) {
+    const scene::Material& m = fabric.material;
+    table += fmt::format("| {} | {} | {}, {} | {} | {:.2g} | {} | {} |\n", m.fabric, m.density, m.stretch_weft,
+                         m.stretch_warp, m.shear, m.bend, m.thickness, m.friction);
+  }
+  return table;
+}
+
+std::string modules(const fs::path& root) {
+  std::string table = "| module | does | may use |\n|---|---|---|\n";
+  for (const architecture::Module& module : architecture::read_modules(root)) {
+    const std::string page = fmt::format("src/{}/README.md", module.name);
+    const bool has_page = fs::exists(root / page);
+    table += fmt::format("| {} | {} | {} |\n", has_page ? fmt::format("[{}]({})", module.name, page) : module.name,
+                         module.does, module.name == "cli" ? "all" : fmt::format("{}", fmt::join(module.uses, " ")));
+  }
+  return table;
+}
+
+// --- What was measured: tables as the programs of tests/bench printed them.
+
+std::vector<std::vector<std::string>> printed_table(const fs::path& file) {
+  std::istringstream text(read_file(file));
+  std::vector<std::vector<std::string>> rows;
+  for (std::string line; std::getline(text, line);) {
+    if (!line.starts_with("| ")) {
+      if (rows.empty() || line.starts_with("|-")) continue;
+      break;
+    }
+    rows.emplace_back();
+    std::istringstream cells(line.substr(1));
+    for (std::string cell; std::getline(cells, cell, '|');)
+      rows.back().push_back(std::regex_replace(cell, std::regex("^ +| +$"), ""));
+  }
+  return rows;
+}
+
+// The cells of a row that stand in the named columns.
+std::vector<std::string> chosen(const std::vector<std::string>& row, const std::vector<std::string>& head,
+                                const std::vector<std::string>& columns) {
+  std::vector<std::string> cells;
+  for (const std::string& column : columns) {
+    const auto at = std::find(head.begin(), head.end(), column);
+    if (at == head.end()) throw std::runtime_error("no column is named " + column);
+    cells.push_back(row[static_cast<std::size_t>(at - head.begin())]);
+  }
+  return cells;
+}
+
+// "FILE FILE ... : COLUMN, COLUMN": side by side the rows that the first tables of all these files have in common.
+std::string side_by_side(const fs::path& folder, const std::string& arguments) {
+  const auto colon = arguments.find(": ");
+  if (colon == std::string::npos) throw std::runtime_error("expected FILES: COLUMNS, got " + arguments);
+  std::istringstream files(arguments.substr(0, colon)), names(arguments.substr(colon + 2));
+  std::vector<std::string> columns;
+  for (std::string name; std::getline(names >> std::ws, name, ',');) columns.push_back(name);
+  std::vector<std::pair<std::string, std::vector<std::string>>> lines;
+  bool first = true;
+  for (std::string file; files >> file; first = false) {
+    const auto rows = printed_table(folder / file);
+    std::map<std::string, std::vector<std::string>> cells;
+    for (const auto& row : rows) cells[row[0]] = chosen(row, rows[0], columns);
+    for (std::string& cell : cells[rows[0][0]]) cell = fs::path(file).stem().string() + ": " + cell;
+    if (first) {
+      for (const auto& row : rows) lines.push_back({row[0], {}});
+    }
+    std::erase_if(lines, [&](const auto& line) { return !cells.contains(line.first); });
+    for (auto& [name, line] : lines) line.insert(line.end(), cells[name].begin(), cells[name].end());
+  }
+  std::string table;
+  for (const auto& [name, line] : lines) {
+    table += fmt::format("| {} | {} |\n", name, fmt::join(line, " | "));
+    if (&line != &lines.front().second) continue;
+    table += "|---";
+    for (std::size_t i = 0; i < line.size(); ++i) table += "|---";
+    table += "|\n";
+  }
+  return table;
+}
+
+std::string print(const fs::path& root, const fs::path& file, const std::string& name) {
+  if (name == "commands") return commands();
+  if (name == "options") return options();
+  if (name == "exit codes") return exit_codes(root);
+  if (name == "fabrics") return fabrics();
+  if (name == "modules") return modules(root);
+  if (name == "scene keys") return scene_keys();
+  const std::string measured = "measured ";
+  if (name.starts_with(measured)) return side_by_side(root / file.parent_path(), name.substr(measured.size()));
+  throw std::runtime_error(file.string() + ": nothing prints '" + name + "'");
+}
+
+}  // namespace
+
+std::string regenerated(const fs::path& root, const fs::path& file, const std::string& text) {
+  const std::regex begin("<!-- generated: (.*) -->\n");
+  const std::string end = "<!-- end -->";
+  std::string result;
+  auto at = text.begin();
+  for (std::smatch match; std::regex_search(at, text.end(), match, begin);) {
+    result.append(at, match.suffix().first);
+    const auto stop = text.find(end, static_cast<std::size_t>(match.suffix().first - text.begin()));
+    if (stop == std::string::npos) throw std::runtime_error(file.string() + ": no end of '" + match[1].str() + "'");
+    result += "\n" + print(root, file, match[1]) + "\n";
+    at = text.begin() + static_cast<std::ptrdiff_t>(stop);
+  }
+  return result.append(at, text.end());
+}
+
+}  // namespace weft::docs

@@ -1,0 +1,103 @@
+// Who holds which positions in a step.
+#include "simulation/collision_stage.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "simulation/scenes.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// A sheet over a ball that moves and a floor that does not.
+scene::Scene sheet_over_a_ball() {
+  scene::Scene scene = testing::sheet_alone(0.4, 5, 1);
+  scene.contact.obstacles = true;
+  scene.obstacles.push_back(testing::obstacle("floor", scene::Plane{}));
+  scene.obstacles.push_back(testing::obstacle("ball", scene::Sphere{.radius = 0.1}));
+  scene.obstacles[1].segments = 8;
+  scene.obstacles[1].motion.keys = {{0, {{0, 0, 0.3}, Quat::Identity()}}, {1, {{0.4, 0.1, 0.5}, Quat::Identity()}}};
+  return scene;
+}
+
+class CollisionStages : public ::testing::Test {
+ protected:
+  CollisionStages() : environment_(sheet_over_a_ball()), masses_(25, 0.001) {
+    now_.x = environment_.cloths[0].start;
+    now_.v.assign(25, Vec3(0.1, 0.2, 0.3));
+    now_.placed_for = 0.2;
+    stage_.emplace(sheet_over_a_ball(), environment_, masses_, now_);
+    next_ = now_;
+  }
+
+  /// Floor and ball at time t, as they stand behind the particles.
+  std::vector<Vec3> bodies_at(double t) const {
+    std::vector<Vec3> floor(environment_.bodies[0].mesh.positions.size()),
+        ball(environment_.bodies[1].mesh.positions.size());
+    environment_.place(0, t, floor);
+    environment_.place(1, t, ball);
+    floor.insert(floor.end(), ball.begin(), ball.end());
+    return floor;
+  }
+  static std::vector<Vec3> bodies_of(const Moment& moment) { return {moment.x.begin() + 25, moment.x.end()}; }
+
+  environment::Environment environment_;
+  std::vector<double> masses_;
+  Moment now_, next_;
+  std::optional<CollisionStage> stage_;
+};
+
+TEST_F(CollisionStages, PlaceBodiesBehindTheParticlesForBothEndsOfAStep) {
+  EXPECT_EQ(bodies_of(now_), bodies_at(0.2));
+  stage_->begin_step(0.2, 0.01, {}, now_, next_);
+  EXPECT_EQ(bodies_of(now_), bodies_at(0.2));
+  EXPECT_EQ(bodies_of(next_), bodies_at(0.2 + 0.01));
+  EXPECT_NE(bodies_of(now_), bodies_of(next_));
+  for (std::size_t i = 0; i < 25; ++i) {
+    EXPECT_EQ(now_.x[i], environment_.cloths[0].start[i]);
+    EXPECT_EQ(next_.x[i], now_.x[i] + 0.01 * now_.v[i]);  // the guess
+  }
+}
+
+TEST_F(CollisionStages, PlaceBodiesAgainWhereStepsMeetAtTimesThatAreRoundedOtherwise) {
+  stage_->begin_step(0.2, 0.01, {}, now_, next_);
+  std::swap(now_, next_);
+  const double t = std::nextafter(0.2 + 0.01, 1);
+  ASSERT_NE(bodies_at(t), bodies_of(now_));
+  stage_->begin_step(t, 0.02, {}, now_, next_);
+  EXPECT_EQ(bodies_of(now_), bodies_at(t));
+  EXPECT_EQ(bodies_of(next_), bodies_at(t + 0.02));
+  stage_->begin_step(t, 0.01, {}, now_, next_);  // rejected, and tried again with half of it
+  EXPECT_EQ(bodies_of(now_), bodies_at(t));
+  EXPECT_EQ(bodies_of(next_), bodies_at(t + 0.01));
+}
+
+TEST_F(CollisionStages, ExpectHeldParticlesWhereTheyAreHeld) {
+  const integrator::HeldParticle pin{{7, Mat3::Zero()}, Vec3(1, 2, 3), Vec3::Zero()};
+  stage_->begin_step(0.2, 0.01, {&pin, 1}, now_, next_);
+  EXPECT_EQ(next_.x[7], Vec3(1, 2, 3));
+}
+
+// The sheet is solved to where it crosses the floor: what moves it out shows in its velocity too.
+TEST_F(CollisionStages, GiveParticlesTheVelocityOfTheirPush) {
+  stage_->begin_step(0.2, 0.01, {}, now_, next_);
+  for (std::size_t i = 0; i < 25; ++i) {
+    next_.x[i] = now_.x[i] - Vec3(0, 0, 1.001);
+    next_.v[i] = Vec3(0, 0, -100.1);
+  }
+  const Moment solved = next_;
+  ASSERT_FALSE(stage_->apart(now_, next_));
+  ASSERT_EQ(stage_->push_apart(0.01, false, now_, next_), std::nullopt);
+  EXPECT_TRUE(stage_->apart(now_, next_));
+  double largest = 0;
+  for (std::size_t i = 0; i < 25; ++i) {
+    EXPECT_LT((next_.v[i] - solved.v[i] - (next_.x[i] - solved.x[i]) / 0.01).norm(), 1e-12);
+    largest = std::max(largest, (next_.x[i] - solved.x[i]).norm());
+  }
+  EXPECT_GT(largest, 0.001);
+  EXPECT_EQ(bodies_of(next_), bodies_of(solved));
+}
+
+}  // namespace
+}  // namespace weft::simulation

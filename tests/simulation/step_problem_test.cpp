@@ -1,0 +1,241 @@
+// What a step remembers: the same arguments and the same memory give the same force, and no memo outlives its truth.
+#include "simulation/step_problem.hpp"
+
+#include <gtest/gtest.h>
+
+#include "forces/sheets.hpp"
+#include "simulation/scenes.hpp"
+#include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::simulation {
+namespace {
+
+constexpr double kRate = 100;  // [1/s]
+constexpr Index kSide = 5, kParticles = kSide * kSide;
+
+// Two crumpled sheets in motion, with all forces that they can have; particle 3 of the first is in contact.
+scene::Scene two_sheets() {
+  scene::Scene scene = testing::sheet_alone(0.2, kSide, 0);
+  scene::Material& material = scene.cloths[0].material;
+  material.stretch_viscosity = material.shear_viscosity = 0.5;
+  material.bend_viscosity = 1e-6;
+  scene.cloths.push_back(scene.cloths[0]);
+  scene.cloths[1].shape = scene::ClothShape::aligned_triangles;
+  return scene;
+}
+
+class StepProblems : public ::testing::Test {
+ protected:
+  StepProblems()
+      : environment_(two_sheets()),
+        cloth_(two_sheets(), environment_),
+        response_(collision::ResponseForm::springs, {cloth_.masses().begin(), cloth_.masses().end()}),
+        v_(forces::testing::random_vectors(2 * kParticles, 1, 1)) {
+    for (const environment::ClothObject& cloth : environment_.cloths)
+      x_.insert(x_.end(), cloth.start.begin(), cloth.start.end());
+    const std::vector<Vec3> noise = forces::testing::random_vectors(x_.size(), 0.005, 2);
+    for (std::size_t i = 0; i < x_.size(); ++i) x_[i] += noise[i];
+
+    response_.begin_step(0.01);
+    collision::Contact contact;
+    contact.particles = {3, 0, 0, 0};
+    contact.weights = {1, 0, 0, 0};
+    contact.range = contact.full_range = 0.01;
+    contact.stiffness = 50;
+    contact.friction = 0.4;
+    contact.relative_start = Vec3(0, 0, 0.004);
+    contact.obstacle_end = Vec3(0.001, 0, 0.005) - x_[3];
+    response_.add(contact, x_);
+  }
+
+  StepProblem problem() {
+    StepProblem made(cloth_);
+    made.use_contacts(&response_);
+    return made;
+  }
+  integrator::StagePoint at(std::span<const Vec3> x, double rate = kRate) const { return {x, v_, x, rate, 1}; }
+  std::vector<Vec3> forces(StepProblem& problem, std::span<const Vec3> x) const {
+    std::vector<Vec3> force(x.size(), Vec3::Zero());
+    problem.forces(at(x), force);
+    return force;
+  }
+  std::vector<Vec3> linearise(StepProblem& problem, std::span<const Vec3> x, double rate = kRate,
+                              int iteration = 0) const {
+    std::vector<Vec3> force(x.size(), Vec3::Zero());
+    problem.linearise(at(x, rate), iteration, force);
+    return force;
+  }
+  // All particles of a sheet moved by so many spacings of 5 cm.
+  std::vector<Vec3> moved(std::size_t sheet, double spacings) const {
+    std::vector<Vec3> x = x_;
+    for (std::size_t i = 0; i < kParticles; ++i) x[sheet * kParticles + i] += 0.05 * spacings * Vec3(0.6, 0, 0.8);
+    return x;
+  }
+  static std::vector<Mat3> blocks(const StepProblem& problem) {
+    const solver::BlockMatrix& matrix = problem.memory().system.matrix;
+    std::vector<Mat3> all;
+    matrix.for_each_block(0, matrix.rows(), [&](Index, Index, const Mat3& block) { all.push_back(block); });
+    return all;
+  }
+
+  environment::Environment environment_;
+  ClothSystem cloth_;
+  collision::ContactResponse response_;
+  std::vector<Vec3> x_, v_;
+};
+
+TEST_F(StepProblems, GiveTheSameForceWhateverWasEvaluatedBefore) {
+  StepProblem used = problem(), fresh = problem();
+  linearise(used, moved(1, 2));
+  used.begin_step(0);
+  const std::vector<Vec3> of_linearisation = linearise(used, x_);
+  EXPECT_EQ(of_linearisation, linearise(fresh, x_));
+  EXPECT_NE(of_linearisation, forces(used, moved(0, 1)));
+  EXPECT_NE(of_linearisation, forces(used, moved(1, 1)));
+  EXPECT_EQ(of_linearisation, forces(used, x_));
+}
+
+TEST_F(StepProblems, KnowForcesByPositionAndVelocityOfEachCloth) {
+  StepProblem used = problem();
+  linearise(used, x_);
+  for (std::vector<Vec3>* of : {&x_, &v_})
+    for (std::size_t i : {0UL, 2UL * kParticles - 1}) {
+      (*of)[i].y() += 1e-9;
+      StepProblem fresh = problem();
+      fresh.begin_step(0);
+      linearise(fresh, x_);
+      EXPECT_EQ(forces(used, x_), forces(fresh, x_)) << i;
+    }
+}
+
+TEST_F(StepProblems, ChangeWhatForcesDependOnOnlyWhereTheyAreLinearised) {
+  StepProblem problem = this->problem();
+  linearise(problem, x_);
+  linearise(problem, moved(0, 0.1));
+  const SolveMemory before = problem.memory();
+  const std::vector<Mat3> matrix = blocks(problem);
+  EXPECT_EQ(before.friction.updates, 2);
+  forces(problem, moved(0, 1));
+  forces(problem, x_);
+  const SolveMemory& after = problem.memory();
+  EXPECT_EQ(after.rate, before.rate);
+  EXPECT_EQ(after.linearised_at, before.linearised_at);
+  EXPECT_EQ(after.friction.loads, before.friction.loads);
+  EXPECT_EQ(after.friction.updates, before.friction.updates);
+  EXPECT_EQ(after.system.parts[0].version, before.system.parts[0].version);
+  EXPECT_EQ(blocks(problem), matrix);
+
+  // A copy of the memory, and the rest as it is: what comes is the same.
+  StepProblem twin = problem;
+  EXPECT_EQ(linearise(twin, moved(1, 0.3)), linearise(problem, moved(1, 0.3)));
+  EXPECT_EQ(blocks(twin), blocks(problem));
+}
+
+TEST_F(StepProblems, PutTheMatrixTogetherAnewForAnotherRate) {
+  StepProblem used = problem(), fresh = problem();
+  linearise(used, x_, kRate);
+  linearise(used, x_, 2 * kRate);
+  linearise(fresh, x_, 2 * kRate);
+  EXPECT_EQ(blocks(used), blocks(fresh));
+  linearise(used, x_, kRate);
+  EXPECT_NE(blocks(used), blocks(fresh));
+}
+
+TEST_F(StepProblems, PutTheRowsOfAClothTogetherAnewWhereItHasMovedAndForgetOthersOnDemand) {
+  StepProblem used = problem();
+  linearise(used, x_);
+  const std::vector<Mat3> start = blocks(used);
+  const auto version = [&](std::size_t sheet) { return used.memory().system.parts[sheet].version; };
+  const auto first = version(0), second = version(1);
+  linearise(used, moved(1, 0.004));  // of 0.005
+  EXPECT_EQ(blocks(used), start);
+  const std::vector<Vec3> far = moved(1, 0.5);
+  linearise(used, far);
+  EXPECT_EQ(version(0), first);
+  EXPECT_GT(version(1), second);
+  EXPECT_NE(blocks(used), start);
+
+  const std::vector<Vec3> near = moved(0, 0.004);
+  linearise(used, near);
+  used.forget();
+  linearise(used, near);
+  StepProblem fresh = problem();
+  linearise(fresh, near);
+  EXPECT_EQ(blocks(used), blocks(fresh));
+  EXPECT_GT(version(0), first);
+}
+
+TEST_F(StepProblems, ProjectCompressedEdgesByTheirAbsoluteValueFromTheFifthIterationOn) {
+  std::vector<std::vector<Mat3>> matrices;
+  for (int iteration : {0, 3, 4, 9}) {
+    StepProblem fresh = problem();
+    linearise(fresh, x_, kRate, iteration);
+    matrices.push_back(blocks(fresh));
+  }
+  EXPECT_EQ(matrices[0], matrices[1]);
+  EXPECT_NE(matrices[1], matrices[2]);
+  EXPECT_EQ(matrices[2], matrices[3]);
+}
+
+TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
+  StepProblem problem = this->problem();
+  for (int solve = 0; solve < 2; ++solve)
+    for (int iteration = 0; iteration < 3; ++iteration)
+      linearise(problem, moved(0, 0.01 * iteration), kRate, iteration);
+  EXPECT_EQ(problem.memory().friction.updates, 6);
+  EXPECT_EQ(problem.memory().friction.loads.size(), 1U);
+  const double lagging = problem.memory().friction.loads[0];
+  problem.begin_step(0);
+  EXPECT_EQ(problem.memory().friction.updates, 0);
+  linearise(problem, x_);
+  EXPECT_NE(problem.memory().friction.loads[0], lagging);  // that of the start
+}
+
+class SewnProblem : public support::TestFolder {};
+
+TEST_F(SewnProblem, ForgetsWhatItKnewOfClothThatIsSewnOn) {
+  support::write_bytes(folder_ / "tube.toml", R"(
+depth = 0.14
+[[panel]]
+name = "front"
+path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
+edges = "hem right top left"
+[[panel]]
+name = "back"
+side = "back"
+path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
+edges = "hem right top left"
+[[seam]]
+a = "front.left"
+b = "back.left"
+[[seam]]
+a = "front.right"
+b = "back.right"
+)");
+  const scene::Scene scene =
+      support::scene_of_text("[[cloth]]\nname = 'tube'\nshape = 'pattern'\nfile = '" +
+                             (folder_ / "tube.toml").string() + "'\nedge_length = 0.1\nsewing = 0.5\n");
+  const environment::Environment environment(scene);
+  ClothSystem cloth(scene, environment);
+  StepProblem problem(cloth);
+  const std::vector<Vec3>& x = environment.cloths[0].start;
+  const std::vector<Vec3> still(x.size(), Vec3::Zero());
+  const integrator::StagePoint at{x, still, x, kRate, 1};
+  const auto force_at = [&](double t) {
+    std::vector<Vec3> force = still;
+    problem.begin_step(t);
+    problem.linearise(at, 0, force);
+    return force;
+  };
+  const std::vector<Vec3> start = force_at(0), later = force_at(0.3);
+  EXPECT_NE(later, start);
+  const auto version = problem.memory().system.parts[0].version;
+  EXPECT_EQ(force_at(0.3), later);
+  EXPECT_EQ(problem.memory().system.parts[0].version, version) << "nothing was sewn";
+  EXPECT_EQ(force_at(0), start);
+  EXPECT_GT(problem.memory().system.parts[0].version, version);
+}
+
+}  // namespace
+}  // namespace weft::simulation

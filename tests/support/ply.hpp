@@ -1,0 +1,53 @@
+// Reads what `--meshes` writes.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace weft::support {
+
+struct PlyMesh {
+  std::vector<Vec3> positions;
+  std::vector<std::array<Index, 3>> triangles;
+};
+
+/// Bit for bit. Throws std::runtime_error where the file is not as long as its header says or a face is no triangle of
+/// its vertices.
+inline PlyMesh read_ply(const std::filesystem::path& path) {
+  std::ifstream file(path, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(file), {}};
+  const auto expect = [&](bool holds) {
+    if (!holds) throw std::runtime_error(path.string() + " is not as Weft writes PLY files");
+  };
+  const auto after = [&](const std::string& text) {
+    const std::size_t at = bytes.find(text);
+    expect(at != std::string::npos);
+    return at + text.size();
+  };
+  PlyMesh mesh;
+  mesh.positions.resize(std::stoul(bytes.substr(after("element vertex "))));
+  mesh.triangles.resize(std::stoul(bytes.substr(after("element face "))));
+  const std::size_t size_of_positions = mesh.positions.size() * sizeof(Vec3);
+  std::size_t at = after("end_header\n");
+  expect(bytes.size() == at + size_of_positions + 13 * mesh.triangles.size());
+  std::memcpy(static_cast<void*>(mesh.positions.data()), &bytes[at], size_of_positions);
+  at += size_of_positions;
+  for (auto& triangle : mesh.triangles) {
+    expect(bytes[at] == 3);
+    std::memcpy(triangle.data(), &bytes[at + 1], 12);
+    for (const Index v : triangle) expect(v >= 0 && static_cast<std::size_t>(v) < mesh.positions.size());
+    at += 13;
+  }
+  return mesh;
+}
+
+}  // namespace weft::support

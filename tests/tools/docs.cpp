@@ -1,0 +1,30 @@
+// Writes the generated parts of the documentation anew: weft_docs ROOT, or `ninja docs`.
+#include <cstdio>
+#include <exception>
+#include <fstream>
+
+#include "docs/generated.hpp"
+#include "docs/markdown.hpp"
+
+int main(int argc, char** argv) {
+  using namespace weft::docs;
+  if (argc != 2) {
+    std::fprintf(stderr, "expected: the top folder of the sources\n");
+    return 2;
+  }
+  try {
+    const std::filesystem::path root = argv[1];
+    for (const auto& file : pages(root)) {
+      const std::string old_text = read_file(root / file), text = regenerated(root, file, old_text);
+      if (text == old_text) continue;
+      std::ofstream out(root / file, std::ios::binary);
+      out << text;
+      if (!out.flush()) throw std::runtime_error("cannot write " + file.string());
+      std::printf("%s\n", file.c_str());
+    }
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+  return 0;
+}
