@@ -194,6 +194,21 @@ TEST_F(CoherentDetectionTest, LooksAtWantedPairsOfSurfacesOnly) {
   }
 }
 
+// Two triangles with a common edge, folded shut: candidates have no such pairs.
+TEST(CoherentDetectionOfAFold, LooksUpTrianglesWithACommonEdgeOfWhatMayMeetItself) {
+  const TestMesh fold{{{0, 0, 0}, {1, 0, 0}, {0.5, 1, 0}, {0.5, 0.5, 0.01}}, {{0, 1, 2}, {1, 0, 3}}};
+  const Surface surface = fold.surface();
+  BroadPhase broad_phase(std::span(&surface, 1), fold.x);
+  ProximityFinder finder(fold.triangles, 4);
+  CoherentDetection with(std::span(&surface, 1), {{0, 0}}, fold.x, {.reach = kReach, .budget = kBudget}),
+      without(std::span(&surface, 1), {}, fold.x, {.reach = kReach, .budget = kBudget});
+  with.update(broad_phase, finder, fold.x, fold.x);
+  without.update(broad_phase, finder, fold.x, fold.x);
+  ASSERT_EQ(with.proximities().size(), 1U);
+  EXPECT_NEAR(with.proximities()[0].distance, 0.01, 1e-15);
+  EXPECT_TRUE(without.proximities().empty());
+}
+
 TEST_F(CoherentDetectionTest, ForgetsWhatWasBefore) {
   CoherentDetection first = make_detection(kAllPairs), second = make_detection(kAllPairs);
   for (int step = 20; step < 32; ++step) update(first, motion_.at(step), motion_.at(step + 1));

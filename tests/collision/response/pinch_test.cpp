@@ -1,0 +1,118 @@
+// Pinched cloth, pair by pair: what is exempted, which way leads back, and what is said about it.
+#include "collision/response/pinch.hpp"
+
+#include <gtest/gtest.h>
+
+#include "collision/hierarchy/test_motions.hpp"
+#include "collision/response/pinch_report.hpp"
+#include "mesh/shapes.hpp"
+
+namespace weft::collision {
+namespace {
+
+/// One triangle of cloth and three boxes of 0.2 m: below it, above it, and far to the side.
+class PinchedTriangle : public ::testing::Test {
+ protected:
+  PinchedTriangle() {
+    scene_.add({{{0, 0, 0.11}, {0.02, 0, 0.11}, {0, 0.02, 0.11}}, {{0, 1, 2}}});
+    const mesh::Mesh box = mesh::make_box(Vec3(0.2, 0.2, 0.2), 0, 2);
+    for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0, 0, 0.24), Vec3(1, 0, 0)}) {
+      testing::TestMesh moved{box.positions, {box.topology.triangles.begin(), box.topology.triangles.end()}};
+      for (Vec3& p : moved.x) p += place;
+      scene_.add(moved);
+      x_.insert(x_.end(), moved.x.begin(), moved.x.end());
+    }
+    x_.insert(x_.begin(), {Vec3(0, 0, 0.11), Vec3(0.02, 0, 0.11), Vec3(0, 0.02, 0.11)});
+    surfaces_ = scene_.surfaces();
+    broad_phase_ = BroadPhase(surfaces_, x_);
+    std::vector<std::size_t> body_of;
+    for (std::size_t b = 0; b < surfaces_.size(); ++b) body_of.insert(body_of.end(), surfaces_[b].vertex_count, b);
+    pinched_ = PinchedPairs(3, body_of);
+  }
+
+  CornerPair with(std::size_t body) const { return {scene_.triangles[0], surfaces_[body].triangles[0]}; }
+  void move_cloth_to(double z) {
+    for (int v = 0; v < 3; ++v) x_[v][2] = z;
+    for (std::size_t b = 0; b < surfaces_.size(); ++b) broad_phase_.refit(b, x_, x_, 0.001);
+  }
+
+  testing::MovingScene scene_;
+  std::vector<Vec3> x_;
+  std::vector<Surface> surfaces_;
+  BroadPhase broad_phase_;
+  PinchedPairs pinched_;
+};
+
+TEST_F(PinchedTriangle, IsPushedBackToTheSideThatItCameFrom) {
+  pinched_.add(with(1));
+  pinched_.note_origins(broad_phase_, x_);
+  EXPECT_TRUE(pinched_.holds(with(1)));
+  EXPECT_FALSE(pinched_.holds(with(2)));
+  // Nearer to the bottom than to the top where it came from.
+  move_cloth_to(-0.07);
+  const std::vector<FeaturePair> pushes = pinched_.find_pushes(broad_phase_, x_, 0.003);
+  ASSERT_EQ(pushes.size(), 3U);
+  for (const FeaturePair& push : pushes) {
+    EXPECT_LT((push.normal - Vec3::UnitZ()).norm(), 1e-12);
+    EXPECT_NEAR(push.distance, -0.17, 1e-12);
+    Vec3 difference = Vec3::Zero();
+    for (int k = 0; k < 4; ++k) difference += push.weights[k] * x_[push.vertices[k]];
+    EXPECT_LT((difference - push.distance * push.normal).norm(), 1e-12);
+  }
+}
+
+TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
+  pinched_.add(with(1));
+  pinched_.note_origins(broad_phase_, x_);
+  for (const double z : {0.0, 0.1}) {  // in it, on its face
+    move_cloth_to(z);
+    pinched_.release(broad_phase_, x_);
+    EXPECT_EQ(pinched_.size(), 1U) << z;
+  }
+  move_cloth_to(0.102);
+  pinched_.release(broad_phase_, x_);
+  EXPECT_TRUE(pinched_.empty());
+}
+
+// All its corners are outside of the lower box; one of the box's own corners sticks through.
+TEST_F(PinchedTriangle, IsPushedOffACornerThatSticksThroughIt) {
+  pinched_.add(with(1));
+  pinched_.note_origins(broad_phase_, x_);
+  x_[0] = {0.12, 0.06, 0}, x_[1] = {0.06, 0.12, 0}, x_[2] = {0.13, 0.13, 0};
+  move_cloth_to(0.095);
+  std::size_t crossings = 0;
+  for (const FeaturePair& push : pinched_.find_pushes(broad_phase_, x_, 0.003)) {
+    if (push.weights[3] != -1) continue;  // of a particle
+    ++crossings;
+    EXPECT_EQ(push.distance, 0);
+    EXPECT_NEAR(push.normal.cwiseAbs().maxCoeff(), 1, 1e-12) << "the normal of a face of the box";
+    EXPECT_NEAR(push.weights[0] + push.weights[1] + push.weights[2], 1, 1e-12);
+  }
+  EXPECT_GE(crossings, 2U) << "two sides of the box are crossed";
+}
+
+TEST_F(PinchedTriangle, IsReportedOnceWithTheObstacleThatIsNearestBesides) {
+  pinched_.add(with(1));
+  pinched_.note_origins(broad_phase_, x_);
+  move_cloth_to(0.09);
+  const std::vector<Pinch> pinches = list_pinches(pinched_, broad_phase_, x_);
+  ASSERT_EQ(pinches.size(), 1U);
+  EXPECT_EQ(pinches[0].cloth, 0U);
+  EXPECT_EQ(pinches[0].obstacle, 1U);
+  EXPECT_EQ(pinches[0].other, 2U);
+  EXPECT_EQ(pinches[0].place, x_[0]);
+}
+
+TEST_F(PinchedTriangle, IsFreshForAnObstacleThatDidNotPinchItsClothBefore) {
+  const PinchedPairs before = pinched_;
+  EXPECT_FALSE(first_fresh(pinched_, before, broad_phase_));
+  pinched_.add(with(2));
+  const auto fresh = first_fresh(pinched_, before, broad_phase_);
+  ASSERT_TRUE(fresh.has_value());
+  EXPECT_EQ(fresh->a, scene_.triangles[0]);
+  EXPECT_EQ(fresh->b, surfaces_[2].triangles[0]);
+  EXPECT_FALSE(first_fresh(pinched_, pinched_, broad_phase_));
+}
+
+}  // namespace
+}  // namespace weft::collision
