@@ -269,12 +269,12 @@ Accuracy Campaign::measure() {
 std::string_view name_of(Quantity quantity) {
   constexpr std::string_view kNames[kQuantities] = {"position", "velocity",    "energy",        "shadow",
                                                     "top",      "rest energy", "centre of mass"};
-  return kNames[quantity];
+  return kNames[static_cast<std::size_t>(quantity)];
 }
 
 std::string_view unit_of(Quantity quantity) {
   constexpr std::string_view kUnits[kQuantities] = {"m", "m/s", "1", "1", "m", "1", "m"};
-  return kUnits[quantity];
+  return kUnits[static_cast<std::size_t>(quantity)];
 }
 
 double control_of(const Run& run) {
@@ -312,7 +312,7 @@ double expected_order(const Run& run) {
 }
 
 Quantity deciding_quantity(const Accuracy& accuracy) {
-  return accuracy.uncertainty[Quantity::position] < 1e-4 ? Quantity::position
+  return accuracy.uncertainty[static_cast<std::size_t>(Quantity::position)] < 1e-4 ? Quantity::position
                                                                                    : Quantity::centre;
 }
 

@@ -66,7 +66,7 @@ struct Run {
 };
 
 inline double error_of(const Run& run, Quantity quantity) {
-  return run.errors[quantity];
+  return run.errors[static_cast<std::size_t>(quantity)];
 }
 
 /// What the error of a run depends on: its step, tolerance or spacing.

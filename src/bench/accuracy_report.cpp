@@ -25,7 +25,7 @@ std::vector<Quantity> quantities_of(const Accuracy& accuracy) {
 
 std::string_view axis_name(Axis axis) {
   constexpr std::string_view kNames[kAxes] = {"step", "scene_step", "tolerance", "newton", "linear", "mesh"};
-  return kNames[axis];
+  return kNames[static_cast<std::size_t>(axis)];
 }
 
 // Exponent between this run and the one before it in its series; nothing where one of the two tells none.
@@ -114,7 +114,7 @@ std::string error_label(Quantity quantity) {
 std::string uncertainty_table(const Accuracy& accuracy) {
   Table table{{"quantity", "uncertainty of the reference", "marked ~ up to"}};
   for (Quantity q : quantities_of(accuracy)) {
-    const double uncertainty = accuracy.uncertainty[q];
+    const double uncertainty = accuracy.uncertainty[static_cast<std::size_t>(q)];
     table.push_back({fmt::format("{} [{}]", name_of(q), unit_of(q)), fmt::format("{:.1e}", uncertainty),
                      fmt::format("{:.1e}", 10 * uncertainty)});
   }
@@ -164,7 +164,7 @@ std::string work_svg(const std::string& title, const Accuracy& accuracy) {
   std::vector<Panel> panels;
   for (Quantity q : quantities_of(accuracy)) {
     Panel panel{fmt::format("{}: {}", title, name_of(q)), "CPU time [s]", error_label(q), {}, {}};
-    panel.unresolved_below = 10 * accuracy.uncertainty[q];
+    panel.unresolved_below = 10 * accuracy.uncertainty[static_cast<std::size_t>(q)];
     add_curves(panel, accuracy, Axis::step, q, "exact", Marker::circle, false, cpu_of);
     add_curves(panel, accuracy, Axis::scene_step, q, "scene's", Marker::square, true, cpu_of);
     add_curves(panel, accuracy, Axis::tolerance, q, "tolerance", Marker::triangle, false, cpu_of);
@@ -177,7 +177,7 @@ std::string settings_svg(const std::string& title, const Accuracy& accuracy) {
   const Quantity q = deciding_quantity(accuracy);
   const auto milliseconds = [](const Run& run) { return 1e3 * run.setting.step; };
   Panel steps{title + ": fixed steps", "step [ms]", error_label(q), {}, {}};
-  steps.unresolved_below = 10 * accuracy.uncertainty[q];
+  steps.unresolved_below = 10 * accuracy.uncertainty[static_cast<std::size_t>(q)];
   add_curves(steps, accuracy, Axis::step, q, "exact", Marker::circle, false, milliseconds);
   add_curves(steps, accuracy, Axis::scene_step, q, "scene's", Marker::square, true, milliseconds);
   Panel solver{title + ": what the solver leaves", "CPU time [s]", error_label(q), {}, {}};

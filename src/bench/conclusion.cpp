@@ -39,7 +39,7 @@ const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target) 
 }
 
 std::string which_setting(const Accuracy& accuracy, Quantity quantity) {
-  const double uncertainty = accuracy.uncertainty[quantity];
+  const double uncertainty = accuracy.uncertainty[static_cast<std::size_t>(quantity)];
   std::string text;
   for (double target : kTargets) {
     std::string choice = "no run is as exact";

@@ -52,13 +52,13 @@ double shadow_area(std::span<const mesh::Triangle> triangles, std::span<const Ve
 
   std::vector<std::vector<Interval>> lines(kLines);
   for (const mesh::Triangle& triangle : triangles) {
-    const auto corner = [&](std::size_t k) { return flat[triangle[k]]; };
+    const auto corner = [&](std::size_t k) { return flat[static_cast<std::size_t>(triangle[k])]; };
     const std::array<Vec2, 3> corners{corner(0), corner(1), corner(2)};
     const auto [least, most] = std::minmax({corners[0].y(), corners[1].y(), corners[2].y()});
     const int last = std::min(kLines - 1, static_cast<int>((most - low) / spacing));
     for (int line = static_cast<int>((least - low) / spacing); line <= last; ++line) {
       const Interval interval = cut(corners, low + (line + 0.5) * spacing);
-      if (interval.first < interval.second) lines[line].push_back(interval);
+      if (interval.first < interval.second) lines[static_cast<std::size_t>(line)].push_back(interval);
     }
   }
   double area = 0;

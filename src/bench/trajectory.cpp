@@ -99,7 +99,7 @@ Trajectory follow(const scene::Scene& scene, int step_limit, Run& run) {
 
 Errors compare(const Trajectory& run, const Trajectory& reference, const std::vector<std::size_t>& same) {
   Errors errors{};
-  const auto error = [&](Quantity quantity) -> double& { return errors[quantity]; };
+  const auto error = [&](Quantity quantity) -> double& { return errors[static_cast<std::size_t>(quantity)]; };
   double mass = 0;
   for (double m : run.masses) mass += m;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {

@@ -195,7 +195,7 @@ BlendedBody mannequin_body(const MannequinBuild& build) {
   scale.girth = scale.length * build.girth;
   scale.masculinity = build.masculinity;
   const auto joints = mannequin_joints(build);
-  const auto at = [&](Joint j) { return joints[j]; };
+  const auto at = [&](Joint j) { return joints[static_cast<std::size_t>(j)]; };
 
   BlendedBody body;
   add_torso(body, scale);

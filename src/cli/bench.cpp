@@ -22,7 +22,7 @@ namespace {
 /// How often each verdict was given.
 struct Count {
   std::array<int, 4> of{};
-  void add(bench::Verdict verdict) { ++of[verdict]; }
+  void add(bench::Verdict verdict) { ++of[static_cast<std::size_t>(verdict)]; }
   int wrong() const { return of[2] + of[3]; }
   std::string text() const {
     return fmt::format("{} solved, {} refused by name, {} unbounded, {} not finite", of[0], of[1], of[2], of[3]);

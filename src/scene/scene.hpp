@@ -20,7 +20,7 @@ enum class Integrator { implicit_euler, implicit_midpoint, bdf2 };
 /// What scenes and reports call them, in their order.
 inline const std::vector<std::string> kIntegratorNames = {"implicit_euler", "implicit_midpoint", "bdf2"};
 inline const std::string& name_of(Integrator integrator) {
-  return kIntegratorNames[integrator];
+  return kIntegratorNames[static_cast<std::size_t>(integrator)];
 }
 
 enum class Interpolation { linear, cubic };

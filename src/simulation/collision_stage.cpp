@@ -51,8 +51,8 @@ collision::BroadPhaseOptions search_options(const scene::Search& search) {
   constexpr std::array<int, 3> kDirections{6, 18, 26};
   constexpr std::array<int, 3> kChildren{2, 4, 8};
   collision::BroadPhaseOptions options;
-  options.directions = kDirections[search.bounds];
-  options.children = kChildren[search.tree];
+  options.directions = kDirections[static_cast<std::size_t>(search.bounds)];
+  options.children = kChildren[static_cast<std::size_t>(search.tree)];
   options.leaf = search.leaf;
   options.open_longer_side = search.open_longer_side;
   options.separation_list = search.separation_lists;

@@ -69,8 +69,8 @@ void plan_search(const scene::Search& search, bool any, std::vector<PlanItem>& i
                          any ? "off in contact.search" : "nothing collides"));
   };
   part("bounding volume hierarchy", true,
-       fmt::format("{} of {}, {} triangle{} to a leaf", kTrees[search.tree], kBounds[search.bounds], search.leaf,
-                   search.leaf == 1 ? "" : "s"));
+       fmt::format("{} of {}, {} triangle{} to a leaf", kTrees[static_cast<std::size_t>(search.tree)],
+                   kBounds[static_cast<std::size_t>(search.bounds)], search.leaf, search.leaf == 1 ? "" : "s"));
   part("reuse of candidates and features", search.reuse, "while nothing has moved far");
   part("separation lists", search.separation_lists, "walks go on where the last one stopped");
   part("velocity cones", search.velocity_cones, "slow bounds are left as they are");

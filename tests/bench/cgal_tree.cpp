@@ -19,7 +19,7 @@ CgalCosts cgal_self_pairs(std::span<const Vec3> x, std::span<const std::array<In
   Soup soup;
   for (const auto& t : triangles) {
     const auto at = [&](std::size_t c) {
-      const Vec3& p = x[t[c]];
+      const Vec3& p = x[static_cast<std::size_t>(t[c])];
       return Kernel::Point_3(p[0], p[1], p[2]);
     };
     soup.emplace_back(at(0), at(1), at(2));

@@ -40,7 +40,7 @@ struct Recording {
 bool deforms(const support::PlyMesh& first, const support::PlyMesh& last) {
   for (const auto& t : first.triangles) {
     const auto length = [&](const support::PlyMesh& m) {
-      return (m.positions[t[0]] - m.positions[t[1]]).norm();
+      return (m.positions[static_cast<std::size_t>(t[0])] - m.positions[static_cast<std::size_t>(t[1])]).norm();
     };
     if (std::abs(length(first) - length(last)) > 1e-9 * length(first)) return true;
   }
@@ -198,7 +198,7 @@ void count_left_out(const Recording& recording, double reach) {
         for (const TrianglePair& pair : all.apart) {
           if (found.contains(pair)) continue;
           ++left_out;
-          const auto triangle = [&](Index t) { return recording.scene.triangles[t]; };
+          const auto triangle = [&](Index t) { return recording.scene.triangles[static_cast<std::size_t>(t)]; };
           missed += static_cast<std::size_t>(
               collision::testing::feature_distance(triangle(pair.a), triangle(pair.b), x) < reach);
         }

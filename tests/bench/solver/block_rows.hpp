@@ -43,8 +43,8 @@ auto transposed(const BlockRows<Block>& a) {
   t.value.resize(a.value.size());
   std::vector<std::size_t> next(t.start.begin(), t.start.end() - 1);
   for (Index i = 0; i < a.rows(); ++i)
-    for (std::size_t s = a.start[i]; s < a.start[static_cast<std::size_t>(i) + 1]; ++s) {
-      const std::size_t to = next[a.column[s]]++;
+    for (std::size_t s = a.start[static_cast<std::size_t>(i)]; s < a.start[static_cast<std::size_t>(i) + 1]; ++s) {
+      const std::size_t to = next[static_cast<std::size_t>(a.column[s])]++;
       t.column[to] = i;
       t.value[to] = transposed(a.value[s]);
     }

@@ -37,7 +37,7 @@ class Cholmod final : public Inverse {
     std::size_t count = 0;
     for (Index i = 0; i < a.rows(); ++i) {
       static_cast<int*>(particles->p)[i] = static_cast<int>(count);
-      for (std::size_t s = a.start[i]; s < a.start[static_cast<std::size_t>(i) + 1]; ++s)
+      for (std::size_t s = a.start[static_cast<std::size_t>(i)]; s < a.start[static_cast<std::size_t>(i) + 1]; ++s)
         if (a.column[s] >= i) static_cast<int*>(particles->i)[count++] = a.column[s];
     }
     static_cast<int*>(particles->p)[a.rows()] = static_cast<int>(count);
@@ -57,7 +57,7 @@ class Cholmod final : public Inverse {
     auto* value = static_cast<double*>(matrix_->x);
     for (Index i = 0; i < a.rows(); ++i)
       for (int k = 0; k < 3; ++k)
-        for (std::size_t s = a.start[i]; s < a.start[static_cast<std::size_t>(i) + 1]; ++s)
+        for (std::size_t s = a.start[static_cast<std::size_t>(i)]; s < a.start[static_cast<std::size_t>(i) + 1]; ++s)
           for (int l = 0; l < 3; ++l)
             if (3 * a.column[s] + l >= 3 * i + k) *value++ = a.value[s](k, l);
     if (!cholmod_factorize(matrix_, factor_, &common_) || common_.status != CHOLMOD_OK)
@@ -84,7 +84,7 @@ class Cholmod final : public Inverse {
     for (Index i = 0; i < a.rows(); ++i)
       for (int k = 0; k < 3; ++k) {
         static_cast<int*>(matrix_->p)[3 * i + k] = count;
-        for (std::size_t s = a.start[i]; s < a.start[static_cast<std::size_t>(i) + 1]; ++s)
+        for (std::size_t s = a.start[static_cast<std::size_t>(i)]; s < a.start[static_cast<std::size_t>(i) + 1]; ++s)
           for (int l = 0; l < 3; ++l)
             if (3 * a.column[s] + l >= 3 * i + k) static_cast<int*>(matrix_->i)[count++] = 3 * a.column[s] + l;
       }

@@ -56,17 +56,17 @@ class BlockIncompleteCholesky final : public Inverse {
       Vec3 sum = r[i];
       const std::size_t last = lower_.start[i + 1] - 1;
       for (std::size_t s = lower_.start[i]; s < last; ++s)
-        sum -= lower_.value[s] * z[lower_.column[s]];
+        sum -= lower_.value[s] * z[static_cast<std::size_t>(lower_.column[s])];
       z[i] = lower_.value[last] * sum;
     }
     for (std::size_t i = rows; i-- > 0;) {
       const std::size_t last = lower_.start[i + 1] - 1;
       z[i] = (lower_.value[last].transpose() * z[i]).eval();
       for (std::size_t s = lower_.start[i]; s < last; ++s)
-        z[lower_.column[s]] -= lower_.value[s].transpose() * z[i];
+        z[static_cast<std::size_t>(lower_.column[s])] -= lower_.value[s].transpose() * z[i];
     }
     for (const auto& c : system_->constraints) {
-      Vec3& entry = z[c.particle];
+      Vec3& entry = z[static_cast<std::size_t>(c.particle)];
       entry = (c.free * entry).eval();
     }
   }

@@ -26,7 +26,7 @@ std::vector<Vec3> folded(const mesh::Grid& grid, double weight, double stiffness
   for (int i = 0; i < grid.nu; ++i) {
     Vec3 at = at_u;
     for (int j = 0; j < grid.nv; ++j) {
-      x[grid.index(i, j)] = at;
+      x[static_cast<std::size_t>(grid.index(i, j))] = at;
       const double below = (grid.nv - 1 - j) * grid.lv;  // cloth that hangs from this edge [m]
       at += Vec3(0, 0, -grid.lv * (1 + weight * below / stiffness));
     }
@@ -40,7 +40,7 @@ std::vector<Vec3> folded(const mesh::Grid& grid, double weight, double stiffness
 void crumple(const mesh::Grid& grid, std::span<Vec3> x) {
   for (int j = 0; j < grid.nv; ++j)
     for (int i = 0; i < grid.nu; ++i)
-      x[grid.index(i, j)] +=
+      x[static_cast<std::size_t>(grid.index(i, j))] +=
           0.006 * std::sin(2 * M_PI * (4 * i * grid.lu + 7 * j * grid.lv)) * Vec3(1, 1, 0);
 }
 
@@ -54,7 +54,7 @@ void add_contacts(const mesh::Grid& grid, std::span<const Vec3> x, solver::Linea
   for (int j = 0; j + 1 < grid.nv; ++j)
     for (int i = 0; i < grid.nu; ++i) {
       const Index particle = grid.index(i, j);
-      const double height = (x[particle].y() - low) / (high - low);
+      const double height = (x[static_cast<std::size_t>(particle)].y() - low) / (high - low);
       if (height < 0.05) system.diagonal_terms.push_back({particle, along_y});
       const int other = i + fold;
       if (height > 0.95 && j % 2 == 0 && other + 1 < grid.nu)
@@ -103,12 +103,12 @@ SheetSystem sheet_system(int side, double stiffness, Pose pose) {
       for (double& component : entry) component = noise(engine);
     for (int j = 0; j < side; ++j)
       for (int i = 0; i < side; ++i)
-        sheet.b[grid.index(i, j)] +=
-            of_patch[i / width + patches * (j / width)];
+        sheet.b[static_cast<std::size_t>(grid.index(i, j))] +=
+            of_patch[static_cast<std::size_t>(i / width + patches * (j / width))];
   }
   for (std::size_t i = 0; i < sheet.b.size(); ++i) sheet.b[i] *= cloth.masses()[i];
   for (const auto& c : sheet.system.constraints) {
-    Vec3& entry = sheet.b[c.particle];
+    Vec3& entry = sheet.b[static_cast<std::size_t>(c.particle)];
     entry = c.free * entry;
   }
   return sheet;

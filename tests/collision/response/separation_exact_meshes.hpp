@@ -87,7 +87,7 @@ inline constexpr std::array kFanKinds = {FanKind::calm, FanKind::closed,     Fan
                                          FanKind::open, FanKind::collapsing, FanKind::around_twice};
 inline const char* name(FanKind kind) {
   constexpr const char* kNames[] = {"calm", "closed", "inverted", "turned", "open", "collapsing", "around twice"};
-  return kNames[kind];
+  return kNames[static_cast<std::size_t>(kind)];
 }
 
 /// Vertex 0 is in the middle. Size 1.
