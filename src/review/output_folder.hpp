@@ -13,7 +13,7 @@ class OutputFolder {
  public:
   /// Refuses what would lose something: a page that exists, unless `overwrite` is set, and in any case a folder that
   /// holds anything else. Throws Error(output_failed).
-  OutputFolder(std::filesystem::path final_name, bool overwrite);
+  OutputFolder(const std::filesystem::path& final_name, bool overwrite);
 
   const std::filesystem::path& path() const { return temporary_->path(); }
 
