@@ -91,7 +91,7 @@ std::unique_ptr<Stills> open_stills(const SceneOptions& options) {
 
 std::filesystem::path still_file(const Stills& stills, const std::filesystem::path& output,
                                  const std::string& default_name, bool overwrite) {
-  const auto file = output.empty() ? std::filesystem::path("output") / default_name : output;
+  auto file = output.empty() ? std::filesystem::path("output") / default_name : output;
   if (file.extension() != ".png")
     throw Error(ExitCode::usage, "-o: expected a name ending in .png, got {}", file.string());
   PathLedger paths;

@@ -352,7 +352,7 @@ struct Scene {
   std::vector<Light> lights;
   Render render;
 
-  int frame_count() const { return static_cast<int>(time.duration * time.fps + 0.5) + 1; }
+  int frame_count() const { return static_cast<int>(std::lround(time.duration * time.fps)) + 1; }
   /// Of the preroll; frame 0 comes after them.
   int preroll_frames() const { return static_cast<int>(std::ceil(time.preroll * time.fps - 1e-9)); }
 };
