@@ -149,7 +149,7 @@ TEST(ContactBuilder, AnObstacleActsByWhereItIsAtBothEndsOfTheStep) {
 TEST(ContactBuilder, PinchedClothAndItsObstacleAreLeftOut) {
   Scene scene;
   scene.pinched.add({{0, 1, 2}, {6, 7, 8}});
-  scene.pinched.note_origins(scene.bodies.surfaces(), scene.x_t0);
+  scene.pinched.note_origins(BroadPhase(scene.bodies.surfaces(), scene.x_t0), scene.x_t0);
   const auto contacts = scene.contacts_of({vertex_face(0, {6, 7, 8}), vertex_face(3, {6, 7, 8})}, {});
   ASSERT_EQ(contacts.size(), 1U);
   EXPECT_EQ(contacts[0].particles[0], 3);

@@ -166,7 +166,8 @@ TEST_F(CoherentDetectionTest, UpdatedWithinAStepHoldsAllCandidatesOfTheMotionTha
   std::vector<Vec3> x_t1 = motion_.at(31);
   for (Vec3& p : x_t1) p[2] += 0.0005;
   EXPECT_EQ(update(detection, x_t0, x_t1), 0);
-  for (std::size_t v = 2 * kSheet * kSheet; v < x_t1.size(); ++v) x_t1[v][2] += 0.2;
+  // One vertex of the second sheet ends in the layers of the first.
+  x_t1[kSheet * kSheet + kSheet * kSheet / 2][2] -= 0.06;
   EXPECT_GT(update(detection, x_t0, x_t1), 0);
   CandidatePairs needed;
   std::vector<Proximity> fresh;
