@@ -8,7 +8,7 @@
 namespace weft::image {
 namespace {
 
-constexpr Color kWhite{255, 255, 255}, kBlack{0, 0, 0};
+constexpr Color kWhite{255, 255, 255};
 
 /// First and last column and row that are not black; -1 where all are.
 struct Ink {
