@@ -103,8 +103,9 @@ std::string draw_names(const Panel& panel) {
   std::string text;
   for (std::size_t i = 0; i < panel.curves.size(); ++i) {
     const Curve& curve = panel.curves[i];
-    const double x = 8 + kPanelWidth / kNamesInARow * static_cast<double>(i % kNamesInARow);
-    const double y = kTop + kPlotHeight + kAxisHeight + kNameHeight * (static_cast<double>(i / kNamesInARow) + 0.5);
+    const std::size_t row = i / kNamesInARow, column = i % kNamesInARow;
+    const double x = 8 + kPanelWidth / kNamesInARow * static_cast<double>(column);
+    const double y = kTop + kPlotHeight + kAxisHeight + kNameHeight * (static_cast<double>(row) + 0.5);
     text += fmt::format("<path d='M{:.1f} {:.1f}h24' {}/>\n{}<text x='{:.1f}' y='{:.1f}'>{}</text>\n", x, y,
                         stroke_of(curve), marker_at(curve.marker, x + 12, y, curve.color), x + 29, y + 4, curve.name);
   }
@@ -112,8 +113,8 @@ std::string draw_names(const Panel& panel) {
 }
 
 double height_of(const Panel& panel) {
-  const auto rows = static_cast<double>((panel.curves.size() + kNamesInARow - 1) / kNamesInARow);
-  return kTop + kPlotHeight + kAxisHeight + kNameHeight * rows + 16;
+  const std::size_t rows = (panel.curves.size() + kNamesInARow - 1) / kNamesInARow;
+  return kTop + kPlotHeight + kAxisHeight + kNameHeight * static_cast<double>(rows) + 16;
 }
 
 std::string draw(const Panel& panel) {

@@ -87,8 +87,7 @@ void add_shoulders(BlendedBody& body, const Scale& s) {
   LoftFrame frame;
   frame.along = Vec3::UnitX();
   frame.u = Vec3::UnitZ();
-  Rows sized = scaled(rows, s);
-  body.add(Loft(frame, std::move(sized), 5 * s.length, 4.6 * s.length), 0.06, true);
+  body.add(Loft(frame, scaled(rows, s), 5 * s.length, 4.6 * s.length), 0.06, true);
 }
 
 void add_neck_and_head(BlendedBody& body, const Scale& s) {

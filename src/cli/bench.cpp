@@ -115,6 +115,10 @@ class AccuracyProgress {
 
 ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path& folder) {
   const scene::Scene scene = scene_of(options);
+  if (scene.frame_count() < 2)
+    throw Error(ExitCode::scene_invalid,
+                "{}: time.duration: expected a frame after the start to measure at, got {:g} s", scene.file.string(),
+                scene.time.duration);
   const std::string name = "accuracy_" + scene.name, title = scene.title.empty() ? scene.name : scene.title;
   const std::string work = name + ".svg", settings = name + "_settings.svg";
   PathLedger paths;

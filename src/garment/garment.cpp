@@ -93,7 +93,7 @@ class Sewing {
                            spacing_));
       first_.push_back(total_);
       meshes_.push_back(mesh_of(panel, segments_[p], spacing_));
-      if (meshes_.back().triangles.size() < 1) refuse(fmt::format("panel {}: expected an area, got none", panel.name));
+      if (meshes_.back().triangles.empty()) refuse(fmt::format("panel {}: expected an area, got none", panel.name));
       total_ += static_cast<Index>(meshes_.back().points.size());
     }
   }

@@ -26,11 +26,11 @@ double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
   return (a + share * side - p).norm();
 }
 
-using Side = std::array<Index, 2>;
+using VertexPair = std::array<Index, 2>;
 
 // Sides of triangles as pairs of vertices, those of front and back apart.
-std::array<std::set<Side>, 2> sides_of(std::span<const LaidPanel> panels) {
-  std::array<std::set<Side>, 2> sides;
+std::array<std::set<VertexPair>, 2> sides_of(std::span<const LaidPanel> panels) {
+  std::array<std::set<VertexPair>, 2> sides;
   for (const LaidPanel& panel : panels)
     for (const mesh::Triangle& t : panel.triangles)
       for (std::size_t k = 0; k < 3; ++k) {
@@ -83,7 +83,7 @@ std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t ve
 
 std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth) {
   const auto sides = sides_of(panels);
-  std::vector<Side> shared;
+  std::vector<VertexPair> shared;
   std::ranges::set_intersection(sides[0], sides[1], std::back_inserter(shared));
   std::vector<std::vector<Index>> neighbours(plane.size());
   std::vector<char> free(plane.size(), 1);

@@ -12,7 +12,7 @@ double turn(const Vec2& a, const Vec2& b, const Vec2& c) {
 /// (Newell), which weighs all corners and so stands for polygons that are not quite flat.
 std::vector<Vec2> flattened(std::span<const Index> corners, std::span<const Vec3> positions) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return positions[corners[k % corners.size()]]; };
-  const Vec3 origin = corner(0);
+  const Vec3& origin = corner(0);
   Vec3 normal = Vec3::Zero();
   for (std::size_t k = 0; k < corners.size(); ++k) normal += (corner(k) - origin).cross(corner(k + 1) - origin);
   const Vec3 n = normal.stableNormalized();

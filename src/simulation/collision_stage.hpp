@@ -77,7 +77,7 @@ class CollisionStage {
  private:
   const std::vector<Vec3>& append_bodies(Moment& start) const;
   void place_bodies(double t, Moment& moment) const;
-  std::string describe(const collision::CornerPair& pair, const Moment& at) const;
+  std::string describe(const collision::CornerPair& pair, const Moment& moment) const;
   std::string describe(const collision::Pinch& pinch) const;
   void note_pinches(const Moment& start);
 

@@ -77,7 +77,7 @@ Trajectory made_up(const Vec3& shift, const Vec3& velocity, double energy) {
 TEST(Trajectories, AreComparedByMassAndByTheWorstFrame) {
   const Trajectory exact = made_up(Vec3::Zero(), Vec3::Zero(), 5);
   const Errors errors = compare(made_up({0.1, 0, 0}, {0, 2, 0}, 5.5), exact);
-  const auto error = [&](Quantity q) { return errors[q]; };
+  const auto error = [&](Quantity q) { return errors[static_cast<std::size_t>(q)]; };
   EXPECT_NEAR(error(Quantity::position), 0.1 * std::sqrt(0.75), 1e-15);
   EXPECT_NEAR(error(Quantity::velocity), 2 * std::sqrt(0.25), 1e-15);
   EXPECT_NEAR(error(Quantity::energy), 0.05, 1e-15);

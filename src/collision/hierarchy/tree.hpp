@@ -81,8 +81,8 @@ class Tree {
   };
 
   bool stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, double margin);
-  void fit(std::size_t leaf);
-  void fit_node(std::size_t node);
+  void fit(std::size_t n);
+  void fit_node(std::size_t n);
 
   Surface surface_;
   Ref root_ = 0;

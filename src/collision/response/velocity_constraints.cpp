@@ -97,7 +97,7 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
   const std::size_t n = all.size();
   for (std::size_t i = 0; i < n; ++i) {
     const double load = missing(all[i]);
-    const Vec3 moved = u + load * all[i].normal;
+    Vec3 moved = u + load * all[i].normal;
     if (load <= 0 || !feasible(all, moved, kSlack)) continue;
     held = {{all[i].wall, -1, -1}, {load, 0, 0}, 1};
     return moved;
@@ -108,7 +108,7 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
       if (determinant < 1e-12) continue;
       const double a = missing(all[i]), b = missing(all[j]);
       const double load_i = (a - c * b) / determinant, load_j = (b - c * a) / determinant;
-      const Vec3 moved = u + load_i * all[i].normal + load_j * all[j].normal;
+      Vec3 moved = u + load_i * all[i].normal + load_j * all[j].normal;
       if (load_i < 0 || load_j < 0 || !feasible(all, moved, kSlack)) continue;
       held = {{all[i].wall, all[j].wall, -1}, {load_i, load_j, 0}, 2};
       return moved;
@@ -121,7 +121,7 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
         if (std::abs(normals.determinant()) < 1e-6) continue;
         const Mat3 gram = normals.transpose() * normals;
         const Vec3 loads = gram.inverse() * Vec3(missing(all[i]), missing(all[j]), missing(all[k]));
-        const Vec3 moved = u + normals * loads;
+        Vec3 moved = u + normals * loads;
         if (loads.minCoeff() < 0 || !feasible(all, moved, kSlack)) continue;
         held = {{all[i].wall, all[j].wall, all[k].wall}, {loads[0], loads[1], loads[2]}, 3};
         return moved;

@@ -116,9 +116,9 @@ class VelocityConstraints {
     bool stops = false;          // slides so slowly that it sticks in the next step
   };
 
-  Vec3 project(const Touched& particle, const Vec3& u, bool toward_force, Held& held) const;
+  Vec3 project(const Touched& particle, const Vec3& u, bool of_force, Held& held) const;
   void hold(Touched& particle, const Vec3& u, Held held);
-  bool revise(Touched& particle, const Vec3& u, const Vec3& force);
+  bool revise(Touched& particle, const Vec3& x_end, const Vec3& force);
   int main_wall(const Touched& particle) const;
   Mat3 free_directions(const Touched& particle) const;
   struct Friction {
