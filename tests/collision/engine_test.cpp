@@ -17,24 +17,17 @@ constexpr double kThickness = 0.002;  // of cloth: it touches a floor at half of
 /// A sheet of n × n squares of 2 cm at `height` [m] over a floor, and perhaps a ceiling.
 struct Sheet {
   int n;
+  std::vector<double> planes{0};  // heights of the floor and the ceiling [m]
   std::vector<Vec3> x;
   std::vector<double> masses;
-  Bodies bodies;
 
   Sheet(int squares, double height, std::optional<double> ceiling = std::nullopt) : n(squares) {
-    std::vector<Triangle> triangles;
+    if (ceiling) planes.push_back(*ceiling);
     for (int j = 0; j <= n; ++j)
       for (int i = 0; i <= n; ++i) x.emplace_back(0.02 * i, 0.02 * j, height);
-    for (int j = 0; j < n; ++j)
-      for (int i = 0; i < n; ++i) {
-        const Index a = i + (n + 1) * j, b = a + n + 1;
-        triangles.push_back({a, a + 1, b + 1});
-        triangles.push_back({a, b + 1, b});
-      }
     masses.assign(x.size(), 1e-4);
-    bodies.add(triangles, static_cast<Index>(x.size()), {.deformable = true, .thickness = kThickness, .friction = 0.3});
-    add_plane(0);
-    if (ceiling) add_plane(*ceiling);
+    for (double z : planes)
+      for (const Vec3& corner : {Vec3(-1, -1, z), Vec3(2, -1, z), Vec3(2, 2, z), Vec3(-1, 2, z)}) x.push_back(corner);
   }
 
   std::size_t particles() const { return masses.size(); }
@@ -43,13 +36,22 @@ struct Sheet {
     for (std::size_t i = 0; i < particles(); ++i) end[i].z() -= by;
     return end;
   }
-  Engine engine(const EngineParameters& parameters = {}) { return {bodies, parameters, x, masses}; }
-
- private:
-  void add_plane(double z) {
-    for (const Vec3& corner : {Vec3(-1, -1, z), Vec3(2, -1, z), Vec3(2, 2, z), Vec3(-1, 2, z)}) x.push_back(corner);
-    bodies.add(std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}, 4, {.friction = 0.3, .moving = false});
+  Bodies bodies() const {
+    std::vector<Triangle> triangles;
+    for (int j = 0; j < n; ++j)
+      for (int i = 0; i < n; ++i) {
+        const Index a = i + (n + 1) * j, b = a + n + 1;
+        triangles.push_back({a, a + 1, b + 1});
+        triangles.push_back({a, b + 1, b});
+      }
+    Bodies made;
+    made.add(triangles, static_cast<Index>(particles()),
+             {.deformable = true, .thickness = kThickness, .friction = 0.3});
+    for (std::size_t p = 0; p < planes.size(); ++p)
+      made.add(std::vector<Triangle>{{0, 1, 2}, {0, 2, 3}}, 4, {.friction = 0.3, .moving = false});
+    return made;
   }
+  Engine engine(const EngineParameters& parameters = {}) const { return {bodies(), parameters, x, masses}; }
 };
 
 TEST(Engine, EachParticleNearAFloorIsAProximityAndAContact) {
