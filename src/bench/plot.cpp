@@ -15,7 +15,7 @@ constexpr double kPanelWidth = 430, kLeft = 62, kTop = 34, kPlotWidth = 350, kPl
 constexpr std::size_t kPanelsInARow = 3, kNamesInARow = 3;
 
 /// One logarithmic axis: from 10^low to 10^high over so many pixels.
-struct Axis {
+struct PlotAxis {
   double low = 0, high = 1, start = 0, length = 1;
   double at(double value) const { return start + length * (std::log10(value) - low) / (high - low); }
 };
@@ -25,7 +25,7 @@ bool is_drawn(const Vec2& point) {
 }
 
 // Covers all points of the panel, with some room at the ends.
-Axis fit(const Panel& panel, int coordinate, double start, double length) {
+PlotAxis fit(const Panel& panel, int coordinate, double start, double length) {
   double low = std::numeric_limits<double>::infinity(), high = -low;
   for (const Curve& curve : panel.curves) {
     for (const Vec2& point : curve.points) {
@@ -44,7 +44,7 @@ std::string decade_name(int decade) {
 }
 
 // Lines at each decade, with names, and short ones at 2 and 5 times a decade.
-std::string ticks(const Axis& axis, bool vertical) {
+std::string ticks(const PlotAxis& axis, bool vertical) {
   std::string text;
   const auto line = [&](double place, const char* color) {
     text += vertical ? fmt::format("<path d='M{:.1f} {:.1f}h{}' stroke='{}'/>\n", kLeft, place, kPlotWidth, color)
@@ -88,7 +88,7 @@ std::string stroke_of(const Curve& curve) {
                      curve.dashed ? " stroke-dasharray='5 3'" : "");
 }
 
-std::string draw(const Curve& curve, const Axis& across, const Axis& up) {
+std::string draw(const Curve& curve, const PlotAxis& across, const PlotAxis& up) {
   std::string path, markers;
   for (const Vec2& point : curve.points) {
     if (!is_drawn(point)) continue;
@@ -118,7 +118,7 @@ double height_of(const Panel& panel) {
 }
 
 std::string draw(const Panel& panel) {
-  const Axis across = fit(panel, 0, kLeft, kPlotWidth), up = fit(panel, 1, kTop + kPlotHeight, -kPlotHeight);
+  const PlotAxis across = fit(panel, 0, kLeft, kPlotWidth), up = fit(panel, 1, kTop + kPlotHeight, -kPlotHeight);
   std::string text =
       fmt::format("<text x='{}' y='20' font-size='14' font-weight='bold'>{}</text>\n", kLeft, panel.title);
   if (panel.unresolved_below > 0 && std::log10(panel.unresolved_below) > up.low) {

@@ -22,7 +22,8 @@ PRECOMPILED = ["Eigen/Dense", "fmt/format.h", "algorithm", "filesystem", "functi
                "string", "vector"]
 PRECOMPILED_FOR_TESTS = ["gtest/gtest.h", "fstream", "random", "sstream"]
 
-# clang-tidy looks at all that is included, which is most of its work: it gets many sources as one.
+# clang-tidy looks at all that is included, which is most of its work: it gets many sources as one. A name that is said
+# to be ambiguous then stands for two things in one module, of which a header declares one: one of them wants another.
 CHUNKS = 2
 
 
@@ -40,18 +41,19 @@ class Source:
             elif word != "-Winvalid-pch":
                 self.flags.append(word)
 
-    def local_names(self):
-        """What it declares in unnamed namespaces, where two sources of a chunk must not declare the same."""
+    def names(self):
+        """What it declares in unnamed namespaces, and what it may call or name: what one source of a chunk declares
+        there no other one may use."""
         text = self.path.read_text()
         outer = re.search(r"^namespace (weft\S*) \{", text, re.M)
+        used = set(re.findall(r"(?<![\w.>:])(?:[a-z]\w*(?=\()|[A-Z]\w*|k[A-Z]\w*)", text))
         names = set()
         for part in re.findall(r"^namespace \{$(.*?)^\}  // namespace$", text, re.M | re.S):
-            for line in re.findall(r"^[\w\[].*$", part, re.M):
-                declared = re.match(r"(?:using|struct|class|enum class) (\w+)|TEST\w*\((\w+), (\w+)|"
-                                    r".*?(\w+)(?:\(|\{| = |;|\[)", line)
+            for line in re.findall(r"^(?!namespace|using \S+;)[\w\[].*$", part, re.M):
+                declared = re.match(r"(?:using|struct|class|enum class) (\w+)|.*?(\w+)(?:\(|\{| = |;|\[)", line)
                 if declared:
-                    names.add("_".join(filter(None, declared.groups())))
-        return {f"{outer and outer[1]}::{name}" for name in names}
+                    names.add(declared[1] or declared[2])
+        return [{f"{outer and outer[1]}::{name}" for name in found} for found in (names, used | names)]
 
 
 def precompile(build, root, flags):
@@ -71,18 +73,19 @@ def syntax_commands(build, sources):
 
 
 def tidy_commands(build, sources):
-    chunks = []  # pairs of sources and the names that are taken
+    chunks = []  # the sources of each, what they declare, what they use
     for source in sources:
-        names = source.local_names()
-        fitting = [chunk for chunk in chunks if not chunk[1] & names]
+        declared, used = source.names()
+        fitting = [chunk for chunk in chunks if not chunk[1] & used and not chunk[2] & declared]
         if len(chunks) < CHUNKS or not fitting:
-            fitting = [([], set())]
+            fitting = [([], set(), set())]
             chunks.append(fitting[0])
         shortest = min(fitting, key=lambda chunk: len(chunk[0]))
         shortest[0].append(source)
-        shortest[1].update(names)
+        shortest[1].update(declared)
+        shortest[2].update(used)
     commands = []
-    for number, (chunk, _) in enumerate(chunks):
+    for number, (chunk, _, _) in enumerate(chunks):
         file = build / f"lint_{number}.cpp"
         file.write_text("".join(f'#include "{source.path}"\n' for source in chunk))
         # Of warnings `syntax` knows; one source may shadow what another has declared.
