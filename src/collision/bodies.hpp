@@ -23,6 +23,10 @@ struct BodyTraits {
 /// that of the arrays of positions: particles first, so bodies that deform are added before the obstacles.
 class Bodies {
  public:
+  Bodies() = default;
+  Bodies(Bodies&&) = default;  // a copy would view the triangles of the original
+  Bodies& operator=(Bodies&&) = default;
+
   /// `triangles`: by vertex number within the body, from 0 to vertex_count − 1.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits);
 

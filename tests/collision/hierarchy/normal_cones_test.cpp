@@ -7,6 +7,7 @@
 
 #include "collision/hierarchy/feature_distance.hpp"
 #include "collision/hierarchy/test_motions.hpp"
+#include "mesh/shapes.hpp"
 
 namespace weft::collision {
 namespace {
@@ -181,11 +182,24 @@ TEST(NormalCones, MissNothingAcrossANotchInAStarShapedBorder) {
   // A notch from the lower border towards the centre: seen from there the whole border runs forward.
   TestMesh sheet = slit_sheet(9, 3, 0.002);
   for (Vec3& p : sheet.x)
-    if (p[1] < 0.375 && std::abs(p[0] - 0.5) < 0.01) p[0] += (p[0] < 0.5 ? -0.2 : 0.2) * (0.375 - p[1]);
+    if (p[1] < 0.375 && std::abs(p[0] - 0.5) < 0.01) p[0] += (p[0] < 0.5 ? -0.1 : 0.1) * (0.375 - p[1]);
   for (int leaf : {1, 8}) {
-    const LeftOut result = left_out<6>(sheet.surface(), sheet.x, sheet.x, 0.05, {2, leaf});
+    // The notch is 0.027 wide where it begins; triangles at it are no lower than 0.07.
+    const LeftOut result = left_out<6>(sheet.surface(), sheet.x, sheet.x, 0.04, {2, leaf});
     EXPECT_EQ(result.within_reach, 0U);
   }
+}
+
+// Half a ball and the ring around it face all ways; small patches of it do not.
+TEST(NormalCones, EndAtARightAngle) {
+  const mesh::Mesh ball = mesh::make_sphere(0.5, 24);
+  const TestMesh mesh{ball.positions, {ball.topology.triangles.begin(), ball.topology.triangles.end()}};
+  const Tree<6> tree(mesh.surface(), mesh.x, {2, 2});
+  NormalCones<6> cones(tree);
+  cones.update(tree, mesh.x, mesh.x, 1e-4);
+  const Regions& regions = cones.regions();
+  for (const auto half : std::span(tree.nodes()[0].child).first(2)) EXPECT_FALSE(regions.nothing_near(half));
+  EXPECT_GT(std::ranges::count(regions.node, 1) + std::ranges::count(regions.leaf, 1), 10);
 }
 
 TEST(StarShaped, HoldsForAChainThatRunsAroundItsCentreOnceAndAlwaysForward) {

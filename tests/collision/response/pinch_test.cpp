@@ -69,6 +69,11 @@ TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
     pinched_.release(broad_phase_, x_);
     EXPECT_EQ(pinched_.size(), 1U) << z;
   }
+  // The corner that is looked at is back, the others are not.
+  move_cloth_to(0.11);
+  x_[1][2] = x_[2][2] = 0.05;
+  pinched_.release(broad_phase_, x_);
+  EXPECT_EQ(pinched_.size(), 1U);
   move_cloth_to(0.102);
   pinched_.release(broad_phase_, x_);
   EXPECT_TRUE(pinched_.empty());
