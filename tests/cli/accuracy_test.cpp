@@ -276,5 +276,12 @@ TEST_F(BenchAccuracy, StabilityTakesNoScene) {
   EXPECT_NE(outcome.err.find("expected no SCENE"), std::string::npos) << outcome.err;
 }
 
+TEST_F(BenchAccuracy, ASceneWithoutAFrameAfterTheStartIsRefused) {
+  const cli::Outcome outcome = cli::run_weft({"bench", "accuracy", "--set", "time.duration=0", "-o", "b"}, folder_);
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.err.find("time.duration: expected a frame after the start"), std::string::npos) << outcome.err;
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
 }  // namespace
 }  // namespace weft::bench

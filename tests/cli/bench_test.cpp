@@ -3,9 +3,7 @@
 
 #include "bench/report.hpp"
 #include "bench/stability.hpp"
-#include "cli/subprocess.hpp"
 #include "support/scene_runs.hpp"
-#include "support/test_folder.hpp"
 
 namespace weft::bench {
 namespace {
@@ -67,18 +65,6 @@ TEST(Report, MapHasAColoredCellForEachRun) {
   EXPECT_NE(svg.find("#f1c453"), std::string::npos);
   EXPECT_EQ(map_table(cells).size(), 3u);
   EXPECT_EQ(map_table(cells)[2].back(), "why");
-}
-
-class BenchAccuracy : public support::TestFolder {};
-
-TEST_F(BenchAccuracy, ASceneWithoutAFrameAfterTheStartIsRefused) {
-  const cli::Outcome outcome =
-      cli::run_weft({"bench", "accuracy", std::string(WEFT_SOURCE_DIR) + "/scenes/swinging_sheet.toml", "--set",
-                     "time.duration=0", "-o", "measured"},
-                    folder_);
-  EXPECT_EQ(outcome.exit_code, 3);
-  EXPECT_NE(outcome.err.find("time.duration: expected a frame after the start"), std::string::npos) << outcome.err;
-  EXPECT_TRUE(std::filesystem::is_empty(folder_));
 }
 
 }  // namespace
