@@ -81,8 +81,7 @@ struct Encoder::Impl {
   std::filesystem::path file;
   Settings settings;
   AVRational rate;
-  TemporaryFile whole;                     // written at the end, from the fragments
-  std::optional<TemporaryFile> fragments;  // until then
+  std::optional<TemporaryFile> fragments;  // until the finished file is made out of them
   FrameConverter converter;
   FramePtr frame;
   PacketPtr packet;
@@ -101,7 +100,6 @@ Encoder::Impl::Impl(const std::filesystem::path& f, const Settings& s)
     : file(f),
       settings(s),
       rate(frame_rate(s.fps)),
-      whole(f),
       fragments(std::in_place, partial_name(f)),
       converter(s.width, s.height, f),
       frame(converter.make_frame()),
@@ -128,6 +126,7 @@ void Encoder::Impl::send(const AVFrame* next) {
 
 // Makes the finished file out of the fragments.
 void Encoder::Impl::publish() {
+  TemporaryFile whole(file);
   copy_to_fast_start(fragments->path(), whole.path(), file, rate, settings.metadata);
   verify_frames(whole.path(), file, rate, frames);
   whole.commit();
@@ -136,6 +135,7 @@ void Encoder::Impl::publish() {
 Encoder::Encoder(const std::filesystem::path& file, const Settings& settings) {
   collect_log();
   check_settings(file, settings);
+  check_writable(file);
   impl_ = std::make_unique<Impl>(file, settings);
 }
 

@@ -251,7 +251,7 @@ TEST_F(EncoderTest, PlacesThatCannotBeWrittenAreNamedAtTheStart) {
                [&] { Encoder(folder_, small()); });
   // The kernel's own file system takes no files, even from root.
   expect_error(ExitCode::output_failed,
-               "/proc/self/fd/a.mp4: cannot create the file: ", [&] { Encoder("/proc/self/fd/a.mp4", small()); });
+               "/proc/self/fd/a.mp4: cannot be written: ", [&] { Encoder("/proc/self/fd/a.mp4", small()); });
 }
 
 TEST_F(EncoderTest, SettingsOutOfRangeAreNamed) {
