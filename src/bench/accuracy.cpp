@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <memory>
+#include <utility>
 
-#include "bench/trajectory.hpp"
 #include "core/error.hpp"
 #include "simulation/collision_stage.hpp"
 
@@ -17,25 +16,40 @@ using scene::Integrator;
 // Fixed steps: from four times the scene's on, each half of the one before.
 constexpr int kSteps = 6;
 constexpr double kCoarsest = 4;
-// How much finer the steps of the reference are than the finest measured: its error is then below a sixtieth of theirs.
-// With contact its error is that of diverging paths rather than that of its steps.
+// How much finer the steps of the references are than the finest measured: of second order, their error is then below a
+// sixtieth of theirs. With contact it is that of diverging paths rather than that of steps.
 constexpr int kReferenceCut = 8, kReferenceCutWithContact = 2;
 // Tolerances of positions [m], half a decade apart, until steps are shorter than the fixed ones.
 constexpr double kLargestTolerance = 1e-3;
 constexpr int kTolerances = 9, kTolerancesWithContact = 5;
-// Solver settings with which the step alone decides; contacts that switch on and off keep Newton's method from more.
-constexpr double kExactNewton = 1e-6, kExactNewtonWithContact = 0.1, kExactLinear = 1e-3, kExactLinearWithContact = 0.1;
-constexpr double kNewtonTolerances[] = {1, 0.3, 0.1, 0.03, 0.01, 0.003};
+// newton_tolerance falls by decades from the scene's down to this.
+constexpr double kLeastNewton = 1e-8, kDecade = 0.1;
+// Where references begin, in shares of the scene's.
+constexpr double kNewtonOfReference = 1e-2;
+// What a tenfold smaller newton_tolerance may change where the step is to decide, in shares of the error.
+constexpr double kDecides = 0.1;
 constexpr double kLinearTolerances[] = {0.3, 0.1, 0.03, 0.01, 0.003};
-constexpr double kNewtonOfLinear = 0.01;  // where the linear tolerance is varied
 constexpr double kRefinements[] = {2, 1, 0.5, 0.25};
-// Displacements of the start that should not matter [m].
-constexpr double kPerturbations[] = {1e-6, 2e-6};
+// Starts with contact, each moved by a micrometre more than the one before [m].
+constexpr double kShift = 1e-6;
+constexpr int kStarts = 3;
 // Runs shorter than this [s] are timed twice.
 constexpr double kShortRun = 0.3;
 // A run that halves its steps over and over is stopped after so many times the steps it should take, or those of the
 // finest one where these are more.
 constexpr int kStepLimit = 3;
+
+// Runs of one setting from one start, or with contact from several.
+struct Sample {
+  std::vector<Trajectory> starts;
+  Functionals middle;
+  Errors spread{};
+  Work work;
+};
+
+Errors difference(const Sample& a, const Sample& b, const std::vector<std::size_t>& same = {}) {
+  return a.starts.size() > 1 ? compare(a.middle, b.middle) : compare(a.starts[0], b.starts[0], same);
+}
 
 // As `measure_accuracy` does it, step by step.
 class Campaign {
@@ -44,41 +58,34 @@ class Campaign {
   Accuracy measure();
 
  private:
-  // Settings of one series, from coarse to fine, and what its runs are held against.
-  struct Series {
-    Axis axis;
-    Integrator integrator;
-    std::vector<Setting> settings;
-    std::shared_ptr<const Trajectory> against;
-    std::string no_against = {};  // why there is nothing to hold against
-    std::vector<Run> runs = {};
-    bool ended = false;
-  };
+  using SamplePtr = std::shared_ptr<const Sample>;
 
   scene::Scene with(const Setting& setting) const;
-  Setting exact(Integrator integrator, double step) const;
-  Setting as_in_scene(Integrator integrator, double step) const;
+  Setting as_in_scene(Integrator integrator, double step) const {
+    return {integrator, step, {}, scene_.solver.newton_tolerance, scene_.solver.linear_tolerance};
+  }
   int steps_of(double step) const {
     return result_.frames * static_cast<int>(std::lround(1 / (scene_.time.fps * step)));
   }
   double work_of(const Setting& setting) const;
 
-  void measure_reference();
+  SamplePtr sample(const Setting& setting) const;
+  SamplePtr run(Run& run, const SamplePtr& against, const std::vector<std::size_t>& same = {});
+  SamplePtr measure_candidate(Candidate& candidate);
+  void measure_references();
+  void measure_grid(Integrator integrator, double step);
+  bool decides(const Run& run, const Run& tighter) const;
+  void measure_tolerances(Integrator integrator);
+  void measure_linear();
   void measure_meshes();
-  void add_series();
-  void run_next_of(Series& series, std::size_t k);
-  Run run(Axis axis, const Setting& setting, const Trajectory* against, const std::vector<std::size_t>& same = {},
-          std::shared_ptr<Trajectory>* keep = nullptr);
-  void told(const Run& run);
 
   const scene::Scene& scene_;
   const EachRun& each_;
   Accuracy result_;
   double finest_ = 0, scene_step_ = 0;  // steps [s]
-  Integrator best_;                     // of second order, and works here
-  std::shared_ptr<Trajectory> reference_;
-  std::vector<Series> series_;
-  double work_ = 0, work_done_ = 0;  // [particle steps]
+  Integrator best_, other_;             // that of the reference, and of the one beside it
+  SamplePtr reference_;
+  double work_ = 0, work_done_ = 0;  // [steps]
 };
 
 Campaign::Campaign(const scene::Scene& scene, const EachRun& each) : scene_(scene), each_(each) {
@@ -86,10 +93,12 @@ Campaign::Campaign(const scene::Scene& scene, const EachRun& each) : scene_(scen
   result_.frames = scene.frame_count() - 1;
   result_.duration = result_.frames / scene.time.fps;
   best_ = result_.contact ? Integrator::bdf2 : Integrator::implicit_midpoint;
+  other_ = result_.contact ? Integrator::implicit_euler : Integrator::bdf2;
   // Frames are cut into equal steps, so that the steps asked for are the steps taken.
   const double coarsest = std::max(1.0, std::round(1 / (scene.time.fps * kCoarsest * scene.time.step)));
   scene_step_ = 1 / (scene.time.fps * coarsest * kCoarsest);
   finest_ = 1 / (scene.time.fps * coarsest * std::pow(2.0, kSteps - 1));
+  result_.of_scene = as_in_scene(scene.time.integrator, scene_step_);
 }
 
 scene::Scene Campaign::with(const Setting& setting) const {
@@ -100,22 +109,7 @@ scene::Scene Campaign::with(const Setting& setting) const {
   scene.solver.newton_tolerance = setting.newton_tolerance;
   scene.solver.linear_tolerance = setting.linear_tolerance;
   if (setting.refinement != 1) refine(scene, setting.refinement);
-  for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += setting.noise;
   return scene;
-}
-
-Setting Campaign::exact(Integrator integrator, double step) const {
-  return {.integrator = integrator,
-          .step = step,
-          .newton_tolerance = result_.contact ? kExactNewtonWithContact : kExactNewton,
-          .linear_tolerance = result_.contact ? kExactLinearWithContact : kExactLinear};
-}
-
-Setting Campaign::as_in_scene(Integrator integrator, double step) const {
-  return {.integrator = integrator,
-          .step = step,
-          .newton_tolerance = scene_.solver.newton_tolerance,
-          .linear_tolerance = scene_.solver.linear_tolerance};
 }
 
 // Steps it is going to take, times how many more particles than the scene's. Steps with a tolerance t go as t^(1/2)
@@ -128,164 +122,209 @@ double Campaign::work_of(const Setting& setting) const {
   return result_.frames / (scene_.time.fps * step) * setting.refinement * setting.refinement;
 }
 
-void Campaign::told(const Run& run) {
-  work_done_ += work_of(run.setting);
-  if (each_) each_(run, std::min(1.0, work_done_ / work_));
+// Throws where one of its runs does not reach the end.
+Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
+  const FollowLimits limits{.steps = kStepLimit *
+                                     std::max(steps_of(finest_), setting.tolerance ? 0 : steps_of(setting.step))};
+  auto sample = std::make_shared<Sample>();
+  std::vector<Functionals> functionals;
+  scene::Scene scene = with(setting);
+  for (int start = 0; start < (result_.contact ? kStarts : 1); ++start) {
+    sample->starts.push_back(follow(scene, limits));
+    functionals.push_back(sample->starts.back().functionals);
+    for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += kShift;
+  }
+  sample->middle = median(functionals);
+  sample->work = sample->starts[0].work;
+  for (const Trajectory& start : sample->starts) {
+    sample->work.cpu_s = std::min(sample->work.cpu_s, start.work.cpu_s);
+    const Errors apart = compare(start.functionals, sample->middle);
+    for (std::size_t q = 0; q < kQuantities; ++q) sample->spread[q] = std::max(sample->spread[q], apart[q]);
+  }
+  if (!result_.contact && sample->work.cpu_s < kShortRun)
+    sample->work.cpu_s = std::min(sample->work.cpu_s, follow(scene, limits).work.cpu_s);
+  return sample;
 }
 
-Run Campaign::run(Axis axis, const Setting& setting, const Trajectory* against, const std::vector<std::size_t>& same,
-                  std::shared_ptr<Trajectory>* keep) {
-  Run run{.axis = axis, .setting = setting};
-  const int limit = kStepLimit * std::max(steps_of(finest_), setting.tolerance ? 0 : steps_of(setting.step));
+// What a setting comes to; nothing where it fails, which the run then says.
+Campaign::SamplePtr Campaign::run(Run& run, const SamplePtr& against, const std::vector<std::size_t>& same) {
+  SamplePtr made;
   try {
-    const scene::Scene scene = with(setting);
-    auto trajectory = std::make_shared<Trajectory>(follow(scene, limit, run));
-    if (run.cpu_s < kShortRun) {
-      Run again;
-      follow(scene, limit, again);
-      run.cpu_s = std::min(run.cpu_s, again.cpu_s);
-    }
-    if (against) run.errors = compare(*trajectory, *against, same);
-    if (keep) *keep = std::move(trajectory);
+    made = sample(run.setting);
+    run.spread = made->spread;
+    run.work = made->work;
+    run.particles = static_cast<int>(made->starts[0].masses.size());
+    if (against) run.errors = difference(*made, *against, same);
   } catch (const Error& error) {
     run.failure = error.what();
   }
-  told(run);
-  return run;
+  work_done_ += work_of(run.setting);
+  if (each_) each_(run, std::min(1.0, work_done_ / work_));
+  return made;
 }
 
-void Campaign::measure_reference() {
-  std::string failure;
-  for (int cut = result_.contact ? kReferenceCutWithContact : kReferenceCut; cut >= 1 && !reference_; cut /= 2) {
-    result_.reference = exact(best_, finest_ / cut);
-    failure = run(Axis::step, result_.reference, nullptr, {}, &reference_).failure;
-  }
-  if (!reference_) throw Error(ExitCode::simulation_failed, "the reference run failed: {}", failure);
-  result_.largest_energy = reference_->energies_in_play;
-  std::vector<Run> doubts{run(Axis::step, exact(best_, 2 * result_.reference.step), reference_.get())};
-  if (result_.contact) {
-    std::shared_ptr<Trajectory> unperturbed;
-    const Setting finest = exact(best_, finest_);
-    run(Axis::step, finest, nullptr, {}, &unperturbed);
-    for (double noise : kPerturbations) {
-      Setting perturbed = finest;
-      perturbed.noise = noise;
-      if (unperturbed) doubts.push_back(run(Axis::step, perturbed, unperturbed.get()));
+// Its tolerance is found at twice its step; it is itself solved with a tenth of that.
+Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
+  const Quantity decides = deciding_quantity(result_);
+  Setting twice = candidate.setting, four_times = candidate.setting;
+  twice.step *= 2;
+  four_times.step *= 4;
+  const auto made = [&](const Setting& setting) {
+    Run tried{.setting = setting};
+    SamplePtr sample = run(tried, nullptr);
+    if (!sample) throw Error(ExitCode::simulation_failed, "{}", tried.failure);
+    return sample;
+  };
+  try {
+    SamplePtr coarse = made(twice);
+    const double order = expected_order({.setting = twice});
+    const double steps = at(difference(*coarse, *made(four_times)), decides) / std::pow(2, order);
+    for (bool exact = false; !exact;) {
+      twice.newton_tolerance = std::max(kLeastNewton, kDecade * twice.newton_tolerance);
+      const SamplePtr tighter = made(twice);
+      candidate.solver = difference(*coarse, *tighter);
+      exact = at(candidate.solver, decides) <= std::max(kDecides * steps, at(tighter->spread, decides)) ||
+              twice.newton_tolerance == kLeastNewton;
+      coarse = tighter;
     }
+    candidate.setting.newton_tolerance = twice.newton_tolerance;
+    SamplePtr fine = made(candidate.setting);
+    candidate.step = difference(*coarse, *fine);
+    candidate.spread = fine->spread;
+    candidate.energies_in_play = fine->middle.energies_in_play;
+    return fine;
+  } catch (const Error& error) {
+    candidate.failure = error.what();
+    return nullptr;
   }
-  if (doubts.front().failed()) result_.uncertainty.fill(std::numeric_limits<double>::infinity());
-  for (const Run& doubt : doubts) {
+}
+
+void Campaign::measure_references() {
+  const double step = finest_ / (result_.contact ? kReferenceCutWithContact : kReferenceCut);
+  Candidate first{as_in_scene(best_, step)}, second{as_in_scene(other_, step)};
+  for (Candidate* candidate : {&first, &second})
+    candidate->setting.newton_tolerance = std::max(kLeastNewton, kNewtonOfReference * scene_.solver.newton_tolerance);
+  reference_ = measure_candidate(first);
+  SamplePtr beside = measure_candidate(second);
+  if (!reference_ && !beside) throw Error(ExitCode::simulation_failed, "the reference run failed: {}", first.failure);
+  const Quantity decides = deciding_quantity(result_);
+  if (!reference_ || (beside && at(second.doubt(), decides) < at(first.doubt(), decides))) {
+    std::swap(first, second);
+    std::swap(reference_, beside);
+  }
+  result_.uncertainty = first.doubt();
+  if (beside) {
+    result_.apart = difference(*reference_, *beside);
+    const Errors explained = second.doubt();
     for (std::size_t q = 0; q < kQuantities; ++q)
-      result_.uncertainty[q] = std::max(result_.uncertainty[q], doubt.errors[q]);
+      result_.uncertainty[q] = std::max(result_.uncertainty[q], result_.apart[q] - explained[q]);
+  }
+  result_.largest_energy = first.energies_in_play;
+  result_.reference = std::move(first);
+  result_.second = std::move(second);
+}
+
+bool Campaign::decides(const Run& run, const Run& tighter) const {
+  const Quantity q = deciding_quantity(result_);
+  return run.change <= std::max(kDecides * error_of(tighter, q), result_.doubt(tighter, q));
+}
+
+// One step with newton_tolerance from that of the scene down, until the step decides.
+void Campaign::measure_grid(Integrator integrator, double step) {
+  std::vector<Run> runs;
+  std::vector<SamplePtr> samples;
+  const Quantity q = deciding_quantity(result_);
+  Setting setting = as_in_scene(integrator, step);
+  while (true) {
+    runs.push_back({.axis = Axis::grid, .setting = setting});
+    samples.push_back(run(runs.back(), reference_));
+    if (!samples.back()) break;
+    if (runs.size() > 1) {
+      Run& before = runs[runs.size() - 2];
+      before.change = at(difference(*samples[runs.size() - 2], *samples.back()), q);
+      before.step_decides = decides(before, runs.back());
+      if (before.step_decides) break;
+    }
+    if (setting.newton_tolerance <= kLeastNewton) break;
+    setting.newton_tolerance = std::max(kLeastNewton, kDecade * setting.newton_tolerance);
+  }
+  const auto tightest = std::find_if(samples.rbegin(), samples.rend(), [](const SamplePtr& s) { return s != nullptr; });
+  for (std::size_t k = 0; k < runs.size(); ++k)
+    if (samples[k]) runs[k].left = at(difference(*samples[k], **tightest), q);
+  result_.runs.insert(result_.runs.end(), std::make_move_iterator(runs.begin()), std::make_move_iterator(runs.end()));
+}
+
+void Campaign::measure_tolerances(Integrator integrator) {
+  for (int k = 0; k < (result_.contact ? kTolerancesWithContact : kTolerances); ++k) {
+    Run tried{.axis = Axis::tolerance, .setting = as_in_scene(integrator, scene_step_)};
+    tried.setting.tolerance = kLargestTolerance * std::pow(10.0, -0.5 * k);
+    run(tried, reference_);
+    result_.runs.push_back(std::move(tried));
+    if (result_.runs.back().failed() || result_.runs.back().work.steps > steps_of(finest_)) return;
+  }
+}
+
+void Campaign::measure_linear() {
+  for (double tolerance : kLinearTolerances) {
+    Run tried{.axis = Axis::linear, .setting = as_in_scene(scene_.time.integrator, scene_step_)};
+    tried.setting.linear_tolerance = tolerance;
+    run(tried, reference_);
+    result_.runs.push_back(std::move(tried));
   }
 }
 
 // From fine to coarse, each held against the one before; listed from coarse to fine.
 void Campaign::measure_meshes() {
-  std::shared_ptr<Trajectory> finer;
+  SamplePtr finer;
+  const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
   for (double refinement : kRefinements) {
     if (!can_refine(scene_, refinement)) continue;
-    Setting setting = exact(best_, 0.5 * scene_step_);
-    setting.refinement = refinement;
-    const std::shared_ptr<Trajectory> against = std::move(finer);
-    finer.reset();
-    Run result = run(Axis::mesh, setting, against.get(),
-                     against ? same_in_twice_as_fine(with(setting)) : std::vector<std::size_t>{}, &finer);
-    if (!against && refinement < kRefinements[0] && !result.failed()) result.failure = "nothing finer to compare with";
-    result_.runs.insert(result_.runs.begin(), std::move(result));
-  }
-}
-
-void Campaign::add_series() {
-  for (Integrator integrator : kIntegrators) {
-    Series step{Axis::step, integrator, {}, reference_}, scene_step{Axis::scene_step, integrator, {}, reference_},
-        tolerance{Axis::tolerance, integrator, {}, reference_};
-    for (int k = 0; k < kSteps; ++k) {
-      const double h = finest_ * std::pow(2.0, kSteps - 1 - k);
-      step.settings.push_back(exact(integrator, h));
-      scene_step.settings.push_back(as_in_scene(integrator, h));
+    Run tried{.axis = Axis::mesh, .setting = as_in_scene(best_, 0.5 * scene_step_)};
+    tried.setting.newton_tolerance = std::max(kLeastNewton, kNewtonOfReference * tried.setting.newton_tolerance);
+    tried.setting.refinement = refinement;
+    const SamplePtr against = std::move(finer);
+    finer = run(tried, against, against ? same_in_twice_as_fine(with(tried.setting)) : std::vector<std::size_t>{});
+    if (!against && !tried.failed()) {
+      // The finest is there for the next one alone.
+      if (refinement == kRefinements[0]) continue;
+      tried.failure = "nothing finer to compare with";
     }
-    for (int k = 0; k < (result_.contact ? kTolerancesWithContact : kTolerances); ++k) {
-      tolerance.settings.push_back(as_in_scene(integrator, scene_step_));
-      tolerance.settings.back().tolerance = kLargestTolerance * std::pow(10.0, -0.5 * k);
-    }
-    for (Series* series : {&step, &scene_step, &tolerance}) series_.push_back(std::move(*series));
+    result_.runs.insert(result_.runs.begin() + first, std::move(tried));
   }
-  // What the solver leaves: with the scene's integrator, and with the other one that works everywhere.
-  const Integrator others[] = {scene_.time.integrator, Integrator::bdf2};
-  for (std::size_t i = 0; i < (others[0] == others[1] ? 1u : 2u); ++i) {
-    std::shared_ptr<Trajectory> solved;
-    const Run exactly = run(Axis::step, exact(others[i], scene_step_), nullptr, {}, &solved);
-    Series newton{Axis::newton, others[i], {}, solved, exactly.failure},
-        linear{Axis::linear, others[i], {}, solved, exactly.failure};
-    for (double tolerance : kNewtonTolerances) {
-      newton.settings.push_back(as_in_scene(others[i], scene_step_));
-      newton.settings.back().newton_tolerance = tolerance;
-    }
-    for (double tolerance : kLinearTolerances) {
-      linear.settings.push_back(as_in_scene(others[i], scene_step_));
-      linear.settings.back().newton_tolerance = kNewtonOfLinear;
-      linear.settings.back().linear_tolerance = tolerance;
-    }
-    series_.push_back(std::move(newton));
-    series_.push_back(std::move(linear));
-  }
-}
-
-void Campaign::run_next_of(Series& series, std::size_t k) {
-  const Setting& setting = series.settings[k];
-  if (!series.against) {
-    series.runs.push_back({.axis = series.axis, .setting = setting, .failure = series.no_against});
-    return told(series.runs.back());
-  }
-  series.runs.push_back(run(series.axis, setting, series.against.get()));
-  const Run& last = series.runs.back();
-  series.ended = series.axis == Axis::tolerance && (last.failed() || last.steps > steps_of(finest_));
 }
 
 Accuracy Campaign::measure() {
-  // Known before, but for the series' ends.
-  const double unit = work_of(exact(best_, scene_step_));
-  work_ = unit * (result_.contact ? 200 : 400);
-  measure_reference();
-  measure_meshes();
-  add_series();
-  work_ = work_done_;
-  for (const Series& series : series_)
-    for (const Setting& setting : series.settings) work_ += work_of(setting);
-  // Taking turns, so that a machine that gets slower or faster favours none.
-  for (std::size_t k = 0; k < kTolerances; ++k) {
-    for (Series& series : series_)
-      if (k < series.settings.size() && !series.ended) run_next_of(series, k);
+  // About: three tolerances for each step; references with three runs at twice their step.
+  constexpr double kRunsOfAStep = 3, kRunsOfAReference = 3;
+  for (double step = finest_; step < 1.5 * kCoarsest * scene_step_; step *= 2)
+    work_ += std::size(kIntegrators) * kRunsOfAStep * work_of(as_in_scene(best_, step));
+  work_ *= 1.5;
+  work_ += 2 * kRunsOfAReference *
+           work_of(as_in_scene(best_, finest_ / (result_.contact ? kReferenceCutWithContact : kReferenceCut)));
+  measure_references();
+  for (Integrator integrator : kIntegrators) {
+    for (int k = kSteps; k-- > 0;) measure_grid(integrator, finest_ * std::pow(2.0, k));
+    measure_tolerances(integrator);
   }
-  for (Series& series : series_)
-    result_.runs.insert(result_.runs.end(), std::make_move_iterator(series.runs.begin()),
-                        std::make_move_iterator(series.runs.end()));
+  measure_linear();
+  measure_meshes();
   return std::move(result_);
 }
 
 }  // namespace
 
-std::string_view name_of(Quantity quantity) {
-  constexpr std::string_view kNames[kQuantities] = {"position", "velocity",    "energy",        "shadow",
-                                                    "top",      "rest energy", "centre of mass"};
-  return kNames[static_cast<std::size_t>(quantity)];
-}
-
-std::string_view unit_of(Quantity quantity) {
-  constexpr std::string_view kUnits[kQuantities] = {"m", "m/s", "1", "1", "m", "1", "m"};
-  return kUnits[static_cast<std::size_t>(quantity)];
+Errors Candidate::doubt() const {
+  Errors doubt{};
+  for (std::size_t q = 0; q < kQuantities; ++q) doubt[q] = std::hypot(step[q], solver[q], spread[q]);
+  return doubt;
 }
 
 double control_of(const Run& run) {
   switch (run.axis) {
-    case Axis::step:
-    case Axis::scene_step:
+    case Axis::grid:
       return run.setting.step;
     case Axis::tolerance:
       return run.setting.tolerance.value_or(0);
-    case Axis::newton:
-      return run.setting.newton_tolerance;
     case Axis::linear:
       return run.setting.linear_tolerance;
     case Axis::mesh:
@@ -297,12 +336,10 @@ double control_of(const Run& run) {
 double expected_order(const Run& run) {
   const double order = run.setting.integrator == Integrator::implicit_euler ? 1 : 2;
   switch (run.axis) {
-    case Axis::step:
-    case Axis::scene_step:
+    case Axis::grid:
       return order;
     case Axis::tolerance:
       return order / (order + 1);
-    case Axis::newton:
     case Axis::mesh:
       return 1;
     case Axis::linear:
@@ -311,15 +348,27 @@ double expected_order(const Run& run) {
   return 0;
 }
 
+std::vector<Quantity> quantities_of(const Accuracy& accuracy) {
+  if (!accuracy.contact)
+    return {Quantity::position, Quantity::velocity, Quantity::energy, Quantity::drift, Quantity::centre};
+  return {Quantity::centre, Quantity::energy, Quantity::drift, Quantity::shadow, Quantity::top, Quantity::rest_energy};
+}
+
 Quantity deciding_quantity(const Accuracy& accuracy) {
-  return accuracy.uncertainty[static_cast<std::size_t>(Quantity::position)] < 1e-4 ? Quantity::position
-                                                                                   : Quantity::centre;
+  return quantities_of(accuracy).front();
 }
 
 std::vector<const Run*> Accuracy::series(Axis axis, Integrator integrator) const {
   std::vector<const Run*> found;
   for (const Run& run : runs)
     if (run.axis == axis && run.setting.integrator == integrator) found.push_back(&run);
+  return found;
+}
+
+std::vector<const Run*> Accuracy::decided(Integrator integrator) const {
+  std::vector<const Run*> found;
+  for (const Run* run : series(Axis::grid, integrator))
+    if (run->step_decides) found.push_back(run);
   return found;
 }
 

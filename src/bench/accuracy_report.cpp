@@ -4,133 +4,171 @@
 
 #include <algorithm>
 #include <cmath>
-
-#include "bench/plot.hpp"
+#include <functional>
+#include <set>
 
 namespace weft::bench {
 namespace {
 
 using scene::Integrator;
-constexpr Axis kAxesInOrder[kAxes] = {Axis::step,   Axis::scene_step, Axis::tolerance,
-                                      Axis::newton, Axis::linear,     Axis::mesh};
-
-// Where nothing touches, single numbers of the end say nothing that the motion does not.
-std::vector<Quantity> quantities_of(const Accuracy& accuracy) {
-  std::vector<Quantity> quantities{Quantity::position, Quantity::velocity, Quantity::energy};
-  if (accuracy.contact)
-    for (Quantity q : {Quantity::shadow, Quantity::top, Quantity::rest_energy, Quantity::centre})
-      quantities.push_back(q);
-  return quantities;
-}
 
 std::string_view axis_name(Axis axis) {
-  constexpr std::string_view kNames[kAxes] = {"step", "scene_step", "tolerance", "newton", "linear", "mesh"};
+  constexpr std::string_view kNames[kAxes] = {"grid", "tolerance", "linear", "mesh"};
   return kNames[static_cast<std::size_t>(axis)];
+}
+
+std::string label(Quantity quantity) {
+  return fmt::format("{} [{}]", name_of(quantity), unit_of(quantity));
 }
 
 // Exponent between this run and the one before it in its series; nothing where one of the two tells none.
 std::string observed_order(const Accuracy& accuracy, const Run* before, const Run& run, Quantity quantity) {
-  if (before == nullptr || before->failed() || run.failed()) return {};
+  if (before == nullptr || before->failed() || control_of(*before) == control_of(run)) return {};
   const double coarse = error_of(*before, quantity), fine = error_of(run, quantity);
   if (!(coarse > 0 && fine > 0) || !accuracy.resolved(run, quantity)) return {};
   return fmt::format(" ({:.2f})", std::log(coarse / fine) / std::log(control_of(*before) / control_of(run)));
 }
 
 std::string control_text(const Run& run) {
-  if (run.axis == Axis::mesh) return fmt::format("{:g} × cells, {} particles", run.setting.refinement, run.particles);
-  if (run.axis == Axis::step || run.axis == Axis::scene_step) return fmt::format("{:.4g} ms", 1e3 * run.setting.step);
-  return fmt::format("{:.3g}{}", control_of(run), run.axis == Axis::tolerance ? " m" : "");
+  const Setting& s = run.setting;
+  if (run.axis == Axis::mesh) return fmt::format("{:g} × cells, {} particles", s.refinement, run.particles);
+  if (run.axis == Axis::grid)
+    return fmt::format("{:.4g} ms, newton_tolerance {:.1g}", 1e3 * s.step, s.newton_tolerance);
+  return fmt::format("{} {:.3g}{}", axis_name(run.axis), control_of(run), run.axis == Axis::tolerance ? " m" : "");
 }
 
-// The runs of one axis, each error followed by the order observed since the row above.
-Table axis_table(const Accuracy& accuracy, Axis axis, const std::string& control) {
+std::string error_text(const Accuracy& accuracy, const Run& run, Quantity quantity) {
+  return fmt::format("{}{:.1e}", accuracy.resolved(run, quantity) ? "" : "~", error_of(run, quantity));
+}
+
+// Runs of several integrators, each error followed by the order observed since the row above.
+Table runs_table(const Accuracy& accuracy, const std::vector<const Run*>& runs, bool with_orders) {
   const auto quantities = quantities_of(accuracy);
-  Table table{
-      {"integrator", control, "steps", "rejected", "Newton a step", "linear a step", "CPU s", "expected order"}};
-  for (Quantity q : quantities) table[0].push_back(fmt::format("{} [{}]", name_of(q), unit_of(q)));
-  for (Integrator integrator : kIntegrators) {
-    const Run* before = nullptr;
-    for (const Run* run : accuracy.series(axis, integrator)) {
-      const double steps = std::max(1, run->steps);
-      std::vector<std::string> row{std::string(name_of(integrator)),
-                                   control_text(*run),
-                                   std::to_string(run->steps),
-                                   std::to_string(run->rejected_steps),
-                                   fmt::format("{:.1f}", run->newton_iterations / steps),
-                                   fmt::format("{:.0f}", run->linear_iterations / steps),
-                                   fmt::format("{:.2g}", run->cpu_s),
-                                   fmt::format("{:.2g}", expected_order(*run))};
-      if (run->failed()) row.push_back(run->failure);
-      for (std::size_t i = 0; !run->failed() && i < quantities.size(); ++i)
-        row.push_back(fmt::format("{}{:.1e}{}", accuracy.resolved(*run, quantities[i]) ? "" : "~",
-                                  error_of(*run, quantities[i]),
-                                  observed_order(accuracy, before, *run, quantities[i])));
-      row.resize(table[0].size());
-      table.push_back(std::move(row));
-      before = run;
-    }
+  Table table{{"integrator", "setting", "steps", "rejected", "Newton a step", "linear a step", "CPU s"}};
+  if (with_orders) table[0].push_back("expected order");
+  for (Quantity q : quantities) table[0].push_back(label(q));
+  const Run* before = nullptr;
+  for (const Run* run : runs) {
+    if (before != nullptr && before->setting.integrator != run->setting.integrator) before = nullptr;
+    const double steps = std::max(1, run->work.steps);
+    std::vector<std::string> row{std::string(name_of(run->setting.integrator)),
+                                 control_text(*run),
+                                 std::to_string(run->work.steps),
+                                 std::to_string(run->work.rejected_steps),
+                                 fmt::format("{:.1f}", run->work.newton_iterations / steps),
+                                 fmt::format("{:.0f}", run->work.linear_iterations / steps),
+                                 fmt::format("{:.2g}", run->work.cpu_s)};
+    if (with_orders) row.push_back(fmt::format("{:.2g}", expected_order(*run)));
+    for (std::size_t i = 0; !run->failed() && i < quantities.size(); ++i)
+      row.push_back(error_text(accuracy, *run, quantities[i]) +
+                    (with_orders ? observed_order(accuracy, before, *run, quantities[i]) : ""));
+    row.resize(table[0].size(), "failed");
+    table.push_back(std::move(row));
+    before = run;
   }
   return table;
 }
 
-struct Style {
-  const char *name, *color;
-};
-Style style_of(Integrator integrator) {
-  // Told apart in print and with red-green blindness (palette of Okabe and Ito).
-  switch (integrator) {
-    case Integrator::implicit_euler:
-      return {"Euler", "#d55e00"};
-    case Integrator::implicit_midpoint:
-      return {"midpoint", "#0072b2"};
-    case Integrator::bdf2:
-      return {"BDF2", "#009e73"};
+// Steps downward, newton_tolerance to the right: error and CPU time; * where the step decides.
+Table grid_table(const Accuracy& accuracy, Integrator integrator) {
+  const auto runs = accuracy.series(Axis::grid, integrator);
+  std::set<double, std::greater<>> steps, tolerances;
+  for (const Run* run : runs) steps.insert(run->setting.step), tolerances.insert(run->setting.newton_tolerance);
+  Table table{{fmt::format("{}, step", name_of(integrator))}};
+  for (double tolerance : tolerances) table[0].push_back(fmt::format("{:.1g}", tolerance));
+  for (double step : steps) {
+    std::vector<std::string> row{fmt::format("{:.4g} ms", 1e3 * step)};
+    for (double tolerance : tolerances) {
+      const auto found = std::find_if(runs.begin(), runs.end(), [&](const Run* run) {
+        return run->setting.step == step && run->setting.newton_tolerance == tolerance;
+      });
+      if (found == runs.end()) {
+        row.emplace_back();
+      } else if ((*found)->failed()) {
+        row.emplace_back("failed");
+      } else {
+        row.push_back(fmt::format("{}{} ({:.2g} s)", error_text(accuracy, **found, deciding_quantity(accuracy)),
+                                  (*found)->step_decides ? " *" : "", (*found)->work.cpu_s));
+      }
+    }
+    table.push_back(std::move(row));
   }
-  return {"", "black"};
+  return table;
 }
 
-// One curve for each integrator that has runs on the axis.
-template <class Across>
-void add_curves(Panel& panel, const Accuracy& accuracy, Axis axis, Quantity quantity, const char* kind, Marker marker,
-                bool dashed, const Across& across) {
-  for (Integrator integrator : kIntegrators) {
-    const Style style = style_of(integrator);
-    Curve curve{fmt::format("{}, {}", style.name, kind), style.color, marker, dashed, {}};
-    for (const Run* run : accuracy.series(axis, integrator))
-      if (!run->failed()) curve.points.emplace_back(across(*run), error_of(*run, quantity));
-    if (!curve.points.empty()) panel.curves.push_back(std::move(curve));
-  }
+std::string candidate_text(const Candidate& candidate) {
+  return fmt::format("{}, step {:.4g} ms, newton_tolerance {:.1g}", name_of(candidate.setting.integrator),
+                     1e3 * candidate.setting.step, candidate.setting.newton_tolerance);
 }
 
-double cpu_of(const Run& run) {
-  return run.cpu_s;
-}
-
-std::string error_label(Quantity quantity) {
-  const std::string unit(unit_of(quantity));
-  return fmt::format("error of the {} [{}]", name_of(quantity), unit == "1" ? "share" : unit);
-}
-
-std::string uncertainty_table(const Accuracy& accuracy) {
-  Table table{{"quantity", "uncertainty of the reference", "marked ~ up to"}};
+std::string reference_text(const Accuracy& accuracy) {
+  const Candidate &first = accuracy.reference, &second = accuracy.second;
+  const bool checked = second.failure.empty();
+  const Errors of_second = second.doubt();
+  Table table{{"quantity", "twice its step", "newton_tolerance × 10", "starts", "the second: all three", "apart",
+               "uncertainty", "marked ~ up to"}};
   for (Quantity q : quantities_of(accuracy)) {
-    const double uncertainty = accuracy.uncertainty[static_cast<std::size_t>(q)];
-    table.push_back({fmt::format("{} [{}]", name_of(q), unit_of(q)), fmt::format("{:.1e}", uncertainty),
-                     fmt::format("{:.1e}", 10 * uncertainty)});
+    std::vector<std::string> row{label(q)};
+    for (const Errors* errors : {&first.step, &first.solver, &first.spread})
+      row.push_back(fmt::format("{:.1e}", at(*errors, q)));
+    for (const Errors* errors : {&of_second, &accuracy.apart})
+      row.push_back(checked ? fmt::format("{:.1e}", at(*errors, q)) : "not known");
+    row.push_back(fmt::format("{:.1e}", at(accuracy.uncertainty, q)));
+    row.push_back(fmt::format("{:.1e}", 3 * at(accuracy.uncertainty, q)));
+    table.push_back(std::move(row));
   }
-  return markdown(table);
+  return fmt::format(
+      "{}. The second, made independently: {}{}. The better known one is taken. Its uncertainty is what twice its "
+      "step, "
+      "a tenfold larger newton_tolerance and the starts change together, or where the second is further off than its "
+      "own "
+      "doubt explains, the rest. Errors below three times it and the spread of the starts are marked with ~.\n\n{}",
+      candidate_text(first), candidate_text(second),
+      checked ? "" : " (failed: " + second.failure + "; nothing checks the first)", markdown(table));
+}
+
+std::string failures_text(const Accuracy& accuracy) {
+  Table table{{"integrator", "setting", "why"}};
+  for (const Run& run : accuracy.runs)
+    if (run.failed()) table.push_back({std::string(name_of(run.setting.integrator)), control_text(run), run.failure});
+  return table.size() > 1 ? fmt::format("## Runs that failed\n\n{}\n", markdown(table)) : std::string();
+}
+
+// What is not known is left out.
+std::string number(double value) {
+  return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
 }
 
 }  // namespace
 
+std::vector<const Run*> of_axis(const Accuracy& accuracy, Axis axis) {
+  std::vector<const Run*> runs;
+  for (Integrator integrator : kIntegrators)
+    for (const Run* run : accuracy.series(axis, integrator)) runs.push_back(run);
+  return runs;
+}
+
+std::vector<const Run*> deciding(const Accuracy& accuracy) {
+  std::vector<const Run*> runs;
+  for (Integrator integrator : kIntegrators)
+    for (const Run* run : accuracy.decided(integrator)) runs.push_back(run);
+  return runs;
+}
+
+std::vector<const Run*> with_solver_of_scene(const Accuracy& accuracy) {
+  std::vector<const Run*> runs = of_axis(accuracy, Axis::grid);
+  std::erase_if(runs,
+                [&](const Run* run) { return run->setting.newton_tolerance != accuracy.of_scene.newton_tolerance; });
+  return runs;
+}
+
 Table accuracy_table(const Accuracy& accuracy) {
   Table table{{"axis", "integrator", "step_s", "tolerance_m", "newton_tolerance", "linear_tolerance", "refinement",
                "particles", "steps", "rejected_steps", "newton_iterations", "linear_iterations", "cpu_s",
-               "expected_order"}};
+               "expected_order", "step_decides", "tenfold_tighter_changes", "left_by_solver"}};
   for (std::size_t q = 0; q < kQuantities; ++q) {
-    const auto quantity = static_cast<Quantity>(q);
-    table[0].push_back(fmt::format("{} [{}]", name_of(quantity), unit_of(quantity)));
-    table[0].push_back(fmt::format("{} resolved", name_of(quantity)));
+    table[0].push_back(label(static_cast<Quantity>(q)));
+    table[0].push_back(fmt::format("{} doubt", name_of(static_cast<Quantity>(q))));
   }
   table[0].push_back("failure");
   for (const Run& run : accuracy.runs) {
@@ -143,16 +181,18 @@ Table accuracy_table(const Accuracy& accuracy) {
                                  fmt::format("{:g}", s.linear_tolerance),
                                  fmt::format("{:g}", s.refinement),
                                  std::to_string(run.particles),
-                                 std::to_string(run.steps),
-                                 std::to_string(run.rejected_steps),
-                                 std::to_string(run.newton_iterations),
-                                 std::to_string(run.linear_iterations),
-                                 fmt::format("{:.4g}", run.cpu_s),
-                                 fmt::format("{:.3g}", expected_order(run))};
+                                 std::to_string(run.work.steps),
+                                 std::to_string(run.work.rejected_steps),
+                                 std::to_string(run.work.newton_iterations),
+                                 std::to_string(run.work.linear_iterations),
+                                 fmt::format("{:.6g}", run.work.cpu_s),
+                                 fmt::format("{:.3g}", expected_order(run)),
+                                 run.step_decides ? "yes" : "no",
+                                 number(run.change),
+                                 number(run.left)};
     for (std::size_t q = 0; q < kQuantities; ++q) {
-      const auto quantity = static_cast<Quantity>(q);
-      row.push_back(run.failed() ? "" : fmt::format("{:.4g}", error_of(run, quantity)));
-      row.push_back(run.failed() ? "" : accuracy.resolved(run, quantity) ? "yes" : "no");
+      row.push_back(run.failed() ? "" : number(run.errors[q]));
+      row.push_back(run.failed() ? "" : number(accuracy.doubt(run, static_cast<Quantity>(q))));
     }
     row.push_back(run.failure);
     table.push_back(std::move(row));
@@ -160,73 +200,35 @@ Table accuracy_table(const Accuracy& accuracy) {
   return table;
 }
 
-std::string work_svg(const std::string& title, const Accuracy& accuracy) {
-  std::vector<Panel> panels;
-  for (Quantity q : quantities_of(accuracy)) {
-    Panel panel{fmt::format("{}: {}", title, name_of(q)), "CPU time [s]", error_label(q), {}, {}};
-    panel.unresolved_below = 10 * accuracy.uncertainty[static_cast<std::size_t>(q)];
-    add_curves(panel, accuracy, Axis::step, q, "exact", Marker::circle, false, cpu_of);
-    add_curves(panel, accuracy, Axis::scene_step, q, "scene's", Marker::square, true, cpu_of);
-    add_curves(panel, accuracy, Axis::tolerance, q, "tolerance", Marker::triangle, false, cpu_of);
-    panels.push_back(std::move(panel));
-  }
-  return log_log_svg(panels);
-}
-
-std::string settings_svg(const std::string& title, const Accuracy& accuracy) {
-  const Quantity q = deciding_quantity(accuracy);
-  const auto milliseconds = [](const Run& run) { return 1e3 * run.setting.step; };
-  Panel steps{title + ": fixed steps", "step [ms]", error_label(q), {}, {}};
-  steps.unresolved_below = 10 * accuracy.uncertainty[static_cast<std::size_t>(q)];
-  add_curves(steps, accuracy, Axis::step, q, "exact", Marker::circle, false, milliseconds);
-  add_curves(steps, accuracy, Axis::scene_step, q, "scene's", Marker::square, true, milliseconds);
-  Panel solver{title + ": what the solver leaves", "CPU time [s]", error_label(q), {}, {}};
-  add_curves(solver, accuracy, Axis::newton, q, "Newton", Marker::circle, false, cpu_of);
-  add_curves(solver, accuracy, Axis::linear, q, "linear", Marker::square, true, cpu_of);
-  Panel meshes{title + ": difference to half the spacing", "CPU time [s]", "difference [m, or share]", {}, {}};
-  std::size_t color = 0;
-  for (Quantity of : {Quantity::position, Quantity::energy, Quantity::shadow, Quantity::centre}) {
-    Curve curve{std::string(name_of(of)), style_of(kIntegrators[color % 3]).color, Marker::circle, color == 3, {}};
-    for (const Run& run : accuracy.runs)
-      if (run.axis == Axis::mesh && !run.failed()) curve.points.emplace_back(run.cpu_s, error_of(run, of));
-    meshes.curves.push_back(std::move(curve));
-    ++color;
-  }
-  return log_log_svg({steps, solver, meshes});
-}
-
 std::string accuracy_markdown(const std::string& title, const Accuracy& accuracy, const std::string& work_plot,
                               const std::string& settings_plot) {
-  constexpr const char* kHeadings[kAxes] = {
-      "Fixed steps, solved so exactly that the step decides",
-      "Fixed steps, with the solver settings of the scene",
-      "Steps chosen by time.tolerance",
-      "What Newton's tolerance leaves: error against the exactly solved run with the scene's step",
-      "What the tolerance of the linear solver leaves, with newton_tolerance 0.01",
-      "Meshes: difference to the mesh with twice the cells along each side",
-  };
-  constexpr const char* kControls[kAxes] = {"step", "step", "tolerance", "newton_tolerance", "linear_tolerance",
-                                            "mesh"};
+  const Quantity decides = deciding_quantity(accuracy);
   std::string text = fmt::format(
       "# Error against run time: {}\n\n{}\n![Errors against CPU time]({})\n\n![Steps, solver and mesh]({})\n\n"
-      "{:.3g} s in {} frames. Position, velocity and energy: largest value of all frames, root of the mean square over "
-      "the mass; the rest: of the last frame. Energies are in shares of the {:.3g} J in play. In parentheses the "
-      "exponent observed since the row above.\n\n## The reference\n\n{}, step {:.4g} ms, newton_tolerance {:g}. Its "
-      "uncertainty is {}. Errors within ten times of it are marked with ~.\n\n{}\n",
+      "{:.3g} s in {} frames. {}Energies are in shares of the {:.3g} J in play. In parentheses the exponent observed "
+      "since the row above.\n\n## The reference\n\n{}\n## Steps and newton_tolerance\n\nError of the {} and CPU time. "
+      "* "
+      "marks where newton_tolerance a tenth as large changes less than a tenth of the error, or less than is known of "
+      "it: the step decides.\n\n",
       title, conclusion(accuracy), work_plot, settings_plot, accuracy.duration, accuracy.frames,
-      accuracy.largest_energy, name_of(accuracy.reference.integrator), 1e3 * accuracy.reference.step,
-      accuracy.reference.newton_tolerance,
-      accuracy.contact
-          ? "the difference to a run with twice its step, or what a perturbation of the start by 1 or 2 µm "
-            "changes at the finest step measured, whichever is more"
-          : "the difference to a run with twice its step",
-      uncertainty_table(accuracy));
-  for (Axis axis : kAxesInOrder) {
-    const auto i = static_cast<std::size_t>(axis);
-    const Table table = axis_table(accuracy, axis, kControls[i]);
-    if (table.size() > 1) text += fmt::format("## {}\n\n{}\n", kHeadings[i], markdown(table));
-  }
-  return text + "The preconditioner of the linear solver is chosen by the program; `bench_solver` compares solvers.\n";
+      accuracy.contact ? "With contact paths part: errors are those of the median of several starts. Energy: largest "
+                         "of all frames; the rest: of the last frame. "
+                       : "Position and velocity: root of the mean square over the mass, the largest of all frames, as "
+                         "with energy; energy drift and centre of mass: of the last frame. ",
+      accuracy.largest_energy, reference_text(accuracy), label(decides));
+  for (Integrator integrator : kIntegrators)
+    if (!accuracy.series(Axis::grid, integrator).empty()) text += markdown(grid_table(accuracy, integrator)) + "\n";
+  const auto section = [&](const char* heading, const std::vector<const Run*>& runs, bool with_orders = true) {
+    if (!runs.empty()) text += fmt::format("## {}\n\n{}\n", heading, markdown(runs_table(accuracy, runs, with_orders)));
+  };
+  section("The front: no run is both cheaper and more exact", front(accuracy, decides), false);
+  section("Fixed steps, solved so exactly that the step decides", deciding(accuracy));
+  section("Fixed steps, with the solver settings of the scene", with_solver_of_scene(accuracy));
+  section("Steps chosen by time.tolerance", of_axis(accuracy, Axis::tolerance));
+  section("linear_tolerance, at the scene's step", of_axis(accuracy, Axis::linear), false);
+  section("Meshes: difference to the mesh with twice the cells along each side", of_axis(accuracy, Axis::mesh));
+  return text + failures_text(accuracy) +
+         "The preconditioner of the linear solver is chosen by the program; `bench_solver` compares solvers.\n";
 }
 
 }  // namespace weft::bench

@@ -1,6 +1,7 @@
 // What follows from the runs of bench/accuracy, in words.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -14,43 +15,53 @@ using scene::Integrator;
 
 // Accuracies asked for [m].
 constexpr double kTargets[] = {1e-2, 1e-3, 1e-4};
+// Largest share of a target that the reference itself may be uncertain by.
+constexpr double kKnown = 0.3;
 // Runs of a series, from the finest on, through which the cost of a digit is drawn.
 constexpr std::size_t kLast = 4;
-const double kShipped = scene::Solver{}.newton_tolerance;
 
 bool in_the_race(const Run& run) {
-  return !run.failed() && (run.axis == Axis::step || run.axis == Axis::scene_step || run.axis == Axis::tolerance);
+  return !run.failed() && (run.axis == Axis::grid || run.axis == Axis::tolerance);
 }
 
-std::string setting_text(const Run& run) {
-  const Setting& s = run.setting;
+// Solved more exactly in the same way.
+bool finer(const Run& a, const Run& b) {
+  if (a.axis != b.axis || a.setting.integrator != b.setting.integrator) return false;
+  if (a.axis == Axis::tolerance) return a.setting.tolerance < b.setting.tolerance;
+  return a.setting.step <= b.setting.step && a.setting.newton_tolerance <= b.setting.newton_tolerance &&
+         (a.setting.step < b.setting.step || a.setting.newton_tolerance < b.setting.newton_tolerance);
+}
+
+// At most, with all that is not known of it.
+double bound_of(const Accuracy& accuracy, const Run& run, Quantity quantity) {
+  return error_of(run, quantity) + accuracy.doubt(run, quantity);
+}
+
+std::string cheapest_text(const Accuracy& accuracy, Quantity quantity, double target) {
+  const Run* best = cheapest(accuracy, quantity, target);
+  if (best == nullptr) return "no run is known to be as exact";
+  const Setting& s = best->setting;
   const std::string steps =
-      s.tolerance ? fmt::format("tolerance {:.1g} m", *s.tolerance)
-                  : fmt::format("step {:.3g} ms, newton_tolerance {:.1g}", 1e3 * s.step, s.newton_tolerance);
-  return fmt::format("{}, {} ({:.2g} CPU s)", name_of(s.integrator), steps, run.cpu_s);
-}
-
-const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target) {
-  const Run* best = nullptr;
-  for (const Run& run : accuracy.runs)
-    if (in_the_race(run) && error_of(run, quantity) <= target && (best == nullptr || run.cpu_s < best->cpu_s))
-      best = &run;
-  return best;
+      s.tolerance ? fmt::format("tolerance {:.3g} m", *s.tolerance)
+                  : fmt::format("step {:.4g} ms, newton_tolerance {:.1g}", 1e3 * s.step, s.newton_tolerance);
+  return fmt::format("{}, {} ({:.2g} CPU s, error {:.1e} m)", name_of(s.integrator), steps, best->work.cpu_s,
+                     error_of(*best, quantity));
 }
 
 std::string which_setting(const Accuracy& accuracy, Quantity quantity) {
-  const double uncertainty = accuracy.uncertainty[static_cast<std::size_t>(quantity)];
+  const double uncertainty = at(accuracy.uncertainty, quantity);
   std::string text;
   for (double target : kTargets) {
-    std::string choice = "no run is as exact";
-    if (const Run* best = cheapest(accuracy, quantity, target)) choice = setting_text(*best);
-    if (uncertainty > 0.3 * target) choice = "the reference is not known so exactly";
+    const std::string choice = uncertainty > kKnown * target ? "the reference is not known so exactly"
+                                                             : cheapest_text(accuracy, quantity, target);
     text += fmt::format("{}{} m: {}", text.empty() ? "" : "; ", target, choice);
   }
-  // What a run can be told to be right to at all: with contact, what a micrometre at the start decides.
-  const Run* best = cheapest(accuracy, quantity, uncertainty);
-  if (uncertainty > 0.3 * kTargets[2] && best != nullptr)
-    text += fmt::format("; as exact as the scene itself, {:.1e} m: {}", uncertainty, setting_text(*best));
+  // What a run can be told to be right to at all: with contact, what micrometres at the start decide.
+  if (uncertainty > kKnown * kTargets[2]) {
+    const double known = uncertainty / kKnown;
+    text +=
+        fmt::format("; {:.1e} m, about as exact as can be told: {}", known, cheapest_text(accuracy, quantity, known));
+  }
   return fmt::format("Cheapest for an error of the {} of {}.", name_of(quantity), text);
 }
 
@@ -58,14 +69,14 @@ std::string which_setting(const Accuracy& accuracy, Quantity quantity) {
 class Line {
  public:
   void add(const Run& run, Quantity quantity) {
-    const double x = std::log10(error_of(run, quantity)), y = std::log10(run.cpu_s);
+    const double x = std::log10(error_of(run, quantity)), y = std::log10(run.work.cpu_s);
     if (!std::isfinite(x) || !std::isfinite(y)) return;
     ++n_, x_ += x, y_ += y, xx_ += x * x, xy_ += x * y;
   }
-  // Factor in CPU time for a tenth of the error: "3.6 times", or empty where the line does not tell.
+  // Factor in CPU time for a tenth of the error: "3.6 times", or "unknown" where the line does not tell.
   std::string cost_of_a_digit() const {
     const double spread = n_ * xx_ - x_ * x_, slope = (n_ * xy_ - x_ * y_) / spread;
-    if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "";
+    if (n_ < 2 || !(spread > 1e-3) || !(slope < 0)) return "unknown";
     return slope < -1.5 ? std::string("more than 30 times") : fmt::format("{:.1f} times", std::pow(10, -slope));
   }
 
@@ -74,8 +85,7 @@ class Line {
 };
 
 // Of the finest runs of a series that are resolved.
-std::string digit_of_series(const Accuracy& accuracy, Axis axis, Integrator integrator, Quantity quantity) {
-  const auto series = accuracy.series(axis, integrator);
+std::string digit_of_series(const Accuracy& accuracy, const std::vector<const Run*>& series, Quantity quantity) {
   Line line;
   std::size_t used = 0;
   for (auto run = series.rbegin(); run != series.rend() && used < kLast; ++run) {
@@ -87,57 +97,82 @@ std::string digit_of_series(const Accuracy& accuracy, Axis axis, Integrator inte
 }
 
 std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
-  // Runs than which none is both cheaper and more exact.
-  std::map<double, const Run*> by_time;
-  for (const Run& run : accuracy.runs)
-    if (in_the_race(run)) by_time.emplace(run.cpu_s, &run);
-  Line front;
-  double least = std::numeric_limits<double>::infinity();
-  for (const auto& [time, run] : by_time) {
-    if (error_of(*run, quantity) >= least || !accuracy.resolved(*run, quantity)) continue;
-    least = error_of(*run, quantity);
-    front.add(*run, quantity);
-  }
-  const auto or_unknown = [](const std::string& cost) { return cost.empty() ? std::string("unknown") : cost; };
+  Line line;
+  for (const Run* run : front(accuracy, quantity))
+    if (accuracy.resolved(*run, quantity)) line.add(*run, quantity);
   std::string each;
-  bool any = false;
-  for (Integrator integrator : {Integrator::implicit_euler, Integrator::implicit_midpoint, Integrator::bdf2}) {
-    const std::string by_step = digit_of_series(accuracy, Axis::step, integrator, quantity),
-                      by_tolerance = digit_of_series(accuracy, Axis::tolerance, integrator, quantity);
-    any = any || !by_step.empty() || !by_tolerance.empty();
-    each += fmt::format("{}{} {} and {}", each.empty() ? "" : ", ", name_of(integrator), or_unknown(by_step),
-                        or_unknown(by_tolerance));
-  }
-  const std::string cheapest = front.cost_of_a_digit();
-  if (cheapest.empty() && !any)
-    return "What one more digit costs is not known: too few runs differ from the reference.";
+  for (Integrator integrator : kIntegrators)
+    each += fmt::format("{}{} {} and {}", each.empty() ? "" : ", ", name_of(integrator),
+                        digit_of_series(accuracy, accuracy.decided(integrator), quantity),
+                        digit_of_series(accuracy, accuracy.series(Axis::tolerance, integrator), quantity));
   return fmt::format(
-      "The CPU time for one more digit, along the cheapest settings: {} (by integrator, exactly solved steps and "
-      "tolerances: {}).",
-      or_unknown(cheapest), each);
+      "The CPU time for one more digit, along the cheapest settings: {} (by integrator, steps that decide and "
+      "tolerances: "
+      "{}).",
+      line.cost_of_a_digit(), each);
 }
 
+// At the scene's step with its integrator: what the step leaves, the solver, the mesh.
 std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
-  std::string solver = "is not known";
+  std::map<std::string, double> left;
   for (const Run& run : accuracy.runs) {
-    if (run.axis != Axis::newton || run.failed() || run.setting.newton_tolerance != kShipped) continue;
-    solver = fmt::format("leaves {:.1e} m ({}, step {:.3g} ms)", error_of(run, quantity),
-                         name_of(run.setting.integrator), 1e3 * run.setting.step);
+    if (run.failed()) continue;
+    if (run.axis == Axis::mesh && run.setting.refinement == 1) left["the mesh"] = error_of(run, quantity);
+    if (run.axis != Axis::grid || run.setting.integrator != accuracy.of_scene.integrator ||
+        run.setting.step != accuracy.of_scene.step)
+      continue;
+    if (run.setting.newton_tolerance == accuracy.of_scene.newton_tolerance) left["the solver"] = run.left;
+    if (run.step_decides) left["the step"] = error_of(run, quantity);
   }
-  std::string mesh = "is not known";
-  for (const Run& run : accuracy.runs)
-    if (run.axis == Axis::mesh && !run.failed() && run.setting.refinement == 1)
-      mesh = fmt::format("is {:.1e} m", error_of(run, quantity));
+  const auto text = [&](const char* source) {
+    const auto found = left.find(source);
+    return found == left.end() ? fmt::format("{} is not known", source)
+                               : fmt::format("{} {:.1e} m", source, found->second);
+  };
+  const auto largest =
+      std::max_element(left.begin(), left.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return fmt::format(
-      "Besides the steps, Newton's method with fixed steps and newton_tolerance {} {}, and the difference to a mesh "
-      "twice as fine {}: steps more exact than these two buy nothing.",
-      kShipped, solver, mesh);
+      "As the scene stands ({}, {:.4g} ms, newton_tolerance {:g}) {}, {}, {} (difference to twice the cells): {}.",
+      name_of(accuracy.of_scene.integrator), 1e3 * accuracy.of_scene.step, accuracy.of_scene.newton_tolerance,
+      "are left by " + text("the step"), text("the solver"), text("the mesh"),
+      largest == left.end() ? std::string("none is known") : fmt::format("the largest is due to {}", largest->first));
 }
 
 }  // namespace
 
+const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target) {
+  const auto reaches = [&](const Run& run) { return bound_of(accuracy, run, quantity) <= target; };
+  const Run* best = nullptr;
+  for (const Run& run : accuracy.runs) {
+    if (!in_the_race(run) || !reaches(run) || (best != nullptr && run.work.cpu_s >= best->work.cpu_s)) continue;
+    // Not by luck: whatever is solved more exactly reaches it too.
+    if (std::all_of(accuracy.runs.begin(), accuracy.runs.end(),
+                    [&](const Run& other) { return other.failed() || !finer(other, run) || reaches(other); }))
+      best = &run;
+  }
+  return best;
+}
+
+std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
+  std::vector<const Run*> by_time, front;
+  for (const Run& run : accuracy.runs)
+    if (in_the_race(run)) by_time.push_back(&run);
+  std::stable_sort(by_time.begin(), by_time.end(),
+                   [](const Run* a, const Run* b) { return a->work.cpu_s < b->work.cpu_s; });
+  double least = std::numeric_limits<double>::infinity();
+  for (const Run* run : by_time) {
+    if (bound_of(accuracy, *run, quantity) >= least) continue;
+    least = bound_of(accuracy, *run, quantity);
+    front.push_back(run);
+  }
+  return front;
+}
+
 std::string conclusion(const Accuracy& accuracy) {
   const Quantity quantity = deciding_quantity(accuracy);
+  if (std::all_of(accuracy.runs.begin(), accuracy.runs.end(),
+                  [&](const Run& run) { return run.failed() || bound_of(accuracy, run, quantity) == 0; }))
+    return "Nothing moves: there is no error to measure.\n";
   return which_setting(accuracy, quantity) + " " + cost_of_a_digit(accuracy, quantity) + " " +
          what_is_left(accuracy, quantity) + "\n";
 }

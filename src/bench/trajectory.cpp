@@ -29,97 +29,142 @@ double area_of(const frame::FrameSnapshot& snapshot, std::size_t cloths, const V
   return area;
 }
 
-/// Energies in play, gathered from frame to frame: what an error of energy is measured against.
-class EnergiesInPlay {
- public:
-  explicit EnergiesInPlay(const simulation::FrameReport& start)
-      : low_(start.potential_energy), high_(start.potential_energy) {
-    see(start);
-  }
-  void see(const simulation::FrameReport& report) {
-    kinetic_ = std::max(kinetic_, report.kinetic_energy);
-    elastic_ = std::max(elastic_, report.elastic_energy);
-    low_ = std::min(low_, report.potential_energy);
-    high_ = std::max(high_, report.potential_energy);
-  }
-  double sum() const { return kinetic_ + elastic_ + high_ - low_; }
-
- private:
-  double kinetic_ = 0, elastic_ = 0, low_, high_;
-};
-
-void measure_end(const scene::Scene& scene, const frame::FrameSnapshot& snapshot, double start_area,
-                 Trajectory& trajectory) {
-  const Vec3 up = up_of(scene);
-  const std::vector<Vec3>& x = trajectory.frames.back().x;
-  trajectory.shadow = area_of(snapshot, scene.cloths.size(), up) / start_area;
-  trajectory.top = up.dot(x.front());
-  double mass = 0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    trajectory.top = std::max(trajectory.top, up.dot(x[i]));
-    trajectory.centre += trajectory.masses[i] * x[i];
-    mass += trajectory.masses[i];
-  }
-  trajectory.centre /= mass;
-}
-
 }  // namespace
 
-Trajectory follow(const scene::Scene& scene, int step_limit, Run& run) {
+std::string_view name_of(Quantity quantity) {
+  constexpr std::string_view kNames[kQuantities] = {"position", "velocity", "energy", "energy drift",
+                                                    "centre",   "top",      "shadow", "rest energy"};
+  return kNames[static_cast<std::size_t>(quantity)];
+}
+
+std::string_view unit_of(Quantity quantity) {
+  constexpr std::string_view kUnits[kQuantities] = {"m", "m/s", "1", "1", "m", "m", "1", "1"};
+  return kUnits[static_cast<std::size_t>(quantity)];
+}
+
+Recorder::Recorder(const scene::Scene& scene, const frame::FrameSnapshot& start, const frame::FrameReport& report)
+    : cloths_(scene.cloths.size()),
+      up_(up_of(scene)),
+      start_area_(area_of(start, cloths_, Vec3::Zero())),
+      kinetic_(report.kinetic_energy),
+      elastic_(report.elastic_energy),
+      low_(report.potential_energy),
+      high_(report.potential_energy) {}
+
+void Recorder::see(const frame::SnapshotPtr& snapshot, const frame::FrameReport& report,
+                   std::span<const Vec3> velocities) {
+  kinetic_ = std::max(kinetic_, report.kinetic_energy);
+  elastic_ = std::max(elastic_, report.elastic_energy);
+  low_ = std::min(low_, report.potential_energy);
+  high_ = std::max(high_, report.potential_energy);
+  Functionals& functionals = trajectory_.functionals;
+  functionals.rest_energy = report.potential_energy + report.elastic_energy;
+  functionals.energy.push_back(functionals.rest_energy + report.kinetic_energy);
+  Trajectory::Frame& frame = trajectory_.frames.emplace_back();
+  for (std::size_t c = 0; c < cloths_; ++c)
+    frame.x.insert(frame.x.end(), snapshot->states[c].positions.begin(), snapshot->states[c].positions.end());
+  frame.v.assign(velocities.begin(), velocities.end());
+  Work& work = trajectory_.work;
+  work.cpu_s += report.simulate_cpu_s;
+  work.steps += report.steps;
+  work.rejected_steps += report.rejected_steps;
+  work.newton_iterations += report.newton_iterations;
+  work.linear_iterations += report.linear_iterations;
+  last_ = snapshot;
+}
+
+Trajectory Recorder::finish(std::span<const double> masses) {
+  Functionals& functionals = trajectory_.functionals;
+  functionals.energies_in_play = kinetic_ + elastic_ + high_ - low_;
+  trajectory_.masses.assign(masses.begin(), masses.end());
+  if (last_ == nullptr) return std::move(trajectory_);
+  functionals.shadow = area_of(*last_, cloths_, up_) / start_area_;
+  const std::vector<Vec3>& x = trajectory_.frames.back().x;
+  functionals.top = up_.dot(x.front());
+  double mass = 0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    functionals.top = std::max(functionals.top, up_.dot(x[i]));
+    functionals.centre += masses[i] * x[i];
+    mass += masses[i];
+  }
+  functionals.centre /= mass;
+  return std::move(trajectory_);
+}
+
+Trajectory follow(const scene::Scene& scene, const FollowLimits& limits) {
   simulation::Simulation simulation(scene);
-  Trajectory trajectory;
-  const auto masses = simulation.state().masses;
-  trajectory.masses.assign(masses.begin(), masses.end());
-  run.particles = static_cast<int>(masses.size());
-  run.steps = run.rejected_steps = run.newton_iterations = run.linear_iterations = 0;
-  run.cpu_s = 0;
-  const double start_area = area_of(*simulation.snapshot(), scene.cloths.size(), Vec3::Zero());
-  EnergiesInPlay energies(simulation.initial_report());
-  for (int k = 1; k < scene.frame_count(); ++k) {
+  const auto proceed = [&] { return !limits.proceed || limits.proceed(); };
+  if (!simulation.run_preroll(proceed)) throw Error(ExitCode::interrupted, "interrupted before frame 0");
+  Recorder recorder(scene, *simulation.snapshot(), simulation.initial_report());
+  int steps = 0;
+  double cpu_s = 0;
+  for (int k = 1; k < scene.frame_count() && k <= limits.last_frame; ++k) {
+    if (!proceed()) throw Error(ExitCode::interrupted, "interrupted before frame {}", k);
     const double start = process_cpu_seconds();
     const simulation::FrameReport report = simulation.advance();
-    run.cpu_s += process_cpu_seconds() - start;
-    run.steps += report.steps;
-    run.rejected_steps += report.rejected_steps;
-    run.newton_iterations += report.newton_iterations;
-    run.linear_iterations += report.linear_iterations;
-    if (run.steps + run.rejected_steps > step_limit)
-      throw Error(ExitCode::simulation_failed, "frame {}: stopped after more than {} steps", k, step_limit);
-    const simulation::ParticleState state = simulation.state();
-    energies.see(report);
-    trajectory.rest_energy = report.potential_energy + report.elastic_energy;
-    trajectory.frames.push_back({{state.positions.begin(), state.positions.end()},
-                                 {state.velocities.begin(), state.velocities.end()},
-                                 trajectory.rest_energy + report.kinetic_energy});
+    cpu_s += process_cpu_seconds() - start;
+    steps += report.steps + report.rejected_steps;
+    if (steps > limits.steps)
+      throw Error(ExitCode::simulation_failed, "frame {}: stopped after more than {} steps", k, limits.steps);
+    recorder.see(simulation.snapshot(), report, simulation.state().velocities);
   }
-  trajectory.energies_in_play = energies.sum();
-  measure_end(scene, *simulation.snapshot(), start_area, trajectory);
+  Trajectory trajectory = recorder.finish(simulation.state().masses);
+  trajectory.work.cpu_s = cpu_s;
   return trajectory;
 }
 
-Errors compare(const Trajectory& run, const Trajectory& reference, const std::vector<std::size_t>& same) {
+Errors compare(const Functionals& run, const Functionals& reference) {
   Errors errors{};
-  const auto error = [&](Quantity quantity) -> double& { return errors[static_cast<std::size_t>(quantity)]; };
+  // Where nothing moves there is no energy to take a share of, and none that differs.
+  const double in_play = reference.energies_in_play > 0 ? reference.energies_in_play : 1;
+  for (std::size_t k = 0; k < run.energy.size(); ++k) {
+    at(errors, Quantity::drift) = std::abs(run.energy[k] - reference.energy[k]) / in_play;
+    at(errors, Quantity::energy) = std::max(at(errors, Quantity::energy), at(errors, Quantity::drift));
+  }
+  at(errors, Quantity::shadow) = std::abs(run.shadow - reference.shadow);
+  at(errors, Quantity::top) = std::abs(run.top - reference.top);
+  at(errors, Quantity::rest_energy) = std::abs(run.rest_energy - reference.rest_energy) / in_play;
+  at(errors, Quantity::centre) = (run.centre - reference.centre).norm();
+  return errors;
+}
+
+Errors compare(const Trajectory& run, const Trajectory& reference, const std::vector<std::size_t>& same) {
+  Errors errors = compare(run.functionals, reference.functionals);
   double mass = 0;
   for (double m : run.masses) mass += m;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {
     const Trajectory::Frame &a = run.frames[k], &b = reference.frames[k];
+    const bool speeds = !a.v.empty() && !b.v.empty();
     double positions = 0, velocities = 0;
     for (std::size_t i = 0; i < a.x.size(); ++i) {
       const std::size_t j = same.empty() ? i : same[i];
       positions += run.masses[i] * (a.x[i] - b.x[j]).squaredNorm();
-      velocities += run.masses[i] * (a.v[i] - b.v[j]).squaredNorm();
+      if (speeds) velocities += run.masses[i] * (a.v[i] - b.v[j]).squaredNorm();
     }
-    error(Quantity::position) = std::max(error(Quantity::position), std::sqrt(positions / mass));
-    error(Quantity::velocity) = std::max(error(Quantity::velocity), std::sqrt(velocities / mass));
-    error(Quantity::energy) =
-        std::max(error(Quantity::energy), std::abs(a.energy - b.energy) / reference.energies_in_play);
+    at(errors, Quantity::position) = std::max(at(errors, Quantity::position), std::sqrt(positions / mass));
+    at(errors, Quantity::velocity) = std::max(at(errors, Quantity::velocity), std::sqrt(velocities / mass));
   }
-  error(Quantity::shadow) = std::abs(run.shadow - reference.shadow);
-  error(Quantity::top) = std::abs(run.top - reference.top);
-  error(Quantity::rest_energy) = std::abs(run.rest_energy - reference.rest_energy) / reference.energies_in_play;
-  error(Quantity::centre) = (run.centre - reference.centre).norm();
   return errors;
+}
+
+Functionals median(const std::vector<Functionals>& samples) {
+  const auto of = [&](const auto& number) {
+    std::vector<double> values;
+    for (const Functionals& sample : samples) values.push_back(number(sample));
+    std::sort(values.begin(), values.end());
+    const std::size_t n = values.size();
+    return 0.5 * (values[(n - 1) / 2] + values[n / 2]);
+  };
+  Functionals middle = samples.front();
+  for (std::size_t k = 0; k < middle.energy.size(); ++k)
+    middle.energy[k] = of([k](const Functionals& f) { return f.energy[k]; });
+  middle.energies_in_play = of([](const Functionals& f) { return f.energies_in_play; });
+  middle.shadow = of([](const Functionals& f) { return f.shadow; });
+  middle.top = of([](const Functionals& f) { return f.top; });
+  middle.rest_energy = of([](const Functionals& f) { return f.rest_energy; });
+  for (Eigen::Index axis = 0; axis < 3; ++axis)
+    middle.centre[axis] = of([axis](const Functionals& f) { return f.centre[axis]; });
+  return middle;
 }
 
 bool can_refine(const scene::Scene& scene, double refinement) {

@@ -130,8 +130,8 @@ void serialize(Archive& archive, frame::Light& light) {
 template <class Archive>
 void serialize(Archive& archive, frame::FrameReport& report) {
   for (double* number : {&report.simulate_wall_s, &report.simulate_cpu_s, &report.collide_wall_s, &report.collide_cpu_s,
-                         &report.error_estimate, &report.min_distance, &report.max_strain, &report.kinetic_energy,
-                         &report.potential_energy, &report.elastic_energy})
+                         &report.error_estimate, &report.solver_error, &report.min_distance, &report.max_strain,
+                         &report.kinetic_energy, &report.potential_energy, &report.elastic_energy})
     archive.value(*number);
   for (int* number : {&report.steps, &report.rejected_steps, &report.inexact_steps, &report.newton_iterations,
                       &report.linear_iterations, &report.proximities, &report.constraints, &report.pinched_pairs})

@@ -103,7 +103,7 @@ class AccuracyProgress {
     log::info(fmt::format("accuracy: {:3.0f} %, {}, {:.3g} {}: {}{}", 100 * done, name_of(run.setting.integrator),
                           run.setting.tolerance ? 1e3 * *run.setting.tolerance : 1e3 * run.setting.step,
                           run.setting.tolerance ? "mm" : "ms",
-                          run.failed() ? run.failure : fmt::format("{:.2f} CPU s", run.cpu_s),
+                          run.failed() ? run.failure : fmt::format("{:.2f} CPU s", run.work.cpu_s),
                           left ? fmt::format(", about {} left", format_duration(*left)) : ""));
   }
 

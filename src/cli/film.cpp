@@ -56,7 +56,8 @@ class Film {
           result_.interrupted = true;
           break;
         }
-        MadeFrame made = source->next();             // simulated, or read
+        MadeFrame made = source->next();  // simulated, or read
+        if (parts_.look) parts_.look(made);
         if (parts_.store) parts_.store->keep(made);  // so that it is not simulated again
         for (const std::string& pinch : made.report.pinches) log::warn(pinch);
         record(frame).report = std::move(made.report);

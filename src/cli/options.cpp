@@ -157,6 +157,14 @@ void add_side_files(CLI::App& command, RunOptions& options) {
             [&](const std::string& text) { options.log_json = text; });
 }
 
+void add_error(CLI::App& command, RunOptions& options) {
+  command
+      .add_flag("--error{steps}", options.error,
+                "Also tell how far off the run is, by simulating it with other steps, solver settings and starts; "
+                "--error=mesh: other meshes too")
+      ->check(CLI::IsMember({"steps", "mesh"}));
+}
+
 constexpr const char* kSceneOrCache = "The scene, a TOML file, or the folder of a cache";
 
 // The program's commands and the values that CLI11 writes into while parsing.
@@ -210,6 +218,7 @@ struct Parser {
     add_frames(command, run, "Draw frames A up to but without B, counted from 0 [all]");
     add_common(command, run.common);
     add_side_files(command, run);
+    add_error(command, run);
     command.add_flag("--resume", run.resume, "Go on with a run of the same output that did not end well");
     command.footer(
         "\nExamples:\n"
@@ -229,6 +238,7 @@ struct Parser {
     add_frames(command, simulate, "Simulate up to but without frame B; A and STEP are for --meshes [all]");
     add_common(command, simulate.common);
     add_side_files(command, simulate);
+    add_error(command, simulate);
     command.add_flag("--resume", simulate.resume, "Go on where the cache ends");
     command.footer(
         "\nExamples:\n"

@@ -41,6 +41,7 @@ struct RunOptions {
   std::filesystem::path stats;   ///< file; empty: none
   std::string log_json;          ///< file, "-" for standard output; empty: none
   bool resume = false;
+  std::string error;  ///< what companions are to tell of the error: "steps", "mesh" (and steps); empty: nothing
 };
 
 struct SimulateOptions : RunOptions {

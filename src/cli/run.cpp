@@ -105,11 +105,14 @@ class Session {
   explicit Session(const RunOptions& options) : options_(options) { set_thread_count(options.common.threads); }
 
   const std::atomic<bool>& stop() const { return signals_.requested(); }
+  const std::string& error_asked() const { return options_.error; }
   Progress& progress() { return *progress_; }
 
   /// After all that could be refused was.
   void begin(const FilmPlan& plan);
   void make(const FilmPlan& plan, FilmParts parts);
+  /// Simulates companions of what was made, if that is whole.
+  void estimate_error(const scene::Scene& scene, bench::Recorder& recorder);
   /// Tells it all, and how to go on after an early end.
   ExitCode end(const FilmPlan& plan, const Store* store);
 
@@ -162,6 +165,19 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
   FilmResult result = make_film(parts, plan.made, plan.wanted, stop(), *progress_, *log_);
   progress_.reset();
   sum_up(plan, std::move(result));
+}
+
+void Session::estimate_error(const scene::Scene& scene, bench::Recorder& recorder) {
+  if (report_.exit_code != ExitCode::ok) return;
+  log::info("simulating companions, which tell the error");
+  const simulation::Simulation particles(scene);
+  const bench::CompanionOptions options{.mesh = options_.error == "mesh", .proceed = [this] { return !stop(); }};
+  try {
+    report_.error = bench::estimate_error(scene, recorder.finish(particles.state().masses), options);
+  } catch (const Error& error) {
+    report_.exit_code = error.code();
+    report_.message = fmt::format("the error is not known: {}", error.what());
+  }
 }
 
 void Session::sum_up(const FilmPlan& plan, FilmResult result) {
@@ -262,7 +278,16 @@ ExitCode make_from_scene(Session& session, const scene::Scene& scene, const Film
   FilmParts parts;
   parts.open_source = [&] { return std::make_unique<SceneSource>(scene, store, session.stop(), session.progress()); };
   parts.store = &store;
+  std::optional<bench::Recorder> recorder;
+  if (!session.error_asked().empty())
+    parts.look = [&](const MadeFrame& made) {
+      if (recorder)
+        recorder->see(made.snapshot, made.report);
+      else
+        recorder.emplace(scene, *made.snapshot, made.report);
+    };
   session.make(plan, std::move(parts));
+  if (recorder) session.estimate_error(scene, *recorder);
   return session.end(plan, &store);
 }
 

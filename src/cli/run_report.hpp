@@ -2,9 +2,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "bench/companions.hpp"
 #include "cli/frame_range.hpp"
 #include "core/error.hpp"
 #include "core/timer.hpp"
@@ -64,7 +66,8 @@ struct RunReport {
   std::int64_t peak_memory = 0;    ///< [bytes]
   std::vector<std::string> warnings;
   ExitCode exit_code = ExitCode::ok;
-  std::string message;  ///< why it ended early; empty if it did not
+  std::string message;                        ///< why it ended early; empty if it did not
+  std::optional<bench::ErrorEstimate> error;  ///< where it was asked for
 };
 
 struct StageTotals {
@@ -76,7 +79,8 @@ StageTotals total_times(const std::vector<FrameRecord>& frames);
 struct StepTotals {
   long long accepted = 0, rejected = 0;
   long long inexact = 0;      ///< of the accepted ones, with an error above the tolerance
-  double error_estimate = 0;  ///< [m]
+  double error_estimate = 0;  ///< of the time steps [m]
+  double solver_error = 0;    ///< of what the solver left [m]
 };
 
 StepTotals total_steps(const std::vector<FrameRecord>& frames);

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "cli/error_report.hpp"
 #include "cli/system_info.hpp"
 #include "core/version.hpp"
 
@@ -51,7 +52,8 @@ Json totals_json(const RunReport& report) {
           {"steps", steps.accepted},
           {"rejected_steps", steps.rejected},
           {"inexact_steps", steps.inexact},
-          {"error_estimate_m", steps.error_estimate}};
+          {"error_estimate_m", steps.error_estimate},
+          {"solver_error_m", steps.solver_error}};
 }
 
 }  // namespace
@@ -82,6 +84,7 @@ StepTotals total_steps(const std::vector<FrameRecord>& frames) {
     totals.rejected += record.report.rejected_steps;
     totals.inexact += record.report.inexact_steps;
     totals.error_estimate += record.report.error_estimate;
+    totals.solver_error += record.report.solver_error;
   }
   return totals;
 }
@@ -103,6 +106,7 @@ Json frame_json(const FrameRecord& record) {
           {"rejected_steps", report.rejected_steps},
           {"inexact_steps", report.inexact_steps},
           {"error_estimate_m", finite(report.error_estimate)},
+          {"solver_error_m", finite(report.solver_error)},
           {"newton_iterations", report.newton_iterations},
           {"linear_iterations", report.linear_iterations},
           {"proximities", report.proximities},
@@ -124,26 +128,28 @@ Json stats_json(const RunReport& report) {
   }
   Json frames = Json::array();
   for (const FrameRecord& record : report.frames) frames.push_back(frame_json(record));
-  return {{"scene", report.scene},
-          {"scene_file", report.scene_file},
-          {"scene_hash", fmt::format("{:016x}", report.scene_hash)},
-          {"version", kVersion},
-          {"threads", report.threads},
-          {"cpu", cpu_model()},
-          {"gl", report.gl},
-          {"exit_code", static_cast<int>(report.exit_code)},
-          {"message", report.message},
-          {"warnings", report.warnings},
-          {"output", report.output},
-          {"cache_bytes", report.cache_bytes},
-          {"width", report.width},
-          {"height", report.height},
-          {"fps", report.fps},
-          {"objects", std::move(objects)},
-          {"particles", report.particles},
-          {"totals", totals_json(report)},
-          {"peak_memory_bytes", report.peak_memory},
-          {"frames", std::move(frames)}};
+  Json json{{"scene", report.scene},
+            {"scene_file", report.scene_file},
+            {"scene_hash", fmt::format("{:016x}", report.scene_hash)},
+            {"version", kVersion},
+            {"threads", report.threads},
+            {"cpu", cpu_model()},
+            {"gl", report.gl},
+            {"exit_code", static_cast<int>(report.exit_code)},
+            {"message", report.message},
+            {"warnings", report.warnings},
+            {"output", report.output},
+            {"cache_bytes", report.cache_bytes},
+            {"width", report.width},
+            {"height", report.height},
+            {"fps", report.fps},
+            {"objects", std::move(objects)},
+            {"particles", report.particles},
+            {"totals", totals_json(report)},
+            {"peak_memory_bytes", report.peak_memory},
+            {"frames", std::move(frames)}};
+  if (report.error) json["error"] = error_json(*report.error);
+  return json;
 }
 
 }  // namespace weft::cli

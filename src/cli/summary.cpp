@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "cli/error_report.hpp"
 #include "cli/table.hpp"
 
 namespace weft::cli {
@@ -70,6 +71,15 @@ std::string joule(double energy) {
   return fmt::format("{:.3g} J", std::abs(energy) < 1e-12 ? 0.0 : energy);
 }
 
+// Both parts, and what lessens the larger one.
+std::string error_text(const StepTotals& steps) {
+  return fmt::format(
+      "{:.2g} mm of position from the time steps, {:.2g} mm left by the solver, summed up: lessened by a {}",
+      1e3 * steps.error_estimate, 1e3 * steps.solver_error,
+      steps.solver_error > steps.error_estimate ? "smaller solver.newton_tolerance"
+                                                : "shorter time.step or smaller time.tolerance");
+}
+
 std::string figures_table(const RunReport& report) {
   const StepTotals steps = total_steps(report.frames);
   long long newton = 0, linear = 0;
@@ -86,8 +96,7 @@ std::string figures_table(const RunReport& report) {
       {{"particles", fmt::format("{} in {} objects", report.particles, report.objects.size())},
        {"steps", fmt::format("{} and {} rejected; {} Newton and {} linear iterations", steps.accepted, steps.rejected,
                              newton, linear)},
-       {"error estimate", fmt::format("{:.2g} mm of position from the time steps, summed up over all of them",
-                                      1e3 * steps.error_estimate)},
+       {"error estimate", error_text(steps)},
        {"smallest distance", none_near ? "nothing came near" : at_largest(report.frames, "{:.3g} mm", nearness, -1e3)},
        {"largest strain", at_largest(report.frames, "{:.2f} %", strain, 100)},
        {"energy at the end",
@@ -104,6 +113,7 @@ std::string figures_table(const RunReport& report) {
 std::string summary(const RunReport& report) {
   std::string text = headline(report) + "\n" + times_table(report);
   if (!report.frames.empty()) text += figures_table(report);
+  if (report.error) text += error_summary(*report.error) + "\n";
   for (const std::string& warning : report.warnings) text += fmt::format("  warning: {}\n", warning);
   text.pop_back();
   return text;

@@ -18,6 +18,7 @@ struct FrameReport {
   int rejected_steps = 0;                        ///< done again, shorter
   int inexact_steps = 0;                         ///< accepted although their error was above time.tolerance
   double error_estimate = 0;  ///< sum over the steps of what each adds to the error of positions [m], estimated
+  double solver_error = 0;    ///< likewise, of what the solver left [m]
   int newton_iterations = 0;
   int linear_iterations = 0;
   int proximities = 0;          ///< pairs of features within 1.5 contact ranges at the start of the last step

@@ -23,9 +23,9 @@ constexpr int kMostFrames = 1 << 30;
 template <class Archive>
 void serialize(Archive& archive, FrameReport& report) {
   serialize_values(archive, report.frame, report.time, report.steps, report.rejected_steps, report.inexact_steps,
-                   report.error_estimate, report.newton_iterations, report.linear_iterations, report.proximities,
-                   report.constraints, report.min_distance, report.max_strain, report.kinetic_energy,
-                   report.potential_energy, report.elastic_energy, report.pinched_pairs);
+                   report.error_estimate, report.solver_error, report.newton_iterations, report.linear_iterations,
+                   report.proximities, report.constraints, report.min_distance, report.max_strain,
+                   report.kinetic_energy, report.potential_energy, report.elastic_energy, report.pinched_pairs);
   serialize_each(archive, report.pinches, [&](std::string& text) { serialize_plain(archive, text); });
 }
 

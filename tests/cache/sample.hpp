@@ -89,6 +89,7 @@ struct Sample {
     report.rejected_steps = 2;
     report.inexact_steps = 1;
     report.error_estimate = 1e-4;
+    report.solver_error = 2e-5;
     report.newton_iterations = 30;
     report.linear_iterations = 300;
     report.proximities = 40;

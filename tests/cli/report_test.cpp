@@ -23,6 +23,7 @@ std::vector<FrameRecord> two_frames() {
   report.collide_wall_s = 0.005;
   report.steps = 4;
   report.error_estimate = 0.00123;
+  report.solver_error = 0.0002;
   report.rejected_steps = 1;
   report.min_distance = 0.002;
   report.max_strain = 0.05;
@@ -41,6 +42,7 @@ TEST(FrameJson, GivesMillisecondsAndNoInfinity) {
   EXPECT_DOUBLE_EQ(json.at("encode_cpu_ms"), 6);
   EXPECT_DOUBLE_EQ(json.at("min_distance_m"), 0.002);
   EXPECT_DOUBLE_EQ(json.at("error_estimate_m"), 0.00123);
+  EXPECT_DOUBLE_EQ(json.at("solver_error_m"), 0.0002);
 }
 
 TEST(StatsJson, SumsUpSteps) {
@@ -54,6 +56,7 @@ TEST(StatsJson, SumsUpSteps) {
   EXPECT_EQ(totals.at("steps"), 8);
   EXPECT_EQ(totals.at("rejected_steps"), 2);
   EXPECT_DOUBLE_EQ(totals.at("error_estimate_m"), 0.00246);
+  EXPECT_DOUBLE_EQ(totals.at("solver_error_m"), 0.0004);
 }
 
 TEST(Summary, NamesTheFramesOfTheExtremes) {
@@ -71,6 +74,16 @@ TEST(Summary, NamesTheFramesOfTheExtremes) {
         "error estimate     1.2 mm of position", "  simulate      0.02 s  0.02 s      18.0 ms\n"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
+}
+
+TEST(Summary, SaysWhatLessensTheLargerPartOfTheError) {
+  RunReport report;
+  report.frames = two_frames();
+  EXPECT_NE(summary(report).find("0.2 mm left by the solver, summed up: lessened by a shorter time.step"),
+            std::string::npos);
+  report.frames[1].report.solver_error = 0.002;
+  EXPECT_NE(summary(report).find("2 mm left by the solver, summed up: lessened by a smaller solver.newton_tolerance"),
+            std::string::npos);
 }
 
 TEST(Summary, OfARunWithoutFramesSaysSo) {

@@ -42,6 +42,7 @@
     figure("strain", "Largest strain", largest("max_strain"), percent, "of any thread, stretched or squeezed"),
     figure("distance", "Smallest distance", smallest("min_distance_m"), millimetres, "between surfaces; at or below 0 they touched"),
     figure("error", "Error estimate", total("error_estimate_m"), millimetres, "of position from the time steps, summed up over all of them"),
+    figure("solver", "Left by the solver", total("solver_error_m"), millimetres, "error of position, summed up over all time steps"),
     figure("pinched", "Pinched pairs", largest("pinched_pairs"), count, "cloth without room between obstacles"),
     figure("kinetic", "Kinetic energy, end", last("kinetic_energy_j"), joule),
     figure("elastic", "Elastic energy, end", last("elastic_energy_j"), joule),

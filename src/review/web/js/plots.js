@@ -21,7 +21,8 @@
     { id: "newton", title: "Newton iterations", unit: "per frame", series: [series("newton_iterations", "Newton"), series("steps", "steps")] },
     { id: "linear", title: "Linear iterations", unit: "per frame", series: [series("linear_iterations", "linear")] },
     { id: "contacts", title: "Contacts", unit: "", series: [series("proximities", "proximities"), series("constraints", "constraints")] },
-    { id: "error", title: "Error estimate", unit: "mm per frame", log: true, series: [series("error_estimate_m", "estimate", 1e3)] },
+    { id: "error", title: "Error estimate", unit: "mm per frame", log: true, series: [
+      series("error_estimate_m", "time steps", 1e3), series("solver_error_m", "solver", 1e3)] },
   ];
 
   /** One curve for each series of a run, drawn with solid lines, and dashed ones of `reference`. */

@@ -1,0 +1,103 @@
+#include "cli/error_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "cli/table.hpp"
+
+namespace weft::cli {
+namespace {
+
+using bench::ErrorEstimate, bench::ErrorPart, bench::ErrorSource, bench::Quantity;
+
+// What is told of, with its column and its key.
+struct Figure {
+  Quantity quantity;
+  const char *column, *format, *key;
+  double scale;
+};
+constexpr Figure kFigures[] = {
+    {Quantity::position, "position", "{:.2g} mm", "position_m", 1e3},
+    {Quantity::centre, "centre of mass", "{:.2g} mm", "centre_m", 1e3},
+    {Quantity::top, "highest point", "{:.2g} mm", "top_m", 1e3},
+    {Quantity::shadow, "shadow", "{:.2g} %", "shadow", 1e2},
+    {Quantity::energy, "energy", "{:.2g} %", "energy", 1e2},
+    {Quantity::rest_energy, "energy at rest", "{:.2g} %", "rest_energy", 1e2},
+};
+
+bool is_told(const ErrorEstimate& estimate, const Figure& figure) {
+  return estimate.comparable || figure.quantity != Quantity::position;
+}
+
+std::string remedy(ErrorSource source) {
+  switch (source) {
+    case ErrorSource::steps:
+      return "a smaller time.step or time.tolerance, or a method of second order";
+    case ErrorSource::solver:
+      return "a smaller solver.newton_tolerance";
+    case ErrorSource::mesh:
+      return "more particles";
+    case ErrorSource::start:
+      return "nothing: it is what the scene itself does not determine";
+  }
+  return {};
+}
+
+std::string advice(const ErrorEstimate& estimate) {
+  const ErrorPart& largest = estimate.largest();
+  std::string text =
+      fmt::format("largest by the {}; what lessens it: {}", name_of(largest.source), remedy(largest.source));
+  if (!estimate.comparable) text += "; paths part: a start moved by 1 µm comes out as more than steps and solver leave";
+  return text;
+}
+
+std::vector<std::string> row(const ErrorEstimate& estimate, const std::string& name, const bench::Errors& errors) {
+  std::vector<std::string> row{name};
+  for (const Figure& figure : kFigures)
+    if (is_told(estimate, figure))
+      row.push_back(fmt::format(fmt::runtime(figure.format), figure.scale * at(errors, figure.quantity)));
+  return row;
+}
+
+nlohmann::ordered_json errors_json(const ErrorEstimate& estimate, const bench::Errors& errors) {
+  nlohmann::ordered_json json;
+  for (const Figure& figure : kFigures)
+    if (is_told(estimate, figure)) json[figure.key] = at(errors, figure.quantity);
+  return json;
+}
+
+}  // namespace
+
+std::string error_summary(const ErrorEstimate& estimate) {
+  std::vector<std::vector<std::string>> rows{{"error, by companions"}};
+  for (const Figure& figure : kFigures)
+    if (is_told(estimate, figure)) rows[0].emplace_back(figure.column);
+  for (const ErrorPart& part : estimate.parts) {
+    rows.push_back(row(estimate, std::string(name_of(part.source)), part.errors));
+    if (part.missing.empty()) continue;
+    for (std::size_t i = 1; i < rows.back().size(); ++i) rows.back()[i] = "?";
+  }
+  rows.push_back(row(estimate, "all", estimate.all));
+  std::string text = format_table(rows, "l" + std::string(rows[0].size() - 1, 'r'), 2);
+  for (const ErrorPart& part : estimate.parts)
+    if (!part.missing.empty()) text += fmt::format("  {} not known: {}\n", name_of(part.source), part.missing);
+  return text + fmt::format("  {} ({:.2g} CPU s for the companions)", advice(estimate), estimate.cpu_s);
+}
+
+nlohmann::ordered_json error_json(const ErrorEstimate& estimate) {
+  nlohmann::ordered_json parts;
+  for (const ErrorPart& part : estimate.parts) {
+    std::string key(name_of(part.source));
+    std::replace(key.begin(), key.end(), ' ', '_');
+    parts[key] =
+        part.missing.empty() ? errors_json(estimate, part.errors) : nlohmann::ordered_json{{"missing", part.missing}};
+  }
+  return {{"comparable", estimate.comparable},
+          {"parts", std::move(parts)},
+          {"all", errors_json(estimate, estimate.all)},
+          {"advice", advice(estimate)},
+          {"cpu_s", estimate.cpu_s}};
+}
+
+}  // namespace weft::cli
