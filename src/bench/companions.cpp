@@ -16,9 +16,14 @@ constexpr double kShifts[] = {1e-6, 2e-6, 3e-6};
 // part.
 constexpr double kParts = 0.3;
 constexpr double kTighter = 0.1;  // newton_tolerance of the companion, in shares of the run's
-// Observed orders are believed from here on; below, differences do not fall with the step at all.
+// Observed orders are believed between this share of the expected one and all of it: stiff waves and borders lower
+// them, and where nothing is left of them differences are no error that falls with step or spacing.
 constexpr double kLeastOrder = 0.5;
-// Mesh: bending and stretch are of second order in the spacing.
+// Where there is one companion alone: between.
+constexpr double kAssumedOrder = 0.75;
+// Cells along each side from which on a mesh tells of an order.
+constexpr int kFewCells = 4;
+// Bending and stretch are of second order in the spacing.
 constexpr double kMeshOrder = 2;
 
 double order_of(scene::Integrator integrator) {
@@ -48,8 +53,8 @@ class Companions {
   Errors beyond_start(Errors difference) const;
   Errors richardson(double ratio, double order, Errors near, std::optional<Errors> far) const;
 
-  const scene::Scene& scene_;
-  Trajectory run_;
+  scene::Scene scene_;
+  Trajectory run_;  // in `scene_`
   const CompanionOptions& options_;
   std::vector<Errors> shifted_;  // differences to runs from moved starts
   Errors start_{};
@@ -95,9 +100,9 @@ Errors Companions::richardson(double ratio, double order, Errors near, std::opti
   if (far) far = beyond_start(*far);
   Errors errors{};
   for (std::size_t q = 0; q < kQuantities; ++q) {
-    double p = order;
+    double p = kAssumedOrder * order;
     if (far && near[q] > 0) p = std::log((*far)[q] / near[q] - 1) / std::log(ratio);
-    p = std::isfinite(p) ? std::clamp(p, kLeastOrder, order) : kLeastOrder;
+    p = std::isfinite(p) ? std::clamp(p, kLeastOrder * order, order) : kLeastOrder * order;
     const double factor = 1 / std::abs(std::pow(ratio, p) - 1);
     errors[q] = near[q] * (near[q] > 2 * start_[q] ? factor : std::min(1.0, factor));
   }
@@ -127,12 +132,16 @@ Errors Companions::of_steps() {
   return richardson(ratio, order, near, difference(companion));
 }
 
-// Taken as proportional to the tolerance.
+// What the solver leaves is taken as proportional to the tolerance.
 Errors Companions::of_solver() {
   scene::Scene companion = scene_;
   companion.solver.newton_tolerance *= kTighter;
-  Errors errors = beyond_start(difference(companion));
+  Trajectory solved = follow(companion);
+  Errors errors = beyond_start(compare(solved, run_));
   for (double& error : errors) error /= 1 - kTighter;
+  // From here on all companions are solved so, lest what the solver leaves is taken for an error of steps and meshes.
+  scene_ = std::move(companion);
+  run_ = std::move(solved);
   return errors;
 }
 
@@ -147,7 +156,10 @@ Errors Companions::of_mesh() {
   const Trajectory halved = follow(half);
   const std::vector<std::size_t> same = same_in_twice_as_fine(half);
   const Errors near = compare(halved, run_, same);
-  if (!can_refine(scene_, 0.25)) return richardson(2, kMeshOrder, near, std::nullopt);
+  const bool few = std::any_of(scene_.cloths.begin(), scene_.cloths.end(), [](const scene::Cloth& cloth) {
+    return std::min(cloth.particles_weft, cloth.particles_warp) - 1 < 4 * kFewCells;
+  });
+  if (few || !can_refine(scene_, 0.25)) return richardson(2, kMeshOrder, near, std::nullopt);
   const scene::Scene quarter = coarse(0.25);
   std::vector<std::size_t> same_again = same_in_twice_as_fine(quarter);
   for (std::size_t& particle : same_again) particle = same[particle];
@@ -175,14 +187,15 @@ Errors Companions::of_start(std::size_t shifts) {
 ErrorEstimate Companions::estimate() {
   ErrorPart start = part(ErrorSource::start, [&] { return of_start(1); });
   start_ = start.errors;
-  ErrorPart steps = part(ErrorSource::steps, [&] { return of_steps(); }),
-            solver = part(ErrorSource::solver, [&] { return of_solver(); });
+  ErrorPart mesh{ErrorSource::mesh}, solver = part(ErrorSource::solver, [&] { return of_solver(); }),
+                                     steps = part(ErrorSource::steps, [&] { return of_steps(); });
+  if (options_.mesh) mesh = part(ErrorSource::mesh, [&] { return of_mesh(); });
   const double left = std::hypot(at(steps.errors, Quantity::position), at(solver.errors, Quantity::position)),
                moved = at(start_, Quantity::position);
   result_.comparable = start.missing.empty() && moved <= std::max(10 * kShifts[0], kParts * left);
   if (!result_.comparable) start = part(ErrorSource::start, [&] { return of_start(std::size(kShifts)); });
   result_.parts = {std::move(steps), std::move(solver), std::move(start)};
-  if (options_.mesh) result_.parts.push_back(part(ErrorSource::mesh, [&] { return of_mesh(); }));
+  if (options_.mesh) result_.parts.push_back(std::move(mesh));
   for (const ErrorPart& each : result_.parts)
     for (std::size_t q = 0; q < kQuantities; ++q) result_.all[q] = std::hypot(result_.all[q], each.errors[q]);
   return std::move(result_);

@@ -41,11 +41,11 @@ struct CompanionOptions {
 };
 
 /// How far a run of the scene is from the motion that endlessly short, exactly solved steps would give, and with
-/// options.mesh endlessly small cells. Companions: twice and four times the step (time.tolerance accordingly), a tenth
-/// of solver.newton_tolerance, a start moved by a micrometre and where that matters by more of them, half and a quarter
-/// of the cells. Differences are extrapolated after Richardson with the order that is observed, at most that of the
-/// method. As many frames are compared as `run` has. A companion that fails is a part that is missing. Throws
-/// Error(interrupted) where options.proceed says no.
+/// options.mesh endlessly small cells. Companions: a start moved by a micrometre, and where that matters by more of
+/// them; a tenth of solver.newton_tolerance; solved like that, twice and four times the step (time.tolerance
+/// accordingly), half and a quarter of the cells. Differences are extrapolated after Richardson with the order that is
+/// observed, at most that of the method. As many frames are compared as `run` has. A companion that fails is a part
+/// that is missing. Throws Error(interrupted) where options.proceed says no.
 ErrorEstimate estimate_error(const scene::Scene& scene, Trajectory run, const CompanionOptions& options = {});
 
 }  // namespace weft::bench

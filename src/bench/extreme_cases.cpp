@@ -31,6 +31,48 @@ std::string above_floor(const std::string& cloth, const std::string& time) {
       cloth);
 }
 
+/// A sheet that falls on an obstacle, a ball if nothing else is said, and stays there or slides off; `top` adds tables.
+std::string falling(const std::string& cloth, const std::string& top = {},
+                    const std::string& obstacle = "shape = \"sphere\"\nradius = 0.15\n") {
+  return fmt::format(
+      "[time]\n{}\n{}\n[[cloth]]\nname = \"sheet\"\nsize = 0.5\n{}\n[[obstacle]]\nname = \"below\"\n{}\n", kSecond,
+      top.empty() ? "" : "\n" + top, cloth, obstacle);
+}
+
+// What contact may have to cope with.
+template <class Add>
+void add_contact_cases(const Add& add) {
+  const std::string sheet = "particles = 21\nposition = [0, 0, 0.17]\n", ball = "shape = \"sphere\"\nradius = 0.15\n";
+  const auto slope = [&](double friction) {
+    const std::string key = fmt::format("friction = {}\n", friction);
+    return falling("particles = 21\nposition = [0, 0, 0.05]\nrotation = [40, 0, 0]\nmaterial = { " +
+                       key.substr(0, key.size() - 1) + " }\n",
+                   {}, "shape = \"plane\"\nrotation = [40, 0, 0]\n" + key);
+  };
+  add("slope_friction_0", "on a slope of 40° without friction", slope(0), 25);
+  add("slope_friction_10", "on a slope of 40° with friction 10", slope(10), 25);
+  add("ball_friction_0", "on a ball without friction",
+      falling(sheet + "material = { friction = 0 }\n", {}, ball + "friction = 0\n"), 25);
+  add("ball_friction_10", "on a ball with friction 10",
+      falling(sheet + "material = { friction = 10 }\n", {}, ball + "friction = 10\n"), 25);
+  add("solved_loosely", "on a ball, both tolerances 1",
+      falling(sheet, "[solver]\nnewton_tolerance = 1\nlinear_tolerance = 1\n"), 25);
+  add("solved_exactly", "on a ball, tolerances 1e-6 and 1e-4",
+      falling(sheet, "[solver]\nnewton_tolerance = 1e-6\nlinear_tolerance = 1e-4\n"), 25);
+  for (const char* shape : {"aligned", "crossed"})
+    add(fmt::format("{}_triangles", shape), fmt::format("{} triangles on a ball", shape),
+        falling(fmt::format("shape = \"{}_triangles\"\n", shape) + sheet), 25);
+  add("far_away", "on a ball 1 km from the origin along each axis",
+      falling("particles = 21\nposition = [1000, 1000, 1000.17]\n", {}, ball + "position = [1000, 1000, 1000]\n"), 25);
+  add("blade", "on the edge of a plate 1 mm thick", falling(sheet, {}, "shape = \"box\"\nsize = [1, 0.001, 0.3]\n"),
+      25);
+  add("needle_below", "on the tip of a cone 5 mm wide and 0.3 m high",
+      falling("particles = 21\nposition = [0, 0, 0.32]\n", {}, "shape = \"cone\"\nradius = 0.0025\nheight = 0.3\n"),
+      25);
+  add("needles_on_ball", "cells of 25 mm by 1 mm on a ball",
+      falling("particles = [21, 501]\nposition = [0, 0, 0.17]\n"), 10);
+}
+
 std::vector<ExtremeCase> make_cases() {
   std::vector<ExtremeCase> cases;
   const auto add = [&](std::string name, std::string what, std::string text, int frames, double driven = 0) {
@@ -82,6 +124,7 @@ std::vector<ExtremeCase> make_cases() {
   add("resting", "at rest on a floor for 10,000 steps",
       above_floor("size = 0.3\nparticles = 11\nposition = [0, 0, 0.003]\n", "duration = 100\nfps = 1\nstep = 0.01"),
       100);
+  add_contact_cases(add);
   return cases;
 }
 

@@ -73,15 +73,17 @@ std::string markdown(const Table& table) {
 }
 
 Table map_table(const std::vector<MapCell>& cells) {
-  Table table{{"integrator", "stiffness_n_per_m", "step_s", "verdict", "steps", "rejected_steps", "newton_a_step",
-               "energy_gain", "max_strain", "reason"}};
+  Table table{{"integrator", "stiffness_n_per_m", "step_s", "verdict", "swings", "stiffest_periods", "steps",
+               "rejected_steps", "newton_a_step", "energy_gain", "max_strain", "cpu_s", "reason"}};
   for (const MapCell& cell : cells) {
     const Outcome& o = cell.outcome;
     table.push_back({std::string(name_of(cell.integrator)), fmt::format("{:g}", cell.stiffness),
-                     fmt::format("{:g}", cell.step), std::string(describe(o.verdict)), std::to_string(o.steps),
-                     std::to_string(o.rejected_steps),
+                     fmt::format("{:g}", cell.step), std::string(describe(o.verdict)),
+                     fmt::format("{:.2g}", cell.swings), fmt::format("{:.2g}", cell.stiffest_periods),
+                     std::to_string(o.steps), std::to_string(o.rejected_steps),
                      fmt::format("{:.2f}", static_cast<double>(o.newton_iterations) / std::max(1, o.steps)),
-                     fmt::format("{:.3g}", o.energy_gain), fmt::format("{:.3g}", o.max_strain), o.reason});
+                     fmt::format("{:.3g}", o.energy_gain), fmt::format("{:.3g}", o.max_strain),
+                     fmt::format("{:.2f}", o.cpu_s), o.reason});
   }
   return table;
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
@@ -106,29 +107,60 @@ Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limi
   return outcome;
 }
 
+namespace {
+
+// A square sheet of cotton that hangs from two corners [m].
+constexpr double kWidth = 0.5;
+constexpr int kParticles = 11;
+
+scene::Scene swing(scene::Integrator integrator, double stiffness, double step) {
+  scene::Scene scene;
+  scene.name = "swing";
+  // Looked at every 40 ms; at every step where steps are longer.
+  scene.time = {.duration = 1000, .fps = 1 / std::max(step, 0.04), .step = step, .integrator = integrator};
+  scene.contact.self = scene.contact.obstacles = false;
+  scene::Cloth cloth;
+  cloth.name = "sheet";
+  cloth.size = {kWidth, kWidth};
+  cloth.particles_weft = cloth.particles_warp = kParticles;
+  cloth.material.stretch_weft = cloth.material.stretch_warp = stiffness;
+  scene::Pin left, right;
+  left.low = left.high = {0, 1};
+  right.low = right.high = {1, 1};
+  cloth.pins = {left, right};
+  scene.cloths.push_back(cloth);
+  return scene;
+}
+
+}  // namespace
+
+double swing_period() {
+  return 2 * std::numbers::pi * std::sqrt(2 * kWidth / (3 * 9.81));
+}
+
+double stiffest_period(double stiffness) {
+  const double spacing = kWidth / (kParticles - 1);
+  return std::numbers::pi * spacing * std::sqrt(scene::Material{}.density / stiffness);
+}
+
 std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each) {
   constexpr double kSteps[] = {1e-5, 1e-4, 1e-3, 5e-3, 0.02, 0.1, 0.2};
-  constexpr int kDecades = 10, kStepsOfARun = 25;
+  // Growth shows within swings, of which the sheet does two, or within periods of the stiffest mode.
+  constexpr double kSwings = 2;
+  constexpr int kDecades = 10, kMostSteps = 25'000;
   std::vector<MapCell> cells;
   for (const auto integrator :
        {scene::Integrator::implicit_euler, scene::Integrator::implicit_midpoint, scene::Integrator::bdf2}) {
     for (int decade = 0; decade <= kDecades; ++decade) {
       for (const double step : kSteps) {
-        scene::Scene scene;
-        scene.name = "swing";
-        scene.time = {.duration = 1000, .fps = 1 / step, .step = step, .integrator = integrator};
-        scene.contact.self = scene.contact.obstacles = false;
-        scene::Cloth cloth;
-        cloth.name = "sheet";
-        cloth.size = {0.5, 0.5};
-        cloth.particles_weft = cloth.particles_warp = 11;
-        cloth.material.stretch_weft = cloth.material.stretch_warp = std::pow(10.0, decade - 2);
-        scene::Pin left, right;
-        left.low = left.high = {0, 1};
-        right.low = right.high = {1, 1};
-        cloth.pins = {left, right};
-        scene.cloths.push_back(cloth);
-        cells.push_back({integrator, cloth.material.stretch_weft, step, try_scene(scene, kStepsOfARun)});
+        const double stiffness = std::pow(10.0, decade - 2);
+        const scene::Scene scene = swing(integrator, stiffness, step);
+        const double duration = std::min(kSwings * swing_period(), kMostSteps * step);
+        MapCell cell{integrator, stiffness, step};
+        cell.outcome = try_scene(scene, static_cast<int>(std::ceil(duration * scene.time.fps)));
+        cell.swings = cell.outcome.frames / scene.time.fps / swing_period();
+        cell.stiffest_periods = cell.outcome.frames / scene.time.fps / stiffest_period(stiffness);
+        cells.push_back(cell);
         if (each) each(cells.back());
       }
     }

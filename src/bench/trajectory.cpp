@@ -115,8 +115,9 @@ Trajectory follow(const scene::Scene& scene, const FollowLimits& limits) {
 
 Errors compare(const Functionals& run, const Functionals& reference) {
   Errors errors{};
-  // Where nothing moves there is no energy to take a share of, and none that differs.
-  const double in_play = reference.energies_in_play > 0 ? reference.energies_in_play : 1;
+  // Where nothing moves there is no energy to take a share of but rounding, and none that differs.
+  constexpr double kRounding = 1e-12;  // [J]
+  const double in_play = reference.energies_in_play > kRounding ? reference.energies_in_play : 1;
   for (std::size_t k = 0; k < run.energy.size(); ++k) {
     at(errors, Quantity::drift) = std::abs(run.energy[k] - reference.energy[k]) / in_play;
     at(errors, Quantity::energy) = std::max(at(errors, Quantity::energy), at(errors, Quantity::drift));

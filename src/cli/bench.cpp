@@ -68,7 +68,13 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
   check_outputs(paths, options, folder, names);
   Count map_count, case_count;
   log::info("stability: the map");
-  const auto cells = bench::stability_map([&](const bench::MapCell& cell) { map_count.add(cell.outcome.verdict); });
+  double map_cpu_s = 0;
+  const auto cells = bench::stability_map([&](const bench::MapCell& cell) {
+    map_count.add(cell.outcome.verdict);
+    map_cpu_s += cell.outcome.cpu_s;
+    log::info(fmt::format("stability: {}, {:g} N/m, {:g} s: {}, {:.1f} CPU s", name_of(cell.integrator), cell.stiffness,
+                          cell.step, describe(cell.outcome.verdict), cell.outcome.cpu_s));
+  });
   log::info("stability: extreme cases");
   const bench::Table cases = try_cases(folder, case_count);
   const bench::Table map = bench::map_table(cells);
@@ -77,10 +83,11 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
   write_file(folder / "stability_cases.csv", bench::csv(cases));
   write_file(
       folder / "stability.md",
-      fmt::format("# Stability\n\nA sheet of 11 × 11 particles held at two corners, 25 steps: {}.\n\n"
+      fmt::format("# Stability\n\nA sheet of 11 × 11 particles held at two corners, two swings or 25,000 steps: {}; "
+                  "{:.0f} CPU s.\n\n"
                   "![map](stability_map.svg)\n\n## Extreme cases\n\n{}. The scenes are in `scenes/`; energy gain "
                   "is in shares of what is allowed.\n\n{}\n## The map\n\n{}",
-                  map_count.text(), case_count.text(), bench::markdown(cases), bench::markdown(map)));
+                  map_count.text(), map_cpu_s, case_count.text(), bench::markdown(cases), bench::markdown(map)));
   fmt::print("map: {}\ncases: {}\nwritten to {}\n", map_count.text(), case_count.text(),
              (folder / "stability.md").string());
   return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;

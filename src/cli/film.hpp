@@ -26,9 +26,9 @@ struct FilmParts {
   std::function<std::unique_ptr<FrameSource>()> open_source;
   std::function<std::unique_ptr<FramePainter>()> open_painter;  ///< empty: nothing is drawn
   std::function<std::unique_ptr<FrameWriter>(const std::string& painter_description)> open_writer;  ///< likewise
-  Store* store = nullptr;                      ///< keeps what is simulated
-  std::filesystem::path meshes;                ///< folder; empty: none
-  std::function<void(const MadeFrame&)> look;  ///< at each frame that is made, in order; may be empty
+  Store* store = nullptr;                           ///< keeps what is simulated
+  std::filesystem::path meshes;                     ///< folder; empty: none
+  std::function<void(const MadeFrame&)> look = {};  ///< at each frame that is made, in order; may be empty
 };
 
 struct FilmResult {

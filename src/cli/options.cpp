@@ -158,11 +158,9 @@ void add_side_files(CLI::App& command, RunOptions& options) {
 }
 
 void add_error(CLI::App& command, RunOptions& options) {
-  command
-      .add_flag("--error{steps}", options.error,
-                "Also tell how far off the run is, by simulating it with other steps, solver settings and starts; "
-                "--error=mesh: other meshes too")
-      ->check(CLI::IsMember({"steps", "mesh"}));
+  command.add_flag("--error", options.error,
+                   "Also tell how far off the run is, by simulating it with other steps, solver settings and starts");
+  command.add_flag("--mesh-error", options.mesh_error, "Likewise, and with half and a quarter of the cells");
 }
 
 constexpr const char* kSceneOrCache = "The scene, a TOML file, or the folder of a cache";

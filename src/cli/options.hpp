@@ -41,7 +41,7 @@ struct RunOptions {
   std::filesystem::path stats;   ///< file; empty: none
   std::string log_json;          ///< file, "-" for standard output; empty: none
   bool resume = false;
-  std::string error;  ///< what companions are to tell of the error: "steps", "mesh" (and steps); empty: nothing
+  bool error = false, mesh_error = false;  ///< whether companions are to tell the error; the second: of the mesh too
 };
 
 struct SimulateOptions : RunOptions {

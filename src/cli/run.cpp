@@ -105,7 +105,7 @@ class Session {
   explicit Session(const RunOptions& options) : options_(options) { set_thread_count(options.common.threads); }
 
   const std::atomic<bool>& stop() const { return signals_.requested(); }
-  const std::string& error_asked() const { return options_.error; }
+  bool error_asked() const { return options_.error || options_.mesh_error; }
   Progress& progress() { return *progress_; }
 
   /// After all that could be refused was.
@@ -171,7 +171,7 @@ void Session::estimate_error(const scene::Scene& scene, bench::Recorder& recorde
   if (report_.exit_code != ExitCode::ok) return;
   log::info("simulating companions, which tell the error");
   const simulation::Simulation particles(scene);
-  const bench::CompanionOptions options{.mesh = options_.error == "mesh", .proceed = [this] { return !stop(); }};
+  const bench::CompanionOptions options{.mesh = options_.mesh_error, .proceed = [this] { return !stop(); }};
   try {
     report_.error = bench::estimate_error(scene, recorder.finish(particles.state().masses), options);
   } catch (const Error& error) {
@@ -279,7 +279,7 @@ ExitCode make_from_scene(Session& session, const scene::Scene& scene, const Film
   parts.open_source = [&] { return std::make_unique<SceneSource>(scene, store, session.stop(), session.progress()); };
   parts.store = &store;
   std::optional<bench::Recorder> recorder;
-  if (!session.error_asked().empty())
+  if (session.error_asked())
     parts.look = [&](const MadeFrame& made) {
       if (recorder)
         recorder->see(made.snapshot, made.report);

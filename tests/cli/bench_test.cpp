@@ -28,8 +28,27 @@ TEST(Stability, EveryExtremeCaseIsAScene) {
 }
 
 TEST(Stability, SmallExtremeCasesAreSolved) {
-  for (const char* name : {"light", "heavy", "ratio_1e4", "load", "gravity", "flattened", "point", "randomised",
-                           "stretched", "pin_jumps", "no_stiffness", "no_gravity", "one_element"}) {
+  for (const char* name : {"light",
+                           "heavy",
+                           "ratio_1e4",
+                           "load",
+                           "gravity",
+                           "flattened",
+                           "point",
+                           "randomised",
+                           "stretched",
+                           "pin_jumps",
+                           "no_stiffness",
+                           "no_gravity",
+                           "one_element",
+                           "slope_friction_0",
+                           "slope_friction_10",
+                           "ball_friction_0",
+                           "ball_friction_10",
+                           "solved_loosely",
+                           "crossed_triangles",
+                           "far_away",
+                           "blade"}) {
     const Outcome outcome = outcome_of(name);
     EXPECT_EQ(outcome.verdict, Verdict::solved) << name << ": " << outcome.reason;
     EXPECT_EQ(outcome.frames, 10) << name;

@@ -1,0 +1,137 @@
+// What runs tell of their error, against what it is.
+#include "bench/companions.hpp"
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "bench/accuracy.hpp"
+#include "cli/error_report.hpp"
+#include "cli/subprocess.hpp"
+#include "core/error.hpp"
+#include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::bench {
+namespace {
+
+scene::Scene swinging(const std::vector<std::string>& more = {}) {
+  std::vector<std::string> overrides{"cloth.sheet.particles=9", "time.duration=0.4"};
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  return support::scene_of_text(kSwingingSheet, overrides);
+}
+
+double part_of(const ErrorEstimate& estimate, ErrorSource source, Quantity quantity = Quantity::position) {
+  for (const ErrorPart& part : estimate.parts)
+    if (part.source == source) return at(part.errors, quantity);
+  return -1;
+}
+
+ErrorEstimate estimate_of(const scene::Scene& scene, const CompanionOptions& options = {}) {
+  return estimate_error(scene, follow(scene), options);
+}
+
+// Of second order, each with a sixteenth of the step and solved to a millionth.
+const Trajectory& truth() {
+  static const Trajectory kTruth = follow(swinging({"time.integrator=implicit_midpoint", "time.step=0.000625",
+                                                    "solver.newton_tolerance=1e-6", "solver.linear_tolerance=1e-3"}));
+  return kTruth;
+}
+
+TEST(Companions, TellTheErrorWithinAFactorOfThree) {
+  for (const char* integrator : {"implicit_euler", "implicit_midpoint", "bdf2"}) {
+    for (const char* step : {"0.04", "0.02", "0.01", "0.0025"}) {
+      const scene::Scene scene =
+          swinging({fmt::format("time.integrator={}", integrator), fmt::format("time.step={}", step)});
+      const Trajectory run = follow(scene);
+      const ErrorEstimate estimate = estimate_error(scene, run);
+      EXPECT_TRUE(estimate.comparable);
+      const double ratio = at(estimate.all, Quantity::position) / at(compare(run, truth()), Quantity::position);
+      EXPECT_GT(ratio, 1 / 3.0) << integrator << " " << step;
+      EXPECT_LT(ratio, 3.0) << integrator << " " << step;
+    }
+  }
+}
+
+TEST(Companions, NameTheSourceOfTheError) {
+  const ErrorEstimate steps = estimate_of(swinging({"time.step=0.02", "solver.newton_tolerance=1e-3"}));
+  EXPECT_EQ(steps.largest().source, ErrorSource::steps);
+  EXPECT_LT(part_of(steps, ErrorSource::solver), 0.1 * part_of(steps, ErrorSource::steps));
+  EXPECT_EQ(part_of(steps, ErrorSource::mesh), -1) << "not asked for";
+  EXPECT_NE(cli::error_summary(steps).find("largest by the time steps; what lessens it: a smaller time.step"),
+            std::string::npos);
+  ErrorEstimate solver;
+  for (ErrorSource source : {ErrorSource::steps, ErrorSource::solver, ErrorSource::start}) {
+    solver.parts.push_back({source});
+    solver.parts.back().errors.fill(source == ErrorSource::solver ? 2e-3 : 1e-3);
+  }
+  EXPECT_NE(
+      cli::error_summary(solver).find("largest by the solver; what lessens it: a smaller solver.newton_tolerance"),
+      std::string::npos);
+}
+
+TEST(Companions, TellTheErrorOfTheMeshWhereItsCellsCanBeHalved) {
+  const std::vector<std::string> exact{"time.integrator=bdf2", "time.step=0.0025", "solver.newton_tolerance=1e-3"};
+  scene::Scene scene = swinging(exact);
+  const double told = part_of(estimate_of(scene, {.mesh = true}), ErrorSource::mesh);
+  // Against a mesh with four times the cells: all but a sixteenth of the error.
+  scene::Scene twice = scene, four_times = scene;
+  refine(twice, 2);
+  refine(four_times, 4);
+  std::vector<std::size_t> same = same_in_twice_as_fine(scene);
+  const std::vector<std::size_t> next = same_in_twice_as_fine(twice);
+  for (std::size_t& particle : same) particle = next[particle];
+  const double is = at(compare(follow(scene), follow(four_times), same), Quantity::position);
+  EXPECT_GT(told, is / 3);
+  EXPECT_LT(told, is * 3);
+
+  scene = swinging({"cloth.sheet.particles=6"});
+  const ErrorEstimate odd = estimate_of(scene, {.mesh = true});
+  EXPECT_EQ(odd.parts.back().source, ErrorSource::mesh);
+  EXPECT_EQ(odd.parts.back().missing, "the cells cannot be halved");
+  EXPECT_NE(cli::error_summary(odd).find("mesh not known: the cells cannot be halved"), std::string::npos);
+}
+
+// A strip that stands on its edge and may fall either way.
+scene::Scene undecided() {
+  return support::scene_of_text(
+      "[time]\nduration = 0.8\n[[cloth]]\nname = \"a\"\nsize = [0.2, 0.3]\nparticles = [5, 7]\nstart_noise = 1e-7\n"
+      "position = [0, 0, 0.153]\nrotation = [90, 0, 0]\n[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n");
+}
+
+TEST(Companions, SayWherePathsPart) {
+  const ErrorEstimate estimate = estimate_of(undecided());
+  EXPECT_FALSE(estimate.comparable);
+  EXPECT_EQ(estimate.deciding(), Quantity::centre);
+  EXPECT_GT(part_of(estimate, ErrorSource::start, Quantity::centre), 1e-4);
+  const std::string text = cli::error_summary(estimate);
+  EXPECT_NE(text.find("paths part"), std::string::npos) << text;
+  EXPECT_EQ(text.find("position"), std::string::npos) << text;
+  const auto json = cli::error_json(estimate);
+  EXPECT_FALSE(json.at("comparable"));
+  EXPECT_FALSE(json.at("all").contains("position_m"));
+  EXPECT_GT(json.at("parts").at("start").at("centre_m"), 0);
+}
+
+TEST(Companions, StopWhereTheyAreToldTo) {
+  EXPECT_THROW(estimate_of(swinging(), {.proceed = [] { return false; }}), Error);
+}
+
+class ErrorOfARun : public support::TestFolder {};
+
+TEST_F(ErrorOfARun, IsToldAtTheEndAndInTheStatistics) {
+  support::write_bytes(folder_ / "s.toml", kSwingingSheet);
+  const cli::Outcome outcome = cli::run_weft({"simulate", "s.toml", "--cache", "c", "--error", "--stats", "s.json",
+                                              "--set", "cloth.sheet.particles=9", "--set", "time.duration=0.4"},
+                                             folder_);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.err.find("what lessens it: "), std::string::npos) << outcome.err;
+  const auto error = nlohmann::json::parse(support::read_bytes(folder_ / "s.json")).at("error");
+  const ErrorEstimate expected = estimate_of(swinging());
+  EXPECT_DOUBLE_EQ(error.at("all").at("position_m"), at(expected.all, Quantity::position));
+  EXPECT_DOUBLE_EQ(error.at("parts").at("solver").at("position_m"), part_of(expected, ErrorSource::solver));
+  EXPECT_FALSE(error.at("parts").contains("mesh"));
+}
+
+}  // namespace
+}  // namespace weft::bench
