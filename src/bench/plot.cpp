@@ -39,12 +39,25 @@ PlotAxis fit(const Panel& panel, int coordinate, double start, double length) {
   return {low - room, high + room, start, length};
 }
 
-std::string decade_name(int decade) {
-  return decade >= -2 && decade <= 3 ? fmt::format("{:g}", std::pow(10.0, decade)) : fmt::format("1e{}", decade);
+// 0.02, 5, 200; beyond these 10 with an exponent, 2·10 with one.
+std::string tick_name(double part, int decade) {
+  const double value = part * std::pow(10.0, decade);
+  if (decade >= -3 && decade <= 3) return fmt::format("{:g}", value);
+  return fmt::format("{}10<tspan dy='-4' font-size='8'>{}</tspan>", part == 1 ? "" : fmt::format("{:g}·", part),
+                     decade);
 }
 
-// Lines at each decade, with names, and short ones at 2 and 5 times a decade.
+// Which parts of a decade get a line and a name: so many that at least three are named, and none over another.
+std::vector<double> named_parts(double decades) {
+  if (decades < 0.5) return {1, 1.5, 2, 2.5, 3, 4, 5, 6, 7, 8, 9};
+  if (decades < 1) return {1, 2, 3, 4, 5, 7};
+  if (decades < 3) return {1, 2, 5};
+  return {1};
+}
+
+// Lines at each decade and at 2 and 5 times it; names as there is room.
 std::string ticks(const PlotAxis& axis, bool vertical) {
+  constexpr double kMostNames = 12;  // decades
   std::string text;
   const auto line = [&](double place, const char* color) {
     text += vertical ? fmt::format("<path d='M{:.1f} {:.1f}h{}' stroke='{}'/>\n", kLeft, place, kPlotWidth, color)
@@ -56,15 +69,18 @@ std::string ticks(const PlotAxis& axis, bool vertical) {
                 : fmt::format("<text x='{:.1f}' y='{:.1f}' text-anchor='middle'>{}</text>\n", place,
                               kTop + kPlotHeight + 15, words);
   };
-  // Where little more than a decade is shown, its parts are named too.
-  const bool few = axis.high - axis.low < 1.6;
+  const double decades = axis.high - axis.low;
+  const std::vector<double> named = named_parts(decades);
+  const int every = static_cast<int>(std::ceil(decades / kMostNames));
   for (int decade = static_cast<int>(std::floor(axis.low)); decade <= axis.high; ++decade) {
-    for (double part : {1.0, 2.0, 5.0}) {
-      const double value = part * std::pow(10.0, decade);
-      if (std::log10(value) < axis.low || std::log10(value) > axis.high) continue;
-      line(axis.at(value), part == 1 ? "#c8c8c8" : "#eeeeee");
-      if (part == 1 || few) name(axis.at(value), part == 1 ? decade_name(decade) : fmt::format("{:g}", value));
-    }
+    const auto inside = [&](double part) {
+      const double place = std::log10(part) + decade;
+      return place >= axis.low && place <= axis.high;
+    };
+    for (double part : {1.0, 2.0, 5.0})
+      if (inside(part)) line(axis.at(part * std::pow(10.0, decade)), part == 1 ? "#c8c8c8" : "#eeeeee");
+    for (double part : named)
+      if (inside(part) && decade % every == 0) name(axis.at(part * std::pow(10.0, decade)), tick_name(part, decade));
   }
   return text;
 }
@@ -96,7 +112,8 @@ std::string draw(const Curve& curve, const PlotAxis& across, const PlotAxis& up)
     path += fmt::format("{}{:.1f} {:.1f}", path.empty() ? "M" : "L", x, y);
     markers += marker_at(curve.marker, x, y, curve.color);
   }
-  return path.empty() ? std::string() : fmt::format("<path d='{}' {}/>\n{}", path, stroke_of(curve), markers);
+  if (path.empty()) return {};
+  return (curve.line ? fmt::format("<path d='{}' {}/>\n", path, stroke_of(curve)) : std::string()) + markers;
 }
 
 std::string draw_names(const Panel& panel) {
@@ -106,8 +123,9 @@ std::string draw_names(const Panel& panel) {
     const std::size_t row = i / kNamesInARow, column = i % kNamesInARow;
     const double x = 8 + kPanelWidth / kNamesInARow * static_cast<double>(column);
     const double y = kTop + kPlotHeight + kAxisHeight + kNameHeight * (static_cast<double>(row) + 0.5);
-    text += fmt::format("<path d='M{:.1f} {:.1f}h24' {}/>\n{}<text x='{:.1f}' y='{:.1f}'>{}</text>\n", x, y,
-                        stroke_of(curve), marker_at(curve.marker, x + 12, y, curve.color), x + 29, y + 4, curve.name);
+    if (curve.line) text += fmt::format("<path d='M{:.1f} {:.1f}h24' {}/>\n", x, y, stroke_of(curve));
+    text += fmt::format("{}<text x='{:.1f}' y='{:.1f}'>{}</text>\n", marker_at(curve.marker, x + 12, y, curve.color),
+                        x + 29, y + 4, curve.name);
   }
   return text;
 }

@@ -16,6 +16,7 @@ struct Curve {
   Marker marker = Marker::circle;
   bool dashed = false;
   std::vector<Vec2> points;  ///< those that are not positive are left out
+  bool line = true;          ///< from point to point; else markers alone
 };
 
 struct Panel {

@@ -47,8 +47,7 @@ TEST(Stability, SmallExtremeCasesAreSolved) {
                            "ball_friction_10",
                            "solved_loosely",
                            "crossed_triangles",
-                           "far_away",
-                           "blade"}) {
+                           "far_away"}) {
     const Outcome outcome = outcome_of(name);
     EXPECT_EQ(outcome.verdict, Verdict::solved) << name << ": " << outcome.reason;
     EXPECT_EQ(outcome.frames, 10) << name;

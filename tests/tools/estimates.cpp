@@ -1,0 +1,242 @@
+// What runs say of their error (weft run --error) against what it is: twelve scenes, three integrators, five steps.
+// `weft_estimates DIR` writes estimates.md, estimates.csv and estimates.svg there.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include "bench/accuracy.hpp"
+#include "bench/companions.hpp"
+#include "bench/plot.hpp"
+#include "bench/report.hpp"
+#include "core/error.hpp"
+#include "core/parallel.hpp"
+#include "core/temporary_file.hpp"
+#include "scene/loader.hpp"
+#include "simulation/collision_stage.hpp"
+
+namespace weft::bench {
+namespace {
+
+constexpr double kSteps[] = {0.04, 0.02, 0.01, 0.005, 0.0025};  // [s]
+// Of the truth: an eighth of the shortest step, with a ten thousandth of newton_tolerance; with contact a quarter.
+constexpr double kTruthCut = 8, kTruthCutWithContact = 4, kTruthNewton = 1e-4, kTruthNewtonWithContact = 1e-3;
+// Starts of the truth with contact, each moved by a micrometre more [m].
+constexpr int kStarts = 5;
+constexpr double kShift = 1e-6;
+constexpr double kFactor = 3;  // aim: estimates are within it
+
+struct Case {
+  const char *name, *cloth, *rest;
+};
+constexpr const char* kFree = "[contact]\nself = false\nobstacles = false\n";
+constexpr const char* kSoft =
+    "material = { stretch = 200, shear = 60, bend = 1e-3, stretch_viscosity = 0.2, shear_viscosity = 0.1, "
+    "bend_friction = 0 }\n";
+constexpr const char* kBall = "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.15\n";
+const Case kCases[] = {
+    {"swing from two corners",
+     "rotation = [45, 0, 0]\n[[cloth.pin]]\nlow = [0, 1]\nhigh = [0.2, 1]\n"
+     "[[cloth.pin]]\nlow = [0.8, 1]\nhigh = [1, 1]\n",
+     kFree},
+    {"swing from one corner", "[[cloth.pin]]\nlow = [0, 1]\nhigh = [0, 1]\n", kFree},
+    {"cantilever let go", "[[cloth.pin]]\nlow = [0, 0]\nhigh = [0.1, 1]\n", kFree},
+    {"stretched by a tenth", "start_scale = 1.1\n", kFree},
+    {"thrown through air", "rotation = [50, 20, 0]\nvelocity = [1, 0, 2]\nstart_noise = 2e-3\n", kFree},
+    {"flag in the wind", "rotation = [90, 0, 0]\n[[cloth.pin]]\nlow = [0, 0]\nhigh = [0, 1]\n",
+     "[contact]\nself = false\nobstacles = false\n[physics]\nwind = [3, 1, 0]\n"},
+    {"falls on a ball", "position = [0.01, 0.02, 0.17]\n", kBall},
+    {"falls on a floor", "position = [0, 0, 0.15]\nrotation = [20, 10, 0]\n",
+     "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n"},
+    {"slides down a slope", "position = [0, 0, 0.004]\nrotation = [30, 0, 0]\n",
+     "[[obstacle]]\nname = \"slope\"\nshape = \"plane\"\nrotation = [30, 0, 0]\n"},
+    {"falls over an edge", "position = [0.15, 0, 0.12]\n",
+     "[[obstacle]]\nname = \"box\"\nshape = \"box\"\nsize = [0.4, 0.6, 0.2]\n"},
+    {"a sheet on a sheet", "position = [0, 0, 0.03]\n",
+     "[[cloth]]\nname = \"lower\"\nsize = 0.4\nparticles = 9\nposition = [0.1, 0.05, 0]\n[[cloth.pin]]\nlow = [0, 0]\n"
+     "high = [1, 0]\n[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, 1]\n"},
+    {"a ball pushes a sheet", "rotation = [90, 0, 0]\n[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, 1]\n",
+     "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.08\ninterpolation = \"linear\"\n"
+     "keys = [ { time = 0, position = [0.02, -0.15, -0.03] }, { time = 0.48, position = [0.02, 0.1, -0.03] } ]\n"},
+};
+
+scene::Scene scene_of(const Case& one) {
+  const std::string text = fmt::format(
+      "[time]\nduration = 0.48\nfps = 25\nstep = 0.01\n{}\n[[cloth]]\nname = \"sheet\"\nsize = 0.4\n"
+      "particles = 9\n{}{}\n{}\n",
+      std::string_view(one.rest).starts_with("[contact]") ? one.rest : "", kSoft, one.cloth,
+      std::string_view(one.rest).starts_with("[contact]") ? "" : one.rest);
+  scene::LoadResult loaded = scene::load_text(text, std::string(one.name) + ".toml");
+  if (!loaded.ok()) throw Error(ExitCode::internal, "{}", loaded.describe());
+  return loaded.scene;
+}
+
+/// What the scene comes to, and how well that is known.
+struct Truth {
+  Trajectory path;
+  Functionals middle;
+  Errors doubt{};
+};
+
+Truth truth_of(scene::Scene scene) {
+  const bool contact = simulation::CollisionStage::needed(scene);
+  scene.time.integrator = contact ? scene::Integrator::bdf2 : scene::Integrator::implicit_midpoint;
+  scene.time.step = std::end(kSteps)[-1] / (contact ? kTruthCutWithContact : kTruthCut);
+  scene.solver.newton_tolerance *= contact ? kTruthNewtonWithContact : kTruthNewton;
+  Truth truth{follow(scene), {}};
+  scene::Scene coarse = scene;
+  coarse.time.step *= 2;
+  truth.doubt = compare(follow(coarse), truth.path);
+  std::vector<Functionals> starts{truth.path.functionals};
+  for (int k = 1; contact && k < kStarts; ++k) {
+    for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += kShift;
+    starts.push_back(follow(scene).functionals);
+  }
+  truth.middle = median(starts);
+  for (const Functionals& start : starts) {
+    const Errors apart = compare(start, truth.middle);
+    for (std::size_t q = 0; q < kQuantities; ++q) truth.doubt[q] = std::max(truth.doubt[q], apart[q]);
+  }
+  return truth;
+}
+
+struct Row {
+  const char* name;
+  scene::Integrator integrator;
+  double step;
+  std::string failure = {};
+  bool comparable = true;
+  double told = 0, is = 0, known = 0;  // [m]: estimate, difference to the truth, doubt of the truth
+  std::array<double, kErrorSources> parts{};
+
+  /// The run is this far from the truth, or as far as truth is from truth.
+  double truth() const { return std::hypot(is, known); }
+  double ratio() const { return told / truth(); }
+};
+
+Row row_of(const Case& one, scene::Scene scene, const Truth& truth) {
+  Row row{one.name, scene.time.integrator, scene.time.step};
+  try {
+    const Trajectory run = follow(scene);
+    const ErrorEstimate estimate = estimate_error(scene, run);
+    const Quantity q = estimate.deciding();
+    row.comparable = estimate.comparable;
+    row.told = at(estimate.all, q);
+    for (const ErrorPart& part : estimate.parts) row.parts[static_cast<std::size_t>(part.source)] = at(part.errors, q);
+    row.is = at(estimate.comparable ? compare(run, truth.path) : compare(run.functionals, truth.middle), q);
+    row.known = at(truth.doubt, q);
+  } catch (const Error& error) {
+    row.failure = error.what();
+  }
+  return row;
+}
+
+Table table_of(const std::vector<Row>& rows) {
+  Table table{{"scene", "integrator", "step_ms", "compared", "estimate_m", "steps_m", "solver_m", "start_m", "is_m",
+               "truth_known_to_m", "ratio", "failure"}};
+  for (const Row& row : rows) {
+    std::vector<std::string> fields{row.name, name_of(row.integrator), fmt::format("{:g}", 1e3 * row.step)};
+    if (row.failure.empty()) {
+      fields.push_back(row.comparable ? "position" : "centre");
+      for (double number : {row.told, row.parts[0], row.parts[1], row.parts[3], row.is, row.known})
+        fields.push_back(fmt::format("{:.2g}", number));
+      fields.push_back(fmt::format("{:.2f}", row.ratio()));
+    }
+    fields.resize(table[0].size() - 1);
+    fields.push_back(row.failure);
+    table.push_back(std::move(fields));
+  }
+  return table;
+}
+
+// Ratios: a row for each scene and integrator, a column for each step.
+Table ratios_of(const std::vector<Row>& rows) {
+  Table table{{"estimate / truth", "integrator"}};
+  for (double step : kSteps) table[0].push_back(fmt::format("{:g} ms", 1e3 * step));
+  for (std::size_t i = 0; i < rows.size(); i += std::size(kSteps)) {
+    std::vector<std::string> fields{rows[i].name, name_of(rows[i].integrator)};
+    for (std::size_t k = 0; k < std::size(kSteps); ++k) {
+      const Row& row = rows[i + k];
+      fields.push_back(row.failure.empty() ? fmt::format("{:.2f}{}", row.ratio(), row.comparable ? "" : " c")
+                                           : "failed");
+    }
+    table.push_back(std::move(fields));
+  }
+  return table;
+}
+
+std::string plot_of(const std::vector<Row>& rows) {
+  Panel panel{"Error: what runs say and what it is",
+              "distance to the truth, or doubt of it [m]",
+              "estimate of --error [m]",
+              {},
+              {}};
+  constexpr const char* kColors[] = {"#d55e00", "#0072b2", "#009e73"};  // Okabe and Ito
+  double low = 1, high = 0;
+  for (scene::Integrator integrator : kIntegrators) {
+    Curve curve{name_of(integrator), kColors[static_cast<std::size_t>(integrator)], Marker::circle, false, {}, false};
+    for (const Row& row : rows) {
+      if (row.integrator != integrator || !row.failure.empty()) continue;
+      curve.points.emplace_back(row.truth(), row.told);
+      low = std::min(low, row.truth()), high = std::max(high, row.truth());
+    }
+    panel.curves.push_back(std::move(curve));
+  }
+  for (double factor : {kFactor, 1.0, 1 / kFactor})
+    panel.curves.push_back({fmt::format("× {:.2g}", factor),
+                            "#888888",
+                            Marker::square,
+                            factor != 1,
+                            {{low, factor * low}, {high, factor * high}}});
+  return log_log_svg({panel});
+}
+
+void measure(const std::filesystem::path& folder) {
+  set_thread_count(1);
+  std::vector<Row> rows;
+  for (const Case& one : kCases) {
+    scene::Scene scene = scene_of(one);
+    const Truth truth = truth_of(scene);
+    for (scene::Integrator integrator : kIntegrators) {
+      for (double step : kSteps) {
+        scene.time.integrator = integrator;
+        scene.time.step = step;
+        rows.push_back(row_of(one, scene, truth));
+        std::cout << fmt::format("{}, {}, {:g} ms: {}\n", one.name, name_of(integrator), 1e3 * step,
+                                 rows.back().failure.empty() ? fmt::format("{:.2f}", rows.back().ratio()) : "failed")
+                  << std::flush;
+      }
+    }
+  }
+  const auto made = std::count_if(rows.begin(), rows.end(), [](const Row& row) { return row.failure.empty(); });
+  const auto near = std::count_if(rows.begin(), rows.end(), [](const Row& row) {
+    return row.failure.empty() && row.ratio() > 1 / kFactor && row.ratio() < kFactor;
+  });
+  const std::string text = fmt::format(
+      "# Estimates against truth\n\nEstimates of `weft run --error` over the distance to a run of second order with "
+      "steps "
+      "an eighth (with contact a quarter) of the shortest, or over what that is uncertain by, if this is more. c: "
+      "paths "
+      "part, the centre of mass is compared with the median of {} starts. Within a factor of {:g}: {} of {}; {} "
+      "failed.\n\n"
+      "![plot](estimates.svg)\n\n{}",
+      kStarts, kFactor, near, made, rows.size() - static_cast<std::size_t>(made), markdown(ratios_of(rows)));
+  write_file(folder / "estimates.md", text);
+  write_file(folder / "estimates.csv", csv(table_of(rows)));
+  write_file(folder / "estimates.svg", plot_of(rows));
+  std::cout << fmt::format("within a factor of {:g}: {} of {}\n", kFactor, near, made);
+}
+
+}  // namespace
+}  // namespace weft::bench
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: weft_estimates DIR\n";
+    return 2;
+  }
+  weft::bench::measure(argv[1]);
+}
