@@ -15,6 +15,8 @@ constexpr double kShifts[] = {1e-6, 2e-6, 3e-6};
 // A start moved by a micrometre that comes out as so large a share of what steps and solver leave tells that paths
 // part.
 constexpr double kParts = 0.3;
+// And so does, whatever those leave, one that comes out as a thousand times as much.
+constexpr double kAmplified = 1e3;
 constexpr double kTighter = 0.1;  // newton_tolerance of the companion, in shares of the run's
 // Observed orders are believed between this share of the expected one and all of it: stiff waves and borders lower
 // them, and where nothing is left of them differences are no error that falls with step or spacing.
@@ -192,7 +194,8 @@ ErrorEstimate Companions::estimate() {
   if (options_.mesh) mesh = part(ErrorSource::mesh, [&] { return of_mesh(); });
   const double left = std::hypot(at(steps.errors, Quantity::position), at(solver.errors, Quantity::position)),
                moved = at(start_, Quantity::position);
-  result_.comparable = start.missing.empty() && moved <= std::max(10 * kShifts[0], kParts * left);
+  result_.comparable =
+      start.missing.empty() && moved <= std::clamp(kParts * left, 10 * kShifts[0], kAmplified * kShifts[0]);
   if (!result_.comparable) start = part(ErrorSource::start, [&] { return of_start(std::size(kShifts)); });
   result_.parts = {std::move(steps), std::move(solver), std::move(start)};
   if (options_.mesh) result_.parts.push_back(std::move(mesh));

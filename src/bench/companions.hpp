@@ -23,8 +23,8 @@ struct ErrorPart {
 };
 
 struct ErrorEstimate {
-  /// Whether paths can be compared. Where a micrometre at the start comes out as more than what steps and solver leave,
-  /// only functionals can.
+  /// Whether paths can be compared. Where a micrometre at the start comes out as more than a third of what steps and
+  /// solver leave, or as a millimetre, only functionals can.
   bool comparable = true;
   std::vector<ErrorPart> parts;
   Errors all{};      ///< root of the sum of the squares of the parts

@@ -48,7 +48,7 @@ std::string advice(const ErrorEstimate& estimate) {
   const ErrorPart& largest = estimate.largest();
   std::string text =
       fmt::format("largest by the {}; what lessens it: {}", name_of(largest.source), remedy(largest.source));
-  if (!estimate.comparable) text += "; paths part: a start moved by 1 µm comes out as more than steps and solver leave";
+  if (!estimate.comparable) text += "; paths part: a start moved by 1 µm matters as much as steps and solver do";
   return text;
 }
 
