@@ -24,8 +24,8 @@ constexpr double kLargestTolerance = 1e-3;
 constexpr int kTolerances = 9, kTolerancesWithContact = 5;
 // newton_tolerance falls by decades from the scene's down to this.
 constexpr double kLeastNewton = 1e-8, kDecade = 0.1;
-// Where references begin, in shares of the scene's.
-constexpr double kNewtonOfReference = 1e-2;
+// That of the runs with other meshes, in shares of the scene's.
+constexpr double kNewtonOfMeshes = 1e-2;
 // What a tenfold smaller newton_tolerance may change where the step is to decide, in shares of the error.
 constexpr double kDecides = 0.1;
 constexpr double kLinearTolerances[] = {0.3, 0.1, 0.03, 0.01, 0.003};
@@ -71,6 +71,8 @@ class Campaign {
 
   SamplePtr sample(const Setting& setting) const;
   SamplePtr run(Run& run, const SamplePtr& against, const std::vector<std::size_t>& same = {});
+  SamplePtr made(const Setting& setting);
+  Errors tighten(Setting& twice, SamplePtr& coarse);
   SamplePtr measure_candidate(Candidate& candidate);
   void measure_references();
   void measure_grid(Integrator integrator, double step);
@@ -163,30 +165,45 @@ Campaign::SamplePtr Campaign::run(Run& run, const SamplePtr& against, const std:
   return made;
 }
 
-// Its tolerance is found at twice its step; it is itself solved with a tenth of that.
-Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
+// A run of a reference; throws where it fails.
+Campaign::SamplePtr Campaign::made(const Setting& setting) {
+  Run tried{.setting = setting};
+  SamplePtr sample = run(tried, nullptr);
+  if (!sample) throw Error(ExitCode::simulation_failed, "{}", tried.failure);
+  return sample;
+}
+
+// Makes newton_tolerance of runs with twice the step of a reference tenfold smaller until that changes less than a
+// tenth of what the step of the reference does, or it fails. `coarse` becomes the last of them. Returns the last
+// change.
+Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const Quantity decides = deciding_quantity(result_);
-  Setting twice = candidate.setting, four_times = candidate.setting;
-  twice.step *= 2;
-  four_times.step *= 4;
-  const auto made = [&](const Setting& setting) {
-    Run tried{.setting = setting};
-    SamplePtr sample = run(tried, nullptr);
-    if (!sample) throw Error(ExitCode::simulation_failed, "{}", tried.failure);
-    return sample;
-  };
+  Setting four_times = twice;
+  four_times.step *= 2;
+  const double order = expected_order({.setting = twice}),
+               steps = at(difference(*coarse, *made(four_times)), decides) / std::pow(2, order);
+  for (Errors change{};;) {
+    Run tighter{.setting = twice};
+    tighter.setting.newton_tolerance = std::max(kLeastNewton, kDecade * twice.newton_tolerance);
+    const SamplePtr sample = run(tighter, coarse);
+    // Not before it was seen what a tenfold smaller one changes.
+    if (!sample && at(change, decides) == 0) throw Error(ExitCode::simulation_failed, "{}", tighter.failure);
+    if (!sample) return change;
+    change = tighter.errors;
+    twice = tighter.setting;
+    coarse = sample;
+    const bool exact = at(change, decides) <= std::max(kDecides * steps, at(sample->spread, decides));
+    if (exact || twice.newton_tolerance <= kLeastNewton) return change;
+  }
+}
+
+// Its tolerance is found at twice its step.
+Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
   try {
+    Setting twice = candidate.setting;
+    twice.step *= 2;
     SamplePtr coarse = made(twice);
-    const double order = expected_order({.setting = twice});
-    const double steps = at(difference(*coarse, *made(four_times)), decides) / std::pow(2, order);
-    for (bool exact = false; !exact;) {
-      twice.newton_tolerance = std::max(kLeastNewton, kDecade * twice.newton_tolerance);
-      const SamplePtr tighter = made(twice);
-      candidate.solver = difference(*coarse, *tighter);
-      exact = at(candidate.solver, decides) <= std::max(kDecides * steps, at(tighter->spread, decides)) ||
-              twice.newton_tolerance == kLeastNewton;
-      coarse = tighter;
-    }
+    candidate.solver = tighten(twice, coarse);
     candidate.setting.newton_tolerance = twice.newton_tolerance;
     SamplePtr fine = made(candidate.setting);
     candidate.step = difference(*coarse, *fine);
@@ -202,8 +219,6 @@ Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
 void Campaign::measure_references() {
   const double step = finest_ / (result_.contact ? kReferenceCutWithContact : kReferenceCut);
   Candidate first{as_in_scene(best_, step)}, second{as_in_scene(other_, step)};
-  for (Candidate* candidate : {&first, &second})
-    candidate->setting.newton_tolerance = std::max(kLeastNewton, kNewtonOfReference * scene_.solver.newton_tolerance);
   reference_ = measure_candidate(first);
   SamplePtr beside = measure_candidate(second);
   if (!reference_ && !beside) throw Error(ExitCode::simulation_failed, "the reference run failed: {}", first.failure);
@@ -280,7 +295,7 @@ void Campaign::measure_meshes() {
   for (double refinement : kRefinements) {
     if (!can_refine(scene_, refinement)) continue;
     Run tried{.axis = Axis::mesh, .setting = as_in_scene(best_, 0.5 * scene_step_)};
-    tried.setting.newton_tolerance = std::max(kLeastNewton, kNewtonOfReference * tried.setting.newton_tolerance);
+    tried.setting.newton_tolerance = std::max(kLeastNewton, kNewtonOfMeshes * tried.setting.newton_tolerance);
     tried.setting.refinement = refinement;
     const SamplePtr against = std::move(finer);
     finer = run(tried, against, against ? same_in_twice_as_fine(with(tried.setting)) : std::vector<std::size_t>{});
