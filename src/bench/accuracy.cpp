@@ -178,10 +178,7 @@ Campaign::SamplePtr Campaign::made(const Setting& setting) {
 // change.
 Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
   const Quantity decides = deciding_quantity(result_);
-  Setting four_times = twice;
-  four_times.step *= 2;
-  const double order = expected_order({.setting = twice}),
-               steps = at(difference(*coarse, *made(four_times)), decides) / std::pow(2, order);
+  const double order = expected_order({.setting = twice});
   for (Errors change{};;) {
     Run tighter{.setting = twice};
     tighter.setting.newton_tolerance = std::max(kLeastNewton, kDecade * twice.newton_tolerance);
@@ -192,7 +189,10 @@ Errors Campaign::tighten(Setting& twice, SamplePtr& coarse) {
     change = tighter.errors;
     twice = tighter.setting;
     coarse = sample;
-    const bool exact = at(change, decides) <= std::max(kDecides * steps, at(sample->spread, decides));
+    Setting four_times = twice;
+    four_times.step *= 2;
+    const double step = at(difference(*coarse, *made(four_times)), decides) / std::pow(2, order);
+    const bool exact = at(change, decides) <= std::max(kDecides * step, at(sample->spread, decides));
     if (exact || twice.newton_tolerance <= kLeastNewton) return change;
   }
 }
