@@ -69,8 +69,8 @@ void add_contact_cases(const Add& add) {
   add("needle_below", "on the tip of a cone 5 mm wide and 0.3 m high",
       falling("particles = 21\nposition = [0, 0, 0.32]\n", {}, "shape = \"cone\"\nradius = 0.0025\nheight = 0.3\n"),
       25);
-  add("needles_on_ball", "cells of 25 mm by 1 mm on a ball",
-      falling("particles = [21, 501]\nposition = [0, 0, 0.17]\n"), 10);
+  add("needles_on_ball", "cells of 50 mm by 2 mm on a ball",
+      falling("particles = [11, 251]\nposition = [0, 0, 0.17]\n"), 10);
 }
 
 std::vector<ExtremeCase> make_cases() {

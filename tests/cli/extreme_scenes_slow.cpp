@@ -75,13 +75,17 @@ TEST_P(ExtremeScene, EndsWithTheExitCodeOfItsVerdictAndWholeFiles) {
   const Trial& trial = GetParam();
   const bench::Outcome expected =
       bench::try_scene(support::scene_of_text(trial.text, trial.overrides), trial.frames - 1, trial.limit);
-  ASSERT_TRUE(expected.verdict == bench::Verdict::solved || expected.verdict == bench::Verdict::refused);
+  // That energy comes from nowhere shows in the report of `bench stability`, not in the exit code of a run.
+  ASSERT_NE(expected.verdict, bench::Verdict::not_finite);
   const bool refused = expected.verdict == bench::Verdict::refused;
   const Outcome outcome = run();
   EXPECT_EQ(outcome.exit_code, refused ? 5 : 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
-  // No temporary name is left, and the video holds every frame that was finished.
-  EXPECT_EQ(tree(), (std::set<std::string>{"output/s.effective.toml", "output/s.mp4", "s.toml", "stats.json"}));
+  // No temporary name is left but in the cache of a run that took so long that its state was saved, and the video holds
+  // every frame that was finished.
+  std::set<std::string> left = tree();
+  if (refused) std::erase_if(left, [](const std::string& name) { return name.starts_with("output/.s.weft-cache/"); });
+  EXPECT_EQ(left, (std::set<std::string>{"output/s.effective.toml", "output/s.mp4", "s.toml", "stats.json"}));
   EXPECT_EQ(probe_video(folder_ / "output/s.mp4").frames, expected.frames + 1);
 
   std::istringstream lines(outcome.err);
