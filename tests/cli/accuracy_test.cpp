@@ -401,6 +401,26 @@ TEST(Plot, PlacesPointsOnLogarithmicAxesAndLeavesOutWhatIsNotPositive) {
   EXPECT_EQ(svg.find("inf"), std::string::npos);
 }
 
+TEST(Plot, NamesDecadesAndWhereThereAreFewTheirParts) {
+  const auto svg_of = [](double low, double high) {
+    return log_log_svg({{"t", "x", "y", {{"c", "red", Marker::circle, false, {{low, low}, {high, high}}}}, {}}});
+  };
+  const std::string wide = svg_of(1e-7, 10);
+  for (int decade : {-7, -6, -5, -4})
+    EXPECT_EQ(count_of(wide, fmt::format(">10<tspan dy='-4' font-size='8'>{}</tspan>", decade)), 2u) << "on both axes";
+  for (const char* name : {">0.001<", ">0.1<"}) EXPECT_EQ(count_of(wide, name), 2u);
+  const std::string narrow = svg_of(2e-5, 3e-5);
+  for (const char* part : {"2", "2.5", "3"})
+    EXPECT_EQ(count_of(narrow, fmt::format(">{}·10<tspan dy='-4' font-size='8'>-5</tspan>", part)), 2u) << part;
+}
+
+TEST(Plot, DrawsNoLineThroughPointsThatAreNoSeries) {
+  Curve curve{"c", "red", Marker::circle, false, {{1, 1}, {10, 10}}};
+  EXPECT_EQ(count_of(log_log_svg({{"t", "x", "y", {curve}, {}}}), "stroke='red'"), 2u) << "and in the name";
+  curve.line = false;
+  EXPECT_EQ(count_of(log_log_svg({{"t", "x", "y", {curve}, {}}}), "stroke='red'"), 0u);
+}
+
 class BenchAccuracy : public support::TestFolder {};
 
 TEST_F(BenchAccuracy, WritesReportTableAndPlots) {

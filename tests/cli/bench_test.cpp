@@ -1,6 +1,9 @@
 // Verdicts on runs, and tables of them.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <numbers>
+
 #include "bench/report.hpp"
 #include "bench/stability.hpp"
 #include "support/scene_runs.hpp"
@@ -65,6 +68,13 @@ TEST(Stability, MoreEnergyThanDrivesItIsUnbounded) {
   EXPECT_EQ(try_scene(support::scene_of_text(jump.text), 10, {.driven = 1e-3}).verdict, Verdict::unbounded);
 }
 
+TEST(Stability, PeriodsAreThoseOfAPlateAndOfAChain) {
+  // Half a metre hangs from its edge: 2π √(2 L / 3 g). Masses of 0.2 kg/m² · (50 mm)² between springs of 1000 N/m swing
+  // against each other with 2 √(k / m).
+  EXPECT_NEAR(swing_period(), 1.1582, 1e-4);
+  EXPECT_NEAR(stiffest_period(1000), 2 * std::numbers::pi / (2 * std::sqrt(1000 / (0.2 * 0.05 * 0.05))), 1e-12);
+}
+
 TEST(Report, FieldsWithCommasQuotesAndLinesAreQuoted) {
   EXPECT_EQ(csv({{"a", "b"}, {"1,2", "say \"x\""}, {"two\nlines", ""}}),
             "a,b\n\"1,2\",\"say \"\"x\"\"\"\n\"two\nlines\",\n");
@@ -81,6 +91,10 @@ TEST(Report, MapHasAColoredCellForEachRun) {
   const std::string svg = map_svg(cells);
   EXPECT_NE(svg.find("#7fbf7b"), std::string::npos);
   EXPECT_NE(svg.find("#f1c453"), std::string::npos);
+  cells[1].swings = 1.95;
+  cells[1].stiffest_periods = 12'000;
+  EXPECT_EQ(map_table(cells)[2][4], "1.9");
+  EXPECT_EQ(map_table(cells)[2][5], "1.2e+04");
   EXPECT_EQ(map_table(cells).size(), 3u);
   EXPECT_EQ(map_table(cells)[2].back(), "why");
 }
