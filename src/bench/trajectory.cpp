@@ -18,6 +18,11 @@ Vec3 up_of(const scene::Scene& scene) {
   return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
 }
 
+// Cut into cells, unlike what comes from a file or a sewing pattern.
+bool is_grid(const scene::Cloth& cloth) {
+  return cloth.shape != scene::ClothShape::mesh && cloth.shape != scene::ClothShape::pattern;
+}
+
 // Of all cloths, each by itself: shadow, or where `up` is zero the area of the surface [m²].
 double area_of(const frame::FrameSnapshot& snapshot, std::size_t cloths, const Vec3& up) {
   double area = 0;
@@ -174,14 +179,14 @@ bool can_refine(const scene::Scene& scene, double refinement) {
     return eighths % kFinestCut == 0 && eighths >= 2 * kFinestCut;
   };
   return std::all_of(scene.cloths.begin(), scene.cloths.end(), [&](const scene::Cloth& cloth) {
-    return cloth.shape != scene::ClothShape::mesh && whole(cloth.particles_weft) && whole(cloth.particles_warp);
+    return is_grid(cloth) && whole(cloth.particles_weft) && whole(cloth.particles_warp);
   });
 }
 
 void refine(scene::Scene& scene, double refinement) {
   const auto refined = [&](int particles) { return static_cast<int>((particles - 1) * refinement) + 1; };
   for (scene::Cloth& cloth : scene.cloths) {
-    if (cloth.shape == scene::ClothShape::mesh) continue;
+    if (!is_grid(cloth)) continue;
     cloth.particles_weft = refined(cloth.particles_weft);
     cloth.particles_warp = refined(cloth.particles_warp);
   }

@@ -147,6 +147,15 @@ TEST(Trajectories, ParticlesOfAMeshLieOnThoseOfTheFinerOne) {
   }
 }
 
+TEST(Trajectories, MeshesFromElsewhereAreNotRefined) {
+  scene::Scene scene = support::scene_of_text("[[cloth]]\nname = \"a\"\nparticles = 5\n");
+  EXPECT_TRUE(can_refine(scene, 0.5));
+  for (const auto shape : {scene::ClothShape::mesh, scene::ClothShape::pattern}) {
+    scene.cloths[0].shape = shape;
+    EXPECT_FALSE(can_refine(scene, 0.5));
+  }
+}
+
 // The sheet that swings, small and short.
 scene::Scene small_sheet(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"cloth.sheet.particles=6", "time.duration=0.2"};
