@@ -19,9 +19,6 @@ namespace {
 // as a few products with the matrix of 4,000 particles.
 constexpr Index kPatches = 70;
 
-bool bends(const scene::Material& m) {
-  return m.bend > 0 || m.bend_viscosity > 0 || m.bend_friction > 0;
-}
 bool meets_air(const scene::Material& m, const scene::Physics& physics) {
   return physics.air_density > 0 && m.drag > 0;
 }
@@ -64,6 +61,10 @@ double ease(double s) {
 }
 
 }  // namespace
+
+bool bends(const scene::Material& material) {
+  return material.bend > 0;
+}
 
 ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environment& environment)
     : gravity_(scene.physics.gravity) {

@@ -16,6 +16,10 @@
 
 namespace weft::simulation {
 
+/// Whether cloth of this material has bending at all. Without rigidity there is nothing that the viscosity and the
+/// friction of a fabric could damp.
+bool bends(const scene::Material& material);
+
 /// Particles are numbered through all cloths, in the order of the scene. Nothing here changes but the rest shape of
 /// cloth that is being sewn: the same arguments give the same forces.
 class ClothSystem {
