@@ -88,7 +88,7 @@ class StepProblems : public ::testing::Test {
 TEST_F(StepProblems, GiveTheSameForceWhateverWasEvaluatedBefore) {
   StepProblem used = problem(), fresh = problem();
   linearise(used, moved(1, 2));
-  used.begin_step(0);
+  used.begin_step(0, {});
   const std::vector<Vec3> of_linearisation = linearise(used, x_);
   EXPECT_EQ(of_linearisation, linearise(fresh, x_));
   EXPECT_NE(of_linearisation, forces(used, moved(0, 1)));
@@ -103,7 +103,7 @@ TEST_F(StepProblems, KnowForcesByPositionAndVelocityOfEachCloth) {
     for (std::size_t i : {0UL, 2UL * kParticles - 1}) {
       (*of)[i].y() += 1e-9;
       StepProblem fresh = problem();
-      fresh.begin_step(0);
+      fresh.begin_step(0, {});
       linearise(fresh, x_);
       EXPECT_EQ(forces(used, x_), forces(fresh, x_)) << i;
     }
@@ -186,7 +186,7 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
   EXPECT_EQ(problem.memory().friction.updates, 6);
   EXPECT_EQ(problem.memory().friction.loads.size(), 1U);
   const double lagging = problem.memory().friction.loads[0];
-  problem.begin_step(0);
+  problem.begin_step(0, {});
   EXPECT_EQ(problem.memory().friction.updates, 0);
   linearise(problem, x_);
   EXPECT_NE(problem.memory().friction.loads[0], lagging);  // that of the start
@@ -224,7 +224,7 @@ b = "back.right"
   const integrator::StagePoint at{x, still, x, kRate, 1};
   const auto force_at = [&](double t) {
     std::vector<Vec3> force = still;
-    problem.begin_step(t);
+    problem.begin_step(t, {});
     problem.linearise(at, 0, force);
     return force;
   };

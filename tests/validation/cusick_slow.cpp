@@ -37,16 +37,16 @@ double chance(int ring, int place, int seed) {
 
 /// Rings of triangles, the k-th with 6 k vertices, `free` of them outside of the plates. Where that of the others is
 /// regular their place is off by up to 0.15 of the spacing, so that no direction is better than another. The last held
-/// ring lies half a spacing outside of the plates: see clamp_share().
+/// ring is the plates' edge.
 Specimen rings(int free, int seed) {
-  const double l = (kSpecimen - kPlates) / (free + 0.5), last_held = kPlates + 0.5 * l;
-  const int inner = static_cast<int>(std::lround(last_held / l)), all = inner + free;
+  const double l = (kSpecimen - kPlates) / free;
+  const int inner = static_cast<int>(std::lround(kPlates / l)), all = inner + free;
   Specimen disc;
   disc.positions.emplace_back(0, 0, 0);
   std::vector<int> first{0};
   for (int k = 1; k <= all; ++k) {
     first.push_back(static_cast<int>(disc.positions.size()));
-    const double radius = k <= inner ? last_held * k / inner : last_held + (k - inner) * l;
+    const double radius = k <= inner ? kPlates * k / inner : kPlates + (k - inner) * l;
     for (int i = 0; i < 6 * k; ++i) {
       const double along = k > inner ? 0.3 * chance(k, i, seed) : 0;
       const double across = k > inner && k < all ? 0.3 * l * chance(k, i, seed + 1) : 0;
