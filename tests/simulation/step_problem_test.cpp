@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "forces/sheets.hpp"
+#include "simulation/pins.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -190,6 +191,37 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
   EXPECT_EQ(problem.memory().friction.updates, 0);
   linearise(problem, x_);
   EXPECT_NE(problem.memory().friction.loads[0], lagging);  // that of the start
+}
+
+TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {
+  for (const char* shape : {"quads", "crossed_triangles"}) {
+    const scene::Scene scene =
+        support::scene_of_text(std::string("[[cloth]]\nname = 'sheet'\nparticles = 5\nshape = '") + shape +
+                               "'\npin = [{ low = [0, 0], high = [0.25, 1] }]\n");
+    const environment::Environment environment(scene);
+    const std::vector<Vec3>& x = environment.cloths[0].start;
+    const std::vector<Vec3> still(x.size(), Vec3::Zero());
+    std::vector<integrator::HeldParticle> pinned;
+    for (Index i : particles_of(scene.cloths[0].pins[0], environment.cloths[0], 0))
+      pinned.push_back({{i, Mat3::Zero()}, x[i], Vec3::Zero()});
+    ClothSystem cloth(scene, environment);
+    StepProblem problem(cloth);
+    const auto matrix_with = [&](std::span<const integrator::HeldParticle> held) {
+      std::vector<Vec3> force = still;
+      problem.begin_step(0, held);
+      problem.linearise({x, still, x, kRate, 1}, 0, force);
+      std::vector<Mat3> all;
+      const solver::BlockMatrix& matrix = problem.memory().system.matrix;
+      matrix.for_each_block(0, matrix.rows(), [&](Index, Index, const Mat3& block) { all.push_back(block); });
+      return all;
+    };
+    const std::vector<Mat3> held = matrix_with(pinned);
+    const auto version = problem.memory().system.parts[0].version;
+    EXPECT_EQ(matrix_with(pinned), held);
+    EXPECT_EQ(problem.memory().system.parts[0].version, version) << "nothing was let go";
+    EXPECT_NE(matrix_with({}), held) << shape;
+    EXPECT_EQ(matrix_with(pinned), held) << shape;
+  }
 }
 
 class SewnProblem : public support::TestFolder {};

