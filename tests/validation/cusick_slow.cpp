@@ -155,7 +155,7 @@ class Cusick : public support::TestFolder {
     double mean = 0;
     std::printf("%s:", name);
     for (int seed : {1, 2}) {
-      const Specimen disc = rings(10, seed);
+      const Specimen disc = rings(14, seed);
       const Drape d = drape(scene_of(disc, material), disc.triangles);
       std::printf(" %.1f %% (strain %.4f, %.1f CPU s)", 100 * d.coefficient, d.strain, d.cpu_s);
       mean += 0.5 * d.coefficient;
@@ -218,6 +218,7 @@ TEST_F(Cusick, CoefficientIsThatOfAFinerMesh) {
     found.push_back(drape(scene_of(disc, scene::find_fabric("leather")->material), disc.triangles).coefficient);
     std::printf("leather, %d rings, %zu particles: %.1f %%\n", free, disc.positions.size(), 100 * found.back());
   }
+  // Measured: 53, 60 and 60 %.
   EXPECT_NEAR(found[1], found[2], 0.04);
 }
 
