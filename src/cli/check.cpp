@@ -56,6 +56,7 @@ void check_patterns(const scene::Scene& scene, Mistakes& mistakes) {
 std::size_t count_particles(const scene::Scene& scene, Mistakes& mistakes) {
   std::size_t particles = 0;
   for (const scene::Cloth& cloth : scene.cloths) try {
+      environment::check_spacing(scene, cloth);
       const auto known = static_cast<std::size_t>(rectangle_particles(cloth));
       particles += known > 0 ? known : environment::make_cloth(scene, cloth).mesh.positions.size();
     } catch (const Error& error) {

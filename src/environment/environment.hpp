@@ -45,6 +45,10 @@ struct BodyObject {
 /// Rest places of the particles of a rectangle of cloth.
 mesh::Grid grid_of(const scene::Cloth& cloth);
 
+/// Throws Error(scene_invalid) where the cells of a rectangle are too uneven to meet obstacles. make_cloth() does so,
+/// and for triangles of files.
+void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
+
 /// A cloth as it starts. Throws Error(asset_unreadable, scene_invalid) for what its file holds, naming the scene's
 /// line.
 ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth);

@@ -10,37 +10,49 @@ Vec3 weighted_sum(const std::array<Index, 4>& particles, const std::array<double
   return sum;
 }
 
-// Second derivative at the middle one of three places, from their spacings: exact for parabolas. The weights add up to
-// exactly zero, so that a motion of all of them leaves no rounding behind.
-std::array<double, 4> second_difference(double before, double after) {
-  const double first = 2 / (before * (before + after)), last = 2 / (after * (before + after));
-  return {first, -(first + last), last, 0};
-}
-
 }  // namespace
 
 Bend::Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters)
-    : rigidity_(parameters.rigidity), damping_(parameters) {
-  const auto at = [&](int i, int j) { return first + grid.index(i, j); };
+    : grid_(grid), first_(first), rigidity_(parameters.rigidity), damping_(parameters) {
+  lay_out({});
+}
+
+void Bend::hold(std::span<const char> held) {
+  lay_out(held);
+}
+
+// The same differences in the same order, whatever is held.
+void Bend::lay_out(std::span<const char> held) {
+  differences_.clear();
+  const mesh::Grid& grid = grid_;
+  const auto at = [&](int i, int j) { return first_ + grid.index(i, j); };
   for (int j = 0; j < grid.nv; ++j) {
     for (int i = 0; i < grid.nu; ++i) {
       const bool last_i = i + 1 == grid.nu, last_j = j + 1 == grid.nv;
       if (i > 0 && !last_i)
-        add_difference({at(i - 1, j), at(i, j), at(i + 1, j), at(i, j)}, second_difference(grid.du(i - 1), grid.du(i)),
-                       grid.width_u(i) * grid.width_v(j), 3);
+        add_line({at(i - 1, j), at(i, j), at(i + 1, j)}, grid.du(i - 1), grid.du(i), grid.width_v(j), held);
       if (j > 0 && !last_j)
-        add_difference({at(i, j - 1), at(i, j), at(i, j + 1), at(i, j)}, second_difference(grid.dv(j - 1), grid.dv(j)),
-                       grid.width_v(j) * grid.width_u(i), 3);
+        add_line({at(i, j - 1), at(i, j), at(i, j + 1)}, grid.dv(j - 1), grid.dv(j), grid.width_u(i), held);
       // 2 ‖s_uv‖²: the mixed derivative counts twice.
       if (last_i || last_j) continue;
       const double cell = grid.du(i) * grid.dv(j), uv = 1 / cell;
-      add_difference({at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)}, {uv, -uv, -uv, uv}, 2 * cell, 4);
+      differences_.push_back(
+          {{at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)}, {uv, -uv, -uv, uv}, 2 * cell, 4});
     }
   }
 }
 
-void Bend::add_difference(std::array<Index, 4> particles, std::array<double, 4> weights, double area, int count) {
-  differences_.push_back({particles, weights, area, count});
+// Second derivative at the middle one of three places from their spacings, exact for parabolas: the turn from one side
+// to the other over the length that it takes, half of both spacings, or of the one that is free. The weights add up to
+// exactly zero, so that a motion of all of them leaves no rounding behind.
+void Bend::add_line(const std::array<Index, 3>& particles, double before, double after, double width,
+                    std::span<const char> held) {
+  const auto is_held = [&](std::size_t k) { return !held.empty() && held[particles[k]]; };
+  double length = 0.5 * (before + after);
+  if (is_held(1) && is_held(0) != is_held(2)) length = 0.5 * (is_held(0) ? after : before);
+  const double first = 1 / (before * length), last = 1 / (after * length);
+  differences_.push_back(
+      {{particles[0], particles[1], particles[2], particles[1]}, {first, -(first + last), last, 0}, length * width, 3});
 }
 
 void Bend::couple(std::vector<std::pair<Index, Index>>& pairs) const {

@@ -16,7 +16,11 @@ namespace weft::forces {
 /// energy becomes quadratic in the positions, with a constant, definite Jacobian that is assembled once (Bergou et al.,
 /// "A Quadratic Bending Model for Inextensible Surfaces", 2006). What is added in the plane is B/l² against k: for
 /// cotton at l = 1 cm, 0.5 N/m against 1000 N/m.
-/// Viscosity and friction: see BendDamping.
+///
+/// A difference stands for half a spacing to either side of its middle. Where the middle and one end are held, that
+/// side keeps its direction, and all of the turn happens in the half spacing that is free: the clamp acts at the last
+/// held particle. Counted over both halves, as if nothing were held, it acts half a spacing behind, an error of first
+/// order. Viscosity and friction: see BendDamping.
 class Bend final : public Force {
  public:
   Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters);
@@ -28,6 +32,7 @@ class Bend final : public Force {
 
   /// All of the elastic part.
   void add_constant_stiffness(solver::BlockMatrix& matrix) const override;
+  void hold(std::span<const char> held) override;
 
  private:
   /// A second difference Σ w_k x_k [1/m²·m] that stands for `area`; unused entries repeat particle 0 with weight 0.
@@ -37,9 +42,13 @@ class Bend final : public Force {
     double area;
     int count;
   };
-  void add_difference(std::array<Index, 4> particles, std::array<double, 4> weights, double area, int count);
+  void lay_out(std::span<const char> held);
+  void add_line(const std::array<Index, 3>& particles, double before, double after, double width,
+                std::span<const char> held);
   Vec3 damping(std::size_t index, const Vec3& curvature, const Evaluation& at) const;
 
+  mesh::Grid grid_;
+  Index first_;
   double rigidity_;
   BendDamping damping_;
   std::vector<Difference> differences_;

@@ -46,8 +46,12 @@ class Force {
   /// Elastic energy [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
 
-  /// Adds the part of −∂f/∂x that never changes, if there is one; `add` leaves it out.
+  /// Adds the part of −∂f/∂x that only hold() changes, if there is one; `add` leaves it out.
   virtual void add_constant_stiffness(solver::BlockMatrix& /*matrix*/) const {}
+
+  /// Which particles of all cloths are held in place or moved from now on: what they leave free may resist otherwise.
+  /// The pattern of the Jacobian stays.
+  virtual void hold(std::span<const char> /*held*/) {}
 };
 
 /// What resists motion within the sheet, and knows how far it is stretched.

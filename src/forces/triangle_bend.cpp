@@ -39,30 +39,16 @@ Plane plane_of(std::span<const Index> particles, std::span<const Vec3> x) {
   return plane;
 }
 
-}  // namespace
-
-TriangleBend::TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters)
-    : rigidity_(parameters.rigidity), damping_(parameters) {
-  std::size_t pairs = 0;
-  const std::vector<CurvatureStencil> stencils = curvature_stencils(sheet);
-  for (std::size_t t = 0; t < stencils.size(); ++t) {
-    const std::size_t begin = particles_.size(), count = stencils[t].vertices.size();
-    particles_.insert(particles_.end(), stencils[t].vertices.begin(), stencils[t].vertices.end());
-    for (const Vec3& weight : stencils[t].weights) weights_.emplace_back(weight.x(), weight.y(), weight.z(), 0);
-    elements_.push_back({begin, begin + count, pairs, mesh::rest_area(sheet, t)});
-    pairs += count * count;
-    if (!sheet.sewn) find_rest(elements_.back(), sheet.material[t], sheet.rest);
-  }
-  for (Index& particle : particles_) particle += first;
-}
-
-// Signed curvature of the rest shape; what it has in the plane is taken out of the weights. Particles are still
-// numbered within the cloth.
-void TriangleBend::find_rest(Element& element, const std::array<Vec2, 3>& material, std::span<const Vec3> rest) {
-  const Mat3 curved = columns_of(curvature(element, rest));
-  if (curved.norm() * std::sqrt(element.area) < kFlatRest) return;
-  const std::span<const Index> corners = particles(element);
-  element.rest = curved.transpose() * plane_of(corners, rest).normal;
+/// Signed curvature of the rest shape of a triangle, s_uu, s_vv and s_uv; what it has in the plane is taken out of the
+/// stencil.
+Vec3 take_rest(CurvatureStencil& stencil, double area, const std::array<Vec2, 3>& material,
+               std::span<const Vec3> rest) {
+  Mat3 curved = Mat3::Zero();
+  for (std::size_t k = 0; k < stencil.vertices.size(); ++k)
+    curved += rest[stencil.vertices[k]] * stencil.weights[k].transpose();
+  if (curved.norm() * std::sqrt(area) < kFlatRest) return Vec3::Zero();
+  const std::span<const Index> corners(stencil.vertices);
+  const Vec3 normal = plane_of(corners, rest).normal;
   Eigen::Matrix2d sides;
   sides << material[1] - material[0], material[2] - material[0];
   const Eigen::Matrix2d inverse = sides.inverse();
@@ -72,8 +58,44 @@ void TriangleBend::find_rest(Element& element, const std::array<Vec2, 3>& materi
   for (std::size_t k = 0; k < 3; ++k)
     for (int axis = 0; axis < 2; ++axis) tangents[axis] += gradients[k][axis] * rest[corners[k]];
   for (std::size_t k = 0; k < 3; ++k)
-    for (int axis = 0; axis < 2; ++axis)
-      weights_[element.begin + k].head<3>() -= gradients[k][axis] * (curved.transpose() * tangents[axis]).array();
+    for (int axis = 0; axis < 2; ++axis) stencil.weights[k] -= gradients[k][axis] * curved.transpose() * tangents[axis];
+  return curved.transpose() * normal;
+}
+
+}  // namespace
+
+TriangleBend::TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters,
+                           std::span<const char> pinned)
+    : first_(first), rigidity_(parameters.rigidity), damping_(parameters), sheet_(sheet) {
+  if (!pinned.empty()) pinned_.assign(pinned.begin() + first, pinned.begin() + first + std::ssize(sheet.rest));
+  held_ = pinned_;
+  use_held();
+  if (std::ranges::count(pinned_, 0) == std::ssize(pinned_)) sheet_ = {};
+}
+
+void TriangleBend::hold(std::span<const char> held) {
+  if (sheet_.triangles.empty()) return;
+  const std::span<const char> own = held.subspan(static_cast<std::size_t>(first_), held_.size());
+  if (std::ranges::equal(own, held_)) return;
+  held_.assign(own.begin(), own.end());
+  use_held();
+}
+
+// The same particles in the same order, whatever is held.
+void TriangleBend::use_held() {
+  elements_.clear(), particles_.clear(), weights_.clear();
+  std::size_t pairs = 0;
+  std::vector<CurvatureStencil> stencils = curvature_stencils(sheet_, pinned_, held_);
+  for (std::size_t t = 0; t < stencils.size(); ++t) {
+    const double area = mesh::rest_area(sheet_, t);
+    Vec3 rest = Vec3::Zero();
+    if (!sheet_.sewn) rest = take_rest(stencils[t], area, sheet_.material[t], sheet_.rest);
+    const std::size_t begin = particles_.size(), count = stencils[t].vertices.size();
+    for (Index vertex : stencils[t].vertices) particles_.push_back(first_ + vertex);
+    for (const Vec3& weight : stencils[t].weights) weights_.emplace_back(weight.x(), weight.y(), weight.z(), 0);
+    elements_.push_back({begin, begin + count, pairs, area, rest});
+    pairs += count * count;
+  }
 }
 
 TriangleBend::Curvature TriangleBend::curvature(const Element& element, std::span<const Vec3> x) const {

@@ -15,7 +15,9 @@ namespace weft::forces {
 /// add to it in every evaluation, −B A κ_ab n·s_ab. Viscosity and friction: see BendDamping.
 class TriangleBend final : public Force {
  public:
-  TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters);
+  /// `pinned`: of all particles, those that hold() may be given; they are held at first. Empty: none.
+  TriangleBend(const mesh::Sheet& sheet, Index first, const BendParameters& parameters,
+               std::span<const char> pinned = {});
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   bool isotropic() const override;
@@ -23,6 +25,7 @@ class TriangleBend final : public Force {
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> x) const override;
   void add_constant_stiffness(solver::BlockMatrix& matrix) const override;
+  void hold(std::span<const char> held) override;
 
  private:
   /// Of s_uu, s_vv, s_uv, and a fourth that is zero: they are worked on together.
@@ -39,14 +42,17 @@ class TriangleBend final : public Force {
     return std::span(particles_).subspan(e.begin, e.end - e.begin);
   }
   Curvature curvature(const Element& element, std::span<const Vec3> x) const;
-  void find_rest(Element& element, const std::array<Vec2, 3>& material, std::span<const Vec3> rest);
+  void use_held();
   void add_damping(const Element& element, const Curvature& curved, const Evaluation& at, Curvature& moment) const;
   void add_secants(const Element& element, const Lanes& stiffness, solver::BlockMatrix& matrix) const;
   void add_exact_blocks(const Element& element, const Mat3& curved, const Mat3& velocity, const Evaluation& at) const;
   void add_rest_moment(const Element& element, const Mat3& curved, const Evaluation& at) const;
 
+  Index first_;
   double rigidity_;
   BendDamping damping_;
+  mesh::Sheet sheet_;                // where pins let go: what stencils are made of; else empty
+  std::vector<char> pinned_, held_;  // per vertex of the sheet
   std::vector<Element> elements_;
   // One after the other, of all elements.
   std::vector<Index> particles_;

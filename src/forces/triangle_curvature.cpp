@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <complex>
+#include <limits>
 #include <map>
 #include <numbers>
 
@@ -22,7 +23,10 @@ constexpr double kMaxCorrection = 1;
 constexpr double kExact = 1e-9;
 
 /// Derivative of a function at the middle of an edge, outward from its first triangle [1/m].
-using Slope = std::vector<std::pair<Index, double>>;
+struct Slope {
+  std::vector<std::pair<Index, double>> weights;
+  bool near_pin = false;  ///< whether pins change it
+};
 
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
@@ -30,7 +34,8 @@ std::size_t at(Index i) {
 
 class Slopes {
  public:
-  explicit Slopes(const mesh::Sheet& sheet) : sheet_(sheet), edges_(mesh::collect_edges(sheet.triangles)) {}
+  Slopes(const mesh::Sheet& sheet, std::span<const char> pinned, std::span<const char> held)
+      : sheet_(sheet), edges_(mesh::collect_edges(sheet.triangles)), pinned_(pinned), held_(held) {}
 
   const mesh::EdgeSet& edges() const { return edges_; }
   Slope across(const mesh::Edge& edge) const;
@@ -42,6 +47,24 @@ class Slopes {
     std::vector<std::pair<Index, Point>> vertices;
     std::size_t last_ring = 0;  // first triangle of it
   };
+  /// What a slope is made of: places by (1, a, b), d = a along + b over from the middle of the edge.
+  struct Axes {
+    Point middle, along, over;
+
+    Vec2 operator()(const Point& at) const {
+      const Point d = at - middle;
+      return Vec2(cross(d, over), cross(along, d)) / cross(along, over);
+    }
+  };
+  static double cross(const Point& a, const Point& b) { return (std::conj(a) * b).imag(); }
+  /// Whether all corners of a triangle are marked.
+  bool within(std::span<const char> marked, Index triangle) const {
+    return !marked.empty() &&
+           std::ranges::all_of(sheet_.triangles[at(triangle)], [&](Index v) { return marked[at(v)] != 0; });
+  }
+  Eigen::VectorXd smooth(Patch& patch, const Axes& axes) const;
+  Eigen::VectorXd clamped(const Patch& patch, const Axes& axes) const;
+  Eigen::VectorXd in_front_of_clamp(const Patch& patch, const Axes& axes, const std::array<Point, 2>& clamp) const;
   void add_ring(Patch& patch) const;
   void add_neighbour(Patch& patch, std::size_t member, std::size_t side) const;
   std::size_t side_of(Index triangle, const mesh::Edge& edge) const;
@@ -52,6 +75,7 @@ class Slopes {
 
   const mesh::Sheet& sheet_;
   mesh::EdgeSet edges_;
+  std::span<const char> pinned_, held_;
 };
 
 // Which side of the triangle an edge is.
@@ -88,9 +112,98 @@ void Slopes::add_ring(Patch& patch) const {
     for (std::size_t side = 0; side < 3; ++side) add_neighbour(patch, member, side);
 }
 
+// The smallest change of these weights, one for each column of moments, after which they have the wanted moments; empty
+// where it is large or none has.
+Eigen::VectorXd corrected(const Eigen::VectorXd& weights, const Eigen::MatrixXd& moments,
+                          const Eigen::VectorXd& wanted) {
+  const Eigen::VectorXd missing = wanted - moments * weights;
+  const Eigen::VectorXd correction = moments.completeOrthogonalDecomposition().solve(missing);
+  if ((moments * correction - missing).norm() < kExact && correction.norm() < kMaxCorrection * std::numbers::sqrt2)
+    return weights + correction;
+  return {};
+}
+
+// The difference of the two vertices opposite the edge, ∂/∂b of linear functions that do not change along the edge.
+Eigen::VectorXd across_opposite(std::size_t count) {
+  Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(count));
+  weights[3] = 1, weights[2] = -1;
+  return weights;
+}
+
 // Starts from the difference of the two vertices opposite the edge, exact for linear functions, and adds the smallest
 // weights that make it exact for quadratic ones. All that is invariant under linear maps of the patch, so that
 // stretched meshes do as well as others.
+Eigen::VectorXd Slopes::smooth(Patch& patch, const Axes& axes) const {
+  for (int ring = 1; ring <= kMaxRings; ++ring) {
+    add_ring(patch);
+    const auto count = static_cast<Eigen::Index>(patch.vertices.size());
+    Eigen::MatrixXd moments(6, count);
+    for (Eigen::Index k = 0; k < count; ++k) {
+      const Vec2 d = axes(patch.vertices[k].second);
+      moments.col(k) << 1, d.x(), d.y(), d.x() * d.x(), d.x() * d.y(), d.y() * d.y();
+    }
+    const Eigen::VectorXd weights =
+        corrected(across_opposite(patch.vertices.size()), moments, Eigen::VectorXd::Unit(6, 2));
+    if (weights.size() > 0) return weights;
+  }
+  // Too few triangles for quadratics: a mesh of one or two, or a corner of one.
+  return across_opposite(patch.vertices.size());
+}
+
+// Where the patch has held triangles; empty where it has none, or too little beside them.
+Eigen::VectorXd Slopes::clamped(const Patch& patch, const Axes& axes) const {
+  // The slope of a held triangle at the edge is that of the linear function through its corners.
+  for (std::size_t member : {0, 1}) {
+    if (!within(held_, patch.triangles[member].first)) continue;
+    const std::size_t apex = 2 + member;
+    const Vec2 d = axes(patch.vertices[apex].second);
+    Eigen::VectorXd weights = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(patch.vertices.size()));
+    weights[static_cast<Eigen::Index>(apex)] = 1 / d.y();
+    weights[0] = (-0.5 + d.x()) / d.y(), weights[1] = (-0.5 - d.x()) / d.y();
+    return weights;
+  }
+  // The nearest side at which a held triangle ends.
+  double nearest = std::numeric_limits<double>::infinity();
+  std::array<Point, 2> clamp;
+  for (const auto& [triangle, corners] : patch.triangles) {
+    if (!within(held_, triangle)) continue;
+    for (std::size_t side = 0; side < 3; ++side) {
+      const mesh::Edge& edge = edges_.edges[at(edges_.of_triangle[at(triangle)][side])];
+      const Index next = edge.triangles[0] == triangle ? edge.triangles[1] : edge.triangles[0];
+      const Point from = corners[side], to = corners[(side + 1) % 3];
+      const double distance = std::abs(0.5 * (from + to) - axes.middle);
+      if (next < 0 || within(held_, next) || distance >= nearest) continue;
+      nearest = distance;
+      clamp = {from, to};
+    }
+  }
+  return std::isinf(nearest) ? Eigen::VectorXd() : in_front_of_clamp(patch, axes, clamp);
+}
+
+// Exact for linear functions and for s², s the distance from a clamp with the held triangle on its left.
+Eigen::VectorXd Slopes::in_front_of_clamp(const Patch& patch, const Axes& axes,
+                                          const std::array<Point, 2>& clamp) const {
+  const Point line = clamp[1] - clamp[0];
+  // In units of the clamp's length, as a and b are in those of the edge's.
+  const auto distance = [&](const Point& at) { return std::max(0.0, cross(at - clamp[0], line) / std::norm(line)); };
+  const auto count = static_cast<Eigen::Index>(patch.vertices.size());
+  std::vector<char> in_clamp(patch.vertices.size());
+  for (const auto& [triangle, corners] : patch.triangles) {
+    if (!within(held_, triangle)) continue;
+    for (std::size_t k = 0; k < in_clamp.size(); ++k)
+      for (Index corner : sheet_.triangles[at(triangle)]) in_clamp[k] |= patch.vertices[k].first == corner;
+  }
+  Eigen::MatrixXd moments(4, count);
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const Vec2 d = axes(patch.vertices[k].second);
+    const double s = in_clamp[k] ? 0 : distance(patch.vertices[k].second);
+    moments.col(k) << 1, d.x(), d.y(), s * s;
+  }
+  const double across = cross(axes.over, line) / std::norm(line);  // ∂s/∂b
+  const Eigen::Vector4d wanted(0, 0, 1, 2 * distance(axes.middle) * across);
+  return corrected(across_opposite(patch.vertices.size()), moments, wanted);
+}
+
 Slope Slopes::across(const mesh::Edge& edge) const {
   const Index triangle = edge.triangles[0];
   const std::size_t side = side_of(triangle, edge);
@@ -101,36 +214,19 @@ Slope Slopes::across(const mesh::Edge& edge) const {
   add_neighbour(patch, 0, side);
 
   const Point p = patch.vertices[0].second, q = patch.vertices[1].second;
-  const Point along = q - p, over = patch.vertices[3].second - patch.vertices[2].second;
-  const auto cross = [](const Point& a, const Point& b) { return (std::conj(a) * b).imag(); };
-  const double determinant = cross(along, over);
-  Eigen::VectorXd best;
-  for (int ring = 1; ring <= kMaxRings && best.size() == 0; ++ring) {
-    add_ring(patch);
-    const auto count = static_cast<Eigen::Index>(patch.vertices.size());
-    Eigen::MatrixXd moments(6, count);
-    for (Eigen::Index k = 0; k < count; ++k) {
-      const Point d = patch.vertices[k].second - 0.5 * (p + q);
-      const double a = cross(d, over) / determinant, b = cross(along, d) / determinant;  // d = a along + b over
-      moments.col(k) << 1, a, b, a * a, a * b, b * b;
-    }
-    Eigen::VectorXd weights = Eigen::VectorXd::Zero(count);
-    weights[3] = 1, weights[2] = -1;
-    Eigen::VectorXd wanted = Eigen::VectorXd::Unit(6, 2);
-    wanted -= moments * weights;
-    const Eigen::VectorXd correction = moments.completeOrthogonalDecomposition().solve(wanted);
-    if ((moments * correction - wanted).norm() < kExact && correction.norm() < kMaxCorrection * std::numbers::sqrt2)
-      best = weights + correction;
-  }
-  // Too few triangles for quadratics: a mesh of one or two, or a corner of one.
-  if (best.size() == 0) best = (Eigen::VectorXd(4) << 0, 0, -1, 1).finished();
+  const Axes axes{0.5 * (p + q), q - p, patch.vertices[3].second - patch.vertices[2].second};
+  Eigen::VectorXd best = smooth(patch, axes);
+  Slope slope;
+  slope.near_pin = std::ranges::any_of(patch.triangles, [&](const auto& t) { return within(pinned_, t.first); });
+  if (slope.near_pin)
+    if (const Eigen::VectorXd of_clamp = clamped(patch, axes); of_clamp.size() > 0) best = of_clamp;
 
   // From the direction `over` to the outward normal: over = c t + d n.
-  const double length = std::abs(along), c = (std::conj(along) * over).real() / length, d = -determinant / length;
+  const double length = std::abs(axes.along), c = (std::conj(axes.along) * axes.over).real() / length,
+               d = -cross(axes.along, axes.over) / length;
   best[1] -= c / length;
   best[0] += c / length;
-  Slope slope;
-  for (Eigen::Index k = 0; k < best.size(); ++k) slope.emplace_back(patch.vertices[k].first, best[k] / d);
+  for (Eigen::Index k = 0; k < best.size(); ++k) slope.weights.emplace_back(patch.vertices[k].first, best[k] / d);
   return slope;
 }
 
@@ -152,8 +248,9 @@ Mat3 projection(const std::vector<Vec3>& free) {
 
 }  // namespace
 
-std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet) {
-  const Slopes slopes(sheet);
+std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::span<const char> pinned,
+                                                 std::span<const char> held) {
+  const Slopes slopes(sheet, pinned, held);
   const mesh::EdgeSet& edges = slopes.edges();
   std::vector<Slope> across(edges.edges.size());
   for (std::size_t e = 0; e < across.size(); ++e)
@@ -170,6 +267,7 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet) {
       weights.try_emplace(vertex, Vec3::Zero()).first->second += weight;
     };
     std::vector<Vec3> free;
+    bool near_pin = false;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec2 side = m[(k + 1) % 3] - m[k], along = side.normalized(), outward(along.y(), -along.x());
       const Vec3 twist = packed(outward * along.transpose()) / area;  // length of the side cancels that of ∂/∂t
@@ -179,7 +277,8 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet) {
       const auto e = at(edges.of_triangle[t][k]);
       if (edges.edges[e].triangles[1] < 0) free.push_back(bend);
       const double sign = edges.edges[e].triangles[0] == static_cast<Index>(t) ? 1 : -1;
-      for (const auto& [vertex, slope] : across[e]) add(vertex, sign * slope * side.norm() / area * bend);
+      near_pin |= across[e].near_pin;
+      for (const auto& [vertex, slope] : across[e].weights) add(vertex, sign * slope * side.norm() / area * bend);
     }
     const Mat3 kept = projection(free);
     const auto append = [&](Index vertex, Vec3 weight) {
@@ -189,9 +288,10 @@ std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet) {
       stencils[t].weights.push_back(weight);
     };
     for (Index corner : corners) append(corner, weights.at(corner));
-    // What is left of vertices that symmetry cancels is rounding.
+    // What is left of vertices that symmetry cancels is rounding, but for what is held later or no longer.
     for (const auto& [vertex, weight] : weights)
-      if (std::find(corners.begin(), corners.end(), vertex) == corners.end() && weight.norm() * area > kExact)
+      if (std::find(corners.begin(), corners.end(), vertex) == corners.end() &&
+          (near_pin || weight.norm() * area > kExact))
         append(vertex, weight);
   }
   return stencils;

@@ -1,6 +1,7 @@
 // Second derivatives on triangle meshes, as weighted sums of vertices.
 #pragma once
 
+#include <span>
 #include <vector>
 
 #include "mesh/sheet.hpp"
@@ -27,6 +28,12 @@ struct CurvatureStencil {
 ///
 /// Across the border the slope is free: it takes the value of least energy, for which the moment about the border
 /// vanishes (κ_nn = 0, ν = 0).
-std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet);
+///
+/// A triangle with three held corners is a clamp: at its edges the slope is its own, and a slope that is made of
+/// vertices on both sides of such an edge is exact for functions linear in the clamp and as s² in front of it, s the
+/// distance from it. `held`: by vertex, now; `pinned`: at any time, so that stencils have the same vertices at all.
+/// Empty: none.
+std::vector<CurvatureStencil> curvature_stencils(const mesh::Sheet& sheet, std::span<const char> pinned = {},
+                                                 std::span<const char> held = {});
 
 }  // namespace weft::forces

@@ -45,13 +45,15 @@ double rest_area(const Sheet& sheet, std::size_t triangle) {
   return 0.5 * (a.x() * b.y() - a.y() * b.x());
 }
 
+double height(const Sheet& sheet, std::size_t triangle) {
+  const auto& m = sheet.material[triangle];
+  const double longest = std::max({(m[1] - m[0]).norm(), (m[2] - m[1]).norm(), (m[0] - m[2]).norm()});
+  return 2 * rest_area(sheet, triangle) / longest;
+}
+
 double least_height(const Sheet& sheet) {
   double least = std::numeric_limits<double>::infinity();
-  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
-    const auto& m = sheet.material[t];
-    const double longest = std::max({(m[1] - m[0]).norm(), (m[2] - m[1]).norm(), (m[0] - m[2]).norm()});
-    least = std::min(least, 2 * rest_area(sheet, t) / longest);
-  }
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) least = std::min(least, height(sheet, t));
   return least;
 }
 

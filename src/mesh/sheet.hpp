@@ -38,6 +38,8 @@ double rest_area(const Sheet& sheet, std::size_t triangle);
 Sheet make_sheet_of(const Mesh& mesh);
 
 /// Shortest height of a triangle at rest [m].
+double height(const Sheet& sheet, std::size_t triangle);
+/// The least of all [m].
 double least_height(const Sheet& sheet);
 
 /// Ways to cut each cell of a grid.

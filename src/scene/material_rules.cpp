@@ -21,7 +21,8 @@ const Table& material_rules() {
           .number("shear", &Material::shear, within(0, 1e12), "N/m",
                   "stiffness against shear (mu); twice the shear modulus of linear elasticity")
           .by_default(of_fabric)
-          .number("bend", &Material::bend, within(0, 1e6), "N·m", "bending rigidity (B)")
+          .number("bend", &Material::bend, within(0, 1e6), "N·m",
+                  "bending rigidity (B); 0: nothing resists bending, whatever its viscosity and friction")
           .by_default(of_fabric)
           .number("stretch_viscosity", &Material::stretch_viscosity, within(0, 1e9), "N·s/m",
                   "stress per rate of stretch")

@@ -19,9 +19,6 @@ namespace {
 // as a few products with the matrix of 4,000 particles.
 constexpr Index kPatches = 70;
 
-bool bends(const scene::Material& m) {
-  return m.bend > 0 || m.bend_viscosity > 0 || m.bend_friction > 0;
-}
 bool meets_air(const scene::Material& m, const scene::Physics& physics) {
   return physics.air_density > 0 && m.drag > 0;
 }
@@ -65,6 +62,10 @@ double ease(double s) {
 
 }  // namespace
 
+bool bends(const scene::Material& material) {
+  return material.bend > 0;
+}
+
 ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environment& environment)
     : gravity_(scene.physics.gravity) {
   Index first = 0;
@@ -80,6 +81,9 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
       const std::vector<Index> carriers = particles_of(weight, cloth, first);
       for (Index particle : carriers) masses_[particle] += weight.mass / static_cast<double>(carriers.size());
     }
+    held_.resize(masses_.size());
+    for (const scene::Pin& pin : scene.cloths[c].pins)
+      for (Index particle : particles_of(pin, cloth, first)) held_[particle] = 1;
     if (cloth.sheet.triangles.empty())
       add_quad_forces(c, cloth.grid, material, scene.physics);
     else
@@ -93,6 +97,8 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   const solver::BlockMatrix matrix = lay_out_matrix();
   for (const auto& of_cloth : forces_)
     for (const auto& force : of_cloth) force->attach(matrix);
+  for (const auto& of_cloth : forces_)
+    for (const auto& force : of_cloth) force->hold(held_);
   sew(0);
 }
 
@@ -137,7 +143,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
     forces_[cloth].push_back(std::move(bands));
   }
   if (bends(material))
-    forces_[cloth].push_back(std::make_unique<forces::TriangleBend>(sheet, first, bend_of(material)));
+    forces_[cloth].push_back(std::make_unique<forces::TriangleBend>(sheet, first, bend_of(material), held_));
   if (meets_air(material, physics)) air_.emplace_back(sheet, first, material.density, air_of(material, physics));
 }
 
@@ -178,6 +184,16 @@ bool ClothSystem::sew(double t) {
     changed = true;
   }
   return changed;
+}
+
+bool ClothSystem::hold(std::span<const integrator::HeldParticle> pinned) {
+  std::vector<char> held(held_.size());
+  for (const integrator::HeldParticle& particle : pinned) held[particle.constraint.particle] = 1;
+  if (held == held_) return false;
+  held_ = std::move(held);
+  for (const auto& of_cloth : forces_)
+    for (const auto& force : of_cloth) force->hold(held_);
+  return true;
 }
 
 template <class Archive>

@@ -11,13 +11,18 @@
 #include "forces/bands.hpp"
 #include "forces/force.hpp"
 #include "forces/triangle_membrane.hpp"
+#include "integrator/system.hpp"
 #include "scene/scene.hpp"
 #include "solver/linear_system.hpp"
 
 namespace weft::simulation {
 
+/// Whether cloth of this material has bending at all. Without rigidity there is nothing that the viscosity and the
+/// friction of a fabric could damp.
+bool bends(const scene::Material& material);
+
 /// Particles are numbered through all cloths, in the order of the scene. Nothing here changes but the rest shape of
-/// cloth that is being sewn: the same arguments give the same forces.
+/// cloth that is being sewn and what pins hold: the same arguments give the same forces.
 class ClothSystem {
  public:
   ClothSystem(const scene::Scene& scene, const environment::Environment& environment);
@@ -36,7 +41,7 @@ class ClothSystem {
   /// The stiff forces within one cloth; positions, velocities and forces are those of all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
-  /// rate² M and the part of the stiffness that never changes.
+  /// rate² M and the part of the stiffness that only hold() changes.
   void fill_base(double rate, solver::BlockMatrix& base) const;
 
   /// An empty system with the pattern of this one.
@@ -45,6 +50,9 @@ class ClothSystem {
   /// Gives cloths that are being sewn the rest shape that they have at time t [s]; whether one changed, and with it the
   /// forces.
   bool sew(double t);
+
+  /// Which particles pins hold from now on; whether that is a change, and with it the stiffness at the borders of pins.
+  bool hold(std::span<const integrator::HeldParticle> pinned);
 
   /// What lasts from frame to frame: how far cloths are sewn.
   template <class Archive>
@@ -83,6 +91,7 @@ class ClothSystem {
     void use_share(double new_share);
   };
   std::vector<Sewing> sewing_;
+  std::vector<char> held_;  // per particle: by a pin
   Vec3 gravity_;
   double spacing_ = std::numeric_limits<double>::infinity();
   std::vector<solver::Grouping> groupings_;  // of the preconditioner

@@ -5,6 +5,7 @@
 #include <array>
 
 #include "environment/acting.hpp"
+#include "simulation/cloth_system.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::simulation {
@@ -35,20 +36,18 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
       "force: shear", scene, [](const Cloth& c) { return c.material.shear > 0 || c.material.shear_viscosity > 0; },
       "shear and shear_viscosity are zero"));
   items.push_back(of_cloths(
-      "force: bending", scene,
-      [](const Cloth& c) {
-        return c.material.bend > 0 || c.material.bend_viscosity > 0 || c.material.bend_friction > 0;
-      },
-      "bend, bend_viscosity and bend_friction are zero"));
+      "force: bending", scene, [](const Cloth& c) { return bends(c.material); }, "bend is zero"));
   items.push_back(of_cloths(
       "force: viscosity", scene,
       [](const Cloth& c) {
-        return c.material.stretch_viscosity > 0 || c.material.shear_viscosity > 0 || c.material.bend_viscosity > 0;
+        const scene::Material& m = c.material;
+        return m.stretch_viscosity > 0 || m.shear_viscosity > 0 || (bends(m) && m.bend_viscosity > 0);
       },
-      "all viscosities are zero"));
+      "all viscosities of what is built are zero"));
   items.push_back(of_cloths(
-      "force: bending friction", scene, [](const Cloth& c) { return c.material.bend_friction > 0; },
-      "bend_friction is zero"));
+      "force: bending friction", scene,
+      [](const Cloth& c) { return bends(c.material) && c.material.bend_friction > 0; },
+      "bend or bend_friction is zero"));
   items.push_back(of_cloths(
       "force: air", scene, [&](const Cloth& c) { return scene.physics.air_density > 0 && c.material.drag > 0; },
       "air_density or drag is zero"));

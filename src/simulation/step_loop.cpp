@@ -69,6 +69,7 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
                 step_control_of(scene)} {
   Moment& now = progress_.now;
   pins_.held_at(start, environment, held_);
+  cloth_.hold(held_);
   for (const integrator::HeldParticle& particle : held_) now.v[particle.constraint.particle] = particle.v_end;
   if (CollisionStage::needed(scene)) {
     collisions_.emplace(scene, environment, cloth_.masses(), now);
@@ -148,7 +149,7 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, bool may_pinch, FrameR
   using Start = integrator::Stepper::Start;
   const Moment& now = progress_.now;
   pins_.held_at(t + h, environment_, held_);
-  problem_.begin_step(t + h - start_);
+  problem_.begin_step(t + h - start_, held_);
   if (!collisions_) return solve(h, Start::unchanged_velocity, report);
   {
     const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);

@@ -31,8 +31,12 @@ void StepProblem::forget() {
   memory_.x.assign(masses().size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));  // equals nothing
 }
 
-void StepProblem::begin_step(double t) {
+void StepProblem::begin_step(double t, std::span<const integrator::HeldParticle> pinned) {
   if (cloth_.sew(t)) forget();
+  if (cloth_.hold(pinned)) {
+    forget();
+    memory_.rate = 0;  // what the matrix begins with has changed too
+  }
   memory_.friction = {};
 }
 

@@ -34,9 +34,9 @@ class StepProblem final : public integrator::System {
   /// What the cloth meets, or nullptr where the scene has nothing. Must outlive the steps.
   void use_contacts(const collision::ContactResponse* contacts) { contacts_ = contacts; }
 
-  /// Before the first solve of a step that ends at time t [s] of the simulation: sews cloth on to there, and friction
-  /// goes by the loads at the start.
-  void begin_step(double t);
+  /// Before the first solve of a step that ends at time t [s] of the simulation, with what pins hold until then: sews
+  /// cloth on to there, and friction goes by the loads at the start.
+  void begin_step(double t, std::span<const integrator::HeldParticle> pinned);
 
   /// Makes the next linearisation put the matrix together anew: what is computed from here on depends on positions and
   /// velocities alone.

@@ -110,6 +110,34 @@ TEST(Simulation, PinnedParticlesFollowTheKeysExactly) {
   }
 }
 
+TEST(Simulation, WithoutRigidityThereIsNoBendingAtAll) {
+  // A sheet that hangs from one corner: all of it bends.
+  const auto end_with = [](scene::ClothShape shape, double rigidity, double damping) {
+    scene::Scene scene = sheet_alone(0.2, 5, 0);
+    scene.cloths[0].shape = shape;
+    scene.cloths[0].pins = {scene::Pin{}};
+    scene.cloths[0].pins[0].high = {0, 0};
+    scene::Material& material = scene.cloths[0].material;
+    material.bend = rigidity;
+    material.bend_viscosity *= damping, material.bend_friction *= damping;
+    for (const PlanItem& item : plan(scene)) {
+      if (item.part == "force: bending") {
+        EXPECT_EQ(item.used, rigidity > 0);
+      }
+      if (item.part == "force: viscosity" || item.part == "force: bending friction") {
+        EXPECT_EQ(item.used, rigidity > 0 && damping > 0) << item.part;
+      }
+    }
+    Simulation simulation(scene);
+    for (int k = 0; k < 5; ++k) simulation.advance();
+    return sheet_of(simulation.snapshot());
+  };
+  for (scene::ClothShape shape : {scene::ClothShape::quads, scene::ClothShape::crossed_triangles}) {
+    EXPECT_EQ(end_with(shape, 0, 1), end_with(shape, 0, 0));
+    EXPECT_NE(end_with(shape, 5e-5, 1), end_with(shape, 5e-5, 0));
+  }
+}
+
 TEST(Simulation, PinLetsGoAtItsReleaseTime) {
   scene::Scene scene = sheet_alone(0.2, 3, 1);
   scene::Pin pin;  // the whole sheet

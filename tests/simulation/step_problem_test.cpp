@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "forces/sheets.hpp"
+#include "simulation/pins.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -88,7 +89,7 @@ class StepProblems : public ::testing::Test {
 TEST_F(StepProblems, GiveTheSameForceWhateverWasEvaluatedBefore) {
   StepProblem used = problem(), fresh = problem();
   linearise(used, moved(1, 2));
-  used.begin_step(0);
+  used.begin_step(0, {});
   const std::vector<Vec3> of_linearisation = linearise(used, x_);
   EXPECT_EQ(of_linearisation, linearise(fresh, x_));
   EXPECT_NE(of_linearisation, forces(used, moved(0, 1)));
@@ -103,7 +104,7 @@ TEST_F(StepProblems, KnowForcesByPositionAndVelocityOfEachCloth) {
     for (std::size_t i : {0UL, 2UL * kParticles - 1}) {
       (*of)[i].y() += 1e-9;
       StepProblem fresh = problem();
-      fresh.begin_step(0);
+      fresh.begin_step(0, {});
       linearise(fresh, x_);
       EXPECT_EQ(forces(used, x_), forces(fresh, x_)) << i;
     }
@@ -186,10 +187,41 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
   EXPECT_EQ(problem.memory().friction.updates, 6);
   EXPECT_EQ(problem.memory().friction.loads.size(), 1U);
   const double lagging = problem.memory().friction.loads[0];
-  problem.begin_step(0);
+  problem.begin_step(0, {});
   EXPECT_EQ(problem.memory().friction.updates, 0);
   linearise(problem, x_);
   EXPECT_NE(problem.memory().friction.loads[0], lagging);  // that of the start
+}
+
+TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {
+  for (const char* shape : {"quads", "crossed_triangles"}) {
+    const scene::Scene scene =
+        support::scene_of_text(std::string("[[cloth]]\nname = 'sheet'\nparticles = 5\nshape = '") + shape +
+                               "'\npin = [{ low = [0, 0], high = [0.25, 1] }]\n");
+    const environment::Environment environment(scene);
+    const std::vector<Vec3>& x = environment.cloths[0].start;
+    const std::vector<Vec3> still(x.size(), Vec3::Zero());
+    std::vector<integrator::HeldParticle> pinned;
+    for (Index i : particles_of(scene.cloths[0].pins[0], environment.cloths[0], 0))
+      pinned.push_back({{i, Mat3::Zero()}, x[i], Vec3::Zero()});
+    ClothSystem cloth(scene, environment);
+    StepProblem problem(cloth);
+    const auto matrix_with = [&](std::span<const integrator::HeldParticle> held) {
+      std::vector<Vec3> force = still;
+      problem.begin_step(0, held);
+      problem.linearise({x, still, x, kRate, 1}, 0, force);
+      std::vector<Mat3> all;
+      const solver::BlockMatrix& matrix = problem.memory().system.matrix;
+      matrix.for_each_block(0, matrix.rows(), [&](Index, Index, const Mat3& block) { all.push_back(block); });
+      return all;
+    };
+    const std::vector<Mat3> held = matrix_with(pinned);
+    const auto version = problem.memory().system.parts[0].version;
+    EXPECT_EQ(matrix_with(pinned), held);
+    EXPECT_EQ(problem.memory().system.parts[0].version, version) << "nothing was let go";
+    EXPECT_NE(matrix_with({}), held) << shape;
+    EXPECT_EQ(matrix_with(pinned), held) << shape;
+  }
 }
 
 class SewnProblem : public support::TestFolder {};
@@ -224,7 +256,7 @@ b = "back.right"
   const integrator::StagePoint at{x, still, x, kRate, 1};
   const auto force_at = [&](double t) {
     std::vector<Vec3> force = still;
-    problem.begin_step(t);
+    problem.begin_step(t, {});
     problem.linearise(at, 0, force);
     return force;
   };

@@ -45,24 +45,16 @@ inline Overhang overhang(double gamma, Route route) {
   return strip;
 }
 
-/// How far behind the last held column the clamp acts, in cells. Bending of quads and of aligned triangles is lumped at
-/// the columns: that of the last held one stands for half a cell to either side. Crossed triangles bend between the
-/// columns too, so that a beam of them would give a quarter; two cells across it is 0.21, the same at all resolutions
-/// (Cantilever.ApproachesTheElasticaInSecondOrder).
-inline double clamp_share(scene::ClothShape shape) {
-  return shape == scene::ClothShape::crossed_triangles ? 0.28 : 0.5;
-}
-
-/// `cells` from the last held column to the tip, two across.
+/// `cells` from the last held column, where the clamp acts, to the tip, two across.
 inline scene::Scene cantilever(scene::ClothShape shape, const Overhang& strip, int cells) {
   scene::Scene scene = sheet_alone(1, 3, 0);
-  const double l = strip.length / (cells + clamp_share(shape));
+  const double l = strip.length / cells;
   scene::Cloth& cloth = scene.cloths[0];
   cloth.shape = shape;
   cloth.size = {(cells + 1) * l, 2 * l};
   cloth.particles_weft = cells + 2;
   cloth.particles_warp = 3;
-  cloth.pose.position = {0.5 * cloth.size.x() - (1 - clamp_share(shape)) * l, 0, 0};  // the clamp acts at x = 0
+  cloth.pose.position = {0.5 * cloth.size.x() - l, 0, 0};  // the last held column is at x = 0
   cloth.material.density = strip.density;
   // At Γ = 100 the weight of 1 N/m at most stretches the strip by 0.05 % on average, at less Γ by less.
   cloth.material.stretch_weft = cloth.material.stretch_warp = cloth.material.shear = 1000;

@@ -31,6 +31,9 @@ class ClothModel {
     const scene::Material& m = scene.cloths[0].material;
     const environment::ClothObject& cloth = environment_.cloths[0];
     const forces::StretchParameters stretch{m.stretch_weft, m.stretch_warp, 0};
+    held_.resize(x.size());
+    for (const scene::Pin& pin : scene.cloths[0].pins)
+      for (Index i : particles_of(pin, cloth, 0)) held_[i] = 1;
     if (cloth.sheet.triangles.empty()) {
       masses = forces::lumped_masses(cloth.grid, m.density);
       forces_.push_back(std::make_unique<forces::Stretch>(cloth.grid, 0, stretch));
@@ -40,15 +43,14 @@ class ClothModel {
       masses = forces::lumped_masses(cloth.sheet, m.density);
       forces_.push_back(
           std::make_unique<forces::TriangleMembrane>(cloth.sheet, 0, stretch, forces::ShearParameters{m.shear, 0}));
-      forces_.push_back(std::make_unique<forces::TriangleBend>(cloth.sheet, 0, forces::BendParameters{m.bend, 0, 0}));
+      forces_.push_back(
+          std::make_unique<forces::TriangleBend>(cloth.sheet, 0, forces::BendParameters{m.bend, 0, 0}, held_));
     }
     std::vector<std::pair<Index, Index>> pairs;
     for (const auto& force : forces_) force->couple(pairs);
     matrix_ = solver::BlockMatrix(static_cast<Index>(x.size()), pairs);
     for (const auto& force : forces_) force->attach(matrix_);
-    held_.resize(x.size());
-    for (const scene::Pin& pin : scene.cloths[0].pins)
-      for (Index i : particles_of(pin, cloth, 0)) held_[i] = 1;
+    for (const auto& force : forces_) force->hold(held_);
   }
 
   /// Coordinates of the particles that no pin holds, along these axes: 3 i + axis.

@@ -37,16 +37,16 @@ double chance(int ring, int place, int seed) {
 
 /// Rings of triangles, the k-th with 6 k vertices, `free` of them outside of the plates. Where that of the others is
 /// regular their place is off by up to 0.15 of the spacing, so that no direction is better than another. The last held
-/// ring lies half a spacing outside of the plates: see clamp_share().
+/// ring is the plates' edge.
 Specimen rings(int free, int seed) {
-  const double l = (kSpecimen - kPlates) / (free + 0.5), last_held = kPlates + 0.5 * l;
-  const int inner = static_cast<int>(std::lround(last_held / l)), all = inner + free;
+  const double l = (kSpecimen - kPlates) / free;
+  const int inner = static_cast<int>(std::lround(kPlates / l)), all = inner + free;
   Specimen disc;
   disc.positions.emplace_back(0, 0, 0);
   std::vector<int> first{0};
   for (int k = 1; k <= all; ++k) {
     first.push_back(static_cast<int>(disc.positions.size()));
-    const double radius = k <= inner ? last_held * k / inner : last_held + (k - inner) * l;
+    const double radius = k <= inner ? kPlates * k / inner : kPlates + (k - inner) * l;
     for (int i = 0; i < 6 * k; ++i) {
       const double along = k > inner ? 0.3 * chance(k, i, seed) : 0;
       const double across = k > inner && k < all ? 0.3 * l * chance(k, i, seed + 1) : 0;
@@ -155,7 +155,7 @@ class Cusick : public support::TestFolder {
     double mean = 0;
     std::printf("%s:", name);
     for (int seed : {1, 2}) {
-      const Specimen disc = rings(10, seed);
+      const Specimen disc = rings(14, seed);
       const Drape d = drape(scene_of(disc, material), disc.triangles);
       std::printf(" %.1f %% (strain %.4f, %.1f CPU s)", 100 * d.coefficient, d.strain, d.cpu_s);
       mean += 0.5 * d.coefficient;
@@ -180,7 +180,8 @@ TEST_F(Cusick, PlatesClampAtTheirEdge) {
       if (x.head<2>().norm() > kSpecimen - 1e-6) sag -= x.z(), ++count;
     sag *= material.bend / (count * material.density * 9.81);
     std::printf("%d rings: %.3f %%\n", free, 100 * (sag / kSag - 1));
-    EXPECT_NEAR(sag, kSag, 0.005 * kSag);
+    // In second order, 2.1 % with eight rings.
+    EXPECT_NEAR(free * free * (sag / kSag - 1), 1.36, 0.05);
   }
 }
 
@@ -212,11 +213,12 @@ TEST_F(Cusick, SofterCottonDrapesAsTheOneMeasured) {
 
 TEST_F(Cusick, CoefficientIsThatOfAFinerMesh) {
   std::vector<double> found;
-  for (int free : {7, 10, 14}) {
-    const Specimen disc = rings(free, 1);
+  for (int free : {7, 10, 14}) for (int seed : {1,2,3,4}) {
+    const Specimen disc = rings(free, seed);
     found.push_back(drape(scene_of(disc, scene::find_fabric("leather")->material), disc.triangles).coefficient);
     std::printf("leather, %d rings, %zu particles: %.1f %%\n", free, disc.positions.size(), 100 * found.back());
   }
+  // Measured: 53, 60 and 60 %.
   EXPECT_NEAR(found[1], found[2], 0.04);
 }
 

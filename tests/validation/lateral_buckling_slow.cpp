@@ -25,13 +25,13 @@ struct Strip {
   int along, across;  // cells from the last held column to the tip, and over the width
 };
 
-double spacing(ClothShape shape, const Strip& cells) {
-  return kLength / (cells.along + testing::clamp_share(shape));
+double spacing(const Strip& cells) {
+  return kLength / cells.along;
 }
 
 scene::Scene upright_strip(ClothShape shape, const Strip& cells, double gamma) {
   scene::Scene scene = testing::sheet_alone(1, 3, 0);
-  const double l = spacing(shape, cells);
+  const double l = spacing(cells);
   scene::Cloth& cloth = scene.cloths[0];
   cloth.shape = shape;
   cloth.size = {(cells.along + 1) * l, cells.across * l};
@@ -76,7 +76,7 @@ TEST(LateralBuckling, BeginsAtTheWeightOfTheory) {
     Vec2 before = Vec2::Zero(), last = Vec2::Zero();
     for (int along : {20, 40, 80, 160}) {
       before = last;
-      last = {4 * spacing(shape, {along, 4}) / kLength, onset(shape, {along, 4})};
+      last = {4 * spacing({along, 4}) / kLength, onset(shape, {along, 4})};
       std::printf("  %.4f  %.3f  %5.2f %%\n", last.x(), last.y(), 100 * (last.y() / kOnset - 1));
     }
     EXPECT_NEAR(last.y(), kOnset, 0.03 * kOnset);

@@ -26,8 +26,7 @@ constexpr double kFps = 25;
 constexpr int kLowered = 25;   // frame at which the clamp has come down
 constexpr int kReleased = 35;  // frame at which the tip, held till then, is left to friction
 
-/// A strip upright on the floor, held by its two upper rows. The second difference at the lower one stands for the
-/// curvature of half a cell on either side, so that the clamp acts half a cell above it.
+/// A strip upright on the floor, held by its two upper rows: the clamp acts at the lower one.
 scene::Scene pressed_strip(double depth, double friction) {
   scene::Scene scene = testing::sheet_alone(1, 3, 0);
   scene.time = {.duration = 3, .fps = kFps, .step = 0.01};
@@ -40,7 +39,7 @@ scene::Scene pressed_strip(double depth, double friction) {
   scene.obstacles.push_back(testing::obstacle("floor", scene::Plane{}));
   scene.obstacles[0].friction = friction;
 
-  const double spacing = kLength / (kCells + 0.5), height = (kCells + 1) * spacing;
+  const double spacing = kLength / kCells, height = (kCells + 1) * spacing;
   scene::Cloth& strip = scene.cloths[0];
   strip.size = {2 * spacing, height};
   strip.particles_weft = 3;

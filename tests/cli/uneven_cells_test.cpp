@@ -1,0 +1,55 @@
+// Cloth whose cells are too uneven to meet obstacles is refused before any work.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "cli/subprocess.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::cli {
+namespace {
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+class UnevenCells : public support::TestFolder {};
+
+TEST_F(UnevenCells, AreNamedByCheckAndRunWhereObstaclesAreMet) {
+  // Two rows of squares of 0.1 m with one of needles between them, of this height.
+  const auto needles = [](double height) {
+    std::string text;
+    for (const double y : {0.0, 0.1, 0.1 + height, 0.2 + height})
+      for (int i = 0; i < 3; ++i) text += fmt::format("v {} {} 0\n", 0.1 * i, y);
+    for (int j = 0; j < 3; ++j)
+      for (int i = 1; i < 3; ++i) {
+        const int a = 3 * j + i;
+        text += fmt::format("f {} {} {}\nf {} {} {}\n", a, a + 1, a + 4, a, a + 4, a + 3);
+      }
+    return text;
+  };
+  const std::string ball = "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\nposition = [0, 0, -1]\n";
+  const std::string mesh = "[[cloth]]\nname = 'sheet'\nshape = 'mesh'\nfile = 'needles.obj'\n";
+  const std::string graded = "[[cloth]]\nname = 'sheet'\nparticles = 11\ngrading = ";
+  const auto check = [&](const std::string& scene) {
+    support::write_bytes(folder_ / "uneven.toml", scene);
+    return run_weft({"check", "uneven.toml"}, folder_);
+  };
+  support::write_bytes(folder_ / "needles.obj", needles(0.001));
+  const Outcome flat = check(mesh + ball);
+  EXPECT_EQ(flat.exit_code, 3);
+  EXPECT_TRUE(contains(flat.err, "uneven.toml:1:1: cloth.sheet: expected triangles at least 1.77 mm high")) << flat.err;
+  EXPECT_TRUE(contains(flat.err, "got 4 flatter, the flattest number 5 ")) << flat.err;
+  EXPECT_TRUE(contains(flat.err, "merge vertices")) << flat.err;
+  EXPECT_EQ(run_weft({"simulate", "uneven.toml", "--cache", "uneven"}, folder_).exit_code, 3);
+  EXPECT_EQ(check(mesh).exit_code, 0) << "nothing to meet";
+  support::write_bytes(folder_ / "needles.obj", needles(0.002));
+  EXPECT_EQ(check(mesh + ball).exit_code, 0);
+
+  const Outcome uneven = check(graded + "[100, 1]\n" + ball);
+  EXPECT_EQ(uneven.exit_code, 3);
+  EXPECT_TRUE(contains(uneven.err, "a grading closer to 1")) << uneven.err;
+  EXPECT_EQ(check(graded + "[50, 1]\n" + ball).exit_code, 0);
+}
+
+}  // namespace
+}  // namespace weft::cli

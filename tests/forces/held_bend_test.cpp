@@ -1,0 +1,169 @@
+// Bending in front of held particles: clamps, hinges, and what is let go again.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "forces/sheets.hpp"
+#include "forces/triangle_meshes.hpp"
+
+namespace weft::forces {
+namespace {
+
+using testing::Positions;
+
+constexpr double kRigidity = 3e-4;  // [N·m]
+constexpr double kCurvature = 4;    // [1/m]
+const Vec2 kSize(0.2, 0.1);
+
+/// Particles up to here along weft.
+std::vector<char> held_up_to(const std::vector<Vec2>& uv, double clamp) {
+  std::vector<char> held;
+  for (const Vec2& place : uv) held.push_back(place.x() < clamp + 1e-9);
+  return held;
+}
+
+// Where a clamp ends at `clamp` and the sheet has one curvature in front of it.
+double in_front(double u, double clamp) {
+  return 0.5 * kCurvature * std::pow(std::max(0.0, u - clamp), 2);
+}
+
+TEST(HeldBend, QuadsBendWithTheirOwnCurvatureFromTheClampOn) {
+  mesh::Grid grid{9, 5, 0.02, 0.03};
+  grid.weft_grading = 5;
+  for (const bool along_weft : {true, false}) {
+    if (!along_weft) grid = {grid.nv, grid.nu, grid.lv, grid.lu, 1, 5};
+    Bend bend(grid, 0, {kRigidity, 0});
+    const double clamp = along_weft ? grid.u(2) : grid.v(2), end = along_weft ? grid.u(8) : grid.v(8);
+    const double across = along_weft ? grid.v(4) : grid.u(4);
+    std::vector<char> held;
+    const Positions x = testing::shaped(grid, [&](double u, double v) {
+      const double s = along_weft ? u : v;
+      held.push_back(s < clamp + 1e-9);
+      return Vec3(u, v, in_front(s, clamp));
+    });
+    bend.hold(held);
+    // All that is free but half a spacing at the end, which is flat.
+    const double area = (end - clamp - (along_weft ? grid.width_u(8) : grid.width_v(8))) * across;
+    const double expected = 0.5 * kRigidity * kCurvature * kCurvature * area;
+    EXPECT_NEAR(bend.energy(x), expected, 1e-12 * expected);
+  }
+}
+
+TEST(HeldBend, TrianglesBendWithTheirOwnCurvatureFromTheClampOn) {
+  for (const std::size_t meshing : {0, 1, 3}) {  // those with straight columns
+    const mesh::Mesh mesh = testing::kMeshings[meshing].make(kSize, 8);
+    const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+    const double clamp = mesh.uv[2].x();
+    const std::vector<char> held = held_up_to(mesh.uv, clamp);
+    const auto stencils = curvature_stencils(sheet, held, held);
+    const mesh::EdgeSet edges = mesh::collect_edges(sheet.triangles);
+    for (std::size_t t = 0; t < stencils.size(); ++t) {
+      if (std::ranges::any_of(edges.of_triangle[t], [&](Index e) { return edges.edges[e].triangles[1] < 0; })) continue;
+      Vec3 curvature = Vec3::Zero();
+      for (std::size_t k = 0; k < stencils[t].vertices.size(); ++k)
+        curvature += stencils[t].weights[k] * in_front(mesh.uv[stencils[t].vertices[k]].x(), clamp);
+      const bool clamped = std::ranges::all_of(sheet.triangles[t], [&](Index v) { return held[v] != 0; });
+      // Weights of 1/l², 1e4 to 1e6, times values of 0.1 at most, rounded.
+      EXPECT_LT((curvature - Vec3(clamped ? 0 : kCurvature, 0, 0)).norm(), 1e-9)
+          << testing::kMeshings[meshing].name << ", triangle " << t;
+    }
+  }
+}
+
+/// A crumpled Delaunay mesh, its first quarter held: what is held is a ragged clamp.
+struct RaggedClamp {
+  mesh::Mesh mesh = testing::delaunay_sheet(testing::grid_of_squares(kSize, 5), 0.35, 3);
+  mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+  std::vector<char> held = held_up_to(mesh.uv, 0.05), none = std::vector<char>(mesh.uv.size());
+  TriangleBend bend{sheet, 0, {kRigidity, 1e-5}, held};
+  Positions x, v;
+
+  RaggedClamp() {
+    const Positions noise = testing::random_vectors(sheet.rest.size(), 0.004, 11);
+    for (std::size_t i = 0; i < noise.size(); ++i) x.push_back(sheet.rest[i] + noise[i]);
+    v = testing::random_vectors(x.size(), 0.1, 12);
+  }
+};
+
+TEST(HeldBend, RaggedClampHasTheJacobianOfItsForceAndIsDefinite) {
+  RaggedClamp clamp;
+  for (const Linearisation form : {Linearisation::exact, Linearisation::definite}) {
+    const Eigen::MatrixXd jacobian = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 50, form);
+    if (form == Linearisation::exact) {
+      const Eigen::MatrixXd differences = testing::stiffness_by_differences(clamp.bend, clamp.x, clamp.v, 50, 1e-6);
+      // Measured: 2e-9 of the largest.
+      EXPECT_LT((jacobian - differences).cwiseAbs().maxCoeff(), 1e-7 * jacobian.cwiseAbs().maxCoeff());
+    } else {
+      const Eigen::VectorXd values = jacobian.selfadjointView<Eigen::Lower>().eigenvalues();
+      EXPECT_GT(values.minCoeff(), -1e-12 * values.maxCoeff());
+    }
+  }
+  // Rigid motions cost nothing.
+  EXPECT_LT(clamp.bend.energy(testing::moved_rigidly(clamp.sheet.rest)), 1e-24);
+}
+
+TEST(HeldBend, WhatIsLetGoBendsAsIfItHadNeverBeenHeld) {
+  RaggedClamp clamp;
+  const TriangleBend never(clamp.sheet, 0, {kRigidity, 1e-5});
+  const double held = clamp.bend.energy(clamp.x);
+  const Eigen::MatrixXd stiff = testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0, Linearisation::definite);
+  clamp.bend.hold(clamp.none);
+  EXPECT_GT(held, 1.05 * clamp.bend.energy(clamp.x));
+  // But for weights that are rounding, which only stencils away from pins leave out.
+  EXPECT_NEAR(clamp.bend.energy(clamp.x), never.energy(clamp.x), 1e-12 * held);
+  clamp.bend.hold(clamp.held);
+  EXPECT_EQ(clamp.bend.energy(clamp.x), held);
+  EXPECT_EQ(testing::stiffness_of(clamp.bend, clamp.x, clamp.v, 0, Linearisation::definite), stiff);
+
+  const mesh::Grid grid = testing::kGrid;
+  const Positions x = testing::crumpled(grid, 0.005, 4);
+  std::vector<char> two_columns;
+  for (int j = 0; j < grid.nv; ++j)
+    for (int i = 0; i < grid.nu; ++i) two_columns.push_back(i < 2);
+  Bend quads(grid, 0, {kRigidity, 0});
+  const double free = quads.energy(x);
+  quads.hold(two_columns);
+  EXPECT_GT(quads.energy(x), 1.05 * free);
+  quads.hold(std::vector<char>(x.size()));
+  EXPECT_EQ(quads.energy(x), free);
+}
+
+TEST(HeldBend, OneRowOrOneCornerIsAHinge) {
+  const mesh::Grid grid = testing::kGrid;
+  const mesh::Mesh crossed = testing::kMeshings[1].make(kSize, 8);
+  const Positions x = testing::crumpled(grid, 0.005, 4);
+  for (const bool corner : {true, false}) {
+    std::vector<char> held;
+    for (int j = 0; j < grid.nv; ++j)
+      for (int i = 0; i < grid.nu; ++i) held.push_back(i == 0 && (j == 0 || !corner));
+    Bend quads(grid, 0, {kRigidity, 0});
+    const double free = quads.energy(x);
+    quads.hold(held);
+    EXPECT_EQ(quads.energy(x), free);
+
+    std::vector<char> of_crossed;
+    for (const Vec2& uv : crossed.uv) of_crossed.push_back(uv.x() < 1e-9 && (uv.y() < 1e-9 || !corner));
+    const mesh::Sheet sheet = mesh::make_sheet_of(crossed);
+    const Positions noise = testing::random_vectors(sheet.rest.size(), 0.004, 11);
+    EXPECT_EQ(TriangleBend(sheet, 0, {kRigidity, 0}, of_crossed).energy(noise),
+              TriangleBend(sheet, 0, {kRigidity, 0}).energy(noise));
+  }
+}
+
+TEST(HeldBend, CurvedRestShapeHasNoForceWhereItIsClamped) {
+  mesh::Mesh mesh = testing::delaunay_sheet(testing::grid_of_squares(kSize, 5), 0.3, 5);
+  for (std::size_t k = 0; k < mesh.uv.size(); ++k) {
+    const double angle = kCurvature * mesh.uv[k].x();
+    mesh.positions[k] = {std::sin(angle) / kCurvature, mesh.uv[k].y(), (1 - std::cos(angle)) / kCurvature};
+  }
+  const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
+  TriangleBend bend(sheet, 0, {kRigidity, 0}, held_up_to(mesh.uv, 0.05));
+  for (const bool let_go : {false, true}) {
+    if (let_go) bend.hold(std::vector<char>(sheet.rest.size()));
+    // B / l² = 1 N/m times coordinates of metres rounded by 4e-16 m.
+    EXPECT_LT(testing::largest(testing::force_of(bend, sheet.rest, testing::zeros(sheet.rest))), 1e-13);
+  }
+}
+
+}  // namespace
+}  // namespace weft::forces
