@@ -76,6 +76,7 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
     return mistakes.code;
   }
   fmt::print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
+  for (const std::string& doubt : simulation::doubts(loaded.scene)) fmt::print("{}: note: {}\n", file.string(), doubt);
   if (options.plan) fmt::print("{}", plan_table(loaded.scene));
   return ExitCode::ok;
 }

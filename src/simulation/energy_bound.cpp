@@ -15,13 +15,15 @@ constexpr double kGain = 0.3;
 constexpr double kRounding = 1e-9;
 
 bool is_alone(const scene::Scene& scene) {
-  if (CollisionStage::needed(scene)) return false;
+  if (CollisionStage::needed(scene) && scene.time.integrator != scene::Integrator::implicit_midpoint) return false;
   const auto moves = [](const scene::PoseTrack& track) { return track.keys.size() > 1; };
   for (const scene::Cloth& cloth : scene.cloths) {
     if (cloth.shape == scene::ClothShape::pattern) return false;  // sewing drives it
     for (const scene::Pin& pin : cloth.pins)
       if (moves(pin.motion) || !pin.follow.empty()) return false;
   }
+  const auto stands = [&](const scene::Obstacle& obstacle) { return !obstacle.collide || !moves(obstacle.motion); };
+  if (!scene.characters.empty() || !std::ranges::all_of(scene.obstacles, stands)) return false;
   return scene.physics.air_density == 0 || scene.physics.wind == Vec3::Zero();
 }
 

@@ -8,8 +8,9 @@
 
 namespace weft::simulation {
 
-/// Where nothing drives a scene (no moving pin or body, no wind) and nothing can touch in it, its mechanical energy can
-/// only fall, but for what steps solved to a tolerance add. Contacts at long steps may bring some: they are left out.
+/// Where nothing drives a scene (no moving pin or body, no wind), its mechanical energy can only fall, but for what
+/// steps solved to a tolerance add. Contacts at long steps may bring some, and where a method damps it goes again: of
+/// scenes in which cloth can touch something only those of the midpoint rule are held to it.
 class EnergyBound {
  public:
   EnergyBound(const scene::Scene& scene, const FrameReport& start);

@@ -6,6 +6,7 @@
 
 #include "environment/acting.hpp"
 #include "simulation/cloth_system.hpp"
+#include "simulation/collision_stage.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::simulation {
@@ -146,6 +147,19 @@ std::vector<PlanItem> plan(const Scene& scene) {
   items.push_back(when("render: automatic framing", !camera, "no camera named",
                        fmt::format("{} camera{}", scene.cameras.size(), scene.cameras.size() == 1 ? "" : "s")));
   return items;
+}
+
+std::vector<std::string> doubts(const scene::Scene& scene) {
+  // Of a sheet on a ball: with 5 ms it comes to rest, with 10 ms contacts pump it until the energy is refused.
+  constexpr double kLongestStep = 0.005;
+  std::vector<std::string> found;
+  if (scene.time.integrator == scene::Integrator::implicit_midpoint && CollisionStage::needed(scene) &&
+      !scene.time.tolerance && scene.time.step > kLongestStep)
+    found.push_back(fmt::format(
+        "time.integrator: implicit_midpoint damps nothing, and where cloth touches something a step of {:.3g} ms may "
+        "shake it apart until the run is refused; take bdf2, or a time.step of {:.3g} ms at most",
+        1e3 * scene.time.step, 1e3 * kLongestStep));
+  return found;
 }
 
 }  // namespace weft::simulation

@@ -34,6 +34,9 @@ struct PlanItem {
 /// whose memory is known from them alone. Throws Error(asset_unreadable, scene_invalid) where they cannot be used.
 std::vector<PlanItem> plan(const scene::Scene& scene);
 
+/// What may well end a run of this scene, a sentence each: `weft check` says it beforehand.
+std::vector<std::string> doubts(const scene::Scene& scene);
+
 class Simulation {
  public:
   /// Builds only what the scene names. Throws Error (asset_unreadable, scene_invalid).

@@ -1,4 +1,4 @@
-// Cloth whose cells are too uneven to meet obstacles is refused before any work.
+// What ends a run, or may end it, is named beforehand.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -49,6 +49,21 @@ TEST_F(UnevenCells, AreNamedByCheckAndRunWhereObstaclesAreMet) {
   EXPECT_EQ(uneven.exit_code, 3);
   EXPECT_TRUE(contains(uneven.err, "a grading closer to 1")) << uneven.err;
   EXPECT_EQ(check(graded + "[50, 1]\n" + ball).exit_code, 0);
+}
+
+class MidpointContact : public support::TestFolder {};
+
+TEST_F(MidpointContact, IsNamedByCheckWhereStepsAreLong) {
+  support::write_bytes(folder_ / "s.toml",
+                       "time = { integrator = 'implicit_midpoint' }\n[[cloth]]\nname = 'c'\nparticles = [4, 4]\n");
+  const Outcome long_steps = run_weft({"check", "s.toml", "--set", "time.step=0.01"}, folder_);
+  EXPECT_EQ(long_steps.exit_code, 0);
+  EXPECT_TRUE(contains(long_steps.out, "s.toml: note: time.integrator: implicit_midpoint damps nothing"))
+      << long_steps.out;
+  for (const char* change : {"time.step=0.004", "time.integrator=bdf2", "contact.self=false"}) {
+    const Outcome other = run_weft({"check", "s.toml", "--set", "time.step=0.01", "--set", change}, folder_);
+    EXPECT_FALSE(contains(other.out, "note")) << change << other.out;
+  }
 }
 
 }  // namespace
