@@ -26,6 +26,7 @@ struct PairFriction {
 
 struct ContactParameters {
   double stiffness = 100;                   ///< least stiffness of a contact [N/m]
+  double step = 0.01;                       ///< step that contacts are stiff enough for [s]
   std::vector<PairFriction> friction = {};  ///< of pairs with coefficients of their own
 };
 
@@ -73,7 +74,7 @@ class ContactBuilder {
                                const StepMotion& motion) const;
 
   const Bodies& bodies_;
-  double stiffness_;
+  double stiffness_, step_;
   std::vector<Friction> friction_;  // of each pair of bodies
   std::span<const double> masses_;
   // Sorted vertices of the features that push with all their stiffness; sorted itself.

@@ -1,13 +1,10 @@
-// Air resistance: non-stiff, evaluated once a step outside of the implicit solve (seed, "Time integration").
+// Air resistance of cloth.
 #pragma once
 
 #include <array>
-#include <span>
 #include <vector>
 
-#include "core/types.hpp"
-#include "mesh/mesh.hpp"
-#include "mesh/sheet.hpp"
+#include "forces/force.hpp"
 
 namespace weft::forces {
 
@@ -19,31 +16,30 @@ struct AirParameters {
 
 /// Quadratic drag of the motion along the normal of each cell or triangle: f = −½ ρ c A ‖v_n‖ v_n, shared by its
 /// corners.
-class Air {
+///
+/// Inside of the implicit stage, though it is not stiff: taken once a step outside of it (seed, "Time integration"), at
+/// the velocity of the start, it made terminal velocities and the folds of cloth in steady wind depend on the step.
+/// The matrix gets what the velocities change, summed up on the diagonal: no less than the whole, and exact where the
+/// corners of a face change their velocity together. That normals and areas turn with the cloth is left out.
+class Air final : public Force {
  public:
   Air(const mesh::Grid& grid, Index first, const AirParameters& parameters);
-  /// `cloth_density` [kg/m²].
-  Air(const mesh::Sheet& sheet, Index first, double cloth_density, const AirParameters& parameters);
+  Air(const mesh::Sheet& sheet, Index first, const AirParameters& parameters);
 
-  /// What the state stands for at which drag is taken.
-  enum class Taken { over_the_step, at_that_moment };
-
-  /// force += the drag of a step over h at (x, v) [N]. Over the step from v on, drag alone would take an inner particle
-  /// of mass m to v / (1 + z), z = h c ‖v‖ / m, the exact solution of m v' = −c ‖v‖ v; the force returned gives just
-  /// that. Taken at the moment of v it is the law itself but for z² / 2, by which it is divided by √(1 + z²): a mean
-  /// over the step would be off by z, and cost methods of second order an order. Neither turns a motion round, however
-  /// long the step and light the cloth.
-  void add(std::span<const Vec3> x, std::span<const Vec3> v, std::span<const double> masses, double h, Taken taken,
-           std::span<Vec3> force) const;
+  void couple(std::vector<std::pair<Index, Index>>& /*pairs*/) const override {}
+  void attach(const solver::BlockMatrix& matrix) override;
+  void add(const Evaluation& at) const override;
+  double energy(std::span<const Vec3> /*x*/) const override { return 0; }
 
  private:
-  AirParameters parameters_;
+  template <std::size_t Corners>
+  void push(const std::array<Index, Corners>& face, const Vec3& area, const Evaluation& at) const;
+
+  Vec3 wind_;
+  double coefficient_;                       // ½ ρ c [kg/m³]
   std::vector<std::array<Index, 4>> cells_;  // corners in the order (0,0), (1,0), (1,1), (0,1)
-  struct Triangle {
-    mesh::Triangle corners;
-    double mass;  // [kg]
-  };
-  std::vector<Triangle> triangles_;
+  std::vector<mesh::Triangle> triangles_;
+  std::vector<solver::Slot> diagonal_;  // of all particles
 };
 
 }  // namespace weft::forces

@@ -15,16 +15,14 @@ namespace weft::integrator {
 enum class Method { implicit_euler, implicit_midpoint, bdf2 };
 
 struct NewtonParameters {
-  /// The step is solved when the residual is below this share of the particles' weight (of m · 1 m/s² where there is
-  /// less gravity) or of the force that changes their velocity, whichever is more; all in the preconditioner's norm.
-  /// Not relative to the first residual: where a first guess runs into an obstacle that is large, and what it would let
-  /// pass is felt as drag (the falling band fell at a third of its speed).
+  /// What Newton's method and the linear solver leave of a step may be this share of the step's own local error, or of
+  /// what nobody sees where that is more; see allow_velocities() in stepper.cpp.
   double tolerance = 0.3;
   int max_iterations = 60;
-  double linear_tolerance = 0.1;  ///< of one linear solve, relative to its own right hand side
+  double linear_tolerance = 0.1;  ///< of one linear solve, relative to its own solution, in the energy norm
   int max_linear_iterations = 1000;
-  /// Where the local error of a step is held below a tolerance, that tolerance [m]; 0: nowhere. The residual is then
-  /// also below what would matter beside it: see Stepper::residual_that_matters().
+  /// Where the local error of a step is held below a tolerance, that tolerance [m]; 0: nowhere. Nothing above it then
+  /// counts as unseen.
   double position_tolerance = 0;
 };
 
@@ -35,8 +33,11 @@ struct StepReport {
   Verdict verdict = Verdict::solved;
   int newton_iterations = 0;
   int linear_iterations = 0;
-  double first_residual = 0, last_residual = 0;  ///< weighed norms; comparable within one step
-  double local_error = 0;                        ///< estimate of what this step adds to the error of positions [m]
+  double local_error = 0;  ///< estimate of what the method adds to the error of positions in this step [m]
+  /// And of what the solver adds: what it left, as displacement of this step, or as the velocity that goes on from it
+  /// for the time of a swing [m].
+  double solver_error = 0;
+  double left = 0, allowed = 0;  ///< velocity that the solver left in the worst part, and might have [m/s]
 };
 
 /// Every method is one implicit stage  x = x̂ + β v,  M (v − v̂) = β f(x, v)  with its own β, x̂ and v̂:
@@ -74,7 +75,7 @@ class Stepper {
   enum class Start { unchanged_velocity, next };
 
   /// Computes `next` from `now` over h [s]. Nothing is remembered: see accept().
-  /// `gravity` [m/s²] acts on all particles and is also what residuals are measured against.
+  /// `gravity` [m/s²] acts on all particles.
   StepReport step(System& system, const State& now, double h, const Vec3& gravity, std::span<const HeldParticle> held,
                   State& next, Start start = Start::unchanged_velocity);
 
@@ -102,24 +103,42 @@ class Stepper {
 
  private:
   struct Stage {
-    double beta, end_rate;
-    double extrapolation;  // of the explicit forces: fraction of h at which the stage lies
+    double beta;      // [s]
+    double end_rate;  // dx_end/dx: 1, or 2 for the midpoint rule
   };
+  /// A cloth, or whatever the matrix does not couple with the rest.
+  struct PartState {
+    solver::Part rows;
+    double mass = 0;            // [kg]
+    double local_error = 0;     // of the method, at the current iterate [m]
+    double velocity_error = 0;  // likewise of the velocity, where it is known [m/s]
+    double allowed = 0;         // velocity that may be left [m/s]
+    double left = 0;            // velocity that is left [m/s]
+  };
+
   Stage begin(const State& now, double h);
   void prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity);
   void hold(const State& now, const Stage& stage, std::span<const HeldParticle> held,
             std::vector<solver::ParticleConstraint>& constraints);
-  double weight(std::span<const double> masses, const Vec3& gravity);
-  double force_scale(std::span<const double> masses, double weight, const Stage& stage);
-  double residual_that_matters(std::span<const double> masses, double h, const Stage& stage,
-                               std::span<const solver::Part> parts) const;
-  double local_error(std::span<const double> masses, const State& now, const State& next, double h,
-                     std::span<const solver::Part> parts);
-  std::span<const std::size_t> unsolved_parts(double goal);
+  void list_parts(std::span<const double> masses, const solver::LinearSystem& linear);
+  std::span<const Vec3> likely_change(std::span<const double> masses, const State& now);
+  solver::LinearReport solve_linear(int iteration, std::span<const Vec3> start);
   double search_along_delta(System& system, const State& now, const Stage& stage);
-  double residual(System& system, const State& now, const Stage& stage);
+  enum class Equation { itself, linear };
+  void residual(System& system, const State& now, const Stage& stage, Equation equation);
   void evaluate(const State& now, const Stage& stage);
   void gather_residual(std::span<const double> masses, const Stage& stage);
+  void estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h);
+  void allow_velocities(const State& now, double h);
+  static double carried_on(double h);
+  static double root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of);
+  void measure(std::span<const Vec3> displacements, std::span<const double> masses, std::vector<double>& speeds) const;
+  void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);
+  void select_unsolved();
+  bool is_solved() const;
+  void report_worst(double h, StepReport& report) const;
+  void finish(const State& now, const Stage& stage, std::span<const HeldParticle> held, State& next) const;
+  Vec3 v_end(const State& now, const Stage& stage, std::size_t particle) const;
 
   Method method_;
   NewtonParameters parameters_;
@@ -129,9 +148,11 @@ class Stepper {
 
   // Scratch of one step.
   solver::ConjugateGradient cg_;
-  State guess_;
+  std::vector<PartState> parts_;
   std::vector<std::size_t> unsolved_;
-  std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, scale_;
+  // Per part: energy norms that may be left, and velocities [m/s].
+  std::vector<double> goals_, foreseen_, changes_, speeds_;
+  std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, scratch_;
 };
 
 }  // namespace weft::integrator

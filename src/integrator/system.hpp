@@ -30,17 +30,19 @@ class System {
 
   virtual std::span<const double> masses() const = 0;
 
-  /// Non-stiff forces of a step over h [N], taken once, outside of the implicit solve: where the state is
-  /// `extrapolated` to the stage those at that moment, right in second order; else the state is that at the start, and
-  /// they are means over the step.
-  virtual void explicit_forces(const State& at, double h, bool extrapolated, std::span<Vec3> force) const = 0;
+  /// Adds forces of a step that hang neither on positions nor on velocities, beside the weight [N].
+  virtual void constant_forces(std::span<Vec3> force) const = 0;
 
-  /// Adds the stiff forces at a stage [N]. What a system remembers between calls may change here only as far as it does
+  /// Adds all other forces at a stage [N]. What a system remembers between calls may change here only as far as it does
   /// not change results.
   virtual void forces(const StagePoint& at, std::span<Vec3> force) = 0;
 
-  /// As `forces`, and fills the matrix of linear_system() with rate² M − ∂f/∂x − rate ∂f/∂v and its terms with what
-  /// stands beside it. `iteration`: of Newton's method, from 0 in each solve. Forces that lag behind the positions
+  /// As `forces`, but what the last linearise() has put its tangent for is so here: what a search along the solution of
+  /// that linear system must see.
+  virtual void linear_forces(const StagePoint& at, std::span<Vec3> force) { forces(at, force); }
+
+  /// As `linear_forces`, and fills the matrix of linear_system() with rate² M − ∂f/∂x − rate ∂f/∂v and its terms with
+  /// what stands beside it. `iteration`: of Newton's method, from 0 in each solve. Forces that lag behind the positions
   /// catch up here, before they are added.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 

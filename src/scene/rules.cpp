@@ -70,11 +70,11 @@ const Table& solver_rules() {
   static const Table kTable =
       TableBuilder<Solver>("How exactly each step is solved.")
           .number("newton_tolerance", &Solver::newton_tolerance, above(0, 1), "",
-                  "residual relative to the weight and inertia of the cloth")
+                  "what the solver may leave of a step, in shares of the step's own error or of what nobody sees")
           .whole_number("newton_iterations", &Solver::newton_iterations, within(1, 1000),
                         "in a step, before it is halved")
           .number("linear_tolerance", &Solver::linear_tolerance, above(0, 1), "",
-                  "of the conjugate gradients, relative to the first residual")
+                  "share of its solution that one linear solve may be off")
           .whole_number("linear_iterations", &Solver::linear_iterations, within(1, 1e6), "of the conjugate gradients")
           .whole_number("halvings", &Solver::halvings, within(0, 30), "of a rejected step, before the run gives up")
           .build();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/archive.hpp"
+#include "forces/air.hpp"
 #include "forces/bend.hpp"
 #include "forces/shear.hpp"
 #include "forces/stretch.hpp"
@@ -126,7 +127,8 @@ void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, con
   if (material.shear > 0 || material.shear_viscosity > 0)
     forces_[cloth].push_back(std::make_unique<forces::Shear>(grid, first, shear_of(material)));
   if (bends(material)) forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
-  if (meets_air(material, physics)) air_.emplace_back(grid, first, air_of(material, physics));
+  if (meets_air(material, physics))
+    forces_[cloth].push_back(std::make_unique<forces::Air>(grid, first, air_of(material, physics)));
 }
 
 void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of,
@@ -144,7 +146,8 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
   }
   if (bends(material))
     forces_[cloth].push_back(std::make_unique<forces::TriangleBend>(sheet, first, bend_of(material), held_));
-  if (meets_air(material, physics)) air_.emplace_back(sheet, first, material.density, air_of(material, physics));
+  if (meets_air(material, physics))
+    forces_[cloth].push_back(std::make_unique<forces::Air>(sheet, first, air_of(material, physics)));
 }
 
 // Two by two, again and again, until kPatches or fewer are left in all, or one of each cloth.
@@ -209,20 +212,12 @@ void ClothSystem::serialize(Archive& archive) {
 template void ClothSystem::serialize(ByteWriter&);
 template void ClothSystem::serialize(ByteReader&);
 
-// What is being sewn has no weight: it would fall before it fits.
 void ClothSystem::take_weight_off(std::span<Vec3> force) const {
   for (const Sewing& sewing : sewing_) {
     if (sewing.share == 1) continue;
     const auto end = static_cast<std::size_t>(first_[sewing.cloth + 1]);
     for (auto i = static_cast<std::size_t>(first_[sewing.cloth]); i < end; ++i) force[i] -= masses_[i] * gravity_;
   }
-}
-
-void ClothSystem::add_explicit_forces(std::span<const Vec3> x, std::span<const Vec3> v, double h, bool extrapolated,
-                                      std::span<Vec3> force) const {
-  take_weight_off(force);
-  const auto taken = extrapolated ? forces::Air::Taken::at_that_moment : forces::Air::Taken::over_the_step;
-  for (const forces::Air& air : air_) air.add(x, v, masses_, h, taken, force);
 }
 
 void ClothSystem::add_forces(std::size_t cloth, const forces::Evaluation& at) const {

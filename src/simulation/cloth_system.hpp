@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "environment/environment.hpp"
-#include "forces/air.hpp"
 #include "forces/bands.hpp"
 #include "forces/force.hpp"
 #include "forces/triangle_membrane.hpp"
@@ -34,11 +33,10 @@ class ClothSystem {
   /// Least distance between neighbouring particles of all cloths [m].
   double spacing() const { return spacing_; }
 
-  /// Non-stiff forces of a step over h; see integrator::System.
-  void add_explicit_forces(std::span<const Vec3> x, std::span<const Vec3> v, double h, bool extrapolated,
-                           std::span<Vec3> force) const;
+  /// Takes the weight off what is being sewn: it would fall before it fits.
+  void take_weight_off(std::span<Vec3> force) const;
 
-  /// The stiff forces within one cloth; positions, velocities and forces are those of all particles.
+  /// The forces on one cloth but its weight; positions, velocities and forces are those of all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
   /// rate² M and the part of the stiffness that only hold() changes.
@@ -71,15 +69,13 @@ class ClothSystem {
                        const scene::Physics& physics);
   void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of,
                            const scene::Physics& physics);
-  void take_weight_off(std::span<Vec3> force) const;
   solver::BlockMatrix lay_out_matrix() const;
   void cut_groups(const environment::Environment& environment);
 
   std::vector<Index> first_;  // per cloth, and the total at the end
   std::vector<double> masses_;
-  std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;  // per cloth, all of the stiff ones
+  std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;  // per cloth
   std::vector<const forces::Membrane*> membranes_;                   // of them, one per cloth
-  std::vector<forces::Air> air_;
   /// A cloth while it is sewn.
   struct Sewing {
     std::size_t cloth;

@@ -66,7 +66,7 @@ collision::EngineParameters engine_parameters(const scene::Scene& scene, const e
   const bool velocity = contact.response == scene::Response::velocity_constraints;
   return {.search = {contact.self, contact.obstacles, contact.search.reuse, contact.search.coherence,
                      search_options(contact.search)},
-          .contact = {contact.stiffness, friction_pairs(scene, environment)},
+          .contact = {contact.stiffness, scene.time.step, friction_pairs(scene, environment)},
           .response = velocity ? collision::ResponseForm::velocity_constraints : collision::ResponseForm::springs};
 }
 

@@ -179,9 +179,10 @@ StepLoop::Rejection StepLoop::solve(double h, integrator::Stepper::Start start, 
   report.newton_iterations += step.newton_iterations;
   report.linear_iterations += step.linear_iterations;
   local_error_ = step.local_error;
+  solver_error_ = step.solver_error;
   if (step.verdict == integrator::Verdict::solved) return std::nullopt;
-  return fmt::format("{} (residual {:.3g} of {:.3g} after {} iterations)", integrator::describe(step.verdict),
-                     step.last_residual, step.first_residual, step.newton_iterations);
+  return fmt::format("{} (a velocity of {:.2g} m/s left where {:.2g} may be, after {} iterations)",
+                     integrator::describe(step.verdict), step.left, step.allowed, step.newton_iterations);
 }
 
 // Makes `next_`, reached over h, the state.
@@ -191,6 +192,7 @@ void StepLoop::accept(double h, FrameReport& report) {
   std::swap(progress_.now, next_);
   ++report.steps;
   report.error_estimate += local_error_;
+  report.solver_error += solver_error_;
 }
 
 template <class Archive>

@@ -78,8 +78,8 @@ class StepLoop {
   StepProblem problem_;
   Pins pins_;
   Progress progress_;
-  Moment next_;             // the end of the step at hand; once that is accepted, its start
-  double local_error_ = 0;  // of the step to `next_`, estimated [m]
+  Moment next_;                                // the end of the step at hand; once that is accepted, its start
+  double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
   std::vector<integrator::HeldParticle> held_;
   std::optional<CollisionStage> collisions_;
 };

@@ -37,12 +37,17 @@ void StepProblem::begin_step(double t, std::span<const integrator::HeldParticle>
     forget();
     memory_.rate = 0;  // what the matrix begins with has changed too
   }
-  memory_.friction = {};
+  memory_.contacts = {};
 }
 
 void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force) {
   add_cloth_forces(at, force);
-  if (contacts_ != nullptr) contacts_->add_forces(at.x_end, memory_.friction, force);
+  if (contacts_ != nullptr) contacts_->add_forces(at.x_end, memory_.contacts, force);
+}
+
+void StepProblem::linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
+  add_cloth_forces(at, force);
+  if (contacts_ != nullptr) contacts_->add_linear_forces(at.x_end, memory_.contacts, force);
 }
 
 void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) {
@@ -56,8 +61,8 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   system.terms.clear();
   system.diagonal_terms.clear();
   if (contacts_ == nullptr) return;
-  contacts_->update(at.x_end, memory_.friction);
-  contacts_->linearise(at.x_end, at.end_rate, memory_.friction, force, system);
+  contacts_->update(at.x_end, memory_.contacts);
+  contacts_->linearise(at.x_end, at.end_rate, memory_.contacts, force, system);
 }
 
 void StepProblem::add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force) {

@@ -16,7 +16,7 @@ struct SolveMemory {
   solver::LinearSystem system;
   double rate = 0;                  ///< of `system` and `base` [1/s]; 0: of none
   std::vector<Vec3> linearised_at;  ///< where each cloth's rows were put together; empty: nowhere
-  collision::FrictionLag friction;
+  collision::ContactLag contacts;
 
   // Saves time only. Of the forces within the cloths: most cloths of a scene are solved, and do not move, while one
   // goes on.
@@ -45,10 +45,9 @@ class StepProblem final : public integrator::System {
   const SolveMemory& memory() const { return memory_; }
 
   std::span<const double> masses() const override { return cloth_.masses(); }
-  void explicit_forces(const integrator::State& at, double h, bool extrapolated, std::span<Vec3> force) const override {
-    cloth_.add_explicit_forces(at.x, at.v, h, extrapolated, force);
-  }
+  void constant_forces(std::span<Vec3> force) const override { cloth_.take_weight_off(force); }
   void forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
+  void linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
   void linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) override;
   solver::LinearSystem& linear_system() override { return memory_.system; }
 

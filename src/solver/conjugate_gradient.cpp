@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <utility>
 
 #include "core/parallel.hpp"
 
@@ -27,10 +28,17 @@ constexpr double kMinIterationsLeft = 100;
 // together need about half of what the factor needs alone.
 constexpr double kFactorWeight = 16;
 
-// Whether a residual that fell from `before` to `now` in kPaceInterval iterations needs more than kMinIterationsLeft
-// to reach the target.
-bool factor_pays(double before, double now, double target) {
-  return !(std::log(now / target) * kPaceInterval < kMinIterationsLeft * std::log(before / now));
+// Iterations whose gains are the estimate of the error: so many at least, of all of them a share of one over this, for
+// long solves have plateaus.
+constexpr std::size_t kLeastDelay = 3, kDelayShare = 5;
+// Least share of the energy norm that must be solved before the metric alone may end a solve: stiff motion comes first,
+// and shows nothing in it.
+constexpr double kSolvedInEnergy = 0.3;
+
+// Whether an error that fell from `before` to `now` times what it may be, in kPaceInterval iterations, needs more than
+// kMinIterationsLeft to get there.
+bool factor_pays(double before, double now) {
+  return !(std::log(now) * kPaceInterval < kMinIterationsLeft * std::log(before / now));
 }
 
 // Calls body(begin, end) for chunks of the rows of a part.
@@ -49,7 +57,30 @@ double dot(const Part& part, std::span<const Vec3> a, std::span<const Vec3> b) {
   });
 }
 
+// Σ weights ‖p‖² over the rows of a part.
+double weighed_square(const Part& part, std::span<const double> weights, std::span<const Vec3> p) {
+  const auto first = static_cast<std::size_t>(part.begin), count = static_cast<std::size_t>(part.end) - first;
+  return parallel_sum(count, kChunk, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = first + begin; i < first + end; ++i) sum += weights[i] * p[i].squaredNorm();
+    return sum;
+  });
+}
+
 }  // namespace
+
+double ConjugateGradient::PartState::error_energy() const {
+  return std::accumulate(gains.end() - recent(), gains.end(), 0.0);
+}
+
+double ConjugateGradient::PartState::error_share() const {
+  return *std::max_element(shares.end() - recent(), shares.end());
+}
+
+// How many of the last iterations tell the error.
+std::ptrdiff_t ConjugateGradient::PartState::recent() const {
+  return static_cast<std::ptrdiff_t>(std::min(gains.size(), std::max(kLeastDelay, gains.size() / kDelayShare)));
+}
 
 void ConjugateGradient::prepare(const LinearSystem& system) {
   system_ = &system;
@@ -69,24 +100,24 @@ bool ConjugateGradient::make_factor() {
   return factor_state_ == Factor::made;
 }
 
-// z += kFactorWeight (L Lᵀ)⁻¹ r_; returns what that adds to r_·z.
-double ConjugateGradient::add_factor(std::span<Vec3> z, std::span<const std::size_t> parts) {
-  factor_parts_.clear();
-  for (std::size_t p : parts) factor_parts_.push_back(parts_[p]);
-  const double sum = factor_.add(kFactorWeight, r_, z, factor_parts_);
-  filter(z);
+// z = P⁻¹ r_, with or without the factor; returns r·z.
+double ConjugateGradient::apply_preconditioner(std::span<Vec3> z, bool with_factor,
+                                               std::span<const std::size_t> parts) {
+  preconditioner_.apply(r_, z, parts);
+  if (with_factor) {
+    factor_parts_.clear();
+    for (std::size_t p : parts) factor_parts_.push_back(parts_[p]);
+    factor_.add(kFactorWeight, r_, z, factor_parts_);
+    filter(z);
+  }
+  double sum = 0;
+  for (std::size_t p : parts) sum += part_rz_[p] = dot(parts_[p], r_, z);
   return sum;
 }
 
-double ConjugateGradient::norm(std::span<const Vec3> b) {
-  return std::sqrt(preconditioner_.apply(b, z_, all_parts_));
-}
-
-std::span<const double> ConjugateGradient::part_norms_sq(std::span<const Vec3> b) {
+std::span<const Vec3> ConjugateGradient::precondition(std::span<const Vec3> b) {
   preconditioner_.apply(b, z_, all_parts_);
-  part_norms_sq_.clear();
-  for (const Part& part : parts_) part_norms_sq_.push_back(dot(part, b, z_));
-  return part_norms_sq_;
+  return z_;
 }
 
 void ConjugateGradient::select_terms(std::span<const std::size_t> parts) {
@@ -121,30 +152,96 @@ double ConjugateGradient::multiply(std::span<const Vec3> p, std::span<Vec3> q,
   return sum;
 }
 
-LinearReport ConjugateGradient::solve(std::span<const Vec3> b, double target, int max_iterations, std::span<Vec3> x) {
-  return solve(b, target, max_iterations, x, all_parts_);
+LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations,
+                                      std::span<Vec3> x, std::span<const Vec3> start) {
+  return solve(b, goal, max_iterations, x, start, all_parts_);
 }
 
-LinearReport ConjugateGradient::solve(std::span<const Vec3> b, double target, int max_iterations, std::span<Vec3> x,
-                                      std::span<const std::size_t> parts) {
-  LinearReport report;
+// r_ and x before the first iteration.
+void ConjugateGradient::begin(std::span<const Vec3> b, std::span<const Vec3> start, std::span<Vec3> x,
+                              std::span<const std::size_t> parts) {
   std::fill(x.begin(), x.end(), Vec3::Zero());
   std::fill(p_.begin(), p_.end(), Vec3::Zero());
   std::fill(q_.begin(), q_.end(), Vec3::Zero());
   std::copy(b.begin(), b.end(), r_.begin());
   filter(r_);
   select_terms(parts);
-  double rz = preconditioner_.apply(r_, p_, parts);
-  report.first_residual = report.last_residual = std::sqrt(rz);
-  double paced_from = report.first_residual;
-  bool with_factor = target < kTightTarget * report.first_residual && make_factor();
-  if (with_factor) rz += add_factor(p_, parts);
+  part_rz_.assign(parts_.size(), 0);
+  states_.assign(parts_.size(), {});
+  if (!start.empty()) begin_along(start, x, parts);
+}
 
-  while (!(report.last_residual <= target) && report.iterations < max_iterations) {
+// A step along `start`.
+void ConjugateGradient::begin_along(std::span<const Vec3> start, std::span<Vec3> x,
+                                    std::span<const std::size_t> parts) {
+  for (std::size_t part : parts)
+    std::copy(start.begin() + parts_[part].begin, start.begin() + parts_[part].end, p_.begin() + parts_[part].begin);
+  filter(p_);
+  const double curvature = multiply(p_, q_, parts);
+  if (!(curvature > 0)) return;
+  double slope = 0;
+  for (std::size_t part : parts) slope += dot(parts_[part], p_, r_);
+  const double alpha = slope / curvature;
+  for (std::size_t part : parts) {
+    for (auto i = parts_[part].begin; i < parts_[part].end; ++i) {
+      x[i] = alpha * p_[i];
+      r_[i] -= alpha * q_[i];
+    }
+  }
+}
+
+// What an iteration over `alpha` along p_ has gained.
+void ConjugateGradient::note_gains(double alpha, std::span<const std::size_t> parts) {
+  for (std::size_t part : parts) {
+    PartState& state = states_[part];
+    const double gain = alpha * part_rz_[part];
+    double share = 1;
+    if (!system_->metric.empty() && gain > 0) {
+      const double moved = alpha * alpha * weighed_square(parts_[part], system_->metric, p_);
+      share = std::min(1.0, moved / gain);
+    }
+    state.gains.push_back(gain);
+    state.shares.push_back(share);
+    state.energy += gain;
+  }
+}
+
+bool ConjugateGradient::meets(const LinearGoal& goal, std::span<const std::size_t> parts) const {
+  return std::ranges::all_of(parts, [&](std::size_t part) {
+    const PartState& state = states_[part];
+    const double error_sq = state.error_energy();
+    const double absolute = goal.absolute.empty() ? 0 : goal.absolute[part];
+    return error_sq <= std::max(absolute * absolute, goal.relative * goal.relative * state.energy) ||
+           (error_sq * state.error_share() <= absolute * absolute &&
+            error_sq <= kSolvedInEnergy * kSolvedInEnergy * state.energy);
+  });
+}
+
+// The largest error of all parts, in shares of what it may be: the square of it in the energy norm.
+double ConjugateGradient::farthest_from(const LinearGoal& goal, std::span<const std::size_t> parts) const {
+  double farthest = 0;
+  for (std::size_t part : parts) {
+    const double absolute = goal.absolute.empty() ? 0 : goal.absolute[part];
+    const double allowed = std::max(absolute, goal.relative * std::sqrt(states_[part].energy));
+    farthest = std::max(farthest, std::sqrt(states_[part].error_energy()) / allowed);
+  }
+  return farthest;
+}
+
+LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations,
+                                      std::span<Vec3> x, std::span<const Vec3> start,
+                                      std::span<const std::size_t> parts) {
+  LinearReport report;
+  begin(b, start, x, parts);
+  bool with_factor = goal.relative < kTightTarget && goal.absolute.empty() && make_factor();
+  double rz = apply_preconditioner(p_, with_factor, parts);
+  double paced_from = 0;
+  report.converged = rz == 0;
+  while (!report.converged && report.iterations < max_iterations) {
     const double curvature = multiply(p_, q_, parts);
     if (!(curvature > 0)) {
       report.definite = false;
-      return report;
+      break;
     }
     const double alpha = rz / curvature;
     for (std::size_t part : parts) {
@@ -155,25 +252,29 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, double target, in
         }
       });
     }
-    double rz_next = preconditioner_.apply(r_, z_, parts);
-    report.last_residual = std::sqrt(rz_next);
+    note_gains(alpha, parts);
     ++report.iterations;
+    if ((report.converged = meets(goal, parts))) break;
     // Directions made without the factor say nothing about those with it.
     bool restart = false;
+    if (report.iterations == 1) paced_from = farthest_from(goal, parts);
     if (!with_factor && report.iterations % kPaceInterval == 0) {
-      restart = with_factor = factor_pays(paced_from, report.last_residual, target) && make_factor();
-      paced_from = report.last_residual;
+      const double far = farthest_from(goal, parts);
+      restart = with_factor = factor_pays(paced_from, far) && make_factor();
+      paced_from = far;
     }
-    if (with_factor) rz_next += add_factor(z_, parts);
-    const double beta = restart ? 0 : rz_next / rz;
+    const double rz_before = std::exchange(rz, apply_preconditioner(z_, with_factor, parts));
+    if ((report.converged = rz == 0)) break;
+    const double beta = restart ? 0 : rz / rz_before;
     for (std::size_t part : parts) {
       for_rows(parts_[part], [&](std::size_t begin, std::size_t end) {
         for (std::size_t i = begin; i < end; ++i) p_[i] = z_[i] + beta * p_[i];
       });
     }
-    rz = rz_next;
   }
-  report.converged = report.last_residual <= target;
+  // Where nothing is left nothing is to be estimated.
+  for (const PartState& state : states_)
+    report.errors.push_back(state.gains.empty() || rz == 0 ? 0 : std::sqrt(state.error_energy() * state.error_share()));
   return report;
 }
 

@@ -49,6 +49,9 @@ struct LinearSystem {
   std::vector<StencilTerm> terms;
   std::vector<DiagonalTerm> diagonal_terms;
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
+  /// What errors of solutions are weighed with, a weight of each row; no more than the matrix, as rate² M is no more
+  /// than rate² M + K. Empty: their energy counts instead.
+  std::vector<double> metric;
   /// Coarse levels of the preconditioner, which moves groups as a whole: of particles, of those groups, and so on, the
   /// last of them few enough for a dense factorisation. No group spans two parts, and those of one part have
   /// consecutive numbers. Empty: no coarse level.

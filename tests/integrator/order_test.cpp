@@ -72,10 +72,6 @@ void expect_order(testing::Particles&& system, const Law& law, Method method, do
 Vec3 undamped(const Vec3& x, const Vec3&) {
   return testing::HardeningSpring::force_at(x);
 }
-Vec3 dragged(const Vec3& x, const Vec3& v) {
-  return testing::HardeningSpring::force_at(x) + testing::DraggedSpring::drag_at(v);
-}
-
 TEST(Order, ImplicitEulerConvergesWithOrderOne) {
   expect_order(testing::HardeningSpring(), undamped, Method::implicit_euler, 1, equal_steps);
 }
@@ -88,15 +84,5 @@ TEST(Order, Bdf2ConvergesWithOrderTwo) {
 TEST(Order, Bdf2ConvergesWithOrderTwoWhereStepsAreUneven) {
   expect_order(testing::HardeningSpring(), undamped, Method::bdf2, 2, uneven_steps);
 }
-TEST(Order, ImplicitEulerKeepsItsOrderWithForcesOutsideOfTheSolve) {
-  expect_order(testing::DraggedSpring(), dragged, Method::implicit_euler, 1, equal_steps);
-}
-TEST(Order, ImplicitMidpointKeepsItsOrderWithForcesOutsideOfTheSolve) {
-  expect_order(testing::DraggedSpring(), dragged, Method::implicit_midpoint, 2, equal_steps);
-}
-TEST(Order, Bdf2KeepsItsOrderWithForcesOutsideOfTheSolve) {
-  expect_order(testing::DraggedSpring(), dragged, Method::bdf2, 2, equal_steps);
-}
-
 }  // namespace
 }  // namespace weft::integrator

@@ -23,7 +23,7 @@ class Particles : public System {
   }
 
   std::span<const double> masses() const override { return masses_; }
-  void explicit_forces(const State&, double, bool, std::span<Vec3>) const override {}
+  void constant_forces(std::span<Vec3>) const override {}
   void forces(const StagePoint& at, std::span<Vec3> force) override {
     for (std::size_t i = 0; i < masses_.size(); ++i) force[i] += force_on(at.x[i]);
   }
@@ -77,16 +77,16 @@ class HardeningSpring : public Particles {
 /// matrix is indefinite with a definite diagonal where s is above rate².
 class Saddle final : public System {
  public:
-  explicit Saddle(double s) : s_(s) {}
+  explicit Saddle(double s) : s_(s) { system_.matrix = solver::BlockMatrix(2, {{0, 1}}); }
   std::span<const double> masses() const override { return masses_; }
-  void explicit_forces(const State&, double, bool, std::span<Vec3>) const override {}
+  void constant_forces(std::span<Vec3>) const override {}
   void forces(const StagePoint& at, std::span<Vec3> force) override {
     force[0] -= s_ * at.x[1];
     force[1] -= s_ * at.x[0];
   }
   void linearise(const StagePoint& at, int, std::span<Vec3> force) override {
     forces(at, force);
-    system_.matrix = solver::BlockMatrix(2, {{0, 1}});
+    system_.matrix.set_zero();
     for (Index i : {0, 1}) {
       system_.matrix.add_scalar(system_.matrix.diagonal(i), at.rate * at.rate);
       system_.matrix.add_scalar(system_.matrix.slot(i, 1 - i), s_);
@@ -98,16 +98,6 @@ class Saddle final : public System {
   double s_;
   solver::LinearSystem system_;
   std::vector<double> masses_{1, 1};
-};
-
-/// The hardening spring with a drag −c ‖v‖ v taken as a force outside of the implicit solve.
-class DraggedSpring : public HardeningSpring {
- public:
-  static constexpr double kDrag = 0.4;
-  static Vec3 drag_at(const Vec3& v) { return -kDrag * v.norm() * v; }
-  void explicit_forces(const State& at, double, bool, std::span<Vec3> force) const override {
-    force[0] += drag_at(at.v[0]);
-  }
 };
 
 }  // namespace weft::integrator::testing

@@ -1,9 +1,13 @@
-// Cloth by itself keeps what mechanics says it keeps.
+// Cloth by itself keeps what mechanics says it keeps, and falls and is blown along as a body does, at default settings.
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <tuple>
 
 #include "environment/environment.hpp"
 #include "forces/sheets.hpp"
 #include "integrator/stepper.hpp"
+#include "scene/fabrics.hpp"
 #include "simulation/scenes.hpp"
 #include "simulation/step_problem.hpp"
 
@@ -48,6 +52,80 @@ TEST(FreeCloth, KeepsItsMomentumInEveryMethod) {
     // The motion was not just a translation.
     EXPECT_LT(system.elastic_energy(now.x), 0.5 * energy);
   }
+}
+
+/// Fabric and mesh.
+using Cloths = std::tuple<const char*, scene::ClothShape>;
+class FreeFall : public ::testing::TestWithParam<Cloths> {};
+
+TEST_P(FreeFall, LeavesAFlatSheetFlatByEveryMethodAtDefaultSettings) {
+  for (scene::Integrator integrator : testing::kIntegrators) {
+    scene::Scene scene = testing::sheet_alone(1, 21, 0);
+    scene.time.step = 0.01;
+    scene.time.integrator = integrator;
+    scene.cloths[0].shape = std::get<1>(GetParam());
+    scene.cloths[0].material = scene::find_fabric(std::get<0>(GetParam()))->material;
+    Simulation simulation(scene);
+    const std::vector<Vec3> start = testing::sheet_of(simulation.snapshot());
+    for (int k = 1; k <= 25; ++k) simulation.advance();
+    const std::vector<Vec3>& end = testing::sheet_of(simulation.snapshot());
+    const double fallen = end[0].z() - start[0].z();
+    // What the shares of the weight of the versions before left: 0.1 to 0.5 m.
+    for (std::size_t i = 0; i < end.size(); ++i)
+      ASSERT_LT((end[i] - start[i] - Vec3(0, 0, fallen)).norm(), 1e-6) << name_of(integrator) << ' ' << i;
+    // Euler's method is ahead by half a step.
+    EXPECT_NEAR(fallen, -0.5 * 9.81, 0.5 * 9.81 * 0.011);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(, FreeFall,
+                         ::testing::Combine(::testing::Values("silk", "cotton", "denim"),
+                                            ::testing::Values(scene::ClothShape::quads,
+                                                              scene::ClothShape::crossed_triangles)));
+
+TEST(SteadyAir, TerminalVelocityHangsNotOnTheStep) {
+  for (scene::Integrator integrator : testing::kIntegrators)
+    for (double drag : {1.0, 2.0})
+      for (double step : {0.04, 0.01, 0.0025}) {
+        scene::Scene scene = testing::sheet_alone(0.3, 5, 0);
+        scene.time.step = step;
+        scene.time.integrator = integrator;
+        scene.physics.air_density = 1.2;
+        scene.cloths[0].material.drag = drag;
+        Simulation simulation(scene);
+        double before = 0, speed = 0;
+        for (int k = 1; k <= 50; ++k) {
+          simulation.advance();
+          const double z = testing::sheet_of(simulation.snapshot())[12].z();
+          speed = 25 * (before - z);
+          before = z;
+        }
+        // m g = ½ ρ c A v²; after 2 s, eleven times v / g and more, nothing is missing.
+        const double expected = std::sqrt(2 * scene.cloths[0].material.density * 9.81 / (1.2 * drag));
+        EXPECT_NEAR(speed, expected, 1e-3 * expected) << name_of(integrator) << ' ' << drag << ' ' << step;
+      }
+}
+
+TEST(SteadyAir, ClothInSteadyWindComesToTheSameRestAtEveryStep) {
+  std::vector<double> energies;
+  for (double step : {0.04, 0.01, 0.0025}) {
+    scene::Scene scene = testing::sheet_alone(0.5, 11, 0);
+    scene.time.step = step;
+    scene.physics.air_density = 1.2;
+    scene.physics.wind = {0, 3, 0};
+    scene.cloths[0].material = scene::find_fabric("silk")->material;
+    scene.cloths[0].pose.rotation = Quat(Eigen::AngleAxisd(1.5707963267948966, Vec3::UnitX()));
+    for (const Vec2& corner : {Vec2(0, 0), Vec2(1, 0), Vec2(0, 1), Vec2(1, 1)}) {
+      scene::Pin pin;
+      pin.low = pin.high = corner;
+      scene.cloths[0].pins.push_back(pin);
+    }
+    Simulation simulation(scene);
+    FrameReport report;
+    for (int k = 0; k < 100; ++k) report = simulation.advance();
+    energies.push_back(report.elastic_energy);
+  }
+  for (double energy : energies) EXPECT_NEAR(energy, energies.back(), 0.01 * energies.back());
 }
 
 }  // namespace

@@ -73,12 +73,18 @@ void ContactResponse::accept() {
   if (walls_) walls_->accept();
 }
 
-void ContactResponse::add_forces(std::span<const Vec3> x_end, const FrictionLag& lag, std::span<Vec3> force) const {
+void ContactResponse::add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
   springs_.add_forces(x_end, lag, force);
   if (walls_) walls_->add_forces(x_end, force);
 }
 
-void ContactResponse::linearise(std::span<const Vec3> x_end, double end_rate, const FrictionLag& lag,
+void ContactResponse::add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag,
+                                        std::span<Vec3> force) const {
+  springs_.add_linear_forces(x_end, lag, force);
+  if (walls_) walls_->add_forces(x_end, force);
+}
+
+void ContactResponse::linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag,
                                 std::span<Vec3> force, solver::LinearSystem& system) const {
   springs_.linearise(x_end, end_rate, lag, force, system);
   if (walls_) walls_->linearise(x_end, end_rate, force, system);

@@ -43,9 +43,10 @@ class ContactResponse {
   void accept();
 
   /// As those of ContactSet.
-  void update(std::span<const Vec3> x_end, FrictionLag& lag) const { springs_.update(x_end, lag); }
-  void add_forces(std::span<const Vec3> x_end, const FrictionLag& lag, std::span<Vec3> force) const;
-  void linearise(std::span<const Vec3> x_end, double end_rate, const FrictionLag& lag, std::span<Vec3> force,
+  void update(std::span<const Vec3> x_end, ContactLag& lag) const { springs_.update(x_end, lag); }
+  void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
+  void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
+  void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
   int active(std::span<const Vec3> x_end) const { return springs_.active(x_end); }
 

@@ -12,23 +12,48 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   return sum;
 }
 
+// A depth need not be exact: it says where a tangent is taken.
+constexpr int kDepthIterations = 30;
+constexpr double kDepthExactness = 1e-3;
+
 struct Load {
   double force, slope;  // [N], [N/m]
 };
 
-// At this gap [m]; none from the range on.
-Load load_at(const Contact& contact, double gap) {
-  if (gap >= contact.range) return {0, 0};
-  const double depth = contact.range - gap, full = std::max(contact.full_range, contact.range);
+// At this depth [m]; none from zero down.
+Load load_at(const Contact& contact, double depth) {
+  if (depth <= 0) return {0, contact.stiffness};
+  const double full = std::max(contact.full_range, contact.range);
   const double inner = std::min(depth, full), ratio_sq = (inner / full) * (inner / full);
   const double stiffening = ContactSet::kStiffening * ratio_sq * ratio_sq;
   const double slope = contact.stiffness * (1 + 5 * stiffening);
   return {contact.stiffness * inner * (1 + stiffening) + slope * (depth - inner), slope};
 }
 
+// The force of the tangent at one depth, at another depth [N].
+double tangent_force(const Load& at, double depth_at, double depth) {
+  return std::max(0.0, at.force + at.slope * (depth - depth_at));
+}
+
+// The depth with this force, from one that is no less. The law is convex: Newton's method comes from above all the way.
+double depth_with(const Contact& contact, double force, double depth) {
+  if (force <= 0) return 0;
+  depth = std::min(depth, force / contact.stiffness);
+  for (int k = 0; k < kDepthIterations; ++k) {
+    const Load load = load_at(contact, depth);
+    if (load.force - force <= kDepthExactness * force) break;
+    depth -= (load.force - force) / load.slope;
+  }
+  return depth;
+}
+
 // Point a minus point b at the end of the step.
 Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
   return weighted_sum(contact, x_end) + contact.obstacle_end;
+}
+
+double depth_at_start(const Contact& contact) {
+  return contact.range - contact.normal.dot(contact.relative_start);
 }
 
 // Coefficient of friction over slip, for a slip in stick slips: 2 − s while sticking, 1/s while sliding, continuous
@@ -46,26 +71,39 @@ void ContactSet::add(const Contact& contact) {
   contacts_.back().static_friction = std::max(contact.friction, contact.static_friction);
 }
 
-void ContactSet::update(std::span<const Vec3> x_end, FrictionLag& lag) const {
-  for (std::size_t c = lag.loads.size(); c < contacts_.size(); ++c)
-    lag.loads.push_back(load_at(contacts_[c], contacts_[c].normal.dot(contacts_[c].relative_start)).force);
-  if (lag.updates > 0 && lag.updates < kLoadUpdates)
-    for (std::size_t c = 0; c < contacts_.size(); ++c)
-      lag.loads[c] = load_at(contacts_[c], contacts_[c].normal.dot(relative_end(contacts_[c], x_end))).force;
+void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
+  for (std::size_t c = 0; c < lag.depths.size() && lag.updates > 0; ++c) {
+    const Contact& contact = contacts_[c];
+    const double depth = contact.range - contact.normal.dot(relative_end(contact, x_end));
+    const double force = tangent_force(load_at(contact, lag.depths[c]), lag.depths[c], depth);
+    lag.depths[c] = depth_with(contact, force, std::max(depth, lag.depths[c]));
+    if (lag.updates < kLoadUpdates) lag.loads[c] = force;
+  }
+  for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
+    lag.depths.push_back(std::max(0.0, depth_at_start(contacts_[c])));
+    lag.loads.push_back(load_at(contacts_[c], lag.depths.back()).force);
+  }
   ++lag.updates;
 }
 
-ContactSet::Response ContactSet::respond(const Contact& contact, std::span<const Vec3> x_end,
-                                         double friction_load) const {
+ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<const Vec3> x_end,
+                                         const ContactLag& lag) const {
+  const Contact& contact = contacts_[index];
   const Vec3 relative = relative_end(contact, x_end);
-  const double gap = contact.normal.dot(relative);
+  const double depth = contact.range - contact.normal.dot(relative);
   Response response;
-  if (gap >= contact.range) return response;
+  if (depth <= 0) return response;
 
   response.active = true;
-  const Load load = load_at(contact, gap);
+  Load load = load_at(contact, law == Law::itself ? depth : lag.depths[index]);
+  if (law == Law::tangent) {
+    load.force = tangent_force(load, lag.depths[index], depth);
+    if (load.force == 0) load.slope = 0;
+  }
   response.slope = load.slope;
   response.force = load.force * contact.normal;
+  const bool follows = law == Law::itself && lag.updates < kLoadUpdates;
+  const double friction_load = follows ? load.force : lag.loads[index];
   if (contact.static_friction > 0 && friction_load > 0) {
     Vec3 slip = relative - contact.relative_start;
     slip -= contact.normal.dot(slip) * contact.normal;
@@ -76,20 +114,28 @@ ContactSet::Response ContactSet::respond(const Contact& contact, std::span<const
   return response;
 }
 
-void ContactSet::add_forces(std::span<const Vec3> x_end, const FrictionLag& lag, std::span<Vec3> force) const {
+void ContactSet::add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
+  add_forces(Law::itself, x_end, lag, force);
+}
+
+void ContactSet::add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
+  add_forces(Law::tangent, x_end, lag, force);
+}
+
+void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
-    const Response response = respond(contact, x_end, lag.loads[c]);
+    const Response response = respond(c, law, x_end, lag);
     if (!response.active) continue;
     for (int k = 0; k < 4; ++k) force[contact.particles[k]] += contact.weights[k] * response.force;
   }
 }
 
-void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const FrictionLag& lag, std::span<Vec3> force,
+void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                            solver::LinearSystem& system) const {
   for (std::size_t c = 0; c < contacts_.size(); ++c) {
     const Contact& contact = contacts_[c];
-    const Response response = respond(contact, x_end, lag.loads[c]);
+    const Response response = respond(c, Law::tangent, x_end, lag);
     if (!response.active) continue;
     int involved = 0, last = 0;
     for (int k = 0; k < 4; ++k) {

@@ -140,14 +140,13 @@ Row measure_program(const SheetSystem& sheet, Pose pose, double stiffness) {
   solver::ConjugateGradient solver;
   for (Solution* solution : {&row.loose, &row.tight}) {
     const double tolerance = solution == &row.loose ? kTolerances[0] : kTolerances[1];
-    // Its norm is another one: the target in it that leaves the share asked for in ours is found first.
+    // It goes by errors: the share of them that leaves the share asked for in ours is found first.
     double share = tolerance;
     do {
       const double start = thread_cpu_seconds();
       solver.prepare(sheet.system);
       row.setup = thread_cpu_seconds() - start;
-      const double target = share * solver.norm(sheet.b);
-      const solver::LinearReport report = solver.solve(sheet.b, target, kMostIterations, x);
+      const solver::LinearReport report = solver.solve(sheet.b, {share}, kMostIterations, x);
       solution->seconds = thread_cpu_seconds() - start - row.setup;
       solution->iterations = report.iterations;
       multiply(sheet.system, x, q);

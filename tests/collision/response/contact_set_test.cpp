@@ -76,13 +76,13 @@ struct VertexOnFace {
 };
 
 /// As before the first linearisation of a step.
-FrictionLag lag_at_start(const ContactSet& contacts, const std::vector<Vec3>& x) {
-  FrictionLag lag;
+ContactLag lag_at_start(const ContactSet& contacts, const std::vector<Vec3>& x) {
+  ContactLag lag;
   contacts.update(x, lag);
   return lag;
 }
 
-std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x, const FrictionLag& lag) {
+std::vector<Vec3> forces_of(const ContactSet& contacts, const std::vector<Vec3>& x, const ContactLag& lag) {
   std::vector<Vec3> f(x.size(), Vec3::Zero());
   contacts.add_forces(x, lag, f);
   return f;
@@ -191,32 +191,44 @@ TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKee
   const double mu = 0.4;
   const VertexOnFace pair(mu);
   const ContactSet contacts = pair.set();
-  FrictionLag lag;
+  ContactLag lag;
   std::vector<Vec3> x = pair.x;
   x[0] += 0.4 * kRange * pair.contact.normal + 0.01 * pair.contact.normal.unitOrthogonal();  // load down to a third
   const auto tangential = [&] {
-    const Vec3 f = forces_of(contacts, x, lag)[0];
+    std::vector<Vec3> forces(x.size(), Vec3::Zero());
+    contacts.add_linear_forces(x, lag, forces);
+    const Vec3 f = forces[0];
     return (f - pair.contact.normal.dot(f) * pair.contact.normal).norm();
   };
   contacts.update(x, lag);
   EXPECT_NEAR(tangential(), mu * load_at(0.6), 1e-12);
+  // The law itself has the load that there is: what lags shows in the residual, as long as it is followed.
+  const Vec3 itself = forces_of(contacts, x, lag)[0];
+  EXPECT_NEAR(itself.dot(pair.contact.normal.unitOrthogonal()), -mu * load_at(0.2), 1e-12);
   contacts.update(x, lag);
-  EXPECT_NEAR(tangential(), mu * load_at(0.2), 1e-12);
+  // The force follows the tangent at the depth of the start, 0.6, and the tangent its force.
+  const auto tangent = [](double at, double depth) {
+    return std::max(0.0, load_at(at) + slope_at(at) * kRange * (depth - at));
+  };
+  EXPECT_NEAR(tangential(), mu * tangent(0.6, 0.2), 1e-12);
+  for (int k = 2; k < ContactSet::kLoadUpdates - 1; ++k) contacts.update(x, lag);
+  EXPECT_NEAR(tangential(), mu * load_at(0.2), 1e-3 * mu * load_at(0.2));  // how exact depths are made
   // Up to a number of updates, so that load and slip do not chase each other for ever; the next step begins anew.
-  for (int k = 2; k < ContactSet::kLoadUpdates; ++k) contacts.update(x, lag);
+  contacts.update(x, lag);
+  const double last = tangential();
   x[0] -= 0.2 * kRange * pair.contact.normal;
   contacts.update(x, lag);
-  EXPECT_NEAR(tangential(), mu * load_at(0.2), 1e-12);
+  EXPECT_NEAR(tangential(), last, 1e-12);
   lag = {};
   contacts.update(x, lag);
   contacts.update(x, lag);
-  EXPECT_NEAR(tangential(), mu * load_at(0.4), 1e-12);
+  EXPECT_NEAR(tangential(), mu * tangent(0.6, 0.4), 1e-12);
 }
 
 TEST(ContactSet, FrictionOfAContactThatIsNewInAStepBeginsWithTheLoadOfItsStart) {
   const VertexOnFace pair(0.4);
   ContactSet contacts = pair.set();
-  FrictionLag lag{{}, ContactSet::kLoadUpdates};
+  ContactLag lag{{}, {}, ContactSet::kLoadUpdates};
   contacts.update(pair.x, lag);
   lag.loads[0] = 7;
   contacts.add(pair.contact);
@@ -240,7 +252,14 @@ Eigen::MatrixXd assembled(const solver::LinearSystem& system) {
   return k;
 }
 
-// −∂f/∂x by central differences with the loads of the start, times `rate`.
+// With the tangents of the start.
+std::vector<Vec3> linear_forces_of(const ContactSet& contacts, const std::vector<Vec3>& x) {
+  std::vector<Vec3> f(x.size(), Vec3::Zero());
+  contacts.add_linear_forces(x, lag_at_start(contacts, x), f);
+  return f;
+}
+
+// −∂f/∂x by central differences with the tangents and loads of the start, times `rate`.
 Eigen::MatrixXd differences(const ContactSet& contacts, std::vector<Vec3> x, double rate) {
   constexpr double kEpsilon = 1e-10;
   const auto size = static_cast<Eigen::Index>(3 * x.size());
@@ -249,9 +268,9 @@ Eigen::MatrixXd differences(const ContactSet& contacts, std::vector<Vec3> x, dou
     for (int axis = 0; axis < 3; ++axis) {
       const double place = x[i][axis];
       x[i][axis] = place + kEpsilon;
-      const auto above = forces_of(contacts, x);
+      const auto above = linear_forces_of(contacts, x);
       x[i][axis] = place - kEpsilon;
-      const auto below = forces_of(contacts, x);
+      const auto below = linear_forces_of(contacts, x);
       x[i][axis] = place;
       for (std::size_t r = 0; r < x.size(); ++r)
         k.block<3, 1>(static_cast<Eigen::Index>(3 * r), static_cast<Eigen::Index>(3 * i) + axis) =
@@ -265,7 +284,7 @@ solver::LinearSystem linearised(const ContactSet& contacts, const std::vector<Ve
   system.matrix = solver::BlockMatrix(static_cast<Index>(x.size()), {});
   std::vector<Vec3> f(x.size(), Vec3::Zero());
   contacts.linearise(x, rate, lag_at_start(contacts, x), f, system);
-  EXPECT_EQ(f, forces_of(contacts, x));
+  EXPECT_EQ(f, linear_forces_of(contacts, x));
   return system;
 }
 
@@ -321,10 +340,32 @@ TEST(ContactSet, ParticleOnAnObstacleGoesIntoTheDiagonal) {
   const solver::LinearSystem system = linearised(contacts, x, 1);
   EXPECT_TRUE(system.terms.empty());
   const Eigen::MatrixXd k = assembled(system);
-  // Heights around 1 are rounded by 1e-16 m, against slopes that change by 2e7 N/m².
-  EXPECT_NEAR(k(8, 8), slope_at(0.0015 / kRange), 1e-8);
+  // The tangent is that at the depth of the start, 1 mm.
+  EXPECT_NEAR(k(8, 8), slope_at(0.001 / kRange), 1e-8);
+  EXPECT_NEAR(linear_forces_of(contacts, x)[2].z(), load_at(0.5) + 0.0005 * slope_at(0.5), 1e-9);
   EXPECT_EQ(k.topLeftCorner(6, 6).norm(), 0);
   EXPECT_NEAR(forces_of(contacts, x)[2].z(), load_at(0.0015 / kRange), 1e-9);
+}
+
+TEST(ContactSet, TangentsFollowTheirOwnForceToTheLaw) {
+  const VertexOnFace pair(0);
+  const ContactSet contacts = pair.set();
+  ContactLag lag = lag_at_start(contacts, pair.x);
+  EXPECT_NEAR(lag.depths[0], 0.6 * kRange, 1e-15);
+  // Pressed on: the force is that of the tangent, below the law, until the depth that has it is the one that there is.
+  std::vector<Vec3> x = pair.x;
+  x[0] -= 0.3 * kRange * pair.contact.normal;
+  std::vector<Vec3> f(4, Vec3::Zero());
+  contacts.add_linear_forces(x, lag, f);
+  EXPECT_NEAR(f[0].norm(), load_at(0.6) + 0.3 * kRange * slope_at(0.6), 1e-12);
+  EXPECT_LT(f[0].norm(), load_at(0.9));
+  for (int k = 0; k < 8; ++k) contacts.update(x, lag);
+  EXPECT_NEAR(lag.depths[0], 0.9 * kRange, 1e-3 * kRange);
+  // Taken away: no contact pulls, and the next touch begins with the least slope.
+  x[0] += kRange * pair.contact.normal;
+  contacts.update(x, lag);
+  EXPECT_EQ(lag.depths[0], 0);
+  EXPECT_EQ(lag.loads[0], 0);
 }
 
 }  // namespace
