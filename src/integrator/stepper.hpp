@@ -138,7 +138,7 @@ class Stepper {
   bool is_solved() const;
   void report_worst(double h, StepReport& report) const;
   void finish(const State& now, const Stage& stage, std::span<const HeldParticle> held, State& next) const;
-  Vec3 v_end(const State& now, const Stage& stage, std::size_t particle) const;
+  Vec3 v_end(const State& now, const Stage& stage, std::size_t i) const;
 
   Method method_;
   NewtonParameters parameters_;
