@@ -142,7 +142,7 @@ Eigen::VectorXd Slopes::smooth(Patch& patch, const Axes& axes) const {
       const Vec2 d = axes(patch.vertices[k].second);
       moments.col(k) << 1, d.x(), d.y(), d.x() * d.x(), d.x() * d.y(), d.y() * d.y();
     }
-    const Eigen::VectorXd weights =
+    Eigen::VectorXd weights =
         corrected(across_opposite(patch.vertices.size()), moments, Eigen::VectorXd::Unit(6, 2));
     if (weights.size() > 0) return weights;
   }
