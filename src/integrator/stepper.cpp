@@ -9,13 +9,11 @@ namespace {
 
 // Share of what may be left that the linear solver may leave.
 constexpr double kLinearShare = 0.5;
-// And in the first solve of a step, which takes its share off nearly whatever it begins with: what is always left below
-// the goal grows, step by step, where nothing damps it, up to the goal (a flat sheet in free fall by the midpoint rule
-// folded by a tenth of a millimetre).
-constexpr double kFirstShare = 0.01;
-// Share of the linear tolerance for the midpoint rule, which damps nothing: a tenth left of stiff motion grew by a
-// fifth in each step.
-constexpr double kUndampedShare = 0.1;
+// And with the midpoint rule, which damps nothing, in the first solve of a step; and the share of the linear tolerance
+// there. What is always left of stiff motion grows, step by step, up to the goal: a flat sheet in free fall folded by a
+// tenth of a millimetre.
+constexpr double kUndampedLinearShare = 0.01;
+constexpr double kUndampedTolerance = 0.1;
 // Slope behind the minimum, against that at the start, from which a step counts as overshooting.
 constexpr double kOvershoot = 0.7;
 constexpr int kLineTrials = 6;
@@ -303,9 +301,10 @@ void Stepper::list_parts(std::span<const double> masses, const solver::LinearSys
 // For the parts that are not solved. `start`: see ConjugateGradient::solve.
 solver::LinearReport Stepper::solve_linear(int iteration, std::span<const Vec3> start) {
   goals_.clear();
-  const double share = iteration == 0 ? kFirstShare : kLinearShare;
+  const bool damps = method_ != Method::implicit_midpoint;
+  const double share = damps || iteration > 0 ? kLinearShare : kUndampedLinearShare;
+  const double relative = (damps ? 1 : kUndampedTolerance) * parameters_.linear_tolerance;
   for (const PartState& part : parts_) goals_.push_back(share * part.allowed * std::sqrt(part.mass));
-  const double relative = (method_ == Method::implicit_midpoint ? kUndampedShare : 1) * parameters_.linear_tolerance;
   return cg_.solve(residual_, {relative, goals_}, parameters_.max_linear_iterations, delta_, start, unsolved_);
 }
 
