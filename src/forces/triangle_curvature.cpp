@@ -142,8 +142,7 @@ Eigen::VectorXd Slopes::smooth(Patch& patch, const Axes& axes) const {
       const Vec2 d = axes(patch.vertices[k].second);
       moments.col(k) << 1, d.x(), d.y(), d.x() * d.x(), d.x() * d.y(), d.y() * d.y();
     }
-    Eigen::VectorXd weights =
-        corrected(across_opposite(patch.vertices.size()), moments, Eigen::VectorXd::Unit(6, 2));
+    Eigen::VectorXd weights = corrected(across_opposite(patch.vertices.size()), moments, Eigen::VectorXd::Unit(6, 2));
     if (weights.size() > 0) return weights;
   }
   // Too few triangles for quadratics: a mesh of one or two, or a corner of one.
