@@ -16,8 +16,8 @@ constexpr std::size_t kChunk = 4096;
 
 // To make the factor costs as much as some 35 iterations without it, and an iteration with it as much as 2.2 to 2.6.
 // What it gains, iterations by 1.4 (crumpled cloth of 6·10⁴ particles) to over 100 (taut threads of 1e6 N/m), shows
-// only after long: threads seem to converge at first. So a target below this share of the right hand side takes it at
-// once;
+// only after long: threads seem to converge at first. So a goal that is this share of the solution, and nothing else,
+// takes it at once;
 constexpr double kTightTarget = 1e-3;
 // any other when, at the rate of the last kPaceInterval iterations, more than kMinIterationsLeft are still to come.
 // Scenes ask for 0.1 and need ten in all.

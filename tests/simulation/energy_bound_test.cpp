@@ -62,5 +62,26 @@ TEST(EnergyBound, PinsThatMoveMayBringEnergy) {
   EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // far from rest: 3 m in a second
 }
 
+TEST(EnergyBound, ContactThatTheMidpointRulePumpsIsRefusedAndThatOfOtherMethodsIsNot) {
+  // On a ball, at a step with which contacts shake the sheet: 12 J came of the 0.35 J of its fall.
+  for (scene::Integrator integrator : testing::kIntegrators) {
+    scene::Scene scene = testing::sheet_alone(0.6, 13, 0.45);
+    scene.time.step = 0.01;
+    scene.time.integrator = integrator;
+    scene.contact.self = scene.contact.obstacles = true;
+    scene.obstacles.push_back(testing::obstacle("ball", scene::Sphere{0.2}, {0, 0, 0.2}));
+    scene.cloths[0].pose.position += Vec3(0.003, 0.002, 0);
+    Simulation simulation(scene);
+    std::string words;
+    try {
+      for (int k = 0; k < 25; ++k) simulation.advance();
+    } catch (const Error& error) {
+      words = error.what();
+    }
+    const bool refused = words.find("more than at the start") != std::string::npos;
+    EXPECT_EQ(refused, integrator == scene::Integrator::implicit_midpoint) << name_of(integrator) << ": " << words;
+  }
+}
+
 }  // namespace
 }  // namespace weft::simulation

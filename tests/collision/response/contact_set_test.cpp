@@ -359,6 +359,10 @@ TEST(ContactSet, TangentsFollowTheirOwnForceToTheLaw) {
   contacts.add_linear_forces(x, lag, f);
   EXPECT_NEAR(f[0].norm(), load_at(0.6) + 0.3 * kRange * slope_at(0.6), 1e-12);
   EXPECT_LT(f[0].norm(), load_at(0.9));
+  // The next tangent is where the law has that force, not where the iterate is.
+  contacts.update(x, lag);
+  EXPECT_LT(lag.depths[0], 0.89 * kRange);
+  EXPECT_NEAR(load_at(lag.depths[0] / kRange), f[0].norm(), 1e-3 * f[0].norm());  // how exact depths are made
   for (int k = 0; k < 8; ++k) contacts.update(x, lag);
   EXPECT_NEAR(lag.depths[0], 0.9 * kRange, 1e-3 * kRange);
   // Taken away: no contact pulls, and the next touch begins with the least slope.
