@@ -26,6 +26,7 @@ class Bend final : public Force {
   Bend(const mesh::Grid& grid, Index first, const BendParameters& parameters);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  bool isotropic() const override { return true; }
   void attach(const solver::BlockMatrix& matrix) override;
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> x) const override;
@@ -46,6 +47,7 @@ class Bend final : public Force {
   void add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                 std::span<const char> held);
   Vec3 damping(std::size_t index, const Vec3& curvature, const Evaluation& at) const;
+  void add_blocks(std::size_t index, const Mat3& stiffness, solver::BlockMatrix& matrix) const;
 
   mesh::Grid grid_;
   Index first_;

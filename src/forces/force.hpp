@@ -26,7 +26,7 @@ struct Evaluation {
   std::span<const Vec3> v;                ///< velocities [m/s]
   std::span<Vec3> force;                  ///< receives += f [N]
   solver::BlockMatrix* matrix = nullptr;  ///< receives −(∂f/∂x + rate ∂f/∂v) [N/m]; nullptr: forces only
-  double rate = 0;                        ///< dv/dx of the integration scheme [1/s]
+  double rate = 0;                        ///< dv/dx of the integration scheme, v = rate (x − x̂) [1/s]; 0: none
   Linearisation linearisation = Linearisation::definite;
 };
 

@@ -152,22 +152,22 @@ void TriangleBend::add(const Evaluation& at) const {
 void TriangleBend::add_damping(const Element& element, const Curvature& curved, const Evaluation& at,
                                Curvature& moment) const {
   const Curvature velocity = curvature(element, at.v);
-  const Lanes c_sq = curved[0] * curved[0] + curved[1] * curved[1] + curved[2] * curved[2];
-  const Lanes rate = curved[0] * velocity[0] + curved[1] * velocity[1] + curved[2] * velocity[2];
-  const Lanes secants = damping_.secants(c_sq, rate);
-  const Lanes size = secants * rate;
-  for (std::size_t d = 0; d < 3; ++d) moment[d] += size * curved[d];
+  Curvature c = curved;
+  for (std::size_t d = 0; d < 3 && at.rate > 0; ++d) c[d] -= velocity[d] / at.rate;
+  const Lanes c_sq = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
+  const Lanes rate = c[0] * velocity[0] + c[1] * velocity[1] + c[2] * velocity[2];
+  const auto [secant, tangent] = damping_.respond(c_sq, rate);
+  const Lanes size = secant * rate;
+  for (std::size_t d = 0; d < 3; ++d) moment[d] += size * c[d];
   if (at.matrix == nullptr) return;
   if (at.linearisation == Linearisation::exact)
-    add_exact_blocks(element, columns_of(curved), columns_of(velocity), at);
+    add_exact_blocks(element, columns_of(c), at.rate * tangent, *at.matrix);
   else
-    add_secants(element, element.area * at.rate * kCounts * secants * c_sq, *at.matrix);
+    add_stiffness(element, element.area * at.rate * kCounts * secant * c_sq, *at.matrix);
 }
 
-// The definite form of BendDamping::linearised is a stiffness c cᵀ for each of the three; here ‖c‖² I. Curvature points
-// along the normal, where that is the same. Across it bending is stiffer than it is, where the membrane is much stiffer
-// still: the catwalk takes no more iterations, and all of bending is numbers in place of blocks.
-void TriangleBend::add_secants(const Element& element, const Lanes& stiffness, solver::BlockMatrix& matrix) const {
+// As Bend, with ‖c‖² I in place of c cᵀ: the catwalk takes no more iterations.
+void TriangleBend::add_stiffness(const Element& element, const Lanes& stiffness, solver::BlockMatrix& matrix) const {
   const std::size_t count = element.end - element.begin;
   const solver::Slot* slots = slots_.data() + element.slots;
   const Lanes* weights = weights_.data() + element.begin;
@@ -181,16 +181,15 @@ void TriangleBend::add_secants(const Element& element, const Lanes& stiffness, s
   }
 }
 
-void TriangleBend::add_exact_blocks(const Element& element, const Mat3& curved, const Mat3& velocity,
-                                    const Evaluation& at) const {
+void TriangleBend::add_exact_blocks(const Element& element, const Mat3& c, const Lanes& stiffness,
+                                    solver::BlockMatrix& matrix) const {
   const std::size_t count = element.end - element.begin;
-  for (int c = 0; c < 3; ++c) {
-    const Mat3 jacobian = damping_.linearised(curved.col(c), velocity.col(c), at.rate, at.linearisation).jacobian;
-    const Mat3 block = element.area * kCount[c] * jacobian;
+  for (int k = 0; k < 3; ++k) {
+    const Mat3 block = element.area * kCount[k] * stiffness[k] * c.col(k) * c.col(k).transpose();
     for (std::size_t a = 0; a < count; ++a)
       for (std::size_t b = 0; b < count; ++b)
-        at.matrix->add(slots_[element.slots + a * count + b],
-                       weights_[element.begin + a][c] * weights_[element.begin + b][c], block);
+        matrix.add(slots_[element.slots + a * count + b],
+                   weights_[element.begin + a][k] * weights_[element.begin + b][k], block);
   }
 }
 

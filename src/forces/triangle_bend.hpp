@@ -44,8 +44,9 @@ class TriangleBend final : public Force {
   Curvature curvature(const Element& element, std::span<const Vec3> x) const;
   void use_held();
   void add_damping(const Element& element, const Curvature& curved, const Evaluation& at, Curvature& moment) const;
-  void add_secants(const Element& element, const Lanes& stiffness, solver::BlockMatrix& matrix) const;
-  void add_exact_blocks(const Element& element, const Mat3& curved, const Mat3& velocity, const Evaluation& at) const;
+  void add_stiffness(const Element& element, const Lanes& stiffness, solver::BlockMatrix& matrix) const;
+  void add_exact_blocks(const Element& element, const Mat3& c, const Lanes& stiffness,
+                        solver::BlockMatrix& matrix) const;
   void add_rest_moment(const Element& element, const Mat3& curved, const Evaluation& at) const;
 
   Index first_;

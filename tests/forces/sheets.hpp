@@ -68,9 +68,9 @@ inline Positions zeros(const Positions& like) {
   return Positions(like.size(), Vec3::Zero());
 }
 
-inline Positions force_of(const Force& force, const Positions& x, const Positions& v) {
+inline Positions force_of(const Force& force, const Positions& x, const Positions& v, double rate = 0) {
   Positions f = zeros(x);
-  force.add({x, v, f});
+  force.add({.x = x, .v = v, .force = f, .rate = rate});
   return f;
 }
 
@@ -112,7 +112,7 @@ inline Eigen::MatrixXd stiffness_by_differences(const Force& force, const Positi
         Positions moved_x = x, moved_v = v;
         moved_x[i][axis] += offset;
         moved_v[i][axis] += rate * offset;
-        return force_of(force, moved_x, moved_v);
+        return force_of(force, moved_x, moved_v, rate);
       };
       const auto difference = [&](double e) {
         const Positions above = at(e), below = at(-e);

@@ -64,6 +64,18 @@ double friction_over_slip(const Contact& contact, double slip) {
   return (contact.static_friction + sliding * (contact.friction - contact.static_friction)) / slip;
 }
 
+// Its inverse changes by so much per slip, but for what makes friction fall where sliding begins.
+double growth_of_slip_over_friction(const Contact& contact, double slip) {
+  if (slip < 1) return 1 / (contact.static_friction * (2 - slip) * (2 - slip));
+  return 1 / (slip * friction_over_slip(contact, slip));
+}
+
+// Slip in the step, across the normal.
+Vec3 slip_of(const Contact& contact, const Vec3& relative) {
+  const Vec3 slip = relative - contact.relative_start;
+  return slip - contact.normal.dot(slip) * contact.normal;
+}
+
 }  // namespace
 
 void ContactSet::add(const Contact& contact) {
@@ -82,6 +94,10 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
   for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
     lag.depths.push_back(std::max(0.0, depth_at_start(contacts_[c])));
     lag.loads.push_back(load_at(contacts_[c], lag.depths.back()).force);
+    // What is found later has been led astray already.
+    lag.drags.push_back(lag.updates > 0 ? Vec3(Vec3::Zero())
+                                        : friction_against_load(
+                                              contacts_[c], slip_of(contacts_[c], relative_end(contacts_[c], x_end))));
   }
   ++lag.updates;
 }
@@ -105,13 +121,33 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   const bool follows = law == Law::itself && lag.updates < kLoadUpdates;
   const double friction_load = follows ? load.force : lag.loads[index];
   if (contact.static_friction > 0 && friction_load > 0) {
-    Vec3 slip = relative - contact.relative_start;
-    slip -= contact.normal.dot(slip) * contact.normal;
-    const double size = slip.norm();
+    response.slip = slip_of(contact, relative);
+    const double size = response.slip.norm();
     response.sliding = friction_load * friction_over_slip(contact, size / stick_slip_) / stick_slip_;
-    response.force -= response.sliding * slip;
+    response.force -= response.sliding * response.slip;
   }
   return response;
+}
+
+// w, against the slip.
+Vec3 ContactSet::friction_against_load(const Contact& contact, const Vec3& slip) const {
+  if (contact.static_friction == 0) return Vec3::Zero();
+  const Vec3 in_sticks = slip / stick_slip_;
+  return friction_over_slip(contact, in_sticks.norm()) * in_sticks;
+}
+
+// λ/ψ (I − ψ' sym(w ûᵀ)) across the normal; definite, as ψ' ‖w‖ is kept to 1.
+Mat3 ContactSet::friction_stiffness(std::size_t index, const Response& response, const ContactLag& lag) const {
+  if (response.sliding == 0) return Mat3::Zero();
+  const Contact& contact = contacts_[index];
+  Mat3 across = Mat3::Identity() - contact.normal * contact.normal.transpose();
+  if (const double size = response.slip.norm(); size > 0) {
+    const Vec3 u = response.slip / size;
+    Vec3 w = growth_of_slip_over_friction(contact, size / stick_slip_) * lag.drags[index];
+    if (w.squaredNorm() > 1) w.normalize();
+    across -= 0.5 * (w * u.transpose() + u * w.transpose());
+  }
+  return response.sliding * across;
 }
 
 void ContactSet::add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
@@ -143,7 +179,7 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const C
       if (contact.weights[k] != 0) ++involved, last = k;
     }
     const Mat3 along = contact.normal * contact.normal.transpose();
-    const Mat3 stiffness = end_rate * (response.slope * along + response.sliding * (Mat3::Identity() - along));
+    const Mat3 stiffness = end_rate * (response.slope * along + friction_stiffness(c, response, lag));
     if (involved == 1) {
       // A single particle on an obstacle couples with nothing.
       const double w = contact.weights[last];

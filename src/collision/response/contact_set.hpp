@@ -31,6 +31,7 @@ struct Contact {
 struct ContactLag {
   std::vector<double> depths;  ///< where the law of the contact is taken as its tangent [m]
   std::vector<double> loads;   ///< that friction goes by [N]; they lag behind the positions
+  std::vector<Vec3> drags;     ///< friction against its load at unchanged velocity, where the step begins its search
   int updates = 0;             ///< since the step began
 };
 
@@ -75,7 +76,12 @@ class ContactSet {
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
 
   /// As add_linear_forces, and adds −∂f/∂x to the system, where x_end changes by `end_rate` per change of the unknown;
-  /// for friction force over slip in its place, which is no less stiff and keeps the matrix definite.
+  /// for friction a form in its place that is definite. Friction −λ w of a slip u = ψ(‖u‖) w is linearised with w as
+  /// an unknown of its own, which begins with that of unchanged velocity (Chan, Golub & Mulet, "A Nonlinear Primal-Dual
+  /// Method for Total Variation-Based Image Restoration", 1999): the tangent where cloth slides on, force over slip or
+  /// more where it begins to slide, stops or turns. As force over slip alone cloth that slides down an incline took
+  /// 2.3 iterations a step in place of 1.05; with w kept up from iteration to iteration cloth that is wrung took a
+  /// fifth more than with this.
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 
@@ -88,9 +94,12 @@ class ContactSet {
     Vec3 force;          // on point a
     double slope = 0;    // of the load [N/m]
     double sliding = 0;  // friction force per slip [N/m]
+    Vec3 slip;           // [m]
   };
   enum class Law { itself, tangent };
   Response respond(std::size_t index, Law law, std::span<const Vec3> x_end, const ContactLag& lag) const;
+  Vec3 friction_against_load(const Contact& contact, const Vec3& slip) const;
+  Mat3 friction_stiffness(std::size_t index, const Response& response, const ContactLag& lag) const;
   void add_forces(Law law, std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
 
   std::vector<Contact> contacts_;
