@@ -17,6 +17,7 @@ struct BodyTraits {
   double thickness = 0;  ///< of cloth [m]; 0 for obstacles
   double friction = 0;   ///< Coulomb coefficient; of a pair: the geometric mean
   bool moving = true;    ///< false: its vertices stay where they are at the start
+  bool rigid = false;    ///< its vertices keep their distances from each other
 };
 
 /// The owner of the triangles, which all other parts of the engine view. Vertices of all bodies share one numbering,

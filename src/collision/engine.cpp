@@ -33,7 +33,8 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       finder_(bodies_.triangles(), bodies_.vertex_count()),
       builder_(bodies_, parameters.contact, masses),
       response_(parameters.response, {masses.begin(), masses.end()}),
-      pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
+      pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()),
+      carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
   const double reach = candidates_.reach();
   if (parameters.search.coherence)
     coherence_.emplace(bodies_.surfaces(), candidates_.wanted(), x,
@@ -63,8 +64,10 @@ void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   finder_.gather(pairs, bodies_.deformable(), x_t0, candidates_.radius(), kFlattest);
 }
 
-void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h) {
+void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h,
+                        std::span<const RigidMotion> motions) {
   step_ = h;
+  carried_.begin_step(x_t0, x_t1, motions);
   if (!candidates_.covers_start(x_t0) || !candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
   if (coherence_) {
     proximities_.clear();
@@ -89,7 +92,7 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
 
 bool Engine::apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   if (!candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
-  failing_ = separation_.find_failing(x_t0, x_t1, &pinched_);
+  failing_ = separation_.find_failing(x_t0, x_t1, &pinched_, &carried_);
   return failing_.empty();
 }
 
@@ -112,7 +115,7 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
   SeparationReport report;
   PinchedPairs pinched = pinched_;
   for (int c = 0; c < kCollections; ++c) {
-    const SeparationReport pass = separation_.enforce(x_t0, x_t1, movable, &pinched);
+    const SeparationReport pass = separation_.enforce(x_t0, x_t1, movable, &pinched, &carried_, c > 0);
     report.corrected_pairs += pass.corrected_pairs;
     report.largest_push = std::max(report.largest_push, pass.largest_push);
     report.separated = pass.separated;

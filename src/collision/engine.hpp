@@ -20,6 +20,7 @@
 #include "collision/contact_builder.hpp"
 #include "collision/proximity/coherence.hpp"
 #include "collision/proximity/proximities.hpp"
+#include "collision/response/carried_starts.hpp"
 #include "collision/response/contact_response.hpp"
 #include "collision/response/pinch_report.hpp"
 #include "collision/response/separation.hpp"
@@ -41,8 +42,10 @@ class Engine {
   Engine& operator=(const Engine&) = delete;
 
   /// Finds the contacts of a step over h [s] from x_t0, with x_t1 the expected end: obstacles exactly, particles by
-  /// guess.
-  void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h);
+  /// guess. `motions`: of each body, as far as it keeps its shape; of none where nothing moves so. Both positions must
+  /// outlive the step.
+  void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h,
+                  std::span<const RigidMotion> motions = {});
 
   /// Lets go, between two steps, of what only makes the search faster and does not follow from positions.
   void forget();
@@ -71,7 +74,7 @@ class Engine {
   int pinched_pairs() const { return static_cast<int>(pinched_.size()); }
   /// Which cloths and obstacles that are, with places at x [m], where the last step began.
   std::vector<Pinch> pinches(std::span<const Vec3> x) const {
-    return list_pinches(pinched_, candidates_.hierarchies(), x);
+    return list_pinches(pinched_, bodies_, candidates_.hierarchies(), x);
   }
 
   /// Pairs of features within the reach, 1.5 contact ranges, at the start of the last step.
@@ -83,6 +86,8 @@ class Engine {
   std::optional<CornerPair> find_meeting(std::span<const Vec3> x);
 
   const Bodies& bodies() const { return bodies_; }
+  /// Distance below which features are near [m].
+  double reach() const { return candidates_.reach(); }
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
@@ -97,6 +102,7 @@ class Engine {
   ContactBuilder builder_;
   ContactResponse response_;
   PinchedPairs pinched_;
+  CarriedStarts carried_;
 
   double step_ = 0;                      // h [s]
   std::vector<Proximity> proximities_;   // at the start of the step

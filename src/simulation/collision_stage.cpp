@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
+#include "mesh/geometry.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -14,6 +16,14 @@ namespace {
 // Largest contact thickness in shares of the particles' spacing. Triangles that nearly neighbour each other are at
 // least 0.7 spacings apart; much more, and a sheared sheet would push against itself in its own plane.
 constexpr double kThicknessOfSpacing = 0.25;
+
+// Largest distance of an obstacle's arc from its chord in shares of the reach. The search covers half of the reach
+// around straight ways.
+constexpr double kLargestSagitta = 0.25;
+
+// Motion of obstacles in a step, in reaches, below which a shorter one finds no way out for cloth that this one finds
+// none for: no more than what keeps contacts in sight.
+constexpr double kCreep = 0.5;
 
 bool bodies_collide(const scene::Scene& scene) {
   const auto collides = [](const auto& body) { return body.collide; };
@@ -82,9 +92,22 @@ collision::Bodies make_bodies(const scene::Scene& scene, const environment::Envi
   }
   for (std::size_t b : colliding_bodies(scene, environment)) {
     const environment::BodyObject& body = environment.bodies[b];
-    add(body.mesh, {.friction = body.friction, .moving = body.moving});
+    add(body.mesh, {.friction = body.friction, .moving = body.moving, .rigid = !body.character});
   }
   return bodies;
+}
+
+// Of what turns about its origin; 0 for what does not.
+double radius_of(const environment::BodyObject& body) {
+  double radius_sq = 0;
+  if (body.moving && !body.character)
+    for (const Vec3& x : body.mesh.positions) radius_sq = std::max(radius_sq, x.squaredNorm());
+  return std::sqrt(radius_sq);
+}
+
+// Distance of an arc of this angle [rad] from its chord.
+double sagitta(double radius, double angle) {
+  return radius * angle * angle / 8;
 }
 
 }  // namespace
@@ -101,6 +124,11 @@ CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Env
       engine_(make_bodies(scene, environment), engine_parameters(scene, environment), append_bodies(start), masses) {
   for (const auto& cloth : environment.cloths) names_.push_back(cloth.name);
   for (std::size_t b : bodies_) names_.push_back(environment.bodies[b].name);
+  motions_.resize(names_.size());
+  for (std::size_t b : bodies_) {
+    radii_.push_back(radius_of(environment.bodies[b]));
+    boxes_.push_back(mesh::bounding_box(environment.bodies[b].mesh.positions));
+  }
   if (const auto meeting = engine_.find_meeting(start.x))
     throw Error(
         ExitCode::scene_invalid,
@@ -149,7 +177,63 @@ void CollisionStage::begin_step(double t, double h, std::span<const integrator::
     next.x[particle.constraint.particle] = particle.x_end;
     movable_[particle.constraint.particle] = 0;
   }
-  engine_.begin_step(now.x, next.x, h);
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    motions_[environment_.cloths.size() + b] = motion_of(bodies_[b], t, h);
+  engine_.begin_step(now.x, next.x, h, motions_);
+}
+
+bool CollisionStage::turns_too_far(double t, double h, const Moment& now) const {
+  const double most = kLargestSagitta * engine_.reach();
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    if (radii_[b] == 0) continue;
+    // Between keys the speed of turning is nearly even; at its last key a body stands.
+    double angle = 0;
+    for (const double share : {0.0, 0.5, 1.0})
+      angle = std::max(angle, h * environment_.pose(bodies_[b], t + share * h).angular_velocity.norm());
+    if (sagitta(radii_[b], angle) > most && cloth_comes_near(b, t, h, angle, now)) return true;
+  }
+  return false;
+}
+
+bool CollisionStage::obstacles_creep(const Moment& now, const Moment& next) const {
+  const double most = kCreep * engine_.reach();
+  for (std::size_t v = particles_; v < now.x.size(); ++v)
+    if ((next.x[v] - now.x[v]).squaredNorm() > most * most) return false;
+  return true;
+}
+
+// Whether a triangle of cloth, as it moves now, comes into the box around the way of an obstacle that turns by `angle`.
+bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, double angle, const Moment& now) const {
+  constexpr double kLargestPart = 0.25;  // [rad]
+  const int parts = 1 + static_cast<int>(std::min(angle, 100.0) / kLargestPart);
+  Box3 box;
+  for (int p = 0; p <= parts; ++p) {
+    const environment::PoseSample pose = environment_.pose(bodies_[body], t + h * p / parts);
+    for (int corner = 0; corner < 8; ++corner)
+      box.extend(Vec3(pose.position + pose.rotation * boxes_[body].corner(static_cast<Box3::CornerType>(corner))));
+  }
+  const double margin = engine_.reach() + std::min(1.0, sagitta(1, angle / parts)) * boxes_[body].diagonal().norm();
+  box.min().array() -= margin;
+  box.max().array() += margin;
+  const auto meets = [&](const collision::Triangle& triangle) {
+    Box3 way;
+    for (Index v : triangle) way.extend(now.x[v]), way.extend(Vec3(now.x[v] + h * now.v[v]));
+    return way.intersects(box);
+  };
+  return std::ranges::any_of(engine_.bodies().deformable(), [&](const collision::Surface& cloth) {
+    return std::ranges::any_of(cloth.triangles, meets);
+  });
+}
+
+// How a body goes on from t to t + h; that of a character, which bends, is none.
+collision::RigidMotion CollisionStage::motion_of(std::size_t body, double t, double h) const {
+  collision::RigidMotion motion;
+  if (!environment_.bodies[body].moving || environment_.bodies[body].character) return motion;
+  const environment::PoseSample from = environment_.pose(body, t), to = environment_.pose(body, t + h);
+  if (from.rotation.coeffs() != to.rotation.coeffs())
+    motion.turn = (to.rotation * from.rotation.conjugate()).toRotationMatrix();
+  motion.shift = to.position - motion.turn * from.position;
+  return motion;
 }
 
 void CollisionStage::append_prescribed(std::vector<integrator::HeldParticle>& held) const {

@@ -38,6 +38,13 @@ class CollisionStage {
   /// found for the particles as they are now and would be, in `next`, with unchanged velocity.
   void begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now, Moment& next);
 
+  /// Whether an obstacle with cloth near it turns so far between t and t + h that its way is no longer the straight one
+  /// that the search takes it for.
+  bool turns_too_far(double t, double h, const Moment& now) const;
+
+  /// Whether no obstacle moves so far between these that a shorter step could find room for cloth.
+  bool obstacles_creep(const Moment& now, const Moment& next) const;
+
   collision::ContactResponse& response() { return engine_.response(); }
   const collision::ContactResponse& response() const { return engine_.response(); }
 
@@ -77,6 +84,8 @@ class CollisionStage {
  private:
   const std::vector<Vec3>& append_bodies(Moment& start) const;
   void place_bodies(double t, Moment& moment) const;
+  bool cloth_comes_near(std::size_t body, double t, double h, double angle, const Moment& now) const;
+  collision::RigidMotion motion_of(std::size_t body, double t, double h) const;
   std::string describe(const collision::CornerPair& pair, const Moment& moment) const;
   std::string describe(const collision::Pinch& pinch) const;
   void note_pinches(const Moment& start);
@@ -84,9 +93,12 @@ class CollisionStage {
   const environment::Environment& environment_;
   std::vector<std::string> names_;   // per body
   std::vector<std::size_t> bodies_;  // of the environment, those that collide
+  std::vector<double> radii_;        // of these about their origins, where they are obstacles that move; else 0 [m]
+  std::vector<Box3> boxes_;          // around these in their own coordinates
   std::size_t particles_;
   std::vector<std::uint8_t> movable_;
-  std::vector<Vec3> solved_;  // scratch: particles before they are pushed apart
+  std::vector<collision::RigidMotion> motions_;  // of the step at hand, per body
+  std::vector<Vec3> solved_;                     // scratch: particles before they are pushed apart
   collision::Engine engine_;
 
   using PinchingObjects = std::pair<std::size_t, std::size_t>;  // cloth and obstacle

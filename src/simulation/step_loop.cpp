@@ -12,8 +12,8 @@
 namespace weft::simulation {
 namespace {
 
-// Halvings of a step before cloth that cannot be kept out of an obstacle is taken for pinched: where there is room a
-// shorter step finds it, where there is none it only costs.
+// Halvings of a step at least before cloth that cannot be kept out of an obstacle is taken for pinched: where there is
+// room a shorter step finds it, where there is none it only costs. More where obstacles still move far.
 constexpr int kHalvingsBeforePinch = 3;
 
 integrator::Method method_of(scene::Integrator integrator) {
@@ -91,12 +91,12 @@ void StepLoop::advance_equally(double t_t0, double t_t1, FrameReport& report) {
   for (int s = 0; s < steps; ++s) advance_over(t_t0 + s * h, h, scene_.solver.halvings, report);
 }
 
-// Goes from t to t + h, in two halves where one step is rejected, or longer than may follow the last one.
+// Goes from t to t + h, in two halves where one step is rejected, or longer than may follow the last one or than
+// obstacles allow.
 void StepLoop::advance_over(double t, double h, int halvings, FrameReport& report) {
-  const bool may_pinch = halvings == 0 || scene_.solver.halvings - halvings >= kHalvingsBeforePinch;
-  const bool too_long = h > (1 + 1e-9) * progress_.stepper.longest_step();
+  const bool too_long = h > (1 + 1e-9) * progress_.stepper.longest_step() || turns_too_far(t, h);
   if (!too_long) {
-    const Rejection rejection = attempt(t, h, may_pinch, report);
+    const Rejection rejection = attempt(t, h, scene_.solver.halvings - halvings, halvings == 0, report);
     if (!rejection) return accept(h, report);
     ++report.rejected_steps;
     if (halvings == 0) fail(report.frame, t, h, *rejection);
@@ -119,8 +119,9 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
       left = needed;
       h = (t_t1 - t) / left;
     }
+    for (; turns_too_far(t, h); h *= 0.5) left *= 2;
     const bool last_try = retries == scene_.solver.halvings || h < integrator::StepControl::kShortestStep;
-    const Rejection rejection = attempt(t, h, last_try || retries >= kHalvingsBeforePinch, report);
+    const Rejection rejection = attempt(t, h, retries, last_try, report);
     if (rejection && last_try) fail(report.frame, t, h, *rejection);
     // An impact may ask for steps without end: after as many tries its error is taken as it is.
     if (rejection || !(last_try || control.accepts(h, local_error_))) {
@@ -145,7 +146,7 @@ void StepLoop::fail(int frame, double t, double h, const std::string& reason) co
 }
 
 // One step from now at time t [s] over h [s] into `next_`.
-StepLoop::Rejection StepLoop::attempt(double t, double h, bool may_pinch, FrameReport& report) {
+StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last_try, FrameReport& report) {
   using Start = integrator::Stepper::Start;
   const Moment& now = progress_.now;
   pins_.held_at(t + h, environment_, held_);
@@ -168,7 +169,10 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, bool may_pinch, FrameR
     const bool last = solves == response.most_solves();
     if (response.revise(now.x, next_.x, force_on) > 0 && !last) continue;
     if (collisions_->apart(now, next_)) return std::nullopt;
-    if (last || collisions_->adopt_failing(now, next_) == 0) return collisions_->push_apart(h, may_pinch, now, next_);
+    if (last || collisions_->adopt_failing(now, next_) == 0) {
+      const bool may_pinch = last_try || (retries >= kHalvingsBeforePinch && collisions_->obstacles_creep(now, next_));
+      return collisions_->push_apart(h, may_pinch, now, next_);
+    }
     response.revise(now.x, next_.x, force_on);
   }
 }

@@ -66,7 +66,10 @@ class StepLoop {
   void advance_equally(double t_t0, double t_t1, FrameReport& report);
   void advance_over(double t, double h, int halvings, FrameReport& report);
   void advance_controlled(double t_t0, double t_t1, FrameReport& report);
-  Rejection attempt(double t, double h, bool may_pinch, FrameReport& report);
+  bool turns_too_far(double t, double h) const {
+    return collisions_ && collisions_->turns_too_far(t, h, progress_.now);
+  }
+  Rejection attempt(double t, double h, int retries, bool last_try, FrameReport& report);
   Rejection solve(double h, integrator::Stepper::Start start, FrameReport& report);
   void accept(double h, FrameReport& report);
   [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -257,6 +258,52 @@ INSTANTIATE_TEST_SUITE_P(By, PinchedCloth,
                          [](const auto& pinch) {
                            return std::string(pinch.param.name) + (pinch.param.step > 0.02 ? "_x4" : "_x1");
                          });
+
+/// A blade of 0.6 m about the axis `turn`, quarter by quarter, under or before a sheet that falls.
+std::string turning_blade(double turns_a_second, const char* turn, const char* size, double height) {
+  std::string keys;
+  for (int quarter = 0; quarter <= std::ceil(4 * turns_a_second * 0.4); ++quarter)
+    keys += fmt::format("  {{ time = {}, position = [0, 0, 0.5], rotation = {} }},\n", quarter / (4 * turns_a_second),
+                        fmt::format(fmt::runtime(turn), 90 * quarter % 360));
+  return fmt::format(
+      "[time]\nduration = 0.4\n[[cloth]]\nname = 'sheet'\nsize = [1, 1]\nparticles = [15, 15]\n"
+      "position = [0.03, 0.02, {}]\n[[obstacle]]\nname = 'blade'\nshape = 'box'\nsize = {}\n"
+      "interpolation = 'linear'\nkeys = [\n{}]\n",
+      height, size, keys);
+}
+
+struct Blade {
+  const char* name;
+  std::string scene;
+  double step;  // [s]
+};
+
+std::ostream& operator<<(std::ostream& out, const Blade& blade) {
+  return out << blade.name << " at steps of " << blade.step << " s";
+}
+
+class TurningBlade : public ::testing::TestWithParam<Blade> {};
+
+// Free air all round: however fast it turns, and however it catches the cloth, nothing presses that from the other
+// side.
+TEST_P(TurningBlade, NeitherCutsNorPinches) {
+  const scene::Scene scene = support::scene_of_text(GetParam().scene, {fmt::format("time.step={}", GetParam().step)});
+  bool met = false;
+  for (const support::MeasuredFrame& frame : support::run_scene(scene)) {
+    EXPECT_EQ(frame.pairs, 0u) << "frame " << frame.report.frame;
+    EXPECT_EQ(frame.report.pinched_pairs, 0) << "frame " << frame.report.frame;
+    met |= frame.report.proximities > 0;
+  }
+  EXPECT_TRUE(met);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    By, TurningBlade,
+    ::testing::Values(Blade{"flat", turning_blade(8, "[0, 0, {}]", "[0.6, 0.05, 0.01]", 0.55), 0.01},
+                      Blade{"flat_x4", turning_blade(8, "[0, 0, {}]", "[0.6, 0.05, 0.01]", 0.55), 0.04},
+                      Blade{"upright", turning_blade(12, "[0, {}, 0]", "[0.6, 0.05, 0.01]", 0.86), 0.01},
+                      Blade{"whole_turn_a_step", turning_blade(25, "[0, {}, 0]", "[0.6, 0.3, 0.01]", 0.86), 0.04}),
+    [](const auto& blade) { return std::string(blade.param.name); });
 
 /// Two boxes 0.2 m wide with a gap between them along y, as one OBJ file.
 std::string jaws_file(double gap) {

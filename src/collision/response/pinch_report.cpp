@@ -22,7 +22,7 @@ double distance_facing(const Vec3& place, const Vec3& way, const BroadPhase& sur
 
 // What presses the cloth into the obstacle.
 std::optional<std::size_t> find_other(const PinchedPairs& pinched, const PinchedPairs::Key& key, const Vec3& place,
-                                      const BroadPhase& surfaces, std::span<const Vec3> x) {
+                                      const Bodies& bodies, const BroadPhase& surfaces, std::span<const Vec3> x) {
   std::optional<std::size_t> other;
   double nearest = kNowhere;
   for (std::size_t b = 0; b < surfaces.size(); ++b) {
@@ -30,8 +30,9 @@ std::optional<std::size_t> find_other(const PinchedPairs& pinched, const Pinched
     const double distance = std::abs(nearest_point(place, surfaces, b, x).height);
     if (distance < nearest) nearest = distance, other = b;
   }
-  // Parts of one body pinch too, as arm and side do: then it looks at the cloth from both sides, and from the far one
-  // from nearer than any other obstacle.
+  if (bodies[key.body].rigid) return other;
+  // Parts of one body that bends pinch too, as arm and side do: then it looks at the cloth from both sides, and from
+  // the far one from nearer than any other obstacle.
   const Vec3 up = mesh::area_vector(key.cloth, x).normalized();
   const double far =
       std::max(distance_facing(place, up, surfaces, key.body, x), distance_facing(place, -up, surfaces, key.body, x));
@@ -40,14 +41,15 @@ std::optional<std::size_t> find_other(const PinchedPairs& pinched, const Pinched
 
 }  // namespace
 
-std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const BroadPhase& surfaces, std::span<const Vec3> x) {
+std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodies, const BroadPhase& surfaces,
+                                std::span<const Vec3> x) {
   std::vector<Pinch> found;
   for (const auto& [key, origin] : pinched.origins()) {
     const std::size_t cloth = pinched.body_of(key.cloth[0]), obstacle = key.body;
     const auto same = [&](const Pinch& p) { return p.cloth == cloth && p.obstacle == obstacle; };
     if (std::ranges::any_of(found, same)) continue;
     const Vec3& place = x[key.cloth[0]];
-    found.push_back({cloth, obstacle, find_other(pinched, key, place, surfaces, x), place});
+    found.push_back({cloth, obstacle, find_other(pinched, key, place, bodies, surfaces, x), place});
   }
   return found;
 }

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "collision/bodies.hpp"
 #include "collision/response/pinch.hpp"
 
 namespace weft::collision {
@@ -18,7 +19,8 @@ struct Pinch {
 };
 
 /// One for each cloth and obstacle, with the place of the first triangle that is pinched, at x [m].
-std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const BroadPhase& surfaces, std::span<const Vec3> x);
+std::vector<Pinch> list_pinches(const PinchedPairs& pinched, const Bodies& bodies, const BroadPhase& surfaces,
+                                std::span<const Vec3> x);
 
 /// A pair of `pinched` whose obstacle did not pinch that cloth before; with any face of the obstacle.
 std::optional<CornerPair> first_fresh(const PinchedPairs& pinched, const PinchedPairs& before,

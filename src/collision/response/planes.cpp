@@ -106,7 +106,8 @@ void Planes::append_closer(double radius, PairList& out) const {
 }
 
 void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                          std::span<const float> moved, std::vector<CornerPair>& failing) {
+                          std::span<const float> moved, std::vector<CornerPair>& failing,
+                          const CarriedStarts* carried) {
   moved_.resize(triangles_.size());
   for (std::size_t t = 0; t < triangles_.size(); ++t) {
     const auto of = [&](std::size_t c) { return moved[triangles_[t][c]]; };
@@ -115,12 +116,13 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
     const auto a = static_cast<std::size_t>(pairs_[p].a), b = static_cast<std::size_t>(pairs_[p].b);
     Plane& plane = planes_[p];
-    if (plane.gap > moved_[a] + moved_[b]) continue;
-
     const CornerPair pair{triangles_[a], triangles_[b]};
+    const std::span<const Vec3> start = carried != nullptr ? carried->of(pair, x_t0) : x_t0;
+    if (start.data() == x_t0.data() && plane.gap > moved_[a] + moved_[b]) continue;
+
     const Vec3 n(plane.n[0], plane.n[1], plane.n[2]);
-    if (plane.is_known() && separates(n, pair, x_t0, x_t1)) continue;
-    const std::optional<Vec3> found = find_certificate(pair, x_t0, x_t1);
+    if (plane.is_known() && separates(n, pair, start, x_t1)) continue;
+    const std::optional<Vec3> found = find_certificate(pair, start, x_t1);
     if (!found) {
       failing.push_back(pair);
       continue;

@@ -8,6 +8,7 @@
 
 #include "collision/hierarchy/lanes.hpp"
 #include "collision/hierarchy/surface.hpp"
+#include "collision/response/carried_starts.hpp"
 #include "collision/response/certificate.hpp"
 #include "core/types.hpp"
 
@@ -30,8 +31,10 @@ class Planes {
 
   /// Appends the pairs without certificate for the way from x_t0 to x_t1. `moved`: per vertex, a bound of its distance
   /// at either time from where it was when the pairs were taken over [m]; `reference`: those positions.
+  /// `carried`: starts of pairs with obstacles that turn, which are looked at without regard to that.
   void find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                    std::span<const float> moved, std::vector<CornerPair>& failing);
+                    std::span<const float> moved, std::vector<CornerPair>& failing,
+                    const CarriedStarts* carried = nullptr);
 
   /// The planes that are others than watch() has found for these pairs at the reference: all else that a new object
   /// needs, once it watches the same pairs.

@@ -28,14 +28,14 @@ void Separation::watch(std::span<const TrianglePair> pairs, std::span<const Vec3
 }
 
 std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                                                     const PinchedPairs* pinched) {
+                                                     const PinchedPairs* pinched, const CarriedStarts* carried) {
   failing_.clear();
   moved_.resize(x_t0.size());
   for (std::size_t v = 0; v < x_t0.size(); ++v) {
     const double most_sq = std::max((x_t0[v] - reference_[v]).squaredNorm(), (x_t1[v] - reference_[v]).squaredNorm());
     moved_[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>(most_sq));
   }
-  planes_.find_failing(reference_, x_t0, x_t1, moved_, failing_);
+  planes_.find_failing(reference_, x_t0, x_t1, moved_, failing_, carried);
   fans_.find_failing(x_t0, x_t1, moved_, failing_);
   if (pinched != nullptr && !pinched->empty())
     std::erase_if(failing_, [&](const CornerPair& pair) { return pinched->holds(pair); });
@@ -43,9 +43,8 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
 }
 
 // Moves the ends of a pair apart; false if what cannot move leaves no room.
-bool Separation::push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                            std::span<const std::uint8_t> movable, SeparationReport& report) {
-  const Vec3 direction = closest_features(pair, x_t0).points.difference;
+bool Separation::push_apart(const CornerPair& pair, Step& step) const {
+  const Vec3 direction = closest_features(pair, step.start_of(pair)).points.difference;
   const double start_gap = direction.norm();
   if (start_gap == 0) return false;
   const Vec3 n = direction / start_gap;
@@ -56,21 +55,21 @@ bool Separation::push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, 
   double low = -kInfinity, high = kInfinity;  // of c
   double lowest_a = kInfinity, highest_b = -kInfinity;
   for (int k = 0; k < 3; ++k) {
-    const double a = n.dot(x_t1[pair.a[k]]), b = n.dot(x_t1[pair.b[k]]);
+    const double a = n.dot(step.x_t1[pair.a[k]]), b = n.dot(step.x_t1[pair.b[k]]);
     lowest_a = std::min(lowest_a, a);
     highest_b = std::max(highest_b, b);
-    if (!movable[pair.a[k]]) high = std::min(high, a - 0.5 * target);
-    if (!movable[pair.b[k]]) low = std::max(low, b + 0.5 * target);
+    if (!step.movable[pair.a[k]]) high = std::min(high, a - 0.5 * target);
+    if (!step.movable[pair.b[k]]) low = std::max(low, b + 0.5 * target);
   }
   if (low > high) return false;
   const double plane = std::clamp(0.5 * (lowest_a + highest_b), low, high);
 
   const auto push = [&](const Triangle& corners, double sign) {
     for (Index v : corners) {
-      const double missing = sign * plane + 0.5 * target - sign * n.dot(x_t1[v]);
-      if (missing <= 0 || !movable[v]) continue;
-      x_t1[v] += sign * missing * n;
-      report.largest_push = std::max(report.largest_push, missing);
+      const double missing = sign * plane + 0.5 * target - sign * n.dot(step.x_t1[v]);
+      if (missing <= 0 || !step.movable[v]) continue;
+      step.x_t1[v] += sign * missing * n;
+      step.report.largest_push = std::max(step.report.largest_push, missing);
     }
   };
   push(pair.a, 1);
@@ -78,74 +77,130 @@ bool Separation::push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, 
   return true;
 }
 
-// Back by a share of the way to where there was no intersection, once a round; false if nothing was moved.
-bool Separation::backtrack(const CornerPair& pair, double share, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                           std::span<const std::uint8_t> movable, SeparationReport& report) {
-  bool moved = false;
+// Where a vertex is backtracked to.
+const Vec3& Separation::home(Index v, const Step& step) const {
+  return rides_[v] >= 0 ? step.carried->by(static_cast<std::size_t>(rides_[v]))[v] : step.x_t0[v];
+}
+
+// What fails with an obstacle rides on it, and takes along what it then fails with. Cloth between two that carry it to
+// different places stays where it started. True if something changed; each vertex changes twice at most.
+bool Separation::choose_homes(const CornerPair& pair, const Step& step) {
+  if (step.carried == nullptr) return false;
+  bool changed = false;
+  const auto choose = [&](Index v, int ride) {
+    if (!step.movable[v] || rides_[v] == ride) return;
+    rides_[v] = ride;
+    changed = true;
+  };
+  if (step.carried->has_obstacle(pair)) {
+    const std::size_t obstacle = step.carried->obstacle_of(pair);
+    const int ride = step.carried->carries(obstacle) ? static_cast<int>(obstacle) : kAtStart;
+    for (Index v : pair.a)
+      if (rides_[v] != kAtStartForGood)
+        choose(v, rides_[v] == kAtStart ? ride : rides_[v] == ride ? ride : kAtStartForGood);
+    return changed;
+  }
+  int ride = kAtStart;
+  bool differ = false;
   for (const Triangle& corners : {pair.a, pair.b}) {
     for (Index v : corners) {
-      if (!movable[v] || x_t1[v] == x_t0[v]) continue;
-      moved = true;
+      if (step.movable[v] && rides_[v] == kAtStart) continue;
+      const int of_vertex = step.movable[v] ? rides_[v] : kAtStartForGood;
+      differ |= ride != kAtStart && ride != of_vertex;
+      ride = of_vertex;
+    }
+  }
+  if (ride == kAtStart || (ride == kAtStartForGood && !differ)) return false;
+  for (const Triangle& corners : {pair.a, pair.b})
+    for (Index v : corners) choose(v, differ ? kAtStartForGood : ride);
+  return changed;
+}
+
+bool Separation::rides(const CornerPair& pair) const {
+  const auto is_carried = [&](Index v) { return rides_[v] >= 0; };
+  return std::ranges::any_of(pair.a, is_carried) || std::ranges::any_of(pair.b, is_carried);
+}
+
+// Back home, or half of the way, once a round; false if nothing was moved and nothing got another home. Between cloth
+// that is carried and cloth that is not there is nothing to be found half-way.
+bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step) {
+  bool changed = choose_homes(pair, step);
+  const double share = all_the_way || rides(pair) ? 1 : 0.5;
+  for (const Triangle& corners : {pair.a, pair.b}) {
+    for (Index v : corners) {
+      const Vec3& to = home(v, step);
+      if (!step.movable[v] || step.x_t1[v] == to) continue;
+      changed = true;
       if (backtracked_in_[v] == round_) continue;
-      report.largest_push = std::max(report.largest_push, share * (x_t0[v] - x_t1[v]).norm());
-      x_t1[v] = share == 1 ? x_t0[v] : Vec3(x_t1[v] + share * (x_t0[v] - x_t1[v]));
+      step.report.largest_push = std::max(step.report.largest_push, share * (to - step.x_t1[v]).norm());
+      step.x_t1[v] = share == 1 ? to : Vec3(step.x_t1[v] + share * (to - step.x_t1[v]));
       backtracked_in_[v] = round_;
     }
   }
-  return moved;
+  return changed;
 }
 
-bool Separation::backtrack_all(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                               std::span<const std::uint8_t> movable) {
+bool Separation::backtrack_all(Step& step) const {
   bool moved = false;
-  for (std::size_t v = 0; v < x_t0.size(); ++v) {
-    if (!movable[v] || x_t1[v] == x_t0[v]) continue;
-    x_t1[v] = x_t0[v];
+  for (std::size_t v = 0; v < step.x_t0.size(); ++v) {
+    const Vec3& to = home(static_cast<Index>(v), step);
+    if (!step.movable[v] || step.x_t1[v] == to) continue;
+    step.x_t1[v] = to;
     moved = true;
   }
   return moved;
 }
 
-// As find_failing, without pairs that stay where they are: these do not meet at the end because they do not at the
-// start, however close they are.
-void Separation::look_again(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, const PinchedPairs* pinched) {
-  find_failing(x_t0, x_t1, pinched);
-  const auto stays = [&](Index v) { return x_t1[v] == x_t0[v]; };
-  std::erase_if(failing_, [&](const CornerPair& pair) {
-    return std::all_of(pair.a.begin(), pair.a.end(), stays) && std::all_of(pair.b.begin(), pair.b.end(), stays);
-  });
+// Whether all vertices of a pair are where they started, or where one obstacle carries them: they do not meet there
+// because they do not at the start, however close they are.
+bool Separation::stays(const CornerPair& pair, const Step& step) const {
+  const auto ends_at = [&](std::span<const Vec3> x) {
+    const auto is_there = [&](Index v) { return step.x_t1[v] == x[v]; };
+    return std::ranges::all_of(pair.a, is_there) && std::ranges::all_of(pair.b, is_there);
+  };
+  if (ends_at(step.x_t0)) return true;
+  const int ride = rides_[pair.a[0]];
+  return ride >= 0 && ends_at(step.carried->by(static_cast<std::size_t>(ride)));
+}
+
+void Separation::look_again(const Step& step) {
+  find_failing(step.x_t0, step.x_t1, step.pinched, step.carried);
+  std::erase_if(failing_, [&](const CornerPair& pair) { return stays(pair, step); });
 }
 
 SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                                     std::span<const std::uint8_t> movable, PinchedPairs* pinched) {
-  SeparationReport report;
+                                     std::span<const std::uint8_t> movable, PinchedPairs* pinched,
+                                     const CarriedStarts* carried, bool goes_on) {
+  Step step{x_t0, x_t1, movable, pinched, carried};
   backtracked_in_.assign(x_t0.size(), 0);
-  look_again(x_t0, x_t1, pinched);
-  report.corrected_pairs = static_cast<int>(failing_.size());
+  if (!goes_on) rides_.assign(x_t0.size(), kAtStart);
+  look_again(step);
+  step.report.corrected_pairs = static_cast<int>(failing_.size());
   for (round_ = 1; !failing_.empty(); ++round_) {
-    bool changed = round_ >= kRounds && backtrack_all(x_t0, x_t1, movable);
+    bool changed = round_ >= kRounds && backtrack_all(step);
+    const bool last = round_ > kHalfRounds;
     for (const CornerPair& pair : failing_) {
-      if (round_ <= kPushRounds) {
-        if (find_certificate(pair, x_t0, x_t1)) continue;  // an earlier push of this round was enough
-        if (push_apart(pair, x_t0, x_t1, movable, report) && (changed = true)) continue;
+      if (round_ <= kPushRounds && !rides(pair)) {
+        if (find_certificate(pair, step.start_of(pair), x_t1)) continue;  // an earlier push of this round was enough
+        if (push_apart(pair, step) && (changed = true)) continue;
       }
-      const bool last = round_ > kHalfRounds;
-      if (last && pinched != nullptr && pinched->may_hold(pair)) {
-        pinched->add(pair);
+      if (backtrack(pair, last, step)) {
         changed = true;
-      } else if (backtrack(pair, last ? 1 : 0.5, x_t0, x_t1, movable, report)) {
+      } else if (last && pinched != nullptr && pinched->may_hold(pair) && !stays(pair, step)) {
+        pinched->add(pair);
         changed = true;
       }
     }
     // What cannot be moved any more is driven into each other.
-    if (!changed && round_ > kHalfRounds) {
-      report.stuck = failing_.front();
-      return report;
+    if (!changed && last) {
+      step.report.stuck = failing_.front();
+      return step.report;
     }
-    look_again(x_t0, x_t1, pinched);
+    if (!changed) round_ = kHalfRounds;
+    look_again(step);
   }
-  report.separated = true;
-  return report;
+  step.report.separated = true;
+  return step.report;
 }
 
 }  // namespace weft::collision

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "collision/hierarchy/surface.hpp"
+#include "collision/response/carried_starts.hpp"
 #include "collision/response/certificate.hpp"
 #include "collision/response/fans.hpp"
 #include "collision/response/pinch.hpp"
@@ -28,10 +29,11 @@ struct SeparationReport {
 ///
 /// A pair without certificate has its end positions pushed apart along n, the closest direction at the start, until a
 /// gap remains: by half each, obstacles and held particles not at all. What was moved is checked again, until nothing
-/// fails. Particles that keep failing are backtracked towards where they started, and at last all the way. There
-/// nothing met, so what stays is as far apart as it was, and a growing cluster of free particles that stay ends the
-/// rounds; what an obstacle or a held particle is driven into is left over. Of that, cloth can be given up to
-/// obstacles.
+/// fails. Particles that keep failing are backtracked, at last all the way: to where they started, or, once they fail
+/// with an obstacle that moves as a rigid body, to where that would have carried them. Nothing met at the start, so
+/// what stays together or rides together is as far apart as it was, and growing clusters of particles that do end the
+/// rounds. What is left over is driven into each other: by obstacles that move differently, or held particles. Of that,
+/// cloth can be given up to obstacles.
 class Separation {
  public:
   Separation() = default;
@@ -48,13 +50,17 @@ class Separation {
 
   /// Pairs without a certificate for the way from x_t0 to x_t1; changes nothing. x_t0 must be free of intersections but
   /// those of `pinched`, which are not looked at.
+  /// Pairs with an obstacle that turns are seen from there.
   std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                                           const PinchedPairs* pinched = nullptr);
+                                           const PinchedPairs* pinched = nullptr,
+                                           const CarriedStarts* carried = nullptr);
 
   /// Changes x_t1 of vertices with `movable` 1 (free particles), until every pair has a certificate. Where that fails,
-  /// pairs of cloth and obstacle are added to `pinched`, if given.
+  /// pairs of cloth and obstacle are added to `pinched`, if given. `goes_on`: with what the last call found to be
+  /// carried, over other pairs.
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
-                           PinchedPairs* pinched = nullptr);
+                           PinchedPairs* pinched = nullptr, const CarriedStarts* carried = nullptr,
+                           bool goes_on = false);
 
   /// What has been found since watch(), for an object that watches the same pairs from the same positions.
   template <class Archive>
@@ -63,12 +69,24 @@ class Separation {
   }
 
  private:
-  bool push_apart(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                  std::span<const std::uint8_t> movable, SeparationReport& report);
-  bool backtrack(const CornerPair& pair, double share, std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                 std::span<const std::uint8_t> movable, SeparationReport& report);
-  bool backtrack_all(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
-  void look_again(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, const PinchedPairs* pinched);
+  /// What enforce() works on.
+  struct Step {
+    std::span<const Vec3> x_t0;
+    std::span<Vec3> x_t1;
+    std::span<const std::uint8_t> movable;
+    PinchedPairs* pinched;
+    const CarriedStarts* carried;
+    SeparationReport report = {};
+    std::span<const Vec3> start_of(const CornerPair& pair) const { return carried ? carried->of(pair, x_t0) : x_t0; }
+  };
+  bool push_apart(const CornerPair& pair, Step& step) const;
+  bool choose_homes(const CornerPair& pair, const Step& step);
+  const Vec3& home(Index v, const Step& step) const;
+  bool rides(const CornerPair& pair) const;
+  bool backtrack(const CornerPair& pair, bool all_the_way, Step& step);
+  bool backtrack_all(Step& step) const;
+  bool stays(const CornerPair& pair, const Step& step) const;
+  void look_again(const Step& step);
 
   std::span<const Triangle> triangles_;
   std::vector<Vec3> reference_;
@@ -76,6 +94,8 @@ class Separation {
   Fans fans_;
   std::vector<float> moved_;         // per vertex: bound of its distance from the reference at both ends [m]
   std::vector<int> backtracked_in_;  // per vertex: round in which it was last backtracked, 0 never
+  std::vector<int> rides_;           // per vertex: the obstacle that carries it when backtracked, or one of these
+  static constexpr int kAtStart = -1, kAtStartForGood = -2;
   int round_ = 0;
   std::vector<CornerPair> failing_;
 };

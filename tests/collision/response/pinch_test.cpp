@@ -15,11 +15,13 @@ class PinchedTriangle : public ::testing::Test {
  protected:
   PinchedTriangle() {
     scene_.add({{{0, 0, 0.11}, {0.02, 0, 0.11}, {0, 0.02, 0.11}}, {{0, 1, 2}}});
+    bodies_.add(scene_.triangles, 3, {.deformable = true});
     const mesh::Mesh box = mesh::make_box(Vec3(0.2, 0.2, 0.2), 0, 2);
     for (const Vec3& place : {Vec3(0, 0, 0), Vec3(0, 0, 0.24), Vec3(1, 0, 0)}) {
       testing::TestMesh moved{box.positions, {box.topology.triangles.begin(), box.topology.triangles.end()}};
       for (Vec3& p : moved.x) p += place;
       scene_.add(moved);
+      bodies_.add(moved.triangles, static_cast<Index>(moved.x.size()), {.rigid = true});
       x_.insert(x_.end(), moved.x.begin(), moved.x.end());
     }
     x_.insert(x_.begin(), {Vec3(0, 0, 0.11), Vec3(0.02, 0, 0.11), Vec3(0, 0.02, 0.11)});
@@ -39,6 +41,7 @@ class PinchedTriangle : public ::testing::Test {
   testing::MovingScene scene_;
   std::vector<Vec3> x_;
   std::vector<Surface> surfaces_;
+  Bodies bodies_;
   BroadPhase broad_phase_;
   PinchedPairs pinched_;
 };
@@ -100,7 +103,7 @@ TEST_F(PinchedTriangle, IsReportedOnceWithTheObstacleThatIsNearestBesides) {
   pinched_.add(with(1));
   pinched_.note_origins(broad_phase_, x_);
   move_cloth_to(0.09);
-  const std::vector<Pinch> pinches = list_pinches(pinched_, broad_phase_, x_);
+  const std::vector<Pinch> pinches = list_pinches(pinched_, bodies_, broad_phase_, x_);
   ASSERT_EQ(pinches.size(), 1U);
   EXPECT_EQ(pinches[0].cloth, 0U);
   EXPECT_EQ(pinches[0].obstacle, 1U);

@@ -1,0 +1,83 @@
+// A step seen from an obstacle that turns: a thin blade sweeps into cloth that is a tenth of a millimetre before it.
+#include "collision/response/carried_starts.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdint>
+
+#include "collision/response/separation.hpp"
+
+namespace weft::collision {
+namespace {
+
+constexpr double kGap = 1e-4;  // [m]
+
+/// Vertices 0 to 5 are two triangles of cloth, one beside the other's face; 6 to 8 a blade of 0.6 m along x, which
+/// turns about z and moves along x in the step.
+class BeforeATurningBlade : public ::testing::TestWithParam<double> {
+ protected:
+  BeforeATurningBlade() {
+    for (const double y : {kGap, 3 * kGap})
+      for (const Vec3& x : {Vec3(0.1, 0, 0), Vec3(0.13, 0, 0), Vec3(0.1, 0, 0.03)})
+        x_t0_.push_back(x + y * Vec3::UnitY());
+    for (const Vec3& x : {Vec3(-0.3, 0, -0.1), Vec3(0.3, 0, -0.1), Vec3(0.3, 0, 0.1)}) x_t0_.push_back(x);
+    const double angle = GetParam();
+    blade_.turn = Eigen::AngleAxisd(angle, Vec3::UnitZ()).toRotationMatrix();
+    blade_.shift = Vec3(0.02, 0, 0);
+    x_t1_ = x_t0_;
+    for (int v = 6; v < 9; ++v) x_t1_[v] = blade_.turn * x_t0_[v] + blade_.shift;
+    carried_ = CarriedStarts(6, {0, 0, 0, 1, 1, 1, 2, 2, 2});
+    carried_.begin_step(x_t0_, x_t1_, std::vector<RigidMotion>{{}, {}, blade_});
+  }
+
+  static constexpr CornerPair kInner{{0, 1, 2}, {6, 7, 8}}, kOuter{{3, 4, 5}, {6, 7, 8}};
+  std::vector<Vec3> x_t0_, x_t1_;
+  RigidMotion blade_;
+  CarriedStarts carried_;
+};
+
+TEST_P(BeforeATurningBlade, ClothThatIsCarriedAlongIsApartThroughout) {
+  for (int v = 0; v < 6; ++v) x_t1_[v] = blade_.turn * x_t0_[v] + blade_.shift;
+  for (const CornerPair& pair : {kInner, kOuter}) {
+    const auto seen = find_certificate(pair, carried_.of(pair, x_t0_), x_t1_);
+    ASSERT_TRUE(seen);
+    EXPECT_NEAR(std::abs(seen->dot(blade_.turn.col(1))), 1, 1e-6) << "a plane that turns with the blade";
+    EXPECT_FALSE(find_certificate(pair, x_t0_, x_t1_)) << "no plane that keeps its direction does";
+  }
+}
+
+TEST_P(BeforeATurningBlade, OneObstacleAloneLeavesClothRoom) {
+  const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
+  Separation separation(triangles, {});
+  separation.watch(std::vector<TrianglePair>{{0, 1}, {0, 2}, {1, 2}}, x_t0_);
+  PinchedPairs pinched(6, {0, 0, 0, 1, 1, 1, 2, 2, 2});
+  const std::vector<std::uint8_t> movable{1, 1, 1, 1, 1, 1, 0, 0, 0};
+  ASSERT_FALSE(separation.find_failing(x_t0_, x_t1_, nullptr, &carried_).empty());
+  const SeparationReport report = separation.enforce(x_t0_, x_t1_, movable, &pinched, &carried_);
+  EXPECT_TRUE(report.separated);
+  EXPECT_TRUE(pinched.empty());
+  for (const CornerPair& pair : {kInner, kOuter}) EXPECT_GT(gap_along(blade_.turn.col(1), pair, x_t1_), 0);
+}
+
+INSTANTIATE_TEST_SUITE_P(By, BeforeATurningBlade, ::testing::Values(0.05, 0.3, 1.0));
+
+TEST(CarriedStarts, AreLookedAtOnlyForWhatTurns) {
+  const std::vector<Vec3> x_t0(6, Vec3(1, 2, 3)), x_t1(6, Vec3(1, 2, 4));
+  CarriedStarts carried(3, {0, 0, 0, 1, 1, 1});
+  const CornerPair pair{{0, 1, 2}, {3, 4, 5}};
+  EXPECT_FALSE(carried.carries(1));
+  carried.begin_step(x_t0, x_t1, std::vector<RigidMotion>{{}, {.shift = Vec3(0, 0, 1)}});
+  EXPECT_TRUE(carried.carries(1));
+  EXPECT_EQ(carried.by(1)[0], Vec3(1, 2, 4));
+  EXPECT_EQ(carried.of(pair, x_t0).data(), x_t0.data());
+  const Mat3 quarter = Eigen::AngleAxisd(1, Vec3::UnitZ()).toRotationMatrix();
+  carried.begin_step(x_t0, x_t1, std::vector<RigidMotion>{{}, {.turn = quarter}});
+  EXPECT_EQ(carried.of(pair, x_t0)[0], quarter * x_t0[0]);
+  EXPECT_EQ(carried.of(pair, x_t0)[3], x_t1[3]) << "the obstacle is where it ends, to the bit";
+  const CornerPair of_cloths{{0, 1, 2}, {0, 1, 2}};
+  EXPECT_EQ(carried.of(of_cloths, x_t0).data(), x_t0.data());
+}
+
+}  // namespace
+}  // namespace weft::collision
