@@ -49,6 +49,8 @@ std::string_view describe(Verdict verdict) {
   switch (verdict) {
     case Verdict::solved:
       return "solved";
+    case Verdict::unfinished:
+      return "not yet solved";
     case Verdict::not_finite:
       return "a position or force is not finite";
     case Verdict::newton_stalled:
@@ -235,7 +237,7 @@ void Stepper::hold(const State& now, const Stage& stage, std::span<const HeldPar
 }
 
 StepReport Stepper::step(System& system, const State& now, double h, const Vec3& gravity,
-                         std::span<const HeldParticle> held, State& next, Start start) {
+                         std::span<const HeldParticle> held, State& next, Start start, int look_after) {
   const std::size_t n = now.v.size();
   solver::LinearSystem& linear = system.linear_system();
   const auto masses = system.masses();
@@ -281,8 +283,10 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
       report.verdict = Verdict::indefinite;
     else if (!is_solved() && report.newton_iterations >= parameters_.max_iterations)
       report.verdict = Verdict::newton_stalled;
+    else if (!is_solved() && report.newton_iterations >= look_after)
+      report.verdict = Verdict::unfinished;
   } while (!is_solved() && report.verdict == Verdict::solved);
-  if (report.verdict == Verdict::solved) finish(now, stage, held, next);
+  if (report.verdict == Verdict::solved || report.verdict == Verdict::unfinished) finish(now, stage, held, next);
   return report;
 }
 

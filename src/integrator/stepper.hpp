@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -26,7 +27,7 @@ struct NewtonParameters {
   double position_tolerance = 0;
 };
 
-enum class Verdict { solved, not_finite, newton_stalled, indefinite };
+enum class Verdict { solved, unfinished, not_finite, newton_stalled, indefinite };
 std::string_view describe(Verdict verdict);
 
 struct StepReport {
@@ -75,9 +76,11 @@ class Stepper {
   enum class Start { unchanged_velocity, next };
 
   /// Computes `next` from `now` over h [s]. Nothing is remembered: see accept().
-  /// `gravity` [m/s²] acts on all particles.
+  /// `gravity` [m/s²] acts on all particles. Who wants to look at what comes of it, and go on from there, has it end
+  /// unfinished after `look_after` iterations of Newton's method.
   StepReport step(System& system, const State& now, double h, const Vec3& gravity, std::span<const HeldParticle> held,
-                  State& next, Start start = Start::unchanged_velocity);
+                  State& next, Start start = Start::unchanged_velocity,
+                  int look_after = std::numeric_limits<int>::max());
 
   /// Force [N] with which its constraint acted on a particle of this mass [kg] at the end of the last step computed.
   Vec3 constraint_force(Index particle, double mass) const;

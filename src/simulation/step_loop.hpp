@@ -70,7 +70,8 @@ class StepLoop {
     return collisions_ && collisions_->turns_too_far(t, h, progress_.now);
   }
   Rejection attempt(double t, double h, int retries, bool last_try, FrameReport& report);
-  Rejection solve(double h, integrator::Stepper::Start start, FrameReport& report);
+  integrator::StepReport solve(double h, integrator::Stepper::Start start, FrameReport& report);
+  static Rejection reason_of(const integrator::StepReport& step);
   void accept(double h, FrameReport& report);
   [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
 

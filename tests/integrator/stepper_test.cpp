@@ -141,6 +141,30 @@ TEST(Stepper, SaysWhyAStepIsNotSolved) {
   EXPECT_EQ(verdict_of(Spring(40), 1, one), Verdict::solved);  // linear: one iteration is enough
 }
 
+TEST(Stepper, EndsUnfinishedForALookAndGoesOnFromThere) {
+  testing::HardeningSpring spring;
+  const State now{{{2, 0, 0}}, {{0, 3, 0}}};
+  for (Method method : {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2}) {
+    Stepper stepper(method, kTight);
+    State whole = now, looked_at = now;
+    const StepReport at_once = stepper.step(spring, now, 1, Vec3::Zero(), {}, whole);
+    ASSERT_EQ(at_once.verdict, Verdict::solved);
+    ASSERT_GT(at_once.newton_iterations, 3);
+    const auto start = Stepper::Start::unchanged_velocity;
+    const StepReport first = stepper.step(spring, now, 1, Vec3::Zero(), {}, looked_at, start, 2);
+    EXPECT_EQ(first.verdict, Verdict::unfinished);
+    EXPECT_EQ(first.newton_iterations, 2);
+    EXPECT_GT((looked_at.x[0] - whole.x[0]).norm(), 1e-9);
+    const StepReport rest = stepper.step(spring, now, 1, Vec3::Zero(), {}, looked_at, Stepper::Start::next);
+    EXPECT_EQ(rest.verdict, Verdict::solved);
+    EXPECT_EQ(rest.newton_iterations, at_once.newton_iterations - 2);
+    EXPECT_LT((looked_at.x[0] - whole.x[0]).norm(), 1e-12);
+    // What is solved by then is not looked at.
+    EXPECT_EQ(stepper.step(spring, now, 1, Vec3::Zero(), {}, looked_at, start, at_once.newton_iterations).verdict,
+              Verdict::solved);
+  }
+}
+
 TEST(Stepper, MatrixThatIsNotDefiniteIsReported) {
   // The rate is 2 / s, so the diagonal is 4.
   Stepper stepper(Method::implicit_euler, kTight);
