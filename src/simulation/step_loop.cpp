@@ -19,7 +19,8 @@ constexpr int kHalvingsBeforePinch = 3;
 
 // Iterations of Newton's method in a step after which is looked at what meets on the way, where it goes on. Contacts
 // that show only then belong into the solve, and without them it is solved in vain: a handkerchief pulled through a
-// ring took 1,360 iterations in 19 frames, with 2 of them 682, with 4 773; multi_sheet, 44 frames, 908, 818 and 858.
+// ring took 1,360 iterations in 19 frames, and takes 661; multi_sheet, 44 frames, 908 and 881. With 2 or 4 it is much
+// the same.
 constexpr int kLookAfter = 3;
 
 integrator::Method method_of(scene::Integrator integrator) {
