@@ -59,7 +59,8 @@ class Film {
         MadeFrame made = source->next();  // simulated, or read
         if (parts_.look) parts_.look(made);
         if (parts_.store) parts_.store->keep(made);  // so that it is not simulated again
-        for (const std::string& pinch : made.report.pinches) log::warn(pinch);
+        for (const auto* texts : {&made.report.pinches, &made.report.lags})
+          for (const std::string& text : *texts) log::warn(text);
         record(frame).report = std::move(made.report);
         if (++made_so_far_ == 1) first_frame_ = source->first_frame();
         progress_.advance(Stage::simulate);

@@ -115,7 +115,8 @@ Json frame_json(const FrameRecord& record) {
           {"max_strain", finite(report.max_strain)},
           {"kinetic_energy_j", finite(report.kinetic_energy)},
           {"elastic_energy_j", finite(report.elastic_energy)},
-          {"pinched_pairs", report.pinched_pairs}};
+          {"pinched_pairs", report.pinched_pairs},
+          {"lagging_particles", report.lagging_particles}};
 }
 
 Json stats_json(const RunReport& report) {

@@ -149,6 +149,12 @@ std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
     warnings.push_back(fmt::format("cloth had no room between obstacles, and is in one of them, in {} of {} frames",
                                    pinched, frames.size()));
   }
+  if (const auto lagging = std::count_if(frames.begin(), frames.end(),
+                                         [](const FrameRecord& record) { return record.report.lagging_particles > 0; });
+      lagging > 0) {
+    warnings.push_back(fmt::format("something was in the way of pins, which lagged behind, in {} of {} frames", lagging,
+                                   frames.size()));
+  }
   if (distance <= 0) warnings.push_back("surfaces touched or passed through each other");
   return warnings;
 }

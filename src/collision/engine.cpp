@@ -109,18 +109,25 @@ std::optional<CornerPair> Engine::find_meeting(std::span<const Vec3> x) {
 }
 
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
-                                    std::span<const std::uint8_t> movable, bool may_pinch) {
+                                    std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_give_way) {
   // Corrections can carry vertices out of the bounds that the candidates stand for; then these are collected anew.
   constexpr int kCollections = 8;
   SeparationReport report;
   PinchedPairs pinched = pinched_;
+  std::vector<std::uint8_t> movable(movable_in_step.begin(), movable_in_step.end());
   for (int c = 0; c < kCollections; ++c) {
     const SeparationReport pass = separation_.enforce(x_t0, x_t1, movable, &pinched, &carried_, c > 0);
+    report.gave_way.insert(report.gave_way.end(), pass.gave_way.begin(), pass.gave_way.end());
+    for (const GivenWay& given : pass.gave_way) movable[given.particle] = kFree;
     report.corrected_pairs += pass.corrected_pairs;
     report.largest_push = std::max(report.largest_push, pass.largest_push);
     report.separated = pass.separated;
     report.stuck = pass.stuck;
-    if (!pass.separated) return report;
+    if (!report.gave_way.empty() && !may_give_way) {
+      report.separated = false;
+      report.stuck = report.gave_way.front().pair;
+    }
+    if (!report.separated) return report;
     if (!candidates_.covers_end(x_t1)) {
       collect(x_t0, x_t1);
       continue;

@@ -67,8 +67,9 @@ class Engine {
 
   /// Corrects the ends x_t1 of movable particles so that no triangles meet during the step. Cloth that obstacles leave
   /// no room is exempted from that: `may_pinch` allows it; without, only where the obstacle pinches this cloth already.
+  /// Without `may_give_way` the report of pinned particles that gave way is that of a failure, and nothing is exempted.
   SeparationReport push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
-                              bool may_pinch = false);
+                              bool may_pinch = false, bool may_give_way = true);
 
   /// Triangles of cloth that are pinched by an obstacle, counted per obstacle.
   int pinched_pairs() const { return static_cast<int>(pinched_.size()); }

@@ -29,6 +29,9 @@ struct FrameReport {
   double potential_energy = 0;  ///< of gravity, zero at the origin [J]
   double elastic_energy = 0;    ///< stretch, shear and bending [J]
   int pinched_pairs = 0;        ///< most triangles of cloth at once that have no room and are in an obstacle
+  int lagging_particles = 0;    ///< most at once that something kept from where a pin was to hold them
+  std::vector<std::string>
+      lags;  ///< pins that begin or end to lag: "frame 37: pin 0 of 'sheet' gives way to 'box' near (x, y, z) m"
   std::vector<std::string>
       pinches;  ///< those that begin: "frame 37: 'sheet' has no room between ..., near (x, y, z) m"
 };

@@ -18,13 +18,10 @@ inline const std::vector<std::string> kInterpolations = {"linear", "cubic"};
 /// Turns about the fixed x, then y, then z axis.
 Quat from_angles(const std::vector<double>& degrees);
 
-/// position, and quaternion or rotation. `otherwise` says what holds where they are absent.
+/// The rotation of a pose.
 template <class S, class Member>
-void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
+void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherwise) {
   const auto rotation = [pose](S& s) -> Quat& { return std::invoke(pose, s).rotation; };
-  rows.vector(
-          "position", [pose](S& s) -> Vec3& { return std::invoke(pose, s).position; }, kXyz, kPlace, "m", position_of)
-      .by_default(otherwise);
   rows.vector("quaternion", rotation, {"w", "x", "y", "z"}, within(-1e3, 1e3), "",
               "rotation as a quaternion, of any length but 0")
       .nonzero()
@@ -32,6 +29,15 @@ void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_o
   rows.respelling("rotation", "quaternion", {"rx", "ry", "rz"}, within(-36000, 36000), "degrees",
                   "rotation about the fixed x, then y, then z axis",
                   [rotation](S& s, const std::vector<double>& angles) { rotation(s) = from_angles(angles); });
+}
+
+/// position, and quaternion or rotation. `otherwise` says what holds where they are absent.
+template <class S, class Member>
+void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_of, const std::string& otherwise = {}) {
+  rows.vector(
+          "position", [pose](S& s) -> Vec3& { return std::invoke(pose, s).position; }, kXyz, kPlace, "m", position_of)
+      .by_default(otherwise);
+  rotation_rows(rows, pose, otherwise);
 }
 
 /// Look of what is not cloth.

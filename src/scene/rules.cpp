@@ -103,6 +103,28 @@ const Table& pose_key_rules() {
   return kTable;
 }
 
+const Table& pin_key_rules() {
+  static const auto kPlaceOf = [](PinKey& key) -> Vec3& { return key.pose.position; };
+  static const Table kTable =
+      TableBuilder<PinKey>("Where a pin holds its particles at a time.")
+          .number("time", &PinKey::time, kMoment, "s", "later than the key before")
+          .need(Need::required)
+          .vector("offset", kPlaceOf, kXyz, kPlace, "m", "how far the particles are then from where they start")
+          .by_default("as in the key before; of the first key, none")
+          .excludes("position")
+          .written_if([](PinKey& key) { return !key.in_world; })
+          .when_given([](PinKey& key) { key.in_world = false; })
+          .vector("position", kPlaceOf, kXyz, kPlace, "m", "instead of offset: where their middle is then")
+          .by_default("as in the key before")
+          .excludes("offset")
+          .written_if([](PinKey& key) { return key.in_world; })
+          .when_given([](PinKey& key) { key.in_world = true; })
+          .with(
+              [](auto& rows) { rotation_rows(rows, &PinKey::pose, "that of the key before; of the first key, none"); })
+          .build();
+  return kTable;
+}
+
 /// interpolation and keys of the PoseTrack that `track` gives; the first key starts from the pose `start` gives.
 template <class S, class Member, class Start>
 void track_rows(TableBuilder<S>& rows, Member track, Start start) {
@@ -134,7 +156,17 @@ const Table& pin_rules() {
           .by_default("none")
           .excludes("keys")
           .number("release", &Pin::release, within(-1, 1e5), "s", "time at which they are let go; negative: never")
-          .with([](auto& rows) { track_rows(rows, &Pin::motion, [](Pin&) { return Pose{}; }); })
+          .number("strength", &Pin::strength, above(0, 1e9), "N/m",
+                  "of a damped spring that draws each of them to where it is to be")
+          .by_default("none: they are held there, as far as nothing is in the way")
+          .choice(
+              "interpolation", [](Pin& pin) -> Interpolation& { return pin.motion.interpolation; }, kInterpolations,
+              "between its keys")
+          .list(
+              Type::keys, "keys", [](Pin& pin) -> std::vector<PinKey>& { return pin.motion.keys; }, pin_key_rules(),
+              [](Pin& pin, std::size_t i) {
+                pin.motion.keys.push_back(i == 0 ? PinKey{} : PinKey(pin.motion.keys.back()));
+              })
           .build();
   return kTable;
 }

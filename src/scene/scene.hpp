@@ -126,6 +126,18 @@ struct PoseTrack {
   std::vector<PoseKey> keys;  ///< empty: stays at the object's own pose
 };
 
+/// Where a pin holds its particles at a time. The rotation is about their middle.
+struct PinKey {
+  double time = 0;  ///< [s], strictly increasing
+  Pose pose;        ///< position: of their middle, from where that starts, or in the world
+  bool in_world = false;
+};
+
+struct PinTrack {
+  Interpolation interpolation = Interpolation::cubic;
+  std::vector<PinKey> keys;  ///< empty: they stay where they start
+};
+
 /// Particles of a cloth, in fractions of its rest size along weft and warp: those inside [low, high].
 struct ClothPart {
   Vec2 low{0, 0}, high{1, 1};
@@ -140,10 +152,10 @@ struct ClothPart {
 
 /// Particles held in place, or moved.
 struct Pin : ClothPart {
-  std::string follow;   ///< obstacle whose motion they share; empty: none
-  PoseTrack motion;     ///< else displacement of the held particles from where they start (position relative, rotation
-                        ///< about the start centroid)
-  double release = -1;  ///< time at which they are let go [s]; negative: never
+  std::string follow;              ///< obstacle whose motion they share; empty: none
+  PinTrack motion;                 ///< else of their own
+  double release = -1;             ///< time at which they are let go [s]; negative: never
+  std::optional<double> strength;  ///< of the springs that draw them there [N/m]; none: they are held
 };
 
 /// Mass that hangs on particles, in equal shares.

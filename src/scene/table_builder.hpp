@@ -228,6 +228,15 @@ class TableBuilder {
     last().excludes = std::move(key);
     return *this;
   }
+  /// What more is to be done where the key is given.
+  TableBuilder& when_given(std::function<void(S&)> then) {
+    Rule& rule = last();
+    rule.set = [then, set = rule.set](void* s, const Value& value) {
+      set(s, value);
+      then(*static_cast<S*>(s));
+    };
+    return *this;
+  }
   TableBuilder& not_simulated() {
     last().simulated = false;
     return *this;

@@ -170,12 +170,13 @@ void CollisionStage::begin_step(double t, double h, std::span<const integrator::
                                 Moment& next) {
   place_bodies(t, now);
   place_bodies(t + h, next);
-  movable_.assign(now.x.size(), 0);
-  std::fill_n(movable_.begin(), particles_, std::uint8_t{1});
+  movable_.assign(now.x.size(), collision::kFixed);
+  gave_way_.clear();
+  std::fill_n(movable_.begin(), particles_, std::uint8_t{collision::kFree});
   for (std::size_t i = 0; i < particles_; ++i) next.x[i] = now.x[i] + h * now.v[i];
   for (const integrator::HeldParticle& particle : held) {
     next.x[particle.constraint.particle] = particle.x_end;
-    movable_[particle.constraint.particle] = 0;
+    movable_[particle.constraint.particle] = collision::kPinned;
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     motions_[environment_.cloths.size() + b] = motion_of(bodies_[b], t, h);
@@ -238,16 +239,28 @@ collision::RigidMotion CollisionStage::motion_of(std::size_t body, double t, dou
 
 void CollisionStage::append_prescribed(std::vector<integrator::HeldParticle>& held) const {
   for (const collision::PrescribedParticle& particle : response().prescribed())
-    if (movable_[particle.constraint.particle]) held.push_back({particle.constraint, particle.x_end, particle.v_end});
+    if (movable_[particle.constraint.particle] == collision::kFree)
+      held.push_back({particle.constraint, particle.x_end, particle.v_end});
 }
 
-std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, const Moment& now, Moment& next) {
+std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, bool may_give_way, const Moment& now,
+                                                      Moment& next) {
   solved_.assign(next.particles().begin(), next.particles().end());
-  const collision::SeparationReport report = engine_.push_apart(now.x, next.x, movable_, may_pinch);
+  const collision::SeparationReport report = engine_.push_apart(now.x, next.x, movable_, may_pinch, may_give_way);
+  gave_way_ = report.gave_way;
   if (!report.separated) return "cannot keep " + describe(report.stuck, now) + " apart";
   for (std::size_t i = 0; i < particles_; ++i) next.v[i] += (next.x[i] - solved_[i]) / h;
   note_pinches(now);
   return std::nullopt;
+}
+
+std::string CollisionStage::describe(const collision::GivenWay& given, const Moment& now) const {
+  const auto is_it = [&](Index v) { return v == given.particle; };
+  const collision::Triangle& other = std::ranges::any_of(given.pair.a, is_it) ? given.pair.b : given.pair.a;
+  const Vec3& at = now.x[given.particle];
+  const std::size_t body = engine_.bodies().body_of(other[0]);
+  return fmt::format("'{}'{} near ({:.4g}, {:.4g}, {:.4g}) m", names_[body],
+                     body == engine_.bodies().body_of(given.particle) ? " itself" : "", at.x(), at.y(), at.z());
 }
 
 std::string CollisionStage::describe(const collision::Pinch& pinch) const {

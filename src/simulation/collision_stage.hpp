@@ -61,7 +61,12 @@ class CollisionStage {
   /// Corrects positions and velocities of `next` so that nothing meets anything, except cloth and the obstacles that
   /// leave it no room; these are then pinched. Without `may_pinch` no cloth becomes pinched by an obstacle that did not
   /// pinch it before. Empty if that worked, else which objects are stuck and where.
-  std::optional<std::string> push_apart(double h, bool may_pinch, const Moment& now, Moment& next);
+  /// `may_give_way`: pinned particles may be moved too, where nothing else can be; without, they are only told of.
+  std::optional<std::string> push_apart(double h, bool may_pinch, bool may_give_way, const Moment& now, Moment& next);
+  /// The pinned particles that the last push_apart() told of.
+  std::span<const collision::GivenWay> gave_way() const { return gave_way_; }
+  /// What such a particle would have met, and where: "'a' near (0, 0, 0) m".
+  std::string describe(const collision::GivenWay& given, const Moment& now) const;
 
   /// What a frame has pinched, from its steps so far; the next call tells of the next frame.
   struct Pinches {
@@ -98,7 +103,8 @@ class CollisionStage {
   std::size_t particles_;
   std::vector<std::uint8_t> movable_;
   std::vector<collision::RigidMotion> motions_;  // of the step at hand, per body
-  std::vector<Vec3> solved_;                     // scratch: particles before they are pushed apart
+  std::vector<collision::GivenWay> gave_way_;
+  std::vector<Vec3> solved_;  // scratch: particles before they are pushed apart
   collision::Engine engine_;
 
   using PinchingObjects = std::pair<std::size_t, std::size_t>;  // cloth and obstacle

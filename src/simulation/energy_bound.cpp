@@ -16,7 +16,7 @@ constexpr double kRounding = 1e-9;
 
 bool is_alone(const scene::Scene& scene) {
   if (CollisionStage::needed(scene) && scene.time.integrator != scene::Integrator::implicit_midpoint) return false;
-  const auto moves = [](const scene::PoseTrack& track) { return track.keys.size() > 1; };
+  const auto moves = [](const auto& track) { return track.keys.size() > 1; };
   for (const scene::Cloth& cloth : scene.cloths) {
     if (cloth.shape == scene::ClothShape::pattern) return false;  // sewing drives it
     for (const scene::Pin& pin : cloth.pins)

@@ -38,6 +38,16 @@ int body_named(const environment::Environment& environment, const std::string& n
   return found == environment.bodies.end() ? -1 : static_cast<int>(found - environment.bodies.begin());
 }
 
+/// Through the keys of a pin whose particles start around `middle`.
+environment::Track track_of(const scene::PinTrack& motion, const Vec3& middle) {
+  scene::PoseTrack track{motion.interpolation, {}};
+  for (const scene::PinKey& key : motion.keys) {
+    track.keys.push_back({key.time, key.pose});
+    if (!key.in_world) track.keys.back().pose.position += middle;
+  }
+  return environment::Track(track, {.position = middle});
+}
+
 }  // namespace
 
 std::vector<Index> particles_of(const scene::ClothPart& part, const environment::ClothObject& cloth, Index first) {
@@ -53,7 +63,8 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
   std::vector<Index> taken;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const environment::ClothObject& cloth = environment.cloths[c];
-    for (const scene::Pin& pin : scene.cloths[c].pins) {
+    for (std::size_t number = 0; number < scene.cloths[c].pins.size(); ++number) {
+      const scene::Pin& pin = scene.cloths[c].pins[number];
       Group group;
       for (Index particle : particles_of(pin, cloth, first_particle[c])) {
         if (std::find(taken.begin(), taken.end(), particle) != taken.end()) continue;
@@ -61,6 +72,11 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
         taken.push_back(particle);
       }
       if (group.particles.empty()) continue;
+      group.about = {c, number, group.particles.size(), pin.strength};
+      for (Index particle : group.particles) {
+        pin_of_.resize(std::max(pin_of_.size(), static_cast<std::size_t>(particle) + 1));
+        pin_of_[static_cast<std::size_t>(particle)] = groups_.size();
+      }
 
       const auto start = [&](Index particle) -> const Vec3& { return cloth.start[particle - first_particle[c]]; };
       group.release = pin.release;
@@ -74,11 +90,11 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
         for (Index particle : group.particles)
           group.arms.push_back(pose.rotation.conjugate() * (start(particle) - pose.position));
       } else {
-        group.track.emplace(pin.motion);
-        group.origin = Vec3::Zero();
-        for (Index particle : group.particles) group.origin += start(particle);
-        group.origin /= static_cast<double>(group.particles.size());
-        for (Index particle : group.particles) group.arms.push_back(start(particle) - group.origin);
+        Vec3 middle = Vec3::Zero();
+        for (Index particle : group.particles) middle += start(particle);
+        middle /= static_cast<double>(group.particles.size());
+        group.track = track_of(pin.motion, middle);
+        for (Index particle : group.particles) group.arms.push_back(start(particle) - middle);
       }
       groups_.push_back(std::move(group));
     }
@@ -136,7 +152,6 @@ void Pins::held_at(double t, const environment::Environment& environment,
       pose = environment.pose(static_cast<std::size_t>(group.follow), t);
     } else {
       pose = group.track->at(t);
-      pose.position += group.origin;
     }
     for (std::size_t p = 0; p < group.particles.size(); ++p) {
       const Vec3 arm = pose.rotation * group.arms[p];

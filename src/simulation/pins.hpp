@@ -24,6 +24,17 @@ class Pins {
 
   bool empty() const { return groups_.empty(); }
 
+  /// What a pin is, of those that hold particles.
+  struct About {
+    std::size_t cloth = 0, number = 0;  ///< of the scene; number in its cloth, from 0
+    std::size_t particles = 0;
+    std::optional<double> strength;  ///< of the spring to each particle [N/m]; none: it is held
+  };
+  std::size_t size() const { return groups_.size(); }
+  const About& about(std::size_t pin) const { return groups_[pin].about; }
+  /// The pin that a particle belongs to; only of particles that belong to one.
+  std::size_t of(Index particle) const { return pin_of_[static_cast<std::size_t>(particle)]; }
+
   /// Particles held at time t [s]; pins that are released by then are left out. One entry per particle: where pins
   /// overlap, the first of the scene wins.
   void held_at(double t, const environment::Environment& environment,
@@ -40,16 +51,17 @@ class Pins {
                                     std::span<const Vec3> places);
   /// Particles that share one motion.
   struct Group {
+    About about;
     std::vector<Index> particles;
-    std::vector<Vec3> arms;       // from the motion's origin at the start, in its own directions [m]
-    double release = -1;          // [s]; negative: never
-    int follow = -1;              // obstacle or character, or −1 for `track`
-    std::vector<Anchor> anchors;  // on a character, instead of arms
-    std::optional<environment::Track> track;
-    Vec3 origin;  // of the particles at the start, about which `track` turns [m]
+    std::vector<Vec3> arms;                   // from the motion's origin at the start, in its own directions [m]
+    double release = -1;                      // [s]; negative: never
+    int follow = -1;                          // obstacle or character, or −1 for `track`
+    std::vector<Anchor> anchors;              // on a character, instead of arms
+    std::optional<environment::Track> track;  // of the middle of the particles
   };
 
   std::vector<Group> groups_;
+  std::vector<std::size_t> pin_of_;  // per particle
 };
 
 }  // namespace weft::simulation

@@ -7,6 +7,7 @@
 #include "environment/acting.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
+#include "simulation/pin_doubts.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::simulation {
@@ -159,6 +160,10 @@ std::vector<std::string> doubts(const scene::Scene& scene) {
         "time.integrator: implicit_midpoint damps nothing, and where cloth touches something a step of {:.3g} ms may "
         "shake it apart until the run is refused; take bdf2, or a time.step of {:.3g} ms at most",
         1e3 * scene.time.step, 1e3 * kLongestStep));
+  if (!has_moving_pins(scene)) return found;
+  const environment::Environment environment(scene);
+  for (const auto& texts : {find_jumps(scene, environment), find_entries(scene, environment)})
+    found.insert(found.end(), texts.begin(), texts.end());
   return found;
 }
 

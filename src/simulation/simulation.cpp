@@ -7,8 +7,10 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
+#include "core/log.hpp"
 #include "environment/environment.hpp"
 #include "simulation/energy_bound.hpp"
+#include "simulation/pin_doubts.hpp"
 #include "simulation/snapshots.hpp"
 #include "simulation/step_loop.hpp"
 #include "simulation/stopwatch.hpp"
@@ -25,8 +27,10 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_values(archive, report.frame, report.time, report.steps, report.rejected_steps, report.inexact_steps,
                    report.error_estimate, report.solver_error, report.newton_iterations, report.linear_iterations,
                    report.proximities, report.constraints, report.min_distance, report.max_strain,
-                   report.kinetic_energy, report.potential_energy, report.elastic_energy, report.pinched_pairs);
-  serialize_each(archive, report.pinches, [&](std::string& text) { serialize_plain(archive, text); });
+                   report.kinetic_energy, report.potential_energy, report.elastic_energy, report.pinched_pairs,
+                   report.lagging_particles);
+  for (std::vector<std::string>* texts : {&report.pinches, &report.lags})
+    serialize_each(archive, *texts, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
 }  // namespace
@@ -38,7 +42,7 @@ struct Simulation::Impl {
   double time() const { return frame / scene.time.fps; }
   void measure_energies(FrameReport& report) const;
   void measure(FrameReport& report) const;
-  void report_pinches(FrameReport& report);
+  void report_obstructions(FrameReport& report);
   frame::SnapshotPtr make_snapshot() const;
   template <class Archive>
   void serialize(Archive& archive);
@@ -63,6 +67,7 @@ Simulation::Impl::Impl(const scene::Scene& s)
   measure_energies(start_report);
   measure(start_report);
   energy_bound.emplace(scene, start_report);
+  for (const std::string& text : find_jumps(scene, environment)) log::warn(text);
 }
 
 FrameReport Simulation::Impl::advance() {
@@ -84,7 +89,7 @@ FrameReport Simulation::Impl::advance() {
   }
   frame = report.frame;
   measure(report);
-  report_pinches(report);
+  report_obstructions(report);
   current = make_snapshot();
   return report;
 }
@@ -108,10 +113,13 @@ void Simulation::Impl::measure(FrameReport& report) const {
   report.min_distance = collisions->min_distance();
 }
 
-void Simulation::Impl::report_pinches(FrameReport& report) {
+void Simulation::Impl::report_obstructions(FrameReport& report) {
   const CollisionStage::Pinches pinches = steps.take_pinches();
   report.pinched_pairs = pinches.pairs;
   for (const std::string& text : pinches.begun) report.pinches.push_back(fmt::format("frame {}: {}", frame, text));
+  const YieldingPins::Lags lags = steps.take_lags();
+  report.lagging_particles = lags.particles;
+  for (const std::string& text : lags.turns) report.lags.push_back(fmt::format("frame {}: {}", frame, text));
 }
 
 frame::SnapshotPtr Simulation::Impl::make_snapshot() const {
@@ -162,9 +170,10 @@ bool Simulation::run_preroll(const std::function<bool()>& proceed) {
   FrameReport& report = impl_->start_report;
   while (impl_->frame < 0) {
     if (!proceed()) return false;
-    const std::vector<std::string> pinches = report.pinches;
+    const std::vector<std::string> pinches = report.pinches, lags = report.lags;
     report = impl_->advance();
     report.pinches.insert(report.pinches.begin(), pinches.begin(), pinches.end());
+    report.lags.insert(report.lags.begin(), lags.begin(), lags.end());
   }
   return true;
 }

@@ -34,7 +34,8 @@ struct PlanItem {
 /// whose memory is known from them alone. Throws Error(asset_unreadable, scene_invalid) where they cannot be used.
 std::vector<PlanItem> plan(const scene::Scene& scene);
 
-/// What may well end a run of this scene, a sentence each: `weft check` says it beforehand.
+/// What may well end a run of this scene or is hardly meant, a sentence each: `weft check` says it beforehand. Throws
+/// as Simulation's constructor does, for scenes with pins that move by keys.
 std::vector<std::string> doubts(const scene::Scene& scene);
 
 class Simulation {

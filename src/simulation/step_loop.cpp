@@ -23,6 +23,9 @@ constexpr int kHalvingsBeforePinch = 3;
 // the same.
 constexpr int kLookAfter = 3;
 
+// Times that a step is done with pins let go that the time before had to move; then they are moved.
+constexpr int kMostTries = 4;
+
 integrator::Method method_of(scene::Integrator integrator) {
   switch (integrator) {
     case scene::Integrator::implicit_euler:
@@ -71,11 +74,12 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
       start_(start),
       cloth_(scene, environment),
       problem_(cloth_),
-      pins_(scene, environment, first_particles(cloth_)),
+      pins_(scene, environment, first_particles(cloth_), cloth_.masses()),
       progress_{start_of(environment, start), integrator::Stepper(method_of(scene.time.integrator), newton_of(scene)),
                 step_control_of(scene)} {
   Moment& now = progress_.now;
-  pins_.held_at(start, environment, held_);
+  pins_.begin_step(start, 0, now.x);
+  held_ = pins_.held();
   cloth_.hold(held_);
   for (const integrator::HeldParticle& particle : held_) now.v[particle.constraint.particle] = particle.v_end;
   if (CollisionStage::needed(scene)) {
@@ -152,12 +156,31 @@ void StepLoop::fail(int frame, double t, double h, const std::string& reason) co
               frame, t, h, reason, progress_.control ? "tolerance" : "step");
 }
 
-// One step from now at time t [s] over h [s] into `next_`.
+// One step from now at time t [s] over h [s] into `next_`. Pins that something keeps from getting where they are to be
+// are let go, and the step is done again.
 StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last_try, FrameReport& report) {
+  for (int tries = 1;; ++tries) {
+    pins_.begin_step(t, h, progress_.now.x);
+    Rejection rejection = attempt_with(t, h, retries, last_try, tries == kMostTries, report);
+    if (!collisions_ || collisions_->gave_way().empty() || tries == kMostTries) return rejection;
+    if (!is_short_enough(retries, last_try) && !pins_.any_lags()) return rejection;
+    for (const collision::GivenWay& given : collisions_->gave_way())
+      pins_.let_go(given.particle, collisions_->describe(given, progress_.now));
+  }
+}
+
+// Whether a shorter step would find no room that this one does not.
+bool StepLoop::is_short_enough(int retries, bool last_try) const {
+  return last_try || (retries >= kHalvingsBeforePinch && collisions_->obstacles_creep(progress_.now, next_));
+}
+
+// The same with pins as they are.
+StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool last_try, bool may_give_way,
+                                           FrameReport& report) {
   using Start = integrator::Stepper::Start;
   const Moment& now = progress_.now;
-  pins_.held_at(t + h, environment_, held_);
-  problem_.begin_step(t + h - start_, held_);
+  held_ = pins_.held();
+  problem_.begin_step(t + h - start_, held_, pins_.pulls());
   if (!collisions_) return reason_of(solve(h, Start::unchanged_velocity, report));
   {
     const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
@@ -182,10 +205,8 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last
     const bool last = ++solves == response.most_solves();
     if (response.revise(now.x, next_.x, force_on) > 0 && !last) continue;
     if (collisions_->apart(now, next_)) return std::nullopt;
-    if (last || collisions_->adopt_failing(now, next_) == 0) {
-      const bool may_pinch = last_try || (retries >= kHalvingsBeforePinch && collisions_->obstacles_creep(now, next_));
-      return collisions_->push_apart(h, may_pinch, now, next_);
-    }
+    if (last || collisions_->adopt_failing(now, next_) == 0)
+      return collisions_->push_apart(h, is_short_enough(retries, last_try), may_give_way, now, next_);
     response.revise(now.x, next_.x, force_on);
   }
 }
@@ -213,6 +234,7 @@ StepLoop::Rejection StepLoop::reason_of(const integrator::StepReport& step) {
 // Makes `next_`, reached over h, the state.
 void StepLoop::accept(double h, FrameReport& report) {
   progress_.stepper.accept(progress_.now, h);
+  pins_.accept();
   if (collisions_) collisions_->response().accept();
   std::swap(progress_.now, next_);
   ++report.steps;
@@ -231,6 +253,7 @@ void StepLoop::serialize(Archive& archive) {
   progress_.stepper.serialize(archive, particles);
   if (progress_.control) progress_.control->serialize(archive);
   cloth_.serialize(archive);
+  pins_.serialize(archive);
 }
 
 template void StepLoop::serialize(ByteWriter&);

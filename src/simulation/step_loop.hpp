@@ -11,9 +11,9 @@
 #include "scene/scene.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
-#include "simulation/pins.hpp"
 #include "simulation/simulation.hpp"
 #include "simulation/step_problem.hpp"
+#include "simulation/yielding_pins.hpp"
 
 namespace weft::simulation {
 
@@ -51,6 +51,9 @@ class StepLoop {
     return collisions_ ? collisions_->take_pinches(next_) : CollisionStage::Pinches{};
   }
 
+  /// And which pins have lagged in it.
+  YieldingPins::Lags take_lags() { return pins_.take_lags(); }
+
   /// Two parts of what later frames depend on; of contacts at the time of a frame [s].
   template <class Archive>
   void serialize(Archive& archive);
@@ -70,6 +73,8 @@ class StepLoop {
     return collisions_ && collisions_->turns_too_far(t, h, progress_.now);
   }
   Rejection attempt(double t, double h, int retries, bool last_try, FrameReport& report);
+  Rejection attempt_with(double t, double h, int retries, bool last_try, bool may_give_way, FrameReport& report);
+  bool is_short_enough(int retries, bool last_try) const;
   integrator::StepReport solve(double h, integrator::Stepper::Start start, FrameReport& report);
   static Rejection reason_of(const integrator::StepReport& step);
   void accept(double h, FrameReport& report);
@@ -80,7 +85,7 @@ class StepLoop {
   double start_;  // of the simulation [s]
   ClothSystem cloth_;
   StepProblem problem_;
-  Pins pins_;
+  YieldingPins pins_;
   Progress progress_;
   Moment next_;                                // the end of the step at hand; once that is accepted, its start
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]

@@ -31,7 +31,8 @@ void StepProblem::forget() {
   memory_.x.assign(masses().size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));  // equals nothing
 }
 
-void StepProblem::begin_step(double t, std::span<const integrator::HeldParticle> pinned) {
+void StepProblem::begin_step(double t, std::span<const integrator::HeldParticle> pinned, std::span<const Pull> pulls) {
+  pulls_ = pulls;
   if (cloth_.sew(t)) forget();
   if (cloth_.hold(pinned)) {
     forget();
@@ -42,11 +43,13 @@ void StepProblem::begin_step(double t, std::span<const integrator::HeldParticle>
 
 void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force) {
   add_cloth_forces(at, force);
+  add_pulls(at, force);
   if (contacts_ != nullptr) contacts_->add_forces(at.x_end, memory_.contacts, force);
 }
 
 void StepProblem::linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
   add_cloth_forces(at, force);
+  add_pulls(at, force);
   if (contacts_ != nullptr) contacts_->add_linear_forces(at.x_end, memory_.contacts, force);
 }
 
@@ -58,11 +61,21 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   for (std::size_t c = 0; c < cloth_.cloths(); ++c)
     if (all || is_stale(c, at.x)) put_together(c, at, iteration);
   add_cloth_forces(at, force);
+  add_pulls(at, force);
   system.terms.clear();
   system.diagonal_terms.clear();
+  for (const Pull& pull : pulls_)
+    system.diagonal_terms.push_back(
+        {pull.particle, (at.end_rate * pull.stiffness + at.rate * pull.damping) * Mat3::Identity()});
   if (contacts_ == nullptr) return;
   contacts_->update(at.x_end, memory_.contacts);
   contacts_->linearise(at.x_end, at.end_rate, memory_.contacts, force, system);
+}
+
+void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const {
+  for (const Pull& pull : pulls_)
+    force[pull.particle] +=
+        pull.stiffness * (pull.x - at.x_end[pull.particle]) + pull.damping * (pull.v - at.v[pull.particle]);
 }
 
 void StepProblem::add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force) {

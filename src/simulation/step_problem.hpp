@@ -25,6 +25,14 @@ struct SolveMemory {
   std::vector<Vec3> force;   ///< what they were [N]
 };
 
+/// What draws a particle to a place.
+struct Pull {
+  Index particle;
+  Vec3 x, v;         ///< the place and its velocity at the end of the step [m], [m/s]
+  double stiffness;  ///< [N/m]
+  double damping;    ///< [N·s/m]
+};
+
 /// ClothSystem computes, ContactResponse too; here is what they are given of the past.
 class StepProblem final : public integrator::System {
  public:
@@ -35,8 +43,8 @@ class StepProblem final : public integrator::System {
   void use_contacts(const collision::ContactResponse* contacts) { contacts_ = contacts; }
 
   /// Before the first solve of a step that ends at time t [s] of the simulation, with what pins hold until then: sews
-  /// cloth on to there, and friction goes by the loads at the start.
-  void begin_step(double t, std::span<const integrator::HeldParticle> pinned);
+  /// cloth on to there, and friction goes by the loads at the start. `pulls` must outlive the step.
+  void begin_step(double t, std::span<const integrator::HeldParticle> pinned, std::span<const Pull> pulls = {});
 
   /// Makes the next linearisation put the matrix together anew: what is computed from here on depends on positions and
   /// velocities alone.
@@ -52,6 +60,7 @@ class StepProblem final : public integrator::System {
   solver::LinearSystem& linear_system() override { return memory_.system; }
 
  private:
+  void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
   void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
   bool is_known(std::size_t cloth, const integrator::StagePoint& at) const;
   void evaluate(std::size_t cloth, const integrator::StagePoint& at, solver::BlockMatrix* matrix,
@@ -62,6 +71,7 @@ class StepProblem final : public integrator::System {
 
   ClothSystem& cloth_;
   const collision::ContactResponse* contacts_ = nullptr;
+  std::span<const Pull> pulls_;
   SolveMemory memory_;
 };
 

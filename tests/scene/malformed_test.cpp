@@ -92,6 +92,10 @@ const std::vector<Malformed> kMalformed = {
     {"StepBesideTolerance", kFloor + "[time]\nstep = 0.01\ntolerance = 1e-4\n",
      "s.toml:3:8: time.step: expected either step or tolerance, got both\n"
      "s.toml:4:13: time.tolerance: expected either tolerance or step, got both\n"},
+    {"OffsetBesidePosition",
+     "[[cloth]]\nname = 'a'\n[[cloth.pin]]\nkeys = [{ time = 0, offset = [0, 0, 1], position = [0, 0, 1] }]\n",
+     "s.toml:4:30: cloth.a.pin.0.keys.0.offset: expected either offset or position, got both\n"
+     "s.toml:4:52: cloth.a.pin.0.keys.0.position: expected either position or offset, got both\n"},
     {"FollowBesideKeys", kFloor + "[[cloth]]\nname = 'a'\n[[cloth.pin]]\nfollow = 'floor'\nkeys = [{ time = 0 }]\n",
      "s.toml:5:10: cloth.a.pin.0.follow: expected either follow or keys, got both\n"},
 

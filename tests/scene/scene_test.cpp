@@ -167,10 +167,15 @@ TEST_F(EveryKey, OfAPinFillsItsMember) {
   EXPECT_EQ(following.release, 1.5);
   EXPECT_TRUE(following.motion.keys.empty());
 
-  const PoseTrack& motion = scene_.cloths[0].pins[1].motion;
+  const PinTrack& motion = scene_.cloths[0].pins[1].motion;
   EXPECT_EQ(motion.interpolation, Interpolation::linear);
-  ASSERT_EQ(motion.keys.size(), 3u);
+  EXPECT_EQ(following.strength, std::nullopt);
+  EXPECT_EQ(scene_.cloths[0].pins[1].strength, 30);
+  ASSERT_EQ(motion.keys.size(), 4u);
   EXPECT_EQ(motion.keys[0].time, 0.5);
+  EXPECT_FALSE(motion.keys[2].in_world);
+  EXPECT_TRUE(motion.keys[3].in_world);
+  EXPECT_EQ(motion.keys[3].pose.position, Vec3(4, 5, 6));
   EXPECT_EQ(motion.keys[0].pose.position, Vec3(0, 0, 1));
   EXPECT_EQ(motion.keys[2].pose.position, Vec3(0, 0, 1)) << "a key holds what the one before has";
   EXPECT_EQ(motion.keys[1].pose.rotation.coeffs(), Quat(1, 0, 0, 0).coeffs());
@@ -213,7 +218,7 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
   EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
   EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
-  EXPECT_EQ(scene_.obstacles[7].line, 147) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].line, 148) << "where the scene names its file";
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 

@@ -90,7 +90,7 @@ TEST_F(CollisionStages, GiveParticlesTheVelocityOfTheirPush) {
   }
   const Moment solved = next_;
   ASSERT_FALSE(stage_->apart(now_, next_));
-  ASSERT_EQ(stage_->push_apart(0.01, false, now_, next_), std::nullopt);
+  ASSERT_EQ(stage_->push_apart(0.01, false, true, now_, next_), std::nullopt);
   EXPECT_TRUE(stage_->apart(now_, next_));
   double largest = 0;
   for (std::size_t i = 0; i < 25; ++i) {

@@ -169,6 +169,30 @@ TEST(SavedStates, OfPinchedClothKnowWhereItCameFromAndWhatWasSaid) {
   EXPECT_GT(pinched.pinched_pairs, 0);
 }
 
+// A sheet that is moved into a box by its upper edge: from frame 4 to 13 the pin lags.
+constexpr const char* kLaggingPin = R"(
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [9, 9]
+position = [0, 0, 0.6]
+rotation = [90, 0, 0]
+[[cloth.pin]]
+low = [0, 1]
+interpolation = "linear"
+keys = [{ time = 0 }, { time = 0.2, offset = [0, 0.3, 0] }, { time = 0.3 }, { time = 0.45, offset = [0, 0, 0] }]
+[[obstacle]]
+name = "box"
+shape = "box"
+size = [0.6, 0.4, 0.6]
+position = [0, 0.35, 0.6]
+)";
+
+TEST(SavedStates, OfAPinThatLagsKnowThatItDoes) {
+  const Continued lagging = continue_runs(support::scene_of_text(kLaggingPin), {16, {3, 5, 9, 14}});
+  EXPECT_EQ(lagging.difference, "");
+}
+
 TEST(SavedStates, OfAPrerollKeepWhatItsFramesHaveSaid) {
   scene::Scene scene = support::scene_of_text(kJaws, {"time.preroll=0.6"});
   for (scene::Obstacle& jaw : scene.obstacles)

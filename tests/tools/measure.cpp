@@ -30,6 +30,8 @@ void print(const MeasuredFrame& frame) {
               report.newton_iterations, report.linear_iterations, report.constraints, frame.pairs, frame.max_stretch,
               frame.rms_speed, frame.largest_speed, report.kinetic_energy, report.min_distance, frame.between.c_str(),
               frame.max_stretch > 1.1 ? frame.stretched_at.c_str() : "");
+  for (const auto* texts : {&report.pinches, &report.lags})
+    for (const std::string& text : *texts) std::printf("      %s\n", text.c_str());
   std::fflush(stdout);
 }
 
@@ -48,7 +50,7 @@ double median_after_contact_ms(const std::vector<MeasuredFrame>& frames) {
 void print_summary(const std::vector<MeasuredFrame>& frames) {
   double simulate = 0, collide = 0, stretch = 0;
   std::size_t pairs = 0, worst = 0;
-  int rejected = 0, with_pairs = 0, pinched = 0;
+  int rejected = 0, with_pairs = 0, pinched = 0, lagging = 0;
   for (const MeasuredFrame& frame : frames) {
     simulate += frame.report.simulate_cpu_s;
     collide += frame.report.collide_cpu_s;
@@ -58,13 +60,15 @@ void print_summary(const std::vector<MeasuredFrame>& frames) {
     worst = std::max(worst, frame.pairs);
     rejected += frame.report.rejected_steps;
     pinched = std::max(pinched, frame.report.pinched_pairs);
+    lagging += frame.report.lagging_particles > 0;
   }
   const double steps = static_cast<double>(frames.size()) - 1;
   std::printf(
       "%zu frames: %.1f CPU ms a frame (median after first contact %.1f), of it collisions %.1f; %d rejected steps; "
-      "stretch %.4f; %zu pairs in %d frames, at most %zu; %d pinched at most\n",
+      "stretch %.4f; %zu pairs in %d frames, at most %zu; %d pinched at most; pins lag in "
+      "%d frames\n",
       frames.size(), 1e3 * simulate / steps, median_after_contact_ms(frames), 1e3 * collide / steps, rejected, stretch,
-      pairs, with_pairs, worst, pinched);
+      pairs, with_pairs, worst, pinched, lagging);
   for (const auto& x : frames.back().cloths) {
     double mean = 0, lowest = x.front().z(), highest = lowest;
     for (const weft::Vec3& p : x) {

@@ -58,8 +58,8 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
     const double a = n.dot(step.x_t1[pair.a[k]]), b = n.dot(step.x_t1[pair.b[k]]);
     lowest_a = std::min(lowest_a, a);
     highest_b = std::max(highest_b, b);
-    if (!step.movable[pair.a[k]]) high = std::min(high, a - 0.5 * target);
-    if (!step.movable[pair.b[k]]) low = std::max(low, b + 0.5 * target);
+    if (step.movable[pair.a[k]] != kFree) high = std::min(high, a - 0.5 * target);
+    if (step.movable[pair.b[k]] != kFree) low = std::max(low, b + 0.5 * target);
   }
   if (low > high) return false;
   const double plane = std::clamp(0.5 * (lowest_a + highest_b), low, high);
@@ -67,7 +67,7 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const auto push = [&](const Triangle& corners, double sign) {
     for (Index v : corners) {
       const double missing = sign * plane + 0.5 * target - sign * n.dot(step.x_t1[v]);
-      if (missing <= 0 || !step.movable[v]) continue;
+      if (missing <= 0 || step.movable[v] != kFree) continue;
       step.x_t1[v] += sign * missing * n;
       step.report.largest_push = std::max(step.report.largest_push, missing);
     }
@@ -75,6 +75,20 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   push(pair.a, 1);
   push(pair.b, -1);
   return true;
+}
+
+// Lets go of the pins in a pair; false if there are none.
+bool Separation::give_way(const CornerPair& pair, Step& step) {
+  bool changed = false;
+  for (const Triangle& corners : {pair.a, pair.b}) {
+    for (Index v : corners) {
+      if (step.movable[v] != kPinned) continue;
+      step.movable[v] = kFree;
+      step.report.gave_way.push_back({v, pair});
+      changed = true;
+    }
+  }
+  return changed;
 }
 
 // Where a vertex is backtracked to.
@@ -88,7 +102,7 @@ bool Separation::choose_homes(const CornerPair& pair, const Step& step) {
   if (step.carried == nullptr) return false;
   bool changed = false;
   const auto choose = [&](Index v, int ride) {
-    if (!step.movable[v] || rides_[v] == ride) return;
+    if (step.movable[v] != kFree || rides_[v] == ride) return;
     rides_[v] = ride;
     changed = true;
   };
@@ -104,8 +118,8 @@ bool Separation::choose_homes(const CornerPair& pair, const Step& step) {
   bool differ = false;
   for (const Triangle& corners : {pair.a, pair.b}) {
     for (Index v : corners) {
-      if (step.movable[v] && rides_[v] == kAtStart) continue;
-      const int of_vertex = step.movable[v] ? rides_[v] : kAtStartForGood;
+      if (step.movable[v] == kFree && rides_[v] == kAtStart) continue;
+      const int of_vertex = step.movable[v] == kFree ? rides_[v] : kAtStartForGood;
       differ |= ride != kAtStart && ride != of_vertex;
       ride = of_vertex;
     }
@@ -129,7 +143,7 @@ bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step)
   for (const Triangle& corners : {pair.a, pair.b}) {
     for (Index v : corners) {
       const Vec3& to = home(v, step);
-      if (!step.movable[v] || step.x_t1[v] == to) continue;
+      if (step.movable[v] != kFree || step.x_t1[v] == to) continue;
       changed = true;
       if (backtracked_in_[v] == round_) continue;
       step.report.largest_push = std::max(step.report.largest_push, share * (to - step.x_t1[v]).norm());
@@ -144,7 +158,7 @@ bool Separation::backtrack_all(Step& step) const {
   bool moved = false;
   for (std::size_t v = 0; v < step.x_t0.size(); ++v) {
     const Vec3& to = home(static_cast<Index>(v), step);
-    if (!step.movable[v] || step.x_t1[v] == to) continue;
+    if (step.movable[v] != kFree || step.x_t1[v] == to) continue;
     step.x_t1[v] = to;
     moved = true;
   }
@@ -171,7 +185,7 @@ void Separation::look_again(const Step& step) {
 SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                      std::span<const std::uint8_t> movable, PinchedPairs* pinched,
                                      const CarriedStarts* carried, bool goes_on) {
-  Step step{x_t0, x_t1, movable, pinched, carried};
+  Step step{x_t0, x_t1, {movable.begin(), movable.end()}, pinched, carried};
   backtracked_in_.assign(x_t0.size(), 0);
   if (!goes_on) rides_.assign(x_t0.size(), kAtStart);
   look_again(step);
@@ -183,8 +197,9 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
       if (round_ <= kPushRounds && !rides(pair)) {
         if (find_certificate(pair, step.start_of(pair), x_t1)) continue;  // an earlier push of this round was enough
         if (push_apart(pair, step) && (changed = true)) continue;
+        if (give_way(pair, step) && (changed = true) && push_apart(pair, step)) continue;
       }
-      if (backtrack(pair, last, step)) {
+      if (backtrack(pair, last, step) || (last && !stays(pair, step) && give_way(pair, step))) {
         changed = true;
       } else if (last && pinched != nullptr && pinched->may_hold(pair) && !stays(pair, step)) {
         pinched->add(pair);

@@ -15,11 +15,22 @@
 
 namespace weft::collision {
 
+/// What `movable` says of a vertex: obstacles never move, particles do, and those that pins hold give way only where
+/// nothing else can.
+enum Movable : std::uint8_t { kFixed = 0, kFree = 1, kPinned = 2 };
+
+/// A pinned particle that gave way, and what it would have met.
+struct GivenWay {
+  Index particle;
+  CornerPair pair;
+};
+
 struct SeparationReport {
-  bool separated = false;   ///< every pair has a certificate
-  int corrected_pairs = 0;  ///< pairs that needed a correction
-  double largest_push = 0;  ///< [m]
-  CornerPair stuck{};       ///< a pair that could not be separated, where not `separated`
+  bool separated = false;          ///< every pair has a certificate
+  int corrected_pairs = 0;         ///< pairs that needed a correction
+  double largest_push = 0;         ///< [m]
+  std::vector<GivenWay> gave_way;  ///< pinned particles that could not be kept where they are held
+  CornerPair stuck{};              ///< a pair that could not be separated, where not `separated`
 };
 
 /// Keeps triangles apart over the linear motion from x_t0 to x_t1 by moving separating planes (see `separates`): those
@@ -55,7 +66,7 @@ class Separation {
                                            const PinchedPairs* pinched = nullptr,
                                            const CarriedStarts* carried = nullptr);
 
-  /// Changes x_t1 of vertices with `movable` 1 (free particles), until every pair has a certificate. Where that fails,
+  /// Changes x_t1 of what is movable until every pair has a certificate. Where that fails,
   /// pairs of cloth and obstacle are added to `pinched`, if given. `goes_on`: with what the last call found to be
   /// carried, over other pairs.
   SeparationReport enforce(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
@@ -73,13 +84,14 @@ class Separation {
   struct Step {
     std::span<const Vec3> x_t0;
     std::span<Vec3> x_t1;
-    std::span<const std::uint8_t> movable;
+    std::vector<std::uint8_t> movable;
     PinchedPairs* pinched;
     const CarriedStarts* carried;
     SeparationReport report = {};
     std::span<const Vec3> start_of(const CornerPair& pair) const { return carried ? carried->of(pair, x_t0) : x_t0; }
   };
   bool push_apart(const CornerPair& pair, Step& step) const;
+  bool give_way(const CornerPair& pair, Step& step);
   bool choose_homes(const CornerPair& pair, const Step& step);
   const Vec3& home(Index v, const Step& step) const;
   bool rides(const CornerPair& pair) const;

@@ -1,0 +1,23 @@
+// What a scene's pins are about to do that its author may not mean.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "environment/environment.hpp"
+#include "scene/scene.hpp"
+
+namespace weft::simulation {
+
+/// A sentence for each pin moved by keys that jumps at the start, or moves too fast for cloth to follow:
+/// "cloth.a.pin.0:
+/// ...". For all others nothing is computed.
+std::vector<std::string> find_jumps(const scene::Scene& scene, const environment::Environment& environment);
+
+/// Likewise for each obstacle that such a pin enters, with the first time.
+std::vector<std::string> find_entries(const scene::Scene& scene, const environment::Environment& environment);
+
+/// Whether there is such a pin.
+bool has_moving_pins(const scene::Scene& scene);
+
+}  // namespace weft::simulation

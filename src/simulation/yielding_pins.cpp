@@ -1,0 +1,147 @@
+#include "simulation/yielding_pins.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "core/archive.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Distance from its place at which a particle that lags is held again [m]: what a push of the separation restores, and
+// too little to see.
+constexpr double kArrived = 1e-4;
+// Speed beside that of its place at which a particle that lags returns [m/s]: over 0.4 m within ten frames, and no
+// whip.
+constexpr double kReturnSpeed = 1;
+// Least speed of that kind that forces are divided by [m/s].
+constexpr double kSlowest = 1e-3;
+// Steps in which it would return from nearby.
+constexpr double kReturnSteps = 2;
+// Most force on a particle that lags: as much as accelerates it by this [m/s²], which contacts withstand at half their
+// range for steps of 10 ms (they are 100 m/h² stiff) ...
+constexpr double kAcceleration = 2000;
+// ... or what bears this many times the weight of the cloth on all particles of the pin, if that is more.
+constexpr double kLoad = 3;
+
+}  // namespace
+
+YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environment& environment,
+                           const std::vector<Index>& first_particle, std::span<const double> masses)
+    : pins_(scene, environment, first_particle),
+      environment_(environment),
+      masses_(masses),
+      lagged_(masses.size(), 0),
+      lags_(masses.size(), 0),
+      forced_(masses.size(), 0) {
+  for (std::size_t pin = 0; pin < pins_.size(); ++pin) {
+    const Pins::About& about = pins_.about(pin);
+    const auto begin = static_cast<std::size_t>(first_particle[about.cloth]);
+    const std::size_t count = environment.cloths[about.cloth].start.size();
+    double weight = 0;
+    for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * scene.physics.gravity.norm();
+    most_force_.push_back(kLoad * weight / static_cast<double>(about.particles));
+  }
+}
+
+void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
+  if (t != begun_t_ || h != begun_h_) {
+    std::ranges::fill(forced_, std::uint8_t{0});
+    obstructions_.clear();
+  }
+  begun_t_ = t;
+  begun_h_ = h;
+  pins_.held_at(t + h, environment_, targets_);
+  const bool any_lagged = std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; });
+  if (any_lagged) pins_.held_at(t, environment_, at_start_);
+  std::ranges::fill(lags_, std::uint8_t{0});
+  // Those that have arrived are held again; what is let go by then is not in `targets_`.
+  if (any_lagged)
+    for (const integrator::HeldParticle& start : at_start_) {
+      const auto i = static_cast<std::size_t>(start.constraint.particle);
+      lags_[i] = lagged_[i] != 0 && (x[i] - start.x_end).norm() > kArrived;
+    }
+  held_.clear();
+  pulls_.clear();
+  any_lags_ = false;
+  for (const integrator::HeldParticle& target : targets_) {
+    const auto i = static_cast<std::size_t>(target.constraint.particle);
+    lags_[i] |= forced_[i];
+    any_lags_ |= lags_[i] != 0;
+    if (lags_[i] != 0 || pins_.about(pins_.of(target.constraint.particle)).strength)
+      pull(target, h, x);
+    else
+      held_.push_back(target);
+  }
+}
+
+// A damped spring; or for what lags a force that is its most at no speed and nothing at the speed that it is to have: a
+// load slows it down, but does not keep it from arriving.
+void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x) {
+  const Index particle = target.constraint.particle;
+  const auto i = static_cast<std::size_t>(particle);
+  const std::size_t pin = pins_.of(particle);
+  if (const auto& strength = pins_.about(pin).strength) {
+    pulls_.push_back({particle, target.x_end, target.v_end, *strength, 2 * std::sqrt(*strength * masses_[i])});
+    return;
+  }
+  Vec3 speed = (target.x_end - h * target.v_end - x[i]) / (kReturnSteps * h);
+  if (const double size = speed.norm(); size > kReturnSpeed) speed *= kReturnSpeed / size;
+  speed += target.v_end;
+  const double most = std::max(most_force_[pin], kAcceleration * masses_[i]);
+  pulls_.push_back({particle, x[i], speed, 0, most / std::max(kSlowest, speed.norm())});
+}
+
+void YieldingPins::let_go(Index particle, const std::string& obstruction) {
+  forced_[static_cast<std::size_t>(particle)] = 1;
+  obstructions_.emplace(pins_.of(particle), obstruction);
+}
+
+void YieldingPins::accept() {
+  int count = 0;
+  for (const integrator::HeldParticle& target : targets_) {
+    const Index particle = target.constraint.particle;
+    if (lags_[static_cast<std::size_t>(particle)] == 0) continue;
+    ++count;
+    const std::size_t pin = pins_.of(particle);
+    if (!lagging_.insert(pin).second || lagging_before_.contains(pin)) continue;
+    const Pins::About& about = pins_.about(pin);
+    seen_.turns.push_back(fmt::format("pin {} of '{}' gives way to {}", about.number,
+                                      environment_.cloths[about.cloth].name, obstructions_[pin]));
+  }
+  seen_.particles = std::max(seen_.particles, count);
+  std::swap(lagged_, lags_);
+  std::ranges::fill(forced_, std::uint8_t{0});
+  obstructions_.clear();
+}
+
+YieldingPins::Lags YieldingPins::take_lags() {
+  for (std::size_t pin : lagging_before_) {
+    if (lagging_.contains(pin)) continue;
+    const Pins::About& about = pins_.about(pin);
+    seen_.turns.push_back(
+        fmt::format("pin {} of '{}' is held again", about.number, environment_.cloths[about.cloth].name));
+  }
+  lagging_before_ = std::move(lagging_);
+  lagging_.clear();
+  return std::exchange(seen_, {});
+}
+
+template <class Archive>
+void YieldingPins::serialize(Archive& archive) {
+  if (pins_.empty()) return;
+  for (std::uint8_t& lags : lagged_) archive.value(lags);
+  std::vector<std::uint64_t> before(lagging_before_.begin(), lagging_before_.end());
+  serialize_plain(archive, before);
+  if constexpr (Archive::kReads)
+    require(std::ranges::all_of(before, [&](std::uint64_t pin) { return pin < pins_.size(); }), "pins of the scene");
+  lagging_before_ = {before.begin(), before.end()};
+}
+
+template void YieldingPins::serialize(ByteWriter&);
+template void YieldingPins::serialize(ByteReader&);
+
+}  // namespace weft::simulation

@@ -1,0 +1,114 @@
+// Pins that something keeps from getting where they are to be, soft pins, and what is said of pins beforehand.
+#include "simulation/yielding_pins.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "support/scene_runs.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// A sheet hangs by its upper edge, which goes where `pin` says.
+std::string hanging(double duration, const std::string& pin, const std::string& more) {
+  return "[time]\nduration = " + std::to_string(duration) +
+         "\n[[cloth]]\nname = 'sheet'\nsize = [0.4, 0.4]\nparticles = [13, 13]\nposition = [0, 0, 0.6]\n"
+         "rotation = [90, 0, 0]\n[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, 1]\ninterpolation = 'linear'\n" +
+         pin + "\n" + more;
+}
+
+const std::string kIntoTheFloor = hanging(
+    1.6,
+    "keys = [{ time = 0 }, { time = 0.4, offset = [0, 0, -0.9] }, { time = 0.6 }, { time = 1.1, offset = [0, 0, 0] }]",
+    "[[obstacle]]\nname = 'floor'\nshape = 'plane'\n");
+const std::string kIntoABox = hanging(
+    1.5,
+    "keys = [{ time = 0 }, { time = 0.3, offset = [0, 0.4, 0] }, { time = 0.5 }, { time = 0.8, offset = [0, 0, 0] }]",
+    "[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.6, 0.4, 0.6]\nposition = [0, 0.4, 0.6]\n");
+const std::string kBeforeARam = hanging(
+    1.5, "",
+    "[[obstacle]]\nname = 'ram'\nshape = 'box'\nsize = [0.6, 0.3, 0.6]\ninterpolation = 'linear'\nkeys = [{ time = 0, "
+    "position = [0, 0.3, 0.6] }, { time = 0.4, position = [0, 0, 0.6] }, { time = 0.6 }, { time = 0.9, position = [0, "
+    "0.4, "
+    "0.6] }]\n");
+
+struct Obstructed {
+  const char* name;
+  std::string scene;
+};
+
+class ObstructedPin : public ::testing::TestWithParam<Obstructed> {};
+
+TEST_P(ObstructedPin, LagsBehindAndReturns) {
+  for (const char* response : {"springs", "velocity_constraints"}) {
+    const scene::Scene scene =
+        support::scene_of_text(GetParam().scene, {std::string("contact.response='") + response + "'"});
+    const auto frames = support::run_scene(scene, {.keep_positions = true});
+    std::vector<std::string> said;
+    int lagging = 0;
+    for (const support::MeasuredFrame& frame : frames) {
+      EXPECT_EQ(frame.pairs, 0u) << response << ", frame " << frame.report.frame;
+      EXPECT_EQ(frame.report.pinched_pairs, 0);
+      EXPECT_LT(frame.max_stretch, 1.25) << response << ", frame " << frame.report.frame;
+      lagging += frame.report.lagging_particles > 0;
+      said.insert(said.end(), frame.report.lags.begin(), frame.report.lags.end());
+    }
+    EXPECT_GT(lagging, 4) << response;
+    ASSERT_GE(said.size(), 2u) << response;
+    EXPECT_NE(said.front().find("pin 0 of 'sheet' gives way to '"), std::string::npos) << said.front();
+    EXPECT_NE(said.back().find("pin 0 of 'sheet' is held again"), std::string::npos) << said.back();
+    // The upper edge is the last row; it is held where it started, exactly.
+    const auto &first = frames.front().cloths[0], &last = frames.back().cloths[0];
+    for (std::size_t i = first.size() - 13; i < first.size(); ++i) EXPECT_LT((last[i] - first[i]).norm(), 1e-12);
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(By, ObstructedPin,
+                         ::testing::Values(Obstructed{"floor", kIntoTheFloor}, Obstructed{"box", kIntoABox},
+                                           Obstructed{"ram", kBeforeARam}),
+                         [](const auto& obstructed) { return std::string(obstructed.param.name); });
+
+TEST(SoftPin, GivesUnderTheWeightByItsStrength) {
+  const scene::Scene scene = support::scene_of_text(hanging(3, "strength = 5", ""));
+  Simulation simulation(scene);
+  for (int k = 1; k < scene.frame_count(); ++k) simulation.advance();
+  const ParticleState state = simulation.state();
+  double weight = 0, sag = 0;
+  for (const double mass : state.masses) weight += 9.81 * mass;
+  for (std::size_t i = state.positions.size() - 13; i < state.positions.size(); ++i)
+    sag += (0.8 - state.positions[i].z()) / 13;
+  // What is left of the swing after 3 s is below a hundredth of the sag.
+  EXPECT_NEAR(sag, weight / (13 * 5), 0.02 * weight / (13 * 5));
+}
+
+TEST(PinKeys, OffsetAndPositionAreTwoWaysToSayOneThing) {
+  const auto end_of = [](const std::string& keys) {
+    const auto frames = support::run_scene(support::scene_of_text(hanging(0.4, keys, "")));
+    return frames.back().cloths[0];
+  };
+  const auto by_offset = end_of("keys = [{ time = 0 }, { time = 0.3, offset = [0, 0.1, 0.05] }]");
+  const auto by_position = end_of("keys = [{ time = 0 }, { time = 0.3, position = [0, 0.1, 0.85] }]");
+  // The same up to the rounding of a sum.
+  for (std::size_t i = 0; i < by_offset.size(); ++i) EXPECT_LT((by_offset[i] - by_position[i]).norm(), 1e-6);
+}
+
+TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
+  const auto of = [](const std::string& text) { return doubts(support::scene_of_text(text)); };
+  const auto entries = of(kIntoTheFloor);
+  ASSERT_EQ(entries.size(), 1u);
+  EXPECT_EQ(entries[0].rfind("cloth.sheet.pin.0: enters 'floor' at 0.36 s", 0), 0u) << entries[0];
+  EXPECT_EQ(of(kIntoABox).size(), 1u);
+  EXPECT_TRUE(of(kBeforeARam).empty()) << "of pins that keys do not move nothing is computed";
+  const auto jump = of(hanging(0.4, "keys = [{ time = 0, position = [0, 0, 0] }]", ""));
+  ASSERT_EQ(jump.size(), 1u);
+  EXPECT_NE(jump[0].find("keys begin 0.8 m away"), std::string::npos) << jump[0];
+  const auto rush = of(hanging(0.4, "keys = [{ time = 0 }, { time = 0.2 }, { time = 0.201, offset = [0, 1, 0] }]", ""));
+  ASSERT_EQ(rush.size(), 1u);
+  EXPECT_NE(rush[0].find("moves at 1e+03 m/s"), std::string::npos) << rush[0];
+}
+
+}  // namespace
+}  // namespace weft::simulation
