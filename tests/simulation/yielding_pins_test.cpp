@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -40,6 +40,10 @@ struct Obstructed {
   std::string scene;
 };
 
+std::ostream& operator<<(std::ostream& out, const Obstructed& obstructed) {
+  return out << obstructed.name;
+}
+
 class ObstructedPin : public ::testing::TestWithParam<Obstructed> {};
 
 TEST_P(ObstructedPin, LagsBehindAndReturns) {
@@ -52,7 +56,8 @@ TEST_P(ObstructedPin, LagsBehindAndReturns) {
     for (const support::MeasuredFrame& frame : frames) {
       EXPECT_EQ(frame.pairs, 0u) << response << ", frame " << frame.report.frame;
       EXPECT_EQ(frame.report.pinched_pairs, 0);
-      EXPECT_LT(frame.max_stretch, 1.25) << response << ", frame " << frame.report.frame;
+      // 1.30 where the sheet is crushed on the floor at 2 m/s; a pin that does not give way tears it to 30.
+      EXPECT_LT(frame.max_stretch, 1.5) << response << ", frame " << frame.report.frame;
       lagging += frame.report.lagging_particles > 0;
       said.insert(said.end(), frame.report.lags.begin(), frame.report.lags.end());
     }
