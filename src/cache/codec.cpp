@@ -129,15 +129,17 @@ void serialize(Archive& archive, frame::Light& light) {
 // Its frame and time are those of the snapshot.
 template <class Archive>
 void serialize(Archive& archive, frame::FrameReport& report) {
-  for (double* number : {&report.simulate_wall_s, &report.simulate_cpu_s, &report.collide_wall_s, &report.collide_cpu_s,
-                         &report.error_estimate, &report.solver_error, &report.min_distance, &report.max_strain,
-                         &report.kinetic_energy, &report.potential_energy, &report.elastic_energy})
+  for (double* number :
+       {&report.simulate_wall_s, &report.simulate_cpu_s, &report.collide_wall_s, &report.collide_cpu_s,
+        &report.error_estimate, &report.solver_error, &report.min_distance, &report.max_strain, &report.stretch_share,
+        &report.kinetic_energy, &report.potential_energy, &report.elastic_energy})
     archive.value(*number);
   for (int* number : {&report.steps, &report.rejected_steps, &report.inexact_steps, &report.newton_iterations,
-                      &report.linear_iterations, &report.proximities, &report.constraints, &report.pinched_pairs})
+                      &report.linear_iterations, &report.proximities, &report.constraints, &report.pinched_pairs,
+                      &report.lagging_particles})
     archive.value(*number);
   serialize_each(
-      archive, report.pinches, [&](std::string& text) { serialize_plain(archive, text); }, sizeof(std::size_t));
+      archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); }, sizeof(std::size_t));
 }
 
 // What is shared and what a frame has of its own, but for the points of its surfaces.

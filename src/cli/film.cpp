@@ -59,8 +59,7 @@ class Film {
         MadeFrame made = source->next();  // simulated, or read
         if (parts_.look) parts_.look(made);
         if (parts_.store) parts_.store->keep(made);  // so that it is not simulated again
-        for (const auto* texts : {&made.report.pinches, &made.report.lags})
-          for (const std::string& text : *texts) log::warn(text);
+        for (const std::string& warning : made.report.warnings) log::warn(warning);
         record(frame).report = std::move(made.report);
         if (++made_so_far_ == 1) first_frame_ = source->first_frame();
         progress_.advance(Stage::simulate);

@@ -113,6 +113,7 @@ Json frame_json(const FrameRecord& record) {
           {"constraints", report.constraints},
           {"min_distance_m", finite(report.min_distance)},
           {"max_strain", finite(report.max_strain)},
+          {"stretch_share", finite(report.stretch_share)},
           {"kinetic_energy_j", finite(report.kinetic_energy)},
           {"elastic_energy_j", finite(report.elastic_energy)},
           {"pinched_pairs", report.pinched_pairs},

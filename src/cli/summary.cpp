@@ -133,6 +133,17 @@ std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
         "threads were stretched or squeezed by up to {:.0f} %: a stiffer material or a smaller time.step may be needed",
         100 * strain));
   }
+  if (const auto torn =
+          std::ranges::count_if(frames, [](const FrameRecord& r) { return r.report.stretch_share > 1.1; });
+      torn > 0) {
+    warnings.push_back(
+        fmt::format("cloth was stretched beyond its max_stretch in {} of {} frames, by up to {:.1f} times of it: pins "
+                    "farther apart "
+                    "than it is long, or something too fast for time.step",
+                    torn, frames.size(), std::ranges::max(frames, {}, [](const FrameRecord& r) {
+                                           return r.report.stretch_share;
+                                         }).report.stretch_share));
+  }
   if (steps.rejected > steps.accepted / 4) {
     warnings.push_back(fmt::format("{} of {} steps were rejected: a smaller time.step would be faster", steps.rejected,
                                    steps.accepted + steps.rejected));

@@ -19,6 +19,13 @@ namespace weft::forces {
 /// lie.
 class TriangleMembrane final : public Membrane {
  public:
+  /// A triangle; s_u and s_v are linear in its corners.
+  struct Element {
+    std::array<Index, 3> particles;
+    std::array<Vec2, 3> gradients;  // s_u = Σ gradients[k].x() x_k, s_v likewise [1/m]
+    double area;                    // [m²]
+  };
+
   TriangleMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
                    const ShearParameters& shear);
 
@@ -29,15 +36,11 @@ class TriangleMembrane final : public Membrane {
   /// Of a sewn sheet: the rest shape of each triangle, at share 0 that of its start, which then has no stress, at 1
   /// that of the pattern. Between, the stretch U of the start, in weft and warp, shrinks to (1 − share) U + share 1.
   void rest_between_start_and_pattern(double share);
+  std::span<const Element> elements() const { return elements_; }
   double max_strain(std::span<const Vec3> x) const override;
   void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
 
  private:
-  struct Element {
-    std::array<Index, 3> particles;
-    std::array<Vec2, 3> gradients;  // s_u = Σ gradients[k].x() x_k, s_v likewise [1/m]
-    double area;                    // [m²]
-  };
   /// Derivatives along weft and warp, of positions or of velocities.
   struct Gradient {
     Vec3 u, v;

@@ -24,16 +24,15 @@ struct FrameReport {
   int proximities = 0;          ///< pairs of features within 1.5 contact ranges at the start of the last step
   int constraints = 0;          ///< contacts and pins that acted in the last step
   double min_distance = 0;      ///< least distance of two surfaces then [m]; infinite if none is within that
-  double max_strain = 0;        ///< largest |length / rest length - 1| of a weft or warp edge
+  double max_strain = 0;        ///< largest |length / rest length - 1| of a weft or warp edge, of all its steps
+  double stretch_share = 0;     ///< largest extension as a share of material.max_stretch, of all its steps
   double kinetic_energy = 0;    ///< [J]
   double potential_energy = 0;  ///< of gravity, zero at the origin [J]
   double elastic_energy = 0;    ///< stretch, shear and bending [J]
   int pinched_pairs = 0;        ///< most triangles of cloth at once that have no room and are in an obstacle
   int lagging_particles = 0;    ///< most at once that something kept from where a pin was to hold them
-  std::vector<std::string>
-      lags;  ///< pins that begin or end to lag: "frame 37: pin 0 of 'sheet' gives way to 'box' near (x, y, z) m"
-  std::vector<std::string>
-      pinches;  ///< those that begin: "frame 37: 'sheet' has no room between ..., near (x, y, z) m"
+  /// Of what begins or ends: "frame 37: 'sheet' has no room between ..., near (x, y, z) m".
+  std::vector<std::string> warnings;
 };
 
 struct ObjectInfo {

@@ -24,6 +24,13 @@ const Table& material_rules() {
           .number("bend", &Material::bend, within(0, 1e6), "N·m",
                   "bending rigidity (B); 0: nothing resists bending, whatever its viscosity and friction")
           .by_default(of_fabric)
+          .number("max_stretch", &Material::max_stretch, within(0, 10), "",
+                  "extension at which threads lock, 0.1 for 10 %: from 0.7 of it on they grow stiff, beyond it hardly "
+                  "anything stretches them further; 0: no limit")
+          .by_default(of_fabric)
+          .number("max_shear", &Material::max_shear, within(0, 80), "degrees",
+                  "angle off square at which weft and warp lock, likewise; 0: no limit")
+          .by_default(of_fabric)
           .number("stretch_viscosity", &Material::stretch_viscosity, within(0, 1e9), "N·s/m",
                   "stress per rate of stretch")
           .by_default(of_fabric)

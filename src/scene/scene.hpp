@@ -92,6 +92,8 @@ struct Material {
   double stretch_warp = 1000;     ///< k2 [N/m]
   double shear = 100;             ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
   double bend = 5e-5;             ///< B [N·m]
+  double max_stretch = 0;         ///< extension at which threads lock; 0: never
+  double max_shear = 0;           ///< angle off square at which they lock [degrees]; 0: never
   double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
   double shear_viscosity = 0;     ///< [N·s/m]
   double bend_viscosity = 5e-6;   ///< [N·m·s]

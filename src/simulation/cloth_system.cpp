@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "core/archive.hpp"
 #include "forces/air.hpp"
 #include "forces/bend.hpp"
 #include "forces/shear.hpp"
 #include "forces/stretch.hpp"
+#include "forces/stretch_limit.hpp"
 #include "forces/triangle_bend.hpp"
 #include "mesh/geometry.hpp"
 #include "simulation/pins.hpp"
@@ -34,6 +36,14 @@ forces::BendParameters bend_of(const scene::Material& m) {
 }
 forces::AirParameters air_of(const scene::Material& m, const scene::Physics& physics) {
   return {physics.air_density, physics.wind, m.drag};
+}
+
+// Sine of the angle at which weft and warp lock; infinite: never.
+double largest_sine(const scene::Material& m) {
+  return m.max_shear > 0 ? std::sin(m.max_shear * std::numbers::pi / 180) : std::numeric_limits<double>::infinity();
+}
+double largest_extension(const scene::Material& m) {
+  return m.max_stretch > 0 ? m.max_stretch : std::numeric_limits<double>::infinity();
 }
 
 /// A cell of a lattice across the rest shape, along its normal first and along weft last.
@@ -65,6 +75,10 @@ double ease(double s) {
 
 bool bends(const scene::Material& material) {
   return material.bend > 0;
+}
+
+bool locks(const scene::Material& material) {
+  return material.max_stretch > 0 || material.max_shear > 0;
 }
 
 ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environment& environment)
@@ -126,9 +140,17 @@ void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, con
   forces_[cloth].push_back(std::move(stretch));
   if (material.shear > 0 || material.shear_viscosity > 0)
     forces_[cloth].push_back(std::make_unique<forces::Shear>(grid, first, shear_of(material)));
+  if (locks(material))
+    add_limit(cloth,
+              std::make_unique<forces::StretchLimit>(grid, first, largest_extension(material), largest_sine(material)));
   if (bends(material)) forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
   if (meets_air(material, physics))
     forces_[cloth].push_back(std::make_unique<forces::Air>(grid, first, air_of(material, physics)));
+}
+
+void ClothSystem::add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit) {
+  if (!std::isinf(limit->limit())) limits_.emplace_back(cloth, limit.get());
+  forces_[cloth].push_back(std::move(limit));
 }
 
 void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of,
@@ -137,7 +159,12 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
   const Index first = first_[cloth];
   auto membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
   membranes_.push_back(membrane.get());
-  if (sheet.sewn) sewing_.push_back({cloth, of.sewing, -1, membrane.get(), nullptr});
+  if (sheet.sewn) sewing_.push_back({cloth, of.sewing, -1, membrane.get(), nullptr, nullptr});
+  if (locks(material)) {
+    auto limit = std::make_unique<forces::StretchLimit>(*membrane, largest_extension(material), largest_sine(material));
+    if (sheet.sewn) sewing_.back().limit = limit.get();
+    add_limit(cloth, std::move(limit));
+  }
   forces_[cloth].push_back(std::move(membrane));
   if (!sheet.bands.empty()) {
     auto bands = std::make_unique<forces::Bands>(sheet, first, 0.5 * (material.stretch_weft + material.stretch_warp));
@@ -175,6 +202,7 @@ void ClothSystem::cut_groups(const environment::Environment& environment) {
 void ClothSystem::Sewing::use_share(double new_share) {
   share = new_share;
   membrane->rest_between_start_and_pattern(share);
+  if (limit != nullptr) limit->follow(*membrane);
   if (bands != nullptr) bands->rest_between_start_and_pattern(share);
 }
 
@@ -255,6 +283,16 @@ double ClothSystem::max_strain(std::span<const Vec3> x) const {
   double largest = 0;
   for (const forces::Membrane* membrane : membranes_) largest = std::max(largest, membrane->max_strain(x));
   return largest;
+}
+
+ClothSystem::Overstretch ClothSystem::overstretch(std::span<const Vec3> x) const {
+  Overstretch most;
+  for (const auto& [cloth, limit] : limits_) {
+    const forces::StretchLimit::Worst worst = limit->worst(x);
+    if (const double share = worst.extension / limit->limit(); share > most.share)
+      most = {share, cloth, worst.extension, worst.place};
+  }
+  return most;
 }
 
 std::vector<float> ClothSystem::strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const {

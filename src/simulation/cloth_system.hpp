@@ -14,11 +14,18 @@
 #include "scene/scene.hpp"
 #include "solver/linear_system.hpp"
 
+namespace weft::forces {
+class StretchLimit;
+}  // namespace weft::forces
+
 namespace weft::simulation {
 
 /// Whether cloth of this material has bending at all. Without rigidity there is nothing that the viscosity and the
 /// friction of a fabric could damp.
 bool bends(const scene::Material& material);
+
+/// Whether the threads of this material lock.
+bool locks(const scene::Material& material);
 
 /// Particles are numbered through all cloths, in the order of the scene. Nothing here changes but the rest shape of
 /// cloth that is being sewn and what pins hold: the same arguments give the same forces.
@@ -61,6 +68,14 @@ class ClothSystem {
   /// Of gravity, zero at the origin [J].
   double potential_energy(std::span<const Vec3> x, const Vec3& gravity) const;
   double max_strain(std::span<const Vec3> x) const;
+  /// Where threads are stretched most, as a share of what their cloth allows.
+  struct Overstretch {
+    double share = 0;       ///< of the limit; 0 where no cloth has one
+    std::size_t cloth = 0;  ///< by its number
+    double extension = 0;   ///< length / rest length − 1
+    Vec3 place = Vec3::Zero();
+  };
+  Overstretch overstretch(std::span<const Vec3> x) const;
   /// Largest strain of the edges at each particle of one cloth.
   std::vector<float> strain_per_particle(std::size_t cloth, std::span<const Vec3> x) const;
 
@@ -69,20 +84,23 @@ class ClothSystem {
                        const scene::Physics& physics);
   void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of,
                            const scene::Physics& physics);
+  void add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit);
   solver::BlockMatrix lay_out_matrix() const;
   void cut_groups(const environment::Environment& environment);
 
   std::vector<Index> first_;  // per cloth, and the total at the end
   std::vector<double> masses_;
-  std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;  // per cloth
-  std::vector<const forces::Membrane*> membranes_;                   // of them, one per cloth
+  std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;          // per cloth
+  std::vector<const forces::Membrane*> membranes_;                           // of them, one per cloth
+  std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // likewise, of cloths that have one
   /// A cloth while it is sewn.
   struct Sewing {
     std::size_t cloth;
     double duration;    // [s]
     double share = -1;  // of the way to the pattern
     forces::TriangleMembrane* membrane;
-    forces::Bands* bands;  // nullptr where it has none
+    forces::Bands* bands;         // nullptr where it has none
+    forces::StretchLimit* limit;  // likewise
 
     void use_share(double new_share);
   };

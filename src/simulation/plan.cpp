@@ -38,6 +38,9 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
       "force: shear", scene, [](const Cloth& c) { return c.material.shear > 0 || c.material.shear_viscosity > 0; },
       "shear and shear_viscosity are zero"));
   items.push_back(of_cloths(
+      "force: limit to stretch", scene, [](const Cloth& c) { return locks(c.material); },
+      "max_stretch and max_shear are zero"));
+  items.push_back(of_cloths(
       "force: bending", scene, [](const Cloth& c) { return bends(c.material); }, "bend is zero"));
   items.push_back(of_cloths(
       "force: viscosity", scene,

@@ -26,11 +26,10 @@ template <class Archive>
 void serialize(Archive& archive, FrameReport& report) {
   serialize_values(archive, report.frame, report.time, report.steps, report.rejected_steps, report.inexact_steps,
                    report.error_estimate, report.solver_error, report.newton_iterations, report.linear_iterations,
-                   report.proximities, report.constraints, report.min_distance, report.max_strain,
+                   report.proximities, report.constraints, report.min_distance, report.max_strain, report.stretch_share,
                    report.kinetic_energy, report.potential_energy, report.elastic_energy, report.pinched_pairs,
                    report.lagging_particles);
-  for (std::vector<std::string>* texts : {&report.pinches, &report.lags})
-    serialize_each(archive, *texts, [&](std::string& text) { serialize_plain(archive, text); });
+  serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
 }  // namespace
@@ -65,6 +64,7 @@ Simulation::Impl::Impl(const scene::Scene& s)
       snapshots(scene, environment) {
   current = make_snapshot();
   measure_energies(start_report);
+  start_report.max_strain = steps.cloth().max_strain(steps.progress().now.particles());
   measure(start_report);
   energy_bound.emplace(scene, start_report);
   for (const std::string& text : find_jumps(scene, environment)) log::warn(text);
@@ -103,7 +103,6 @@ void Simulation::Impl::measure_energies(FrameReport& report) const {
 
 void Simulation::Impl::measure(FrameReport& report) const {
   const Moment& now = steps.progress().now;
-  report.max_strain = steps.cloth().max_strain(now.particles());
   report.constraints = static_cast<int>(steps.held());
   report.min_distance = std::numeric_limits<double>::infinity();
   const CollisionStage* collisions = steps.collisions();
@@ -116,10 +115,10 @@ void Simulation::Impl::measure(FrameReport& report) const {
 void Simulation::Impl::report_obstructions(FrameReport& report) {
   const CollisionStage::Pinches pinches = steps.take_pinches();
   report.pinched_pairs = pinches.pairs;
-  for (const std::string& text : pinches.begun) report.pinches.push_back(fmt::format("frame {}: {}", frame, text));
+  for (const std::string& text : pinches.begun) report.warnings.push_back(fmt::format("frame {}: {}", frame, text));
   const YieldingPins::Lags lags = steps.take_lags();
   report.lagging_particles = lags.particles;
-  for (const std::string& text : lags.turns) report.lags.push_back(fmt::format("frame {}: {}", frame, text));
+  for (const std::string& text : lags.turns) report.warnings.push_back(fmt::format("frame {}: {}", frame, text));
 }
 
 frame::SnapshotPtr Simulation::Impl::make_snapshot() const {
@@ -170,10 +169,9 @@ bool Simulation::run_preroll(const std::function<bool()>& proceed) {
   FrameReport& report = impl_->start_report;
   while (impl_->frame < 0) {
     if (!proceed()) return false;
-    const std::vector<std::string> pinches = report.pinches, lags = report.lags;
+    const std::vector<std::string> before = report.warnings;
     report = impl_->advance();
-    report.pinches.insert(report.pinches.begin(), pinches.begin(), pinches.end());
-    report.lags.insert(report.lags.begin(), lags.begin(), lags.end());
+    report.warnings.insert(report.warnings.begin(), before.begin(), before.end());
   }
   return true;
 }

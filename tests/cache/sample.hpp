@@ -100,7 +100,9 @@ struct Sample {
     report.min_distance = std::numeric_limits<double>::infinity();
     report.elastic_energy = 1.0 / 3;
     report.pinched_pairs = 2;
-    report.pinches = {"frame 3: 'sheet' has no room", ""};
+    report.stretch_share = 1.25;
+    report.lagging_particles = 5;
+    report.warnings = {"frame 3: 'sheet' has no room", ""};
     return report;
   }
 

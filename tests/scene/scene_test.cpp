@@ -99,6 +99,8 @@ TEST_F(EveryKey, OfAClothFillsItsMember) {
   EXPECT_EQ(m.stretch_warp, 1200);
   EXPECT_EQ(m.shear, 130);
   EXPECT_EQ(m.bend, 1.4e-5);
+  EXPECT_EQ(m.max_stretch, 0.077);
+  EXPECT_EQ(m.max_shear, 37);
   EXPECT_EQ(m.stretch_viscosity, 0.15);
   EXPECT_EQ(m.shear_viscosity, 0.16);
   EXPECT_EQ(m.bend_viscosity, 1.7e-6);
@@ -218,7 +220,7 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
   EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
   EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
-  EXPECT_EQ(scene_.obstacles[7].line, 148) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].line, 150) << "where the scene names its file";
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 

@@ -235,7 +235,7 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
       EXPECT_EQ(judgement.pairs.size(), 0u) << "frame " << k;
     }
     pinched += report.pinched_pairs > 0 ? 1 : 0;
-    pinches.insert(pinches.end(), report.pinches.begin(), report.pinches.end());
+    pinches.insert(pinches.end(), report.warnings.begin(), report.warnings.end());
   }
   EXPECT_GT(pinched, 0);
   ASSERT_FALSE(pinches.empty());
@@ -337,7 +337,7 @@ class PinchBetweenParts : public support::TestFolder {
     std::vector<std::string> pinches;
     for (int k = 1; k < scene.frame_count(); ++k) {
       const FrameReport report = simulation.advance();
-      pinches.insert(pinches.end(), report.pinches.begin(), report.pinches.end());
+      pinches.insert(pinches.end(), report.warnings.begin(), report.warnings.end());
     }
     return pinches;
   }

@@ -30,8 +30,7 @@ void print(const MeasuredFrame& frame) {
               report.newton_iterations, report.linear_iterations, report.constraints, frame.pairs, frame.max_stretch,
               frame.rms_speed, frame.largest_speed, report.kinetic_energy, report.min_distance, frame.between.c_str(),
               frame.max_stretch > 1.1 ? frame.stretched_at.c_str() : "");
-  for (const auto* texts : {&report.pinches, &report.lags})
-    for (const std::string& text : *texts) std::printf("      %s\n", text.c_str());
+  for (const std::string& text : report.warnings) std::printf("      %s\n", text.c_str());
   std::fflush(stdout);
 }
 

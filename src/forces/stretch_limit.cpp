@@ -1,0 +1,155 @@
+#include "forces/stretch_limit.hpp"
+
+#include <cmath>
+
+namespace weft::forces {
+
+StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, double stretch, double shear)
+    : stretch_(stretch), shear_(shear) {
+  const bool limited = !std::isinf(stretch);
+  const auto add_thread = [&](Index i, Index j, double length, double width) {
+    threads_.push_back({2, {first + i, first + j}, {-1 / length, 1 / length}, width * length});
+  };
+  for (int j = 0; j < grid.nv; ++j)
+    for (int i = 0; i < grid.nu; ++i) {
+      const Index here = grid.index(i, j);
+      const bool weft = i + 1 < grid.nu, warp = j + 1 < grid.nv;
+      if (weft && limited) add_thread(here, grid.index(i + 1, j), grid.du(i), grid.width_v(j));
+      if (warp && limited) add_thread(here, grid.index(i, j + 1), grid.dv(j), grid.width_u(i));
+      if (!weft || !warp || std::isinf(shear)) continue;
+      const double u = 0.5 / grid.du(i), v = 0.5 / grid.dv(j);
+      const Corners corners{first + here, first + grid.index(i + 1, j), first + grid.index(i, j + 1),
+                            first + grid.index(i + 1, j + 1)};
+      crossings_.push_back({4, corners, {-u, u, -u, u}, {-v, -v, v, v}, grid.du(i) * grid.dv(j)});
+    }
+}
+
+StretchLimit::StretchLimit(const TriangleMembrane& membrane, double stretch, double shear)
+    : stretch_(stretch), shear_(shear) {
+  follow(membrane);
+}
+
+void StretchLimit::follow(const TriangleMembrane& membrane) {
+  threads_.clear(), crossings_.clear();
+  for (const TriangleMembrane::Element& element : membrane.elements()) {
+    const auto& [a, b, c] = element.particles;
+    const auto& g = element.gradients;
+    const Corners corners{a, b, c};
+    const Weights weft{g[0].x(), g[1].x(), g[2].x()}, warp{g[0].y(), g[1].y(), g[2].y()};
+    if (!std::isinf(stretch_)) {
+      threads_.push_back({3, corners, weft, element.area});
+      threads_.push_back({3, corners, warp, element.area});
+    }
+    if (!std::isinf(shear_)) crossings_.push_back({3, corners, weft, warp, element.area});
+  }
+}
+
+void StretchLimit::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+  const auto couple_all = [&](const auto& pieces) {
+    for (const auto& piece : pieces)
+      for (std::size_t a = 0; a < piece.corners; ++a)
+        for (std::size_t b = a + 1; b < piece.corners; ++b) pairs.emplace_back(piece.particles[a], piece.particles[b]);
+  };
+  couple_all(threads_);
+  couple_all(crossings_);
+}
+
+void StretchLimit::attach(const solver::BlockMatrix& matrix) {
+  const auto attach_all = [&](const auto& pieces, std::vector<Slots>& slots) {
+    slots.resize(pieces.size());
+    for (std::size_t p = 0; p < pieces.size(); ++p)
+      for (std::size_t a = 0; a < pieces[p].corners; ++a)
+        for (std::size_t b = 0; b < pieces[p].corners; ++b)
+          slots[p][kMost * a + b] = matrix.slot(pieces[p].particles[a], pieces[p].particles[b]);
+  };
+  attach_all(threads_, thread_slots_);
+  attach_all(crossings_, crossing_slots_);
+}
+
+template <class Piece>
+Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::span<const Vec3> x) {
+  Vec3 s = Vec3::Zero();
+  for (std::size_t k = 0; k < piece.corners; ++k) s += weights[k] * x[piece.particles[k]];
+  return s;
+}
+
+void StretchLimit::add(const Evaluation& at) const {
+  // Of nearly all pieces the squared length tells that they are below the onset.
+  const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
+  for (std::size_t t = 0; t < threads_.size(); ++t)
+    if (const Vec3 s = derivative(threads_[t], threads_[t].along, at.x); s.squaredNorm() > onset_sq) add_lock(t, s, at);
+  const double shear_onset = Lock(shear_).onset();
+  for (std::size_t c = 0; c < crossings_.size(); ++c) {
+    const Crossing& crossing = crossings_[c];
+    const Vec3 s_u = derivative(crossing, crossing.weft, at.x), s_v = derivative(crossing, crossing.warp, at.x);
+    if (std::abs(s_u.dot(s_v)) > shear_onset) add_lock(c, s_u, s_v, at);
+  }
+}
+
+// A thread pulls, so that the derivative is definite as it is.
+void StretchLimit::add_lock(std::size_t thread, const Vec3& s, const Evaluation& at) const {
+  const Thread& piece = threads_[thread];
+  const Lock lock(stretch_);
+  const double length = s.norm(), stress = piece.area * lock.stress(length - 1);
+  const Vec3 n = s / length;
+  for (std::size_t k = 0; k < piece.corners; ++k) at.force[piece.particles[k]] -= stress * piece.along[k] * n;
+  if (at.matrix == nullptr) return;
+  const double lateral = stress / length, axial = piece.area * lock.stiffness(length - 1);
+  const Mat3 stiffness = (axial - lateral) * n * n.transpose() + lateral * Mat3::Identity();
+  for (std::size_t a = 0; a < piece.corners; ++a)
+    for (std::size_t b = 0; b < piece.corners; ++b)
+      at.matrix->add(thread_slots_[thread][kMost * a + b], piece.along[a] * piece.along[b], stiffness);
+}
+
+// As Shear: exactly, or of the second derivative the half whose sign agrees with the stress.
+void StretchLimit::add_lock(std::size_t crossing, const Vec3& s_u, const Vec3& s_v, const Evaluation& at) const {
+  const Crossing& piece = crossings_[crossing];
+  const Lock lock(shear_);
+  const double sine = s_u.dot(s_v), sign = sine < 0 ? -1 : 1;
+  const double stress = piece.area * lock.stress(std::abs(sine)),
+               stiffness = piece.area * lock.stiffness(std::abs(sine));
+  std::array<Vec3, kMost> gradient;  // ∂|c|/∂x_k
+  for (std::size_t k = 0; k < piece.corners; ++k) {
+    gradient[k] = sign * (piece.weft[k] * s_v + piece.warp[k] * s_u);
+    at.force[piece.particles[k]] -= stress * gradient[k];
+  }
+  if (at.matrix == nullptr) return;
+  const auto second = [&](std::size_t a, std::size_t b) {
+    if (at.linearisation == Linearisation::exact)
+      return sign * (piece.weft[a] * piece.warp[b] + piece.warp[a] * piece.weft[b]);
+    return 0.5 * (piece.weft[a] + sign * piece.warp[a]) * (piece.weft[b] + sign * piece.warp[b]);
+  };
+  for (std::size_t a = 0; a < piece.corners; ++a)
+    for (std::size_t b = 0; b < piece.corners; ++b)
+      at.matrix->add(crossing_slots_[crossing][kMost * a + b],
+                     stiffness * gradient[a] * gradient[b].transpose() + stress * second(a, b) * Mat3::Identity());
+}
+
+double StretchLimit::energy(std::span<const Vec3> x) const {
+  double sum = 0;
+  const Lock stretch(stretch_), shear(shear_);
+  for (const Thread& thread : threads_)
+    sum += thread.area * stretch.energy(derivative(thread, thread.along, x).norm() - 1);
+  for (const Crossing& c : crossings_)
+    sum += c.area * shear.energy(std::abs(derivative(c, c.weft, x).dot(derivative(c, c.warp, x))));
+  return sum;
+}
+
+StretchLimit::Worst StretchLimit::worst(std::span<const Vec3> x) const {
+  const Thread* longest = nullptr;
+  double length_sq = 1;
+  for (const Thread& thread : threads_) {
+    const double of_thread = derivative(thread, thread.along, x).squaredNorm();
+    if (of_thread <= length_sq) continue;
+    length_sq = of_thread;
+    longest = &thread;
+  }
+  Worst worst;
+  if (longest == nullptr) return worst;
+  worst.extension = std::sqrt(length_sq) - 1;
+  for (std::size_t k = 0; k < longest->corners; ++k)
+    worst.place += x[longest->particles[k]] / static_cast<double>(longest->corners);
+  return worst;
+}
+
+}  // namespace weft::forces

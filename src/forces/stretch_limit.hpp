@@ -1,0 +1,105 @@
+// Where woven threads lock: a limit to stretch and to shear.
+#pragma once
+
+#include <algorithm>
+#include <array>
+
+#include "forces/force.hpp"
+#include "forces/triangle_membrane.hpp"
+
+namespace weft::forces {
+
+/// Stress against a strain e that comes near its limit, and its integral and derivative:
+///
+///     σ = 0                                 e ≤ onset = kOnset limit
+///     σ = kTension u³,                      u = (e − onset) / (limit − onset)
+///     σ = kTension (1 + 3 (u − 1))          u ≥ 1
+///
+/// Twice differentiable as an energy, convex, and straight beyond the limit, so that Newton's method comes back from
+/// any strain in a few steps.
+class Lock {
+ public:
+  /// Share of the limit from which threads begin to lock. Below it nothing is added, to the bit.
+  static constexpr double kOnset = 0.7;
+  /// Stress at the limit [N/m]: as much as strong woven cloth bears before it tears. A ball at 100 m/s pulls by
+  /// ρ v² / (2 √e), 3,500 to 9,000 N/m in the fabrics of [scene] (a transverse wave along a thread of strain e; Smith,
+  /// McCrackin & Schiefer, "Stress-Strain Relationships in Yarns Subjected to Rapid Impact Loading", 1958).
+  static constexpr double kTension = 2e4;
+
+  explicit Lock(double limit) : onset_(kOnset * limit), span_(limit - onset_) {}
+
+  double onset() const { return onset_; }
+  double stress(double e) const {
+    const double u = (e - onset_) / span_;
+    return u <= 0 ? 0 : u < 1 ? kTension * u * u * u : kTension * (3 * u - 2);
+  }
+  double stiffness(double e) const {
+    const double u = std::clamp((e - onset_) / span_, 0.0, 1.0);
+    return 3 * kTension / span_ * u * u;
+  }
+  double energy(double e) const {
+    const double u = (e - onset_) / span_;
+    return kTension * span_ * (u <= 0 ? 0 : u < 1 ? 0.25 * u * u * u * u : 0.25 + (1.5 * u - 2) * u + 0.5);
+  }
+
+ private:
+  double onset_, span_;
+};
+
+/// The energy A ∫ Lock of each piece of weft and warp, by its extension ‖s‖ − 1, and of each cell or triangle by its
+/// shear |⟨s_u, s_v⟩|, the sine of the angle by which weft and warp are off square. Pieces, cells and their derivatives
+/// s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
+class StretchLimit final : public Force {
+ public:
+  /// `stretch`: largest extension; `shear`: largest sine, infinite: none.
+  StretchLimit(const mesh::Grid& grid, Index first, double stretch, double shear);
+  StretchLimit(const TriangleMembrane& membrane, double stretch, double shear);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::BlockMatrix& matrix) override;
+  void add(const Evaluation& at) const override;
+  double energy(std::span<const Vec3> x) const override;
+
+  /// Takes over the rest shape of the membrane that it was made for.
+  void follow(const TriangleMembrane& membrane);
+
+  /// What is stretched most.
+  struct Worst {
+    double extension = 0;       ///< ‖s‖ − 1
+    Vec3 place = Vec3::Zero();  ///< [m]
+  };
+  Worst worst(std::span<const Vec3> x) const;
+  double limit() const { return stretch_; }
+
+ private:
+  static constexpr std::size_t kMost = 4;
+  using Corners = std::array<Index, kMost>;
+  using Weights = std::array<double, kMost>;  // of the corners, in a derivative [1/m]
+  /// A piece of a thread, s = Σ along[k] x_k over the corners that it has.
+  struct Thread {
+    std::size_t corners;
+    Corners particles;
+    Weights along;
+    double area;  // that it stands for [m²]
+  };
+  /// Where threads cross, s_u = Σ weft[k] x_k and s_v = Σ warp[k] x_k.
+  struct Crossing {
+    std::size_t corners;
+    Corners particles;
+    Weights weft, warp;
+    double area;  // [m²]
+  };
+  using Slots = std::array<solver::Slot, kMost * kMost>;  // row-major over pairs of corners
+
+  template <class Piece>
+  static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const Vec3> x);
+  void add_lock(std::size_t thread, const Vec3& s, const Evaluation& at) const;
+  void add_lock(std::size_t crossing, const Vec3& s_u, const Vec3& s_v, const Evaluation& at) const;
+
+  double stretch_, shear_;
+  std::vector<Thread> threads_;
+  std::vector<Crossing> crossings_;  // none without a limit to shear
+  std::vector<Slots> thread_slots_, crossing_slots_;
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,100 @@
+// Where woven threads lock.
+#include "forces/stretch_limit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "forces/sheets.hpp"
+
+namespace weft::forces {
+namespace {
+
+using testing::kGrid;
+using testing::Positions;
+
+constexpr double kLimit = 0.1;
+const double kSine = std::sin(0.5);
+constexpr double kNone = std::numeric_limits<double>::infinity();
+const double kWidth = (kGrid.nu - 1) * kGrid.lu, kHeight = (kGrid.nv - 1) * kGrid.lv;
+
+// Threads along weft and warp of these lengths, the warp off square by an angle of this sine.
+Positions drawn(double weft, double warp, double sine = 0) {
+  const double cosine = std::sqrt(1 - sine * sine);
+  return testing::shaped(kGrid,
+                         [=](double u, double v) { return Vec3(weft * u + sine * warp * v, cosine * warp * v, 0); });
+}
+
+// Of quads and of triangles.
+std::vector<std::unique_ptr<StretchLimit>> both(double stretch, double shear) {
+  std::vector<std::unique_ptr<StretchLimit>> limits;
+  limits.push_back(std::make_unique<StretchLimit>(kGrid, 0, stretch, shear));
+  const mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
+  limits.push_back(std::make_unique<StretchLimit>(TriangleMembrane(sheet, 0, {}, {}), stretch, shear));
+  return limits;
+}
+
+// Midpoint rule; the law is smooth but for its third derivative.
+double integral(const Lock& lock, double to) {
+  constexpr int kPieces = 10000;
+  double sum = 0;
+  for (int i = 0; i < kPieces; ++i) sum += lock.stress((i + 0.5) * to / kPieces) * to / kPieces;
+  return sum;
+}
+
+TEST(Lock, HasAStressThatIsTheDerivativeOfItsEnergyAndAStiffnessWithoutAJump) {
+  const Lock lock(kLimit);
+  for (double strain : {0.02, 0.08, 0.1, 0.13, 0.5})
+    EXPECT_NEAR(lock.energy(strain), integral(lock, strain), 1e-6 * lock.energy(strain)) << strain;
+  constexpr double kStep = 1e-7;
+  for (double strain : {0.075, 0.09, 0.12}) {
+    const double slope = (lock.stress(strain + kStep) - lock.stress(strain - kStep)) / (2 * kStep);
+    EXPECT_NEAR(lock.stiffness(strain), slope, 1e-5 * slope) << strain;
+  }
+  for (double strain : {lock.onset(), kLimit}) {
+    EXPECT_NEAR(lock.stress(strain - 1e-12), lock.stress(strain + 1e-12), 1e-5);
+    EXPECT_NEAR(lock.stiffness(strain - 1e-12), lock.stiffness(strain + 1e-12), 1e-9 * lock.stiffness(kLimit));
+  }
+  EXPECT_EQ(lock.stress(kLimit), Lock::kTension);
+}
+
+TEST(StretchLimit, IsNothingBelowItsOnsetToTheBit) {
+  const double below = 1 + Lock::kOnset * kLimit * (1 - 1e-9),
+               square = Lock::kOnset * kSine / (below * below) * (1 - 1e-9);
+  for (const auto& limit : both(kLimit, kSine))
+    for (const Positions& x : {drawn(below, 0.3), drawn(0.3, below), drawn(below, below, square)}) {
+      for (const Vec3& f : testing::force_of(*limit, x, testing::zeros(x))) EXPECT_EQ(f, Vec3::Zero());
+      EXPECT_EQ(limit->energy(x), 0);
+      EXPECT_TRUE(testing::stiffness_of(*limit, x, testing::zeros(x), 100, Linearisation::definite).isZero(0));
+    }
+}
+
+TEST(StretchLimit, OfUniformStrainHasTheEnergyOfTheContinuumOnQuadsAndTriangles) {
+  const double area = kWidth * kHeight, extension = 0.093;
+  const Lock stretch(kLimit), shear(kSine);
+  for (const auto& limit : both(kLimit, kSine)) {
+    EXPECT_NEAR(limit->energy(drawn(1 + extension, 1)), area * stretch.energy(extension),
+                1e-10 * area * Lock::kTension);
+    EXPECT_NEAR(limit->energy(drawn(1, 1 + extension)), area * stretch.energy(extension),
+                1e-10 * area * Lock::kTension);
+    EXPECT_NEAR(limit->energy(drawn(1, 1, -0.45)), area * shear.energy(0.45), 1e-10 * area * Lock::kTension);
+  }
+}
+
+TEST(StretchLimit, OfShearAloneOrOfStretchAloneLeavesTheOther) {
+  for (const auto& limit : both(kLimit, kNone)) EXPECT_EQ(limit->energy(drawn(1, 1, 0.9)), 0);
+  for (const auto& limit : both(kNone, kSine)) EXPECT_EQ(limit->energy(drawn(1.5, 1.5)), 0);
+}
+
+TEST(StretchLimit, TellsTheLongestThreadAndWhereItIs) {
+  for (const auto& limit : both(kLimit, kNone)) {
+    Positions x = drawn(1, 0.9);
+    EXPECT_EQ(limit->worst(drawn(0.9, 0.9)).extension, 0);
+    x[kGrid.index(4, 3)].x() += 0.02 * kGrid.lu;
+    EXPECT_NEAR(limit->worst(x).extension, 0.02, 1e-12);
+    EXPECT_LT((limit->worst(x).place - x[kGrid.index(4, 3)]).norm(), kGrid.lu);
+  }
+}
+
+}  // namespace
+}  // namespace weft::forces

@@ -1,0 +1,103 @@
+// Cloth whose threads lock: what pulls at it, and what is said where nothing holds.
+#include <gtest/gtest.h>
+
+#include "simulation/saved_state.hpp"
+#include "simulation/scenes.hpp"
+#include "simulation/simulation.hpp"
+#include "support/scene_runs.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// A sheet that hangs from its upper border; a ball as wide as a third of it comes at 4 m/s, halfway up.
+constexpr const char* kImpact = R"(
+[time]
+duration = 0.24
+step = 0.002
+[[cloth]]
+name = "sheet"
+size = [0.6, 0.6]
+particles = [17, 17]
+position = [0, 0, 2]
+rotation = [90, 0, 0]
+pin = [{ low = [0, 1], high = [1, 1] }]
+material = { max_stretch = 0.05, max_shear = 45 }
+[[obstacle]]
+name = "ball"
+shape = "sphere"
+radius = 0.1
+keys = [{ time = 0, position = [0, -0.2, 2] }, { time = 0.12, position = [0, 0.28, 2] }]
+)";
+
+// Its lower border is drawn down to one and a half times its length, slowly.
+constexpr const char* kTornApart = R"(
+[time]
+duration = 0.8
+[contact]
+self = false
+[[cloth]]
+name = "banner"
+size = [0.2, 0.4]
+particles = [5, 9]
+position = [0, 0, 2]
+rotation = [90, 0, 0]
+material = { max_stretch = 0.1 }
+[[cloth.pin]]
+low = [0, 1]
+high = [1, 1]
+[[cloth.pin]]
+low = [0, 0]
+high = [1, 0]
+keys = [{ time = 0, position = [0, 0, 0] }, { time = 0.8, position = [0, 0, -0.2] }]
+)";
+
+double largest_share(const scene::Scene& scene, std::vector<std::string>& said) {
+  Simulation simulation(scene);
+  double share = 0;
+  for (int k = 1; k < scene.frame_count(); ++k) {
+    const FrameReport report = simulation.advance();
+    share = std::max(share, report.stretch_share);
+    said.insert(said.end(), report.warnings.begin(), report.warnings.end());
+  }
+  return share;
+}
+
+TEST(StretchLimitInAScene, IsKeptWhereABallStrikesAHangingSheet) {
+  std::vector<std::string> said;
+  EXPECT_LT(largest_share(support::scene_of_text(kImpact), said), 1.1);
+  EXPECT_TRUE(said.empty());
+  // Where the limit is far away the same sheet is stretched by 10.8 %.
+  EXPECT_GT(9 * largest_share(support::scene_of_text(kImpact, {"cloth.sheet.material.max_stretch=9"}), said), 0.09);
+}
+
+TEST(StretchLimitInAScene, GoesOnFromASavedState) {
+  const testing::Continued continued = testing::continue_runs(support::scene_of_text(kImpact), {6, {0, 1, 2, 4}});
+  EXPECT_EQ(continued.difference, "");
+}
+
+TEST(StretchLimitInAScene, TellsOnceWhereItCannotBeKept) {
+  std::vector<std::string> said;
+  EXPECT_GT(largest_share(support::scene_of_text(kTornApart), said), 4);
+  ASSERT_EQ(said.size(), 1U);
+  EXPECT_NE(said[0].find("'banner' is stretched by "), std::string::npos) << said[0];
+  EXPECT_NE(said[0].find("max_stretch 0.1"), std::string::npos) << said[0];
+}
+
+TEST(StretchLimitInAScene, ChangesNothingBelowItsOnset) {
+  scene::Scene with = testing::sheet_alone(0.5, 9, 1);
+  scene::Pin pin;
+  pin.low = {0, 1}, pin.high = {1, 1};
+  with.cloths[0].pins = {pin};
+  scene::Scene without = with;
+  with.cloths[0].material.max_stretch = 0.1, with.cloths[0].material.max_shear = 45;
+  Simulation a(with), b(without);
+  for (int k = 0; k < 5; ++k) {
+    const FrameReport of_a = a.advance(), of_b = b.advance();
+    EXPECT_EQ(of_b.stretch_share, 0);
+    ASSERT_LT(of_a.stretch_share, 0.6);
+    EXPECT_EQ(testing::sheet_of(a.snapshot()), testing::sheet_of(b.snapshot()));
+  }
+}
+
+}  // namespace
+}  // namespace weft::simulation
