@@ -97,16 +97,16 @@ TEST(Codec, FramesComeBackBitForBit) {
     for (const auto number :
          {&frame::FrameReport::steps, &frame::FrameReport::rejected_steps, &frame::FrameReport::inexact_steps,
           &frame::FrameReport::newton_iterations, &frame::FrameReport::linear_iterations,
-          &frame::FrameReport::proximities, &frame::FrameReport::constraints, &frame::FrameReport::pinched_pairs})
+          &frame::FrameReport::proximities, &frame::FrameReport::constraints, &frame::FrameReport::pinched_pairs,
+          &frame::FrameReport::lagging_particles})
       EXPECT_EQ(before.*number, after.*number);
-    EXPECT_EQ(before.lagging_particles, after.lagging_particles);
     EXPECT_EQ(before.warnings, after.warnings);
   }
 }
 
 // A field that is left out of serialize(FrameReport) leaves the report as long as before this one was added.
 TEST(Codec, ReportHasNoFieldThatIsForgotten) {
-  EXPECT_EQ(sizeof(frame::FrameReport), 200u)
+  EXPECT_EQ(sizeof(frame::FrameReport), 176u)
       << "FrameReport has changed: serialize(FrameReport) in codec.cpp and kFormatVersion have to follow";
 }
 

@@ -29,8 +29,8 @@ std::string figures(const FrameReport& r) {
   return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", r.frame, r.time, r.steps,
                      r.rejected_steps, r.inexact_steps, r.error_estimate, r.solver_error, r.newton_iterations,
                      r.linear_iterations, r.proximities, r.constraints, r.min_distance, r.max_strain, r.kinetic_energy,
-                     r.potential_energy, r.elastic_energy, r.pinched_pairs, fmt::join(r.pinches, " | ")) +
-         fmt::format("; {} {}", r.lagging_particles, fmt::join(r.lags, " | "));
+                     r.potential_energy, r.elastic_energy, r.pinched_pairs, fmt::join(r.warnings, " | ")) +
+         fmt::format("; {} {}", r.lagging_particles, r.stretch_share);
 }
 
 bool same_picture(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) {

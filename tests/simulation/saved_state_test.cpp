@@ -201,7 +201,7 @@ TEST(SavedStates, OfAPrerollKeepWhatItsFramesHaveSaid) {
   EXPECT_EQ(pinched.difference, "");
   Simulation simulation(scene);
   simulation.run_preroll();
-  EXPECT_FALSE(simulation.initial_report().pinches.empty());
+  EXPECT_FALSE(simulation.initial_report().warnings.empty());
 }
 
 TEST(SavedStates, AfterRejectedAndInexactStepsGoOnTheSameWay) {
