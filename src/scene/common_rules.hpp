@@ -13,6 +13,7 @@ inline const Range kPlace = within(-1e5, 1e5);   // [m]
 inline const Range kExtent = above(0, 1e4);      // [m]
 inline const Range kMoment = within(-1e5, 1e5);  // [s]
 inline const std::vector<std::string> kXyz = {"x", "y", "z"};
+inline const std::vector<std::string> kWeftWarp = {"weft", "warp"};
 inline const std::vector<std::string> kInterpolations = {"linear", "cubic"};
 
 /// Turns about the fixed x, then y, then z axis.

@@ -8,6 +8,7 @@
 #include "scene/common_rules.hpp"
 #include "scene/contact_rules.hpp"
 #include "scene/material_rules.hpp"
+#include "scene/pin_rules.hpp"
 #include "scene/rule.hpp"
 #include "scene/table_builder.hpp"
 
@@ -21,8 +22,6 @@ void assign(Quat& target, const Value& value) {
 }
 
 namespace {
-
-const std::vector<std::string> kWeftWarp = {"weft", "warp"};
 
 /// Turns a vector that is meant for z up the way that the scene's up axis has it.
 Vec3 turned_up(UpAxis up, const Vec3& z_up) {
@@ -103,28 +102,6 @@ const Table& pose_key_rules() {
   return kTable;
 }
 
-const Table& pin_key_rules() {
-  static const auto kPlaceOf = [](PinKey& key) -> Vec3& { return key.pose.position; };
-  static const Table kTable =
-      TableBuilder<PinKey>("Where a pin holds its particles at a time.")
-          .number("time", &PinKey::time, kMoment, "s", "later than the key before")
-          .need(Need::required)
-          .vector("offset", kPlaceOf, kXyz, kPlace, "m", "how far the particles are then from where they start")
-          .by_default("as in the key before; of the first key, none")
-          .excludes("position")
-          .written_if([](PinKey& key) { return !key.in_world; })
-          .when_given([](PinKey& key) { key.in_world = false; })
-          .vector("position", kPlaceOf, kXyz, kPlace, "m", "instead of offset: where their middle is then")
-          .by_default("as in the key before")
-          .excludes("offset")
-          .written_if([](PinKey& key) { return key.in_world; })
-          .when_given([](PinKey& key) { key.in_world = true; })
-          .with(
-              [](auto& rows) { rotation_rows(rows, &PinKey::pose, "that of the key before; of the first key, none"); })
-          .build();
-  return kTable;
-}
-
 /// interpolation and keys of the PoseTrack that `track` gives; the first key starts from the pose `start` gives.
 template <class S, class Member, class Start>
 void track_rows(TableBuilder<S>& rows, Member track, Start start) {
@@ -135,49 +112,6 @@ void track_rows(TableBuilder<S>& rows, Member track, Start start) {
   rows.list(Type::keys, "keys", keys, pose_key_rules(), [keys, start](S& s, std::size_t i) {
     keys(s).push_back(i == 0 ? PoseKey{0, start(s)} : PoseKey(keys(s).back()));
   });
-}
-
-/// low and high of a part of a cloth.
-template <class S>
-void part_rows(TableBuilder<S>& rows) {
-  rows.vector("low", &S::low, kWeftWarp, within(0, 1), "", "lower end of the part, in fractions of the size")
-      .single_fills_all();
-  rows.vector("high", &S::high, kWeftWarp, within(0, 1), "", "upper end of the part, in fractions of the size")
-      .single_fills_all();
-}
-
-const Table& pin_rules() {
-  static const Table kTable =
-      TableBuilder<Pin>("Particles held in place, or moved.")
-          .with(part_rows<Pin>)
-          .plain(Type::text, "follow", &Pin::follow,
-                 "name of the obstacle whose motion the particles share, or of the character, at whose nearest places "
-                 "they stay")
-          .by_default("none")
-          .excludes("keys")
-          .number("release", &Pin::release, within(-1, 1e5), "s", "time at which they are let go; negative: never")
-          .number("strength", &Pin::strength, above(0, 1e9), "N/m",
-                  "of a damped spring that draws each of them to where it is to be")
-          .by_default("none: they are held there, as far as nothing is in the way")
-          .choice(
-              "interpolation", [](Pin& pin) -> Interpolation& { return pin.motion.interpolation; }, kInterpolations,
-              "between its keys")
-          .list(
-              Type::keys, "keys", [](Pin& pin) -> std::vector<PinKey>& { return pin.motion.keys; }, pin_key_rules(),
-              [](Pin& pin, std::size_t i) {
-                pin.motion.keys.push_back(i == 0 ? PinKey{} : PinKey(pin.motion.keys.back()));
-              })
-          .build();
-  return kTable;
-}
-
-const Table& weight_rules() {
-  static const Table kTable =
-      TableBuilder<Weight>("Mass that hangs on a part of the cloth, as lead does in the hem of a curtain.")
-          .with(part_rows<Weight>)
-          .number("mass", &Weight::mass, above(0, 1e9), "kg", "in equal shares on all particles of the part")
-          .build();
-  return kTable;
 }
 
 /// The keys of each shape, in the order of ClothShape.

@@ -1,0 +1,11 @@
+// The rows of the rule table for parts of a cloth: what holds them, and what hangs on them.
+#pragma once
+
+#include "scene/rule.hpp"
+
+namespace weft::scene {
+
+const Table& pin_rules();
+const Table& weight_rules();
+
+}  // namespace weft::scene
