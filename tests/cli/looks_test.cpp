@@ -1,5 +1,6 @@
 // What the rules call not simulated: the simulation is bit for bit the same whatever it is, and a kept frame that is
 // dressed anew is the frame that the changed scene shows.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <functional>
