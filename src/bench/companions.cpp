@@ -10,8 +10,8 @@
 namespace weft::bench {
 namespace {
 
-// Displacements of the start that should not matter [m]; those after the first only where it does.
-constexpr double kShifts[] = {1e-6, 2e-6, 3e-6};
+// Displacement of the start that should not matter [m].
+constexpr double kShift = 1e-6;
 // A start moved by a micrometre that comes out as so large a share of what steps and solver leave tells that paths
 // part.
 constexpr double kParts = 0.3;
@@ -32,8 +32,42 @@ double order_of(scene::Integrator integrator) {
   return integrator == scene::Integrator::implicit_euler ? 1 : 2;
 }
 
-Quantity quantity(std::size_t q) {
-  return static_cast<Quantity>(q);
+double steps_a_frame(const scene::Time& time) {
+  return std::max(1.0, std::ceil(1 / (time.fps * time.step) - 1e-9));
+}
+
+// What a companion changes: it has steps or spacings `ratio` times those of the run.
+struct Change {
+  double ratio;
+  Errors errors;
+};
+
+// The order p at which errors C h^p explain two changes, C h^p |r^p - 1| each, the first of longer steps or spacings:
+// their quotient grows with p. The nearest between `least` and `most`.
+double observed_order(double coarse_ratio, double fine_ratio, double quotient, double least, double most) {
+  constexpr int kHalvings = 30;
+  const auto expected = [&](double p) {
+    return std::abs(std::pow(coarse_ratio, p) - 1) / std::abs(std::pow(fine_ratio, p) - 1);
+  };
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (least + most);
+    (expected(middle) < quotient ? least : most) = middle;
+  }
+  return 0.5 * (least + most);
+}
+
+// The error of a run of this order that differs so from a companion, and if there is one from another that is coarser
+// than both.
+Errors richardson(double order, const Change& change, const std::optional<Change>& coarser) {
+  Errors errors{};
+  for (std::size_t q = 0; q < kQuantities; ++q) {
+    double p = kAssumedOrder * order;
+    if (coarser && change.errors[q] > 0)
+      p = observed_order(coarser->ratio, change.ratio, coarser->errors[q] / change.errors[q], kLeastOrder * order,
+                         order);
+    errors[q] = change.errors[q] / std::abs(std::pow(change.ratio, p) - 1);
+  }
+  return errors;
 }
 
 // Simulates companions of one run.
@@ -51,15 +85,12 @@ class Companions {
   Errors of_steps();
   Errors of_solver();
   Errors of_mesh();
-  Errors of_start(std::size_t shifts);
-  Errors beyond_start(Errors difference) const;
-  Errors richardson(double ratio, double order, Errors near, std::optional<Errors> far) const;
+  Errors of_start();
+  Change of_step(double ratio);
 
   scene::Scene scene_;
   Trajectory run_;  // in `scene_`
   const CompanionOptions& options_;
-  std::vector<Errors> shifted_;  // differences to runs from moved starts
-  Errors start_{};
   ErrorEstimate result_;
 };
 
@@ -86,52 +117,34 @@ ErrorPart Companions::part(ErrorSource source, const std::function<Errors()>& me
   return part;
 }
 
-// What of a difference is not due to the start: each of two runs is off the middle of all equal ones by start_.
-Errors Companions::beyond_start(Errors difference) const {
-  for (std::size_t q = 0; q < kQuantities; ++q)
-    difference[q] = std::sqrt(std::max(0.0, difference[q] * difference[q] - 2 * start_[q] * start_[q]));
-  return difference;
-}
-
-// The error of the run, from the difference to a companion `ratio` times as coarse and, if there is one, to a companion
-// ratio² times as coarse: with errors C h^p the differences are C h^p (r^p - 1) and C h^p (r^2p - 1), so that
-// far / near - 1 = r^p. Finer companions have a ratio below 1. What is no larger than twice what the start does is not
-// made larger: there is no order in it.
-Errors Companions::richardson(double ratio, double order, Errors near, std::optional<Errors> far) const {
-  near = beyond_start(near);
-  if (far) far = beyond_start(*far);
-  Errors errors{};
-  for (std::size_t q = 0; q < kQuantities; ++q) {
-    double p = kAssumedOrder * order;
-    if (far && near[q] > 0) p = std::log((*far)[q] / near[q] - 1) / std::log(ratio);
-    p = std::isfinite(p) ? std::clamp(p, kLeastOrder * order, order) : kLeastOrder * order;
-    const double factor = 1 / std::abs(std::pow(ratio, p) - 1);
-    errors[q] = near[q] * (near[q] > 2 * start_[q] ? factor : std::min(1.0, factor));
+// With steps as near to `ratio` times those of the run as frames can be cut.
+Change Companions::of_step(double ratio) {
+  scene::Scene companion = scene_;
+  if (scene_.time.tolerance) {
+    // Steps go as t^(1 / (p + 1)).
+    *companion.time.tolerance *= std::pow(ratio, order_of(scene_.time.integrator) + 1);
+    return {ratio, difference(companion)};
   }
-  return errors;
+  const double steps = steps_a_frame(scene_.time), taken = std::floor(steps / ratio);
+  companion.time.step = 1 / (scene_.time.fps * taken);
+  return {steps / taken, difference(companion)};
 }
 
 Errors Companions::of_steps() {
   const double order = order_of(scene_.time.integrator);
-  scene::Scene companion = scene_;
-  if (scene_.time.tolerance) {
-    // Steps go as t^(1 / (p + 1)).
-    const double twice = std::pow(2, order + 1);
-    companion.time.tolerance = twice * *scene_.time.tolerance;
-    const Errors near = difference(companion);
-    companion.time.tolerance = twice * twice * *scene_.time.tolerance;
-    return richardson(2, order, near, difference(companion));
-  }
-  const double frame = 1 / scene_.time.fps;
-  const int steps = std::max(1, static_cast<int>(std::ceil(frame / scene_.time.step - 1e-9)));
+  const Change half = of_step(0.5);
   // One step a frame cannot become longer.
-  const int fewer = steps > 1 ? steps / 2 : 2;
-  companion.time.step = frame / fewer;
-  const Errors near = difference(companion);
-  const double ratio = static_cast<double>(steps) / fewer;
-  if (ratio != 2 || fewer % 2 != 0) return richardson(ratio, order, near, std::nullopt);
-  companion.time.step *= 2;
-  return richardson(ratio, order, near, difference(companion));
+  if (!scene_.time.tolerance && steps_a_frame(scene_.time) < 2) return richardson(order, half, std::nullopt);
+  std::optional<Change> twice;
+  const ErrorPart longer = part(ErrorSource::steps, [&] {
+    twice = of_step(2);
+    return twice->errors;
+  });
+  const double least = kLeastOrder * order, near = at(half.errors, Quantity::position);
+  result_.steps_irregular =
+      !twice || at(twice->errors, Quantity::position) * std::abs(std::pow(half.ratio, least) - 1) <
+                    near * std::abs(std::pow(twice->ratio, least) - 1);
+  return richardson(order, half, twice);
 }
 
 // What the solver leaves is taken as proportional to the tolerance.
@@ -139,7 +152,7 @@ Errors Companions::of_solver() {
   scene::Scene companion = scene_;
   companion.solver.newton_tolerance *= kTighter;
   Trajectory solved = follow(companion);
-  Errors errors = beyond_start(compare(solved, run_));
+  Errors errors = compare(solved, run_);
   for (double& error : errors) error /= 1 - kTighter;
   // From here on all companions are solved so, lest what the solver leaves is taken for an error of steps and meshes.
   scene_ = std::move(companion);
@@ -157,46 +170,31 @@ Errors Companions::of_mesh() {
   const scene::Scene half = coarse(0.5);
   const Trajectory halved = follow(half);
   const std::vector<std::size_t> same = same_in_twice_as_fine(half);
-  const Errors near = compare(halved, run_, same);
+  const Change change{2, compare(halved, run_, same)};
   const bool few = std::any_of(scene_.cloths.begin(), scene_.cloths.end(), [](const scene::Cloth& cloth) {
     return std::min(cloth.particles_weft, cloth.particles_warp) - 1 < 4 * kFewCells;
   });
-  if (few || !can_refine(scene_, 0.25)) return richardson(2, kMeshOrder, near, std::nullopt);
+  if (few || !can_refine(scene_, 0.25)) return richardson(kMeshOrder, change, std::nullopt);
   const scene::Scene quarter = coarse(0.25);
   std::vector<std::size_t> same_again = same_in_twice_as_fine(quarter);
   for (std::size_t& particle : same_again) particle = same[particle];
-  return richardson(2, kMeshOrder, near, compare(follow(quarter), run_, same_again));
+  return richardson(kMeshOrder, change, Change{4, compare(follow(quarter), run_, same_again)});
 }
 
-// Paths: the largest difference. Functionals: how far one of equal runs is from the middle of them all, which is 1/√2
-// of what two of them differ by.
-Errors Companions::of_start(std::size_t shifts) {
-  while (shifted_.size() < shifts) {
-    scene::Scene companion = scene_;
-    for (scene::Cloth& cloth : companion.cloths) cloth.start_noise += kShifts[shifted_.size()];
-    shifted_.push_back(difference(companion));
-  }
-  Errors errors{};
-  for (const Errors& one : shifted_) {
-    for (std::size_t q = 0; q < kQuantities; ++q)
-      errors[q] = quantity(q) <= Quantity::velocity
-                      ? std::max(errors[q], one[q])
-                      : std::hypot(errors[q], one[q] / std::sqrt(2.0 * static_cast<double>(shifts)));
-  }
-  return errors;
+Errors Companions::of_start() {
+  scene::Scene companion = scene_;
+  for (scene::Cloth& cloth : companion.cloths) cloth.start_noise += kShift;
+  return difference(companion);
 }
 
 ErrorEstimate Companions::estimate() {
-  ErrorPart start = part(ErrorSource::start, [&] { return of_start(1); });
-  start_ = start.errors;
-  ErrorPart mesh{ErrorSource::mesh}, solver = part(ErrorSource::solver, [&] { return of_solver(); }),
+  ErrorPart mesh{ErrorSource::mesh}, start = part(ErrorSource::start, [&] { return of_start(); }),
+                                     solver = part(ErrorSource::solver, [&] { return of_solver(); }),
                                      steps = part(ErrorSource::steps, [&] { return of_steps(); });
   if (options_.mesh) mesh = part(ErrorSource::mesh, [&] { return of_mesh(); });
   const double left = std::hypot(at(steps.errors, Quantity::position), at(solver.errors, Quantity::position)),
-               moved = at(start_, Quantity::position);
-  result_.comparable =
-      start.missing.empty() && moved <= std::clamp(kParts * left, 10 * kShifts[0], kAmplified * kShifts[0]);
-  if (!result_.comparable) start = part(ErrorSource::start, [&] { return of_start(std::size(kShifts)); });
+               moved = at(start.errors, Quantity::position);
+  result_.start_matters = !start.missing.empty() || moved > std::clamp(kParts * left, 10 * kShift, kAmplified * kShift);
   result_.parts = {std::move(steps), std::move(solver), std::move(start)};
   if (options_.mesh) result_.parts.push_back(std::move(mesh));
   for (const ErrorPart& each : result_.parts)
@@ -212,8 +210,8 @@ std::string_view name_of(ErrorSource source) {
 }
 
 const ErrorPart& ErrorEstimate::largest() const {
-  return *std::max_element(parts.begin(), parts.end(), [this](const ErrorPart& a, const ErrorPart& b) {
-    return at(a.errors, deciding()) < at(b.errors, deciding());
+  return *std::max_element(parts.begin(), parts.end(), [](const ErrorPart& a, const ErrorPart& b) {
+    return at(a.errors, Quantity::position) < at(b.errors, Quantity::position);
   });
 }
 

@@ -26,10 +26,6 @@ constexpr Figure kFigures[] = {
     {Quantity::rest_energy, "energy at rest", "{:.2g} %", "rest_energy", 1e2},
 };
 
-bool is_told(const ErrorEstimate& estimate, const Figure& figure) {
-  return estimate.comparable || figure.quantity != Quantity::position;
-}
-
 std::string remedy(ErrorSource source) {
   switch (source) {
     case ErrorSource::steps:
@@ -48,22 +44,24 @@ std::string advice(const ErrorEstimate& estimate) {
   const ErrorPart& largest = estimate.largest();
   std::string text =
       fmt::format("largest by the {}; what lessens it: {}", name_of(largest.source), remedy(largest.source));
-  if (!estimate.comparable) text += "; paths part: a start moved by 1 µm matters as much as steps and solver do";
+  if (estimate.doubtful()) text += "; paths part, and the run is off by at least this much";
+  if (estimate.start_matters) text += ": a start moved by 1 µm matters as much as steps and solver do";
+  if (estimate.steps_irregular)
+    text += fmt::format("{} steps twice as long fail or change it hardly more than steps half as long",
+                        estimate.start_matters ? ", and" : ":");
   return text;
 }
 
-std::vector<std::string> row(const ErrorEstimate& estimate, const std::string& name, const bench::Errors& errors) {
+std::vector<std::string> row(const std::string& name, const bench::Errors& errors) {
   std::vector<std::string> row{name};
   for (const Figure& figure : kFigures)
-    if (is_told(estimate, figure))
-      row.push_back(fmt::format(fmt::runtime(figure.format), figure.scale * at(errors, figure.quantity)));
+    row.push_back(fmt::format(fmt::runtime(figure.format), figure.scale * at(errors, figure.quantity)));
   return row;
 }
 
-nlohmann::ordered_json errors_json(const ErrorEstimate& estimate, const bench::Errors& errors) {
+nlohmann::ordered_json errors_json(const bench::Errors& errors) {
   nlohmann::ordered_json json;
-  for (const Figure& figure : kFigures)
-    if (is_told(estimate, figure)) json[figure.key] = at(errors, figure.quantity);
+  for (const Figure& figure : kFigures) json[figure.key] = at(errors, figure.quantity);
   return json;
 }
 
@@ -71,14 +69,13 @@ nlohmann::ordered_json errors_json(const ErrorEstimate& estimate, const bench::E
 
 std::string error_summary(const ErrorEstimate& estimate) {
   std::vector<std::vector<std::string>> rows{{"error, by companions"}};
-  for (const Figure& figure : kFigures)
-    if (is_told(estimate, figure)) rows[0].emplace_back(figure.column);
+  for (const Figure& figure : kFigures) rows[0].emplace_back(figure.column);
   for (const ErrorPart& part : estimate.parts) {
-    rows.push_back(row(estimate, std::string(name_of(part.source)), part.errors));
+    rows.push_back(row(std::string(name_of(part.source)), part.errors));
     if (part.missing.empty()) continue;
     for (std::size_t i = 1; i < rows.back().size(); ++i) rows.back()[i] = "?";
   }
-  rows.push_back(row(estimate, "all", estimate.all));
+  rows.push_back(row("all", estimate.all));
   std::string text = format_table(rows, "l" + std::string(rows[0].size() - 1, 'r'), 2);
   for (const ErrorPart& part : estimate.parts)
     if (!part.missing.empty()) text += fmt::format("  {} not known: {}\n", name_of(part.source), part.missing);
@@ -90,12 +87,11 @@ nlohmann::ordered_json error_json(const ErrorEstimate& estimate) {
   for (const ErrorPart& part : estimate.parts) {
     std::string key(name_of(part.source));
     std::replace(key.begin(), key.end(), ' ', '_');
-    parts[key] =
-        part.missing.empty() ? errors_json(estimate, part.errors) : nlohmann::ordered_json{{"missing", part.missing}};
+    parts[key] = part.missing.empty() ? errors_json(part.errors) : nlohmann::ordered_json{{"missing", part.missing}};
   }
-  return {{"comparable", estimate.comparable},
+  return {{"comparable", !estimate.doubtful()},
           {"parts", std::move(parts)},
-          {"all", errors_json(estimate, estimate.all)},
+          {"all", errors_json(estimate.all)},
           {"advice", advice(estimate)},
           {"cpu_s", estimate.cpu_s}};
 }
