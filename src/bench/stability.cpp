@@ -63,9 +63,11 @@ class Watch {
 void run(const scene::Scene& scene, int frames, const EnergyLimit& limit, Outcome& outcome) {
   simulation::Simulation simulation(scene);
   Watch watch(scene, simulation, limit);
+  bool warned = false;
   for (int k = 0; k < frames; ++k) {
     const simulation::FrameReport report = simulation.advance();
     ++outcome.frames;
+    warned = warned || !report.warnings.empty();
     outcome.steps += report.steps;
     outcome.rejected_steps += report.rejected_steps;
     outcome.newton_iterations += report.newton_iterations;
@@ -75,7 +77,7 @@ void run(const scene::Scene& scene, int frames, const EnergyLimit& limit, Outcom
       return;
     }
   }
-  if (outcome.energy_gain > 1) outcome.verdict = Verdict::unbounded;
+  if (outcome.energy_gain > 1) outcome.verdict = warned ? Verdict::warned : Verdict::unbounded;
 }
 
 }  // namespace
@@ -86,6 +88,8 @@ std::string_view describe(Verdict verdict) {
       return "solved";
     case Verdict::refused:
       return "refused";
+    case Verdict::warned:
+      return "warned of";
     case Verdict::unbounded:
       return "unbounded";
     case Verdict::not_finite:

@@ -12,7 +12,8 @@ namespace weft::bench {
 enum class Verdict {
   solved,     ///< went through with finite numbers and no energy from nowhere
   refused,    ///< ended with a named reason; the frames before are kept
-  unbounded,  ///< finite, but with more energy than there can be
+  warned,     ///< finite, with more energy than there can be, and the run said so
+  unbounded,  ///< the same without a word
   not_finite,
 };
 std::string_view describe(Verdict verdict);

@@ -4,6 +4,8 @@
 
 #include <limits>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
@@ -81,7 +83,8 @@ FrameReport Simulation::Impl::advance() {
     try {
       steps.advance(time(), report.time, report);
       measure_energies(report);
-      energy_bound->check(report.frame, report);
+      if (std::optional<std::string> warning = energy_bound->check(report.frame, report))
+        report.warnings.push_back(*std::move(warning));
     } catch (const Error&) {
       steps.return_to(start);
       throw;

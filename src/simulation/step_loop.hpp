@@ -76,6 +76,7 @@ class StepLoop {
   Rejection attempt(double t, double h, int retries, bool last_try, FrameReport& report);
   Rejection attempt_with(double t, double h, int retries, bool last_try, bool may_give_way, FrameReport& report);
   bool is_short_enough(int retries, bool last_try) const;
+  Rejection correct(double h, int retries, bool last_try, bool may_give_way);
   integrator::StepReport solve(double h, integrator::Stepper::Start start, FrameReport& report);
   static Rejection reason_of(const integrator::StepReport& step);
   void accept(double h, FrameReport& report);
