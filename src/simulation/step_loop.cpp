@@ -16,10 +16,14 @@ namespace {
 // Halvings of a step at least before cloth that cannot be kept out of an obstacle is taken for pinched: where there is
 // room a shorter step finds it, where there is none it only costs. More where obstacles still move far.
 constexpr int kHalvingsBeforePinch = 3;
-// Share of the energy of the cloth's motion that moving particles apart may add to a step before it is done again in
-// shorter ones, as often. A sheet on the edge of a plate 1 mm thick got 0.1 to 0.4 in each step, and stretched by 15 %
-// to twice the energy of its fall; of the scenes shipped sphere_drape and falling_band have no such step.
+// Share of the cloth's energy, of motion and elastic, that moving particles apart may add to a step before it is done
+// again in shorter ones, as often. A sheet on the edge of a plate 1 mm thick got 0.1 to 0.4 of its motion's in each
+// step, and stretched by 15 % to twice the energy of its fall; of the scenes shipped sphere_drape and falling_band have
+// no such step. With motion alone a towel that is wrung, all of whose energy is stored, took four times as long.
 constexpr double kCorrectionGain = 0.2;
+// And of what was too much before a step was halved, what is left then where that was worth it. A handkerchief in a
+// ring gets as much again, and took twice as long.
+constexpr double kWorthHalving = 0.5;
 // Of its limit to stretch, what cloth may be stretched by, and by how much more within time.step where it is beyond
 // that, before a step is taken in two: what strikes cloth fast drags it along by contacts that were found before. Pins
 // that are drawn apart are slower.
@@ -245,8 +249,12 @@ StepLoop::Rejection StepLoop::correct(double h, int retries, bool last_try, bool
   const double fall = h * scene_.physics.gravity.norm();
   const double motion = std::max(cloth_.kinetic_energy(progress_.now.v), 0.5 * mass * fall * fall);
   const double gain = energy(next_) - before;
-  if (gain <= kCorrectionGain * motion) return std::nullopt;
-  return fmt::format("keeping cloth from passing through adds {:.2g} J to the {:.2g} J of its motion", gain, motion);
+  const double stored = cloth_.elastic_energy(progress_.now.particles());
+  if (gain <= kCorrectionGain * (motion + stored)) return std::nullopt;
+  if (retries > 0 && gain > kWorthHalving * refused_gain_) return std::nullopt;
+  refused_gain_ = gain;
+  return fmt::format("keeping cloth from passing through adds {:.2g} J to {:.2g} J of motion and {:.2g} J stored", gain,
+                     motion, stored);
 }
 
 // Into `next_`. Where the first solve takes long it ends unfinished: see kLookAfter.

@@ -93,6 +93,7 @@ class StepLoop {
   Progress progress_;
   Moment next_;                                // the end of the step at hand; once that is accepted, its start
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
+  double refused_gain_ = 0;                    // of energy, by the correction for which a step was last done again [J]
   std::vector<integrator::HeldParticle> held_;
   std::optional<CollisionStage> collisions_;
 };
