@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace weft::integrator {
 namespace {
@@ -253,11 +254,12 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   next.v.resize(n);
   hold(now, stage, held, linear.constraints);
 
+  const int done = start == Start::next ? std::exchange(unfinished_, 0) : 0;
   StepReport report;
   do {
     evaluate(now, stage);
     std::fill(force_.begin(), force_.end(), Vec3::Zero());
-    system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, report.newton_iterations, force_);
+    system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, done + report.newton_iterations, force_);
     cg_.prepare(linear);
     gather_residual(masses, stage);
     estimate_local_errors(masses, now, stage, h);
@@ -286,6 +288,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     else if (!is_solved() && report.newton_iterations >= look_after)
       report.verdict = Verdict::unfinished;
   } while (!is_solved() && report.verdict == Verdict::solved);
+  unfinished_ = report.verdict == Verdict::unfinished ? report.newton_iterations : 0;
   if (report.verdict == Verdict::solved || report.verdict == Verdict::unfinished) finish(now, stage, held, next);
   return report;
 }

@@ -148,6 +148,7 @@ class Stepper {
   State previous_;
   double previous_h_ = 0;  // 0: no history
   double beta_ = 0;        // of the last stage [s]
+  int unfinished_ = 0;     // iterations of the last solve, where that ended for a look
 
   // Scratch of one step.
   solver::ConjugateGradient cg_;
