@@ -10,8 +10,7 @@
 namespace weft::simulation {
 
 /// A sentence for each pin moved by keys that jumps at the start, or moves too fast for cloth to follow:
-/// "cloth.a.pin.0:
-/// ...". For all others nothing is computed.
+/// "cloth.a.pin.0: ...". For all others nothing is computed.
 std::vector<std::string> find_jumps(const scene::Scene& scene, const environment::Environment& environment);
 
 /// Likewise for each obstacle that such a pin enters, with the first time.
