@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace weft::collision {
 namespace {
@@ -35,6 +36,21 @@ double ramp(double from, double to, double value) {
 std::array<Index, 4> sorted(std::array<Index, 4> vertices) {
   std::ranges::sort(vertices);
   return vertices;
+}
+
+// One corner of a triangle against the point of the other that is closest to it.
+FeaturePair of_corner(Index corner, const Triangle& corners, const FeaturePair& closest) {
+  FeaturePair result = closest;
+  double side = 0;
+  std::size_t place = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (std::ranges::find(corners, closest.vertices[k]) == corners.end()) continue;
+    side += std::exchange(result.weights[k], 0);
+    place = k;
+  }
+  result.vertices[place] = corner;
+  result.weights[place] = side > 0 ? 1 : -1;
+  return result;
 }
 
 }  // namespace
@@ -74,44 +90,67 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
 }
 
 void ContactBuilder::add_pinched(const FeaturePair& pair, const StepMotion& motion, ContactResponse& response) const {
-  const auto contact = build(pair, kHealingShare, pair.distance + kHealingSpeed * motion.h, motion);
-  if (contact) response.add(*contact, motion.x_t0);
+  auto contact = build(pair, kHealingShare, pair.distance + kHealingSpeed * motion.h, motion);
+  if (!contact) return;
+  contact->full_range = kNoLimit;  // no stiffer as it is deeper
+  response.add(*contact, motion.x_t0);
 }
 
 bool ContactBuilder::add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response) {
-  const ClosestFeatures features = closest_features(pair, motion.x_t0);
-  const std::array<Index, 4> vertices = sorted(features.vertices);
-  const auto place = std::ranges::lower_bound(in_contact_, vertices);
-  if (place != in_contact_.end() && *place == vertices) return false;
-  in_contact_.insert(place, vertices);
-  // What is closer than the range already, without being pushed, is only kept from coming closer.
+  const ClosestFeatures features = closest_features(pair, motion.x_from);
   const double distance = std::sqrt(features.points.distance_sq);
   const FeaturePair closest{features.vertices, features.points.weights, features.points.difference / distance,
                             distance};
-  const bool a_is_cloth = is_particle(pair.a[0]), b_is_cloth = is_particle(pair.b[0]);
-  if (response.form() == ResponseForm::springs || a_is_cloth == b_is_cloth) {
-    if (const auto contact = build(closest, 1, distance, motion)) response.add(*contact, motion.x_t0);
-    return true;
+  const std::array<Index, 4> vertices = sorted(features.vertices);
+  const auto place = std::ranges::lower_bound(in_contact_, vertices);
+  const bool is_new = place == in_contact_.end() || *place != vertices;
+  if (is_new) in_contact_.insert(place, vertices);
+  if (motion.is_straight() && !is_new) return false;
+  const bool with_obstacle = is_particle(pair.a[0]) != is_particle(pair.b[0]);
+  if (response.form() == ResponseForm::velocity_constraints && with_obstacle) {
+    add_walls(pair, closest, motion, response);
+    return is_new;
   }
-  // All corners of the triangle of cloth are kept beyond the plane through the obstacle's closest point.
-  for (Index corner : a_is_cloth ? pair.a : pair.b) {
-    FeaturePair of_corner = closest;
-    bool placed = false;
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (!is_particle(closest.vertices[k])) continue;
-      of_corner.weights[k] = placed ? 0 : a_is_cloth ? 1 : -1;
-      if (!placed) of_corner.vertices[k] = corner;
-      placed = true;
+  const double range = motion.is_straight() ? distance : kNoLimit;
+  if (is_new)
+    if (const auto contact = build(closest, 1, range, motion)) response.add(*contact, motion.x_t0);
+  if (!motion.is_straight()) add_corners(pair, closest, motion, response);
+  return is_new;
+}
+
+// All corners of the triangle of cloth are kept beyond the plane through the obstacle's closest point.
+void ContactBuilder::add_walls(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
+                               ContactResponse& response) const {
+  const Triangle& cloth = is_particle(pair.a[0]) ? pair.a : pair.b;
+  for (Index corner : cloth)
+    if (const auto contact = build(of_corner(corner, cloth, closest), 1, closest.distance, motion))
+      response.add_wall(*contact, motion.x_t0);
+}
+
+// What keeps its distance only as far as that is less than it was pushes nobody away, and has no friction: where it
+// slides to is the business of the closest features there.
+void ContactBuilder::add_corners(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
+                                 ContactResponse& response) const {
+  for (const Triangle& corners : {pair.a, pair.b}) {
+    for (Index corner : corners) {
+      if (!is_particle(corner)) continue;
+      const FeaturePair apart = of_corner(corner, corners, closest);
+      if (apart.vertices == closest.vertices && apart.weights == closest.weights) continue;
+      double gap = 0;
+      for (std::size_t k = 0; k < 4; ++k) gap += apart.weights[k] * apart.normal.dot(motion.x_from[apart.vertices[k]]);
+      auto contact = build(apart, 1, gap, motion);
+      if (!contact || gap <= 0) continue;
+      contact->friction = contact->static_friction = 0;
+      response.add(*contact, motion.x_t0);
     }
-    if (const auto contact = build(of_corner, 1, distance, motion)) response.add_wall(*contact, motion.x_t0);
   }
-  return true;
 }
 
 // Empty where neither side has a particle that can be pushed.
 std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double share, double range_limit,
                                              const StepMotion& motion) const {
   Contact contact;
+  Vec3 relative = Vec3::Zero();
   contact.normal = pair.normal;
   double mass = 0, mass_weight = 0;
   std::array<std::size_t, 2> sides{};
@@ -121,6 +160,7 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double sha
     if (weight == 0) continue;
     sides[weight > 0 ? 0 : 1] = bodies_.body_of(v);
     contact.relative_start += weight * motion.x_t0[v];
+    relative += weight * motion.x_from[v];
     if (is_particle(v)) {
       contact.particles[k] = v;
       contact.weights[k] = weight;
@@ -135,6 +175,7 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double sha
   if (mass_weight == 0) return std::nullopt;
   contact.full_range = 0.5 * (bodies_[sides[0]].thickness + bodies_[sides[1]].thickness);
   contact.range = std::min(range_limit, contact.full_range);
+  contact.depth = contact.range - contact.normal.dot(relative);
   contact.stiffness = share * std::max(stiffness_, kInertialStiffness * mass / mass_weight / (step_ * step_));
   const Friction& friction = friction_of(sides[0], sides[1]);
   contact.friction = friction.sliding;

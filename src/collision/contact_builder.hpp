@@ -30,10 +30,11 @@ struct ContactParameters {
   std::vector<PairFriction> friction = {};  ///< of pairs with coefficients of their own
 };
 
-/// The linear motion of all vertices over a step.
+/// The motion of all vertices over a step: in one straight piece, or with the last one beginning at x_from.
 struct StepMotion {
-  std::span<const Vec3> x_t0, x_t1;  ///< [m]
-  double h = 0;                      ///< [s]
+  std::span<const Vec3> x_t0, x_from, x_t1;  ///< [m]
+  double h = 0;                              ///< [s]
+  bool is_straight() const { return x_t0.data() == x_from.data(); }
 };
 
 /// Share of its stiffness that a proximity pushes with: all of a vertex and a face. An edge pair pushes with all of it
@@ -63,12 +64,18 @@ class ContactBuilder {
   void add_pinched(const FeaturePair& pair, const StepMotion& motion, ContactResponse& response) const;
 
   /// Adds contacts of the closest features of two triangles that would meet; false if these push with all their
-  /// stiffness already.
+  /// stiffness already. On the first piece of a way what is closer than the range without being pushed is only kept
+  /// from coming closer. On those that follow it is pushed away, and every corner is kept on its own side of the plane
+  /// between the triangles: what slides past the features that were closest meets there.
   bool add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response);
 
   const Friction& friction_of(std::size_t a, std::size_t b) const { return friction_[a * bodies_.size() + b]; }
 
  private:
+  void add_walls(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
+                 ContactResponse& response) const;
+  void add_corners(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
+                   ContactResponse& response) const;
   bool is_particle(Index vertex) const { return static_cast<std::size_t>(vertex) < masses_.size(); }
   std::optional<Contact> build(const FeaturePair& pair, double share, double range_limit,
                                const StepMotion& motion) const;

@@ -67,27 +67,40 @@ void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
 void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h,
                         std::span<const RigidMotion> motions) {
   step_ = h;
+  x_t0_ = x_t0;
+  pushed_.clear();
   carried_.begin_step(x_t0, x_t1, motions);
-  if (!candidates_.covers_start(x_t0) || !candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
+  find_contacts(x_t0, x_t1);
+  if (!pinched_.empty()) {
+    pinched_.release(candidates_.hierarchies(), x_t0);
+    for (const FeaturePair& push : pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.reach()))
+      builder_.add_pinched(push, {x_t0, x_t0, x_t1, h}, response_);
+  }
+  builder_.add(proximities_, pinched_, {x_t0, x_t0, x_t1, h}, response_);
+  if (!apart(x_t0, x_t1)) adopt_failing(x_t0, x_t1);
+  response_.prepare(x_t0, x_t1);
+}
+
+void Engine::go_on_from(std::span<const Vec3> x) {
+  const StepMotion motion{x_t0_, x, x, step_};
+  carried_.begin_step(x, x, {});
+  find_contacts(x, x);
+  builder_.add(proximities_, pinched_, motion, response_);
+  for (const CornerPair& pair : pushed_) builder_.add_failing(pair, motion, response_);
+}
+
+// Features near each other at x_from, and no contacts yet.
+void Engine::find_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1) {
+  if (!candidates_.covers_start(x_from) || !candidates_.covers_end(x_t1)) collect(x_from, x_t1);
   if (coherence_) {
     proximities_.clear();
     std::ranges::copy_if(coherence_->proximities(), std::back_inserter(proximities_),
                          [&](const Proximity& proximity) { return proximity.distance < candidates_.reach(); });
   } else {
-    finder_.find(x_t0, candidates_.reach(), proximities_);
+    finder_.find(x_from, candidates_.reach(), proximities_);
   }
-
-  const StepMotion motion{x_t0, x_t1, h};
-  response_.begin_step(h);
+  response_.begin_step(step_);
   builder_.begin_step();
-  if (!pinched_.empty()) {
-    pinched_.release(candidates_.hierarchies(), x_t0);
-    for (const FeaturePair& push : pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.reach()))
-      builder_.add_pinched(push, motion, response_);
-  }
-  builder_.add(proximities_, pinched_, motion, response_);
-  if (!apart(x_t0, x_t1)) adopt_failing(x_t0, x_t1);
-  response_.prepare(x_t0, x_t1);
 }
 
 bool Engine::apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
@@ -98,7 +111,8 @@ bool Engine::apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
 
 int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   int fresh = 0;
-  for (const CornerPair& pair : failing_) fresh += builder_.add_failing(pair, {x_t0, x_t1, step_}, response_) ? 1 : 0;
+  for (const CornerPair& pair : failing_)
+    fresh += builder_.add_failing(pair, {x_t0, x_t0, x_t1, step_}, response_) ? 1 : 0;
   return fresh;
 }
 
@@ -113,6 +127,7 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
   // Corrections can carry vertices out of the bounds that the candidates stand for; then these are collected anew.
   constexpr int kCollections = 8;
   SeparationReport report;
+  pushed_.insert(pushed_.end(), failing_.begin(), failing_.end());
   PinchedPairs pinched = pinched_;
   std::vector<std::uint8_t> movable(movable_in_step.begin(), movable_in_step.end());
   for (int c = 0; c < kCollections; ++c) {

@@ -47,6 +47,12 @@ class Engine {
   void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h,
                   std::span<const RigidMotion> motions = {});
 
+  /// The way of the step bends: it has come to x [m] without meeting anything, with obstacles where they end, and goes
+  /// on from there. Contacts are found anew around x, with those of all pairs that were pushed apart in this step; what
+  /// slips in them still counts from where the step began. x takes the place of x_t0 in the calls that follow, and must
+  /// outlive the step.
+  void go_on_from(std::span<const Vec3> x);
+
   /// Lets go, between two steps, of what only makes the search faster and does not follow from positions.
   void forget();
 
@@ -92,6 +98,7 @@ class Engine {
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  void find_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1);
   template <class Archive>
   void serialize_candidates(Archive& archive);
 
@@ -106,6 +113,8 @@ class Engine {
   CarriedStarts carried_;
 
   double step_ = 0;                      // h [s]
+  std::span<const Vec3> x_t0_;           // where the step began
+  std::vector<CornerPair> pushed_;       // pairs that were pushed apart in it
   std::vector<Proximity> proximities_;   // at the start of the step
   std::span<const CornerPair> failing_;  // of the last call of apart()
 };

@@ -172,6 +172,7 @@ void CollisionStage::begin_step(double t, double h, std::span<const integrator::
   place_bodies(t + h, next);
   movable_.assign(now.x.size(), collision::kFixed);
   gave_way_.clear();
+  bend_.clear();
   std::fill_n(movable_.begin(), particles_, std::uint8_t{collision::kFree});
   for (std::size_t i = 0; i < particles_; ++i) next.x[i] = now.x[i] + h * now.v[i];
   for (const integrator::HeldParticle& particle : held) {
@@ -246,12 +247,20 @@ void CollisionStage::append_prescribed(std::vector<integrator::HeldParticle>& he
 std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, bool may_give_way, const Moment& now,
                                                       Moment& next) {
   solved_.assign(next.particles().begin(), next.particles().end());
-  const collision::SeparationReport report = engine_.push_apart(now.x, next.x, movable_, may_pinch, may_give_way);
+  const collision::SeparationReport report = engine_.push_apart(from(now), next.x, movable_, may_pinch, may_give_way);
   gave_way_ = report.gave_way;
-  if (!report.separated) return "cannot keep " + describe(report.stuck, now) + " apart";
+  if (!report.separated) {
+    std::ranges::copy(solved_, next.x.begin());
+    return "cannot keep " + describe(report.stuck, now) + " apart";
+  }
   for (std::size_t i = 0; i < particles_; ++i) next.v[i] += (next.x[i] - solved_[i]) / h;
   note_pinches(now);
   return std::nullopt;
+}
+
+void CollisionStage::go_on_from(const Moment& next) {
+  bend_ = next.x;
+  engine_.go_on_from(bend_);
 }
 
 std::string CollisionStage::describe(const collision::GivenWay& given, const Moment& now) const {

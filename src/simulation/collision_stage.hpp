@@ -52,7 +52,7 @@ class CollisionStage {
   void append_prescribed(std::vector<integrator::HeldParticle>& held) const;
 
   /// After the solve: whether nothing meets anything on the way to `next`.
-  bool apart(const Moment& now, const Moment& next) { return engine_.apart(now.x, next.x); }
+  bool apart(const Moment& now, const Moment& next) { return engine_.apart(from(now), next.x); }
 
   /// Where apart() said no: makes contacts of the pairs that would meet, and says how many were new. If there are some,
   /// solving again lets the forces do what push_apart would do by moving particles.
@@ -63,6 +63,13 @@ class CollisionStage {
   /// pinch it before. Empty if that worked, else which objects are stuck and where.
   /// `may_give_way`: pinned particles may be moved too, where nothing else can be; without, they are only told of.
   std::optional<std::string> push_apart(double h, bool may_pinch, bool may_give_way, const Moment& now, Moment& next);
+  /// From `next`, where push_apart() has led to, the way of the step goes on, in another direction: contacts are found
+  /// there.
+  void go_on_from(const Moment& next);
+  /// Whether the way may do so: with springs, and where nothing is pinched.
+  bool may_bend() const {
+    return response().form() == collision::ResponseForm::springs && engine_.pinched_pairs() == 0;
+  }
   /// The pinned particles that the last push_apart() told of.
   std::span<const collision::GivenWay> gave_way() const { return gave_way_; }
   /// What such a particle would have met, and where: "'a' near (0, 0, 0) m".
@@ -87,6 +94,8 @@ class CollisionStage {
   double min_distance() const { return engine_.min_distance(); }
 
  private:
+  // Where the piece of the way of this step begins that ends at its end.
+  const std::vector<Vec3>& from(const Moment& now) const { return bend_.empty() ? now.x : bend_; }
   const std::vector<Vec3>& append_bodies(Moment& start) const;
   void place_bodies(double t, Moment& moment) const;
   bool cloth_comes_near(std::size_t body, double t, double h, double angle, const Moment& now) const;
@@ -104,6 +113,7 @@ class CollisionStage {
   std::vector<std::uint8_t> movable_;
   std::vector<collision::RigidMotion> motions_;  // of the step at hand, per body
   std::vector<collision::GivenWay> gave_way_;
+  std::vector<Vec3> bend_;    // where the way of the step last bent; empty: nowhere
   std::vector<Vec3> solved_;  // scratch: particles before they are pushed apart
   collision::Engine engine_;
 

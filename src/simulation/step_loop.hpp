@@ -77,7 +77,9 @@ class StepLoop {
   Rejection attempt_with(double t, double h, int retries, bool last_try, bool may_give_way, FrameReport& report);
   bool is_short_enough(int retries, bool last_try) const;
   Rejection correct(double h, int retries, bool last_try, bool may_give_way);
-  integrator::StepReport solve(double h, integrator::Stepper::Start start, FrameReport& report);
+  double energy(const Moment& moment) const;
+  double added_share(double before, double h) const;
+  integrator::StepReport solve(double h, integrator::Stepper::Start start, bool look, FrameReport& report);
   static Rejection reason_of(const integrator::StepReport& step);
   void accept(double h, FrameReport& report);
   bool stretches_too_far(double h) const;
@@ -93,7 +95,6 @@ class StepLoop {
   Progress progress_;
   Moment next_;                                // the end of the step at hand; once that is accepted, its start
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
-  double refused_gain_ = 0;                    // of energy, by the correction for which a step was last done again [J]
   std::vector<integrator::HeldParticle> held_;
   std::optional<CollisionStage> collisions_;
 };

@@ -46,6 +46,9 @@ class StepProblem final : public integrator::System {
   /// cloth on to there, and friction goes by the loads at the start. `pulls` must outlive the step.
   void begin_step(double t, std::span<const integrator::HeldParticle> pinned, std::span<const Pull> pulls = {});
 
+  /// Within a step, where its contacts are others now.
+  void forget_contacts() { memory_.contacts = {{}, {}, {}, memory_.contacts.updates}; }
+
   /// Makes the next linearisation put the matrix together anew: what is computed from here on depends on positions and
   /// velocities alone.
   void forget();

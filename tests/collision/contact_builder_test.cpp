@@ -29,7 +29,7 @@ struct Scene {
     pinched = PinchedPairs(6, bodies.body_of_vertices());
   }
 
-  StepMotion motion() const { return {x_t0, x_t1, kH}; }
+  StepMotion motion() const { return {x_t0, x_t0, x_t1, kH}; }
 
   std::vector<Contact> contacts_of(const std::vector<Proximity>& proximities, const ContactParameters& parameters) {
     ContactBuilder builder(bodies, parameters, masses);

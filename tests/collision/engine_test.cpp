@@ -141,6 +141,45 @@ TEST(Engine, PushingApartLeavesAWayWithoutMeeting) {
   for (std::size_t i = 0; i < sheet.particles(); ++i) EXPECT_GT(end[i].z(), 0);
 }
 
+// Where the way bends the contacts are those of the bend: none of the start, but all that was pushed apart, which slips
+// from where the step began. Corners are kept behind the plane of their pair without friction.
+TEST(Engine, AWayThatBendsGoesOnWithTheContactsOfTheBend) {
+  Sheet sheet(3, 0.05);
+  Engine engine = sheet.engine();
+  std::vector<Vec3> bend = sheet.falling(0.06);
+  std::vector<std::uint8_t> movable(sheet.x.size(), 0);
+  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
+  engine.begin_step(sheet.x, sheet.x, kH);
+  ASSERT_FALSE(engine.apart(sheet.x, bend));
+  ASSERT_TRUE(engine.push_apart(sheet.x, bend, movable).separated);
+  engine.go_on_from(bend);
+
+  const auto contacts = engine.response().springs();
+  ASSERT_FALSE(contacts.empty());
+  int smooth = 0;
+  for (const Contact& contact : contacts) {
+    Vec3 start = contact.obstacle_start, end = contact.obstacle_end;
+    for (std::size_t k = 0; k < 4; ++k) {
+      start += contact.weights[k] * sheet.x[contact.particles[k]];
+      end += contact.weights[k] * bend[contact.particles[k]];
+    }
+    EXPECT_LT((contact.relative_start - start).norm(), 1e-15);
+    EXPECT_NEAR(contact.depth, contact.range - contact.normal.dot(end), 1e-15);
+    smooth += contact.friction == 0;
+    if (contact.friction == 0) {
+      EXPECT_LT(contact.depth, 1e-15);  // pushes nothing away that has not moved
+    }
+  }
+  EXPECT_GT(smooth, 0);
+  EXPECT_LT(smooth, static_cast<int>(contacts.size()));
+
+  // From here on the way is another: down through the floor no more than from the start, but back up over all of it.
+  std::vector<Vec3> through = bend, up = bend;
+  for (std::size_t i = 0; i < sheet.particles(); ++i) through[i].z() -= 0.01, up[i].z() += 1;
+  EXPECT_FALSE(engine.apart(bend, through));
+  EXPECT_TRUE(engine.apart(bend, up));
+}
+
 // A ceiling that comes down to 0.1 mm below the floor: with `may_pinch` the cloth between is exempted, else refused.
 TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   Sheet sheet(2, 0.005, 0.01);

@@ -94,26 +94,26 @@ scene::Scene on_a_blade() {
   return scene;
 }
 
-TEST(EnergyBound, WhatMovingParticlesApartAddsIsDoneAgainInShorterSteps) {
+// Pushing it apart after the solve made of the 0.068 J of its fall 0.18 J in threads.
+TEST(EnergyBound, WhatWouldPassAnEdgeIsSolvedWithTheContactsOfThatPlace) {
   Simulation simulation(on_a_blade());
   const FrameReport start = simulation.initial_report();
-  int rejected = 0;
   double most_elastic = 0, fall = 0;
   for (int k = 0; k < 8; ++k) {
     const FrameReport report = simulation.advance();
-    rejected += report.rejected_steps;
     most_elastic = std::max(most_elastic, report.elastic_energy);
     fall = start.potential_energy - report.potential_energy;
     EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
+    EXPECT_EQ(report.rejected_steps, 0) << "frame " << k;
   }
-  EXPECT_GT(rejected, 0);
-  // 0.008 J of the 0.068 J of the fall; 0.11 J where such steps were kept.
+  EXPECT_GT(fall, 0.05);
   EXPECT_LT(most_elastic, 0.3 * fall);
 }
 
 TEST(EnergyBound, EnergyThatContactBringsToAMethodThatDampsIsWarnedOfOnce) {
   scene::Scene scene = on_a_blade();
   scene.solver.halvings = 0;
+  scene.contact.response = scene::Response::velocity_constraints;  // whose way does not bend
   Simulation simulation(scene), resumed(scene);
   std::vector<std::string> warnings, after_resuming;
   for (int k = 0; k < 8; ++k) {

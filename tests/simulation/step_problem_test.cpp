@@ -46,6 +46,7 @@ class StepProblems : public ::testing::Test {
     contact.stiffness = 50;
     contact.friction = 0.4;
     contact.relative_start = Vec3(0, 0, 0.004);
+    contact.depth = 0.006;
     contact.obstacle_end = Vec3(0.001, 0, 0.005) - x_[3];
     response_.add(contact, x_);
   }

@@ -52,10 +52,6 @@ Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
   return weighted_sum(contact, x_end) + contact.obstacle_end;
 }
 
-double depth_at_start(const Contact& contact) {
-  return contact.range - contact.normal.dot(contact.relative_start);
-}
-
 // Coefficient of friction over slip, for a slip in stick slips: 2 − s while sticking, 1/s while sliding, continuous
 // with its first derivative where both coefficients are the same.
 double friction_over_slip(const Contact& contact, double slip) {
@@ -92,7 +88,7 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
     if (lag.updates < kLoadUpdates) lag.loads[c] = force;
   }
   for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
-    lag.depths.push_back(std::max(0.0, depth_at_start(contacts_[c])));
+    lag.depths.push_back(std::max(0.0, contacts_[c].depth));
     lag.loads.push_back(load_at(contacts_[c], lag.depths.back()).force);
     // What is found later has been led astray already.
     lag.drags.push_back(lag.updates > 0 ? Vec3(Vec3::Zero())

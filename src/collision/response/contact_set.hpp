@@ -20,11 +20,12 @@ struct Contact {
   bool against_obstacle = false;              ///< one side is of an obstacle
   Vec3 relative_start = Vec3::Zero();         ///< point a minus point b at the start of the step [m]
   Vec3 normal = Vec3::UnitZ();                ///< unit, from b to a at the start of the step
-  double range = 0;                           ///< r: the spring acts below this distance [m]
-  double full_range = 0;                      ///< of the two surfaces [m]; as `range` but for pairs that were closer
-  double stiffness = 0;                       ///< k [N/m]
-  double friction = 0;                        ///< Coulomb coefficient of the pair while it slides
-  double static_friction = 0;                 ///< until it slides; no less
+  double depth = 0;            ///< where its law is first taken as a tangent, below zero out of range [m]
+  double range = 0;            ///< r: the spring acts below this distance [m]
+  double full_range = 0;       ///< of the two surfaces [m]; as `range` but for pairs that were closer
+  double stiffness = 0;        ///< k [N/m]
+  double friction = 0;         ///< Coulomb coefficient of the pair while it slides
+  double static_friction = 0;  ///< until it slides; no less
 };
 
 /// What is remembered of the contacts of a step, one of each, from one iteration of Newton's method to the next.
@@ -50,7 +51,7 @@ class ContactSet {
   /// below a millisecond the two would go on chasing each other, however short the step.
   static constexpr int kLoadUpdates = 20;
 
-  static constexpr double kStiffening = 10;
+  static constexpr double kStiffening = 100;
   /// Slip speed, in stick speeds, from which friction is that of sliding; between, it falls from the static one.
   static constexpr double kSlideSpeed = 5;
 
@@ -61,7 +62,7 @@ class ContactSet {
   std::span<const Contact> contacts() const { return contacts_; }
 
   /// Before each linearisation, with the particles where the last one has led to. A contact is unknown by its force λ
-  /// as well as by its depth, f⁻¹(λ) = d (a primal–dual method; λ begins with the depth at the start of the step): its
+  /// as well as by its depth, f⁻¹(λ) = d (a primal–dual method; λ begins with `depth`): its
   /// law stands in the linear system as the tangent at f⁻¹(λ), and λ follows that tangent, but never below zero. As
   /// the tangent at the depth of the iterate, a law ~ d⁵ that is entered too deep gives up a fifth of the depth in an
   /// iteration: sphere_drape took 576 iterations in place of 462, and 256² particles did not get through an impact.

@@ -17,6 +17,7 @@ Contact over_floor(double height, double side = 1) {
   contact.relative_start = side * Vec3(0, 0, height);
   contact.against_obstacle = true;
   contact.range = contact.full_range = 0.001;
+  contact.depth = contact.range - height;
   contact.stiffness = 1000;
   return contact;
 }
