@@ -192,6 +192,22 @@ TEST(Simulation, SheetOnABallIntersectsNothingInAnyFrame) {
   EXPECT_GT(sheet_of(simulation.snapshot())[220].z(), 0.2);
 }
 
+TEST(Simulation, SheetOnABallIsSolvedDownToRounding) {
+  scene::Scene scene = sheet_on_ball();
+  scene.cloths[0].particles_weft = scene.cloths[0].particles_warp = 9;
+  scene.time.step = 0.01;
+  scene.solver.newton_tolerance = 1e-8;
+  scene.solver.linear_tolerance = 1e-4;
+  Simulation simulation(scene);
+  int rejected = 0;
+  for (int k = 0; k < 8; ++k) {
+    const FrameReport report = simulation.advance();
+    EXPECT_LT(report.solver_error, 1e-9) << "frame " << k + 1;
+    rejected += report.rejected_steps;
+  }
+  EXPECT_LE(rejected, 4);  // 2; 69 with depths of tangents to 1e-3 of their force
+}
+
 // Whatever is switched in contact.search, surfaces are found. Contacts come in another order then, so motion differs in
 // its last digits, and soon in more than that.
 class EverySearch : public ::testing::TestWithParam<void (*)(scene::Search&)> {};
