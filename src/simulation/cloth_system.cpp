@@ -8,6 +8,7 @@
 #include "core/archive.hpp"
 #include "forces/air.hpp"
 #include "forces/bend.hpp"
+#include "forces/crossed_membrane.hpp"
 #include "forces/shear.hpp"
 #include "forces/stretch.hpp"
 #include "forces/stretch_limit.hpp"
@@ -182,7 +183,12 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
                                       const scene::Physics& physics) {
   const scene::Material& material = of.material;
   const Index first = first_[cloth];
-  auto membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
+  const bool crossed = of.shape == scene::ClothShape::crossed_triangles;
+  std::unique_ptr<forces::TriangleMembrane> membrane;
+  if (crossed && bends(material))  // what does not bend does not lock
+    membrane = std::make_unique<forces::CrossedMembrane>(sheet, first, stretch_of(material), shear_of(material));
+  else
+    membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
   membranes_.push_back(membrane.get());
   if (sheet.sewn) sewing_.push_back({cloth, of.sewing, -1, membrane.get(), nullptr, nullptr});
   if (locks(material)) {
