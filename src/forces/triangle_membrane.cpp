@@ -30,7 +30,7 @@ Vec3 tension(double k, double viscosity, const Vec3& s, const Vec3& rate) {
 
 TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
                                    const ShearParameters& shear)
-    : first_(first), stretch_(stretch), shear_(shear) {
+    : stretch_(stretch), shear_(shear), first_(first) {
   for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
     Element element;
     for (std::size_t k = 0; k < 3; ++k) element.particles[k] = first + sheet.triangles[t][k];
@@ -197,21 +197,21 @@ double TriangleMembrane::energy(std::span<const Vec3> x) const {
   return sum;
 }
 
-double TriangleMembrane::strain(const Element& element, std::span<const Vec3> x) const {
-  const Gradient s = gradient(element, x);
+double TriangleMembrane::strain(std::size_t triangle, std::span<const Vec3> x) const {
+  const Gradient s = gradient(elements_[triangle], x);
   return std::max(std::abs(s.u.norm() - 1), std::abs(s.v.norm() - 1));
 }
 
 double TriangleMembrane::max_strain(std::span<const Vec3> x) const {
   double largest = 0;
-  for (const Element& element : elements_) largest = std::max(largest, strain(element, x));
+  for (std::size_t t = 0; t < elements_.size(); ++t) largest = std::max(largest, strain(t, x));
   return largest;
 }
 
 void TriangleMembrane::strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const {
-  for (const Element& element : elements_) {
-    const auto largest = static_cast<float>(strain(element, x));
-    for (Index p : element.particles) {
+  for (std::size_t t = 0; t < elements_.size(); ++t) {
+    const auto largest = static_cast<float>(strain(t, x));
+    for (Index p : elements_[t].particles) {
       float& value = heat[p - first_];
       value = std::max(value, largest);
     }

@@ -17,7 +17,7 @@ namespace weft::forces {
 ///
 /// and the same forms on the rates. Every linear map has exactly the stress of the continuum, however the triangles
 /// lie.
-class TriangleMembrane final : public Membrane {
+class TriangleMembrane : public Membrane {
  public:
   /// A triangle; s_u and s_v are linear in its corners.
   struct Element {
@@ -40,11 +40,18 @@ class TriangleMembrane final : public Membrane {
   double max_strain(std::span<const Vec3> x) const override;
   void strain_per_particle(std::span<const Vec3> x, std::span<float> heat) const override;
 
- private:
+ protected:
   /// Derivatives along weft and warp, of positions or of velocities.
   struct Gradient {
     Vec3 u, v;
   };
+  /// The larger change of length along weft and warp.
+  virtual double strain(std::size_t triangle, std::span<const Vec3> x) const;
+
+  StretchParameters stretch_;
+  ShearParameters shear_;
+
+ private:
   /// Second derivatives of the energy density by s_u and s_v, and what stands for them.
   struct Hessian {
     solver::PackedBlock uu, uv, vu, vv;
@@ -52,7 +59,6 @@ class TriangleMembrane final : public Membrane {
   static void use_rest(const Eigen::Matrix2d& inverse, Element& element);
   static Eigen::Matrix2d stretch_of(const Gradient& s);
   static Gradient gradient(const Element& element, std::span<const Vec3> x);
-  double strain(const Element& element, std::span<const Vec3> x) const;
   static void add_blocks(const Element& element, const std::array<solver::Slot, 9>& slots, const Hessian& hessian,
                          solver::BlockMatrix& matrix);
   Hessian hessian(const Gradient& s, const Gradient& rate, const Evaluation& at) const;
@@ -60,8 +66,6 @@ class TriangleMembrane final : public Membrane {
   void add_shear_hessian(const Gradient& s, const Gradient& rate, const Evaluation& at, Hessian& hessian) const;
 
   Index first_;
-  StretchParameters stretch_;
-  ShearParameters shear_;
   std::vector<Element> elements_;
   /// Of a sewn sheet: the inverse sides of each triangle in the pattern, and the stretch of its start less 1.
   struct Start {

@@ -8,6 +8,7 @@
 #include "core/archive.hpp"
 #include "forces/air.hpp"
 #include "forces/bend.hpp"
+#include "forces/crossed_membrane.hpp"
 #include "forces/shear.hpp"
 #include "forces/stretch.hpp"
 #include "forces/stretch_limit.hpp"
@@ -21,6 +22,9 @@ namespace {
 // Groups on the preconditioner's coarsest level at most. Its dense factorisation costs 9 kPatches³ operations: as much
 // as a few products with the matrix of 4,000 particles.
 constexpr Index kPatches = 70;
+// Groups longer than so many times their width grow in width only. Where they grew both ways, strips of cells of 0.1 m
+// by 1e-5 m swung with 0.8 of their energy.
+constexpr double kSlender = 2;
 
 bool meets_air(const scene::Material& m, const scene::Physics& physics) {
   return physics.air_density > 0 && m.drag > 0;
@@ -48,21 +52,43 @@ double largest_extension(const scene::Material& m) {
 
 /// A cell of a lattice across the rest shape, along its normal first and along weft last.
 using Box = std::array<int, 3>;
+struct Lattice {
+  std::vector<Box> boxes;       // one per particle, or per box of the lattice before
+  std::array<double, 3> sides;  // of a box [m]
+};
 
 // One box per particle: its place in the grid, or in a lattice as fine as the triangles are on average.
-std::vector<Box> boxes_of(const environment::ClothObject& cloth) {
-  std::vector<Box> boxes;
-  for (int j = 0; j < cloth.grid.nv; ++j)
-    for (int i = 0; i < cloth.grid.nu; ++i) boxes.push_back({0, j, i});
-  if (cloth.sheet.triangles.empty()) return boxes;
+Lattice lattice_of(const environment::ClothObject& cloth) {
+  Lattice lattice;
+  const mesh::Grid& grid = cloth.grid;
+  lattice.sides = {grid.lu, grid.lv, grid.lu};
+  for (int j = 0; j < grid.nv; ++j)
+    for (int i = 0; i < grid.nu; ++i) lattice.boxes.push_back({0, j, i});
+  if (cloth.sheet.triangles.empty()) return lattice;
   const std::vector<Vec3>& rest = cloth.sheet.rest;
   const Vec3 corner = mesh::bounding_box(rest).min();
   const double side = std::sqrt(mesh::surface_area(cloth.sheet.triangles, rest) / static_cast<double>(rest.size()));
+  lattice.sides.fill(side);
   for (const Vec3& x : rest) {
     const Vec3 place = (x - corner) / side;
-    boxes.push_back({static_cast<int>(place.z()), static_cast<int>(place.y()), static_cast<int>(place.x())});
+    lattice.boxes.push_back({static_cast<int>(place.z()), static_cast<int>(place.y()), static_cast<int>(place.x())});
   }
-  return boxes;
+  return lattice;
+}
+
+// Makes boxes twice as large, first where they are narrow: cloth is stiffest between particles that are near.
+void coarsen(Lattice& lattice) {
+  Box last{0, 0, 0};
+  for (const Box& box : lattice.boxes)
+    for (std::size_t axis = 0; axis < 3; ++axis) last[axis] = std::max(last[axis], box[axis]);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    if (last[axis] > 0) least = std::min(least, lattice.sides[axis]);
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    if (lattice.sides[axis] > kSlender * least) continue;
+    lattice.sides[axis] *= 2;
+    for (Box& box : lattice.boxes) box[axis] /= 2;
+  }
 }
 
 // Share of the way to the pattern after a share of the time: begins and ends without a jerk.
@@ -157,7 +183,12 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
                                       const scene::Physics& physics) {
   const scene::Material& material = of.material;
   const Index first = first_[cloth];
-  auto membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
+  const bool crossed = of.shape == scene::ClothShape::crossed_triangles;
+  std::unique_ptr<forces::TriangleMembrane> membrane;
+  if (crossed && bends(material))  // what does not bend does not lock
+    membrane = std::make_unique<forces::CrossedMembrane>(sheet, first, stretch_of(material), shear_of(material));
+  else
+    membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
   membranes_.push_back(membrane.get());
   if (sheet.sewn) sewing_.push_back({cloth, of.sewing, -1, membrane.get(), nullptr, nullptr});
   if (locks(material)) {
@@ -177,15 +208,15 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
     forces_[cloth].push_back(std::make_unique<forces::Air>(sheet, first, air_of(material, physics)));
 }
 
-// Two by two, again and again, until kPatches or fewer are left in all, or one of each cloth.
+// Of two by two boxes, again and again, until kPatches or fewer are left in all, or one of each cloth.
 void ClothSystem::cut_groups(const environment::Environment& environment) {
-  std::vector<std::vector<Box>> boxes;
-  for (const environment::ClothObject& cloth : environment.cloths) boxes.push_back(boxes_of(cloth));
+  std::vector<Lattice> lattices;
+  for (const environment::ClothObject& cloth : environment.cloths) lattices.push_back(lattice_of(cloth));
   do {
     solver::Grouping grouping;
-    for (std::vector<Box>& members : boxes) {
-      for (Box& box : members)
-        for (int& place : box) place /= 2;
+    for (Lattice& lattice : lattices) {
+      coarsen(lattice);
+      std::vector<Box>& members = lattice.boxes;
       std::vector<Box> halved = members;
       std::ranges::sort(halved);
       halved.erase(std::unique(halved.begin(), halved.end()), halved.end());
@@ -196,7 +227,7 @@ void ClothSystem::cut_groups(const environment::Environment& environment) {
       members = std::move(halved);
     }
     groupings_.push_back(std::move(grouping));
-  } while (groupings_.back().count > std::max(kPatches, static_cast<Index>(boxes.size())));
+  } while (groupings_.back().count > std::max(kPatches, static_cast<Index>(lattices.size())));
 }
 
 void ClothSystem::Sewing::use_share(double new_share) {

@@ -192,6 +192,22 @@ TEST(Simulation, SheetOnABallIntersectsNothingInAnyFrame) {
   EXPECT_GT(sheet_of(simulation.snapshot())[220].z(), 0.2);
 }
 
+TEST(Simulation, SheetOnABallIsSolvedDownToRounding) {
+  scene::Scene scene = sheet_on_ball();
+  scene.cloths[0].particles_weft = scene.cloths[0].particles_warp = 9;
+  scene.time.step = 0.01;
+  scene.solver.newton_tolerance = 1e-8;
+  scene.solver.linear_tolerance = 1e-4;
+  Simulation simulation(scene);
+  int rejected = 0;
+  for (int k = 0; k < 8; ++k) {
+    const FrameReport report = simulation.advance();
+    EXPECT_LT(report.solver_error, 1e-9) << "frame " << k + 1;
+    rejected += report.rejected_steps;
+  }
+  EXPECT_LE(rejected, 4);  // 2; 69 with depths of tangents to 1e-3 of their force
+}
+
 // Whatever is switched in contact.search, surfaces are found. Contacts come in another order then, so motion differs in
 // its last digits, and soon in more than that.
 class EverySearch : public ::testing::TestWithParam<void (*)(scene::Search&)> {};
@@ -293,6 +309,34 @@ scene::Scene torn_sheet() {
   scene.cloths[0].pins.push_back(pin);
   scene.physics.gravity = Vec3::Zero();
   return scene;
+}
+
+/// A strip of 1 m by 1 mm, ten cells long, held at one end, so many frames after it was let go.
+FrameReport swinging_strip(scene::Integrator integrator, int particles_across, int frames) {
+  scene::Scene scene = testing::sheet_alone(1, 11, 1);
+  scene.time.integrator = integrator;
+  scene.time.step = 0.01;
+  scene::Cloth& cloth = scene.cloths[0];
+  cloth.size = {1, 1e-3};
+  cloth.particles_warp = particles_across;
+  scene::Pin end;
+  end.high = {0, 1};
+  cloth.pins.push_back(end);
+  Simulation simulation(scene);
+  FrameReport report;
+  for (int k = 0; k < frames; ++k) report = simulation.advance();
+  return report;
+}
+
+TEST(Simulation, NeedlesSwingAsASingleRowOfCells) {
+  for (const scene::Integrator integrator : testing::kIntegrators) {
+    const FrameReport row = swinging_strip(integrator, 2, 5), needles = swinging_strip(integrator, 101, 5);
+    // Solved to default tolerances: 0.1 % apart at most. With groups that are halved along both axes, or blocks shifted
+    // by 1e-9 of their trace, 10 % and more.
+    EXPECT_NEAR(needles.kinetic_energy, row.kinetic_energy, 0.01 * row.kinetic_energy);
+    EXPECT_NEAR(needles.max_strain, row.max_strain, 0.05 * row.max_strain);
+    EXPECT_LT(needles.linear_iterations, 100);
+  }
 }
 
 TEST(Simulation, StepThatCannotBeSolvedFailsWithItsFrameAndKeepsTheLastGoodOne) {

@@ -64,9 +64,9 @@ TEST(Preconditioner, IsTheSumOverLevelsOfGalerkinProductsWithContactsInAll) {
     const std::size_t all[] = {0};
     const double product = preconditioner.apply(r, z, all);
     const Eigen::VectorXd wanted = expected * testing::flat(r);
-    // The shift of 1e-9 of the mean diagonal, times the condition of the blocks, about 1e2.
-    EXPECT_LT((testing::flat(z) - wanted).norm(), 1e-6 * wanted.norm()) << counts.size() << " levels";
-    EXPECT_NEAR(product, testing::flat(r).dot(wanted), 1e-6 * product) << counts.size() << " levels";
+    // The shift of 1e-13 of the trace, times the condition of the blocks, about 1e2.
+    EXPECT_LT((testing::flat(z) - wanted).norm(), 1e-10 * wanted.norm()) << counts.size() << " levels";
+    EXPECT_NEAR(product, testing::flat(r).dot(wanted), 1e-10 * product) << counts.size() << " levels";
   }
 }
 

@@ -41,5 +41,18 @@ TEST(CantileverStrip, ComesToTheElasticaInSecondOrder) {
   }
 }
 
+TEST(CantileverOfCrossedTriangles, HangsAsDeepWhateverItsThreadsStretch) {
+  constexpr int kCells = 16;
+  for (const double stretch : {1e2, 1e3, 1e4, 1e5}) {
+    scene::Scene scene = testing::cantilever(scene::ClothShape::crossed_triangles,
+                                             testing::overhang(10, testing::Route::density), kCells);
+    scene::Material& material = scene.cloths[0].material;
+    material.stretch_weft = material.stretch_warp = material.shear = stretch;
+    // 0.4 % at most; where each triangle kept its own lengths -11 % at 1e5 N/m.
+    const double expected = testing::kHeavyElastica[4].drop_over_reach;
+    EXPECT_NEAR(testing::drop_over_reach_of_run(scene, kCells), expected, 0.01 * expected) << stretch;
+  }
+}
+
 }  // namespace
 }  // namespace weft::simulation

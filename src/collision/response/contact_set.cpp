@@ -12,9 +12,10 @@ Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   return sum;
 }
 
-// A depth need not be exact: it says where a tangent is taken.
+// A depth says where a tangent is taken: what it is off by shows in the force as its square, below rounding. With 1e-3
+// tangents stayed where they missed the law by 1e-10 of a velocity of 1 m/s, and newton_tolerance 1e-6 was refused.
 constexpr int kDepthIterations = 30;
-constexpr double kDepthExactness = 1e-3;
+constexpr double kDepthExactness = 1e-8;
 
 struct Load {
   double force, slope;  // [N], [N/m]

@@ -1,0 +1,56 @@
+// Stretch and shear of cloth made of cells of four triangles around a middle.
+#pragma once
+
+#include "forces/triangle_membrane.hpp"
+
+namespace weft::forces {
+
+/// TriangleMembrane without its locking. Four triangles that keep their lengths keep the middle of their cell in the
+/// plane of its corners: cells stay flat, and kinks between them take what bending should. Here the height w of the
+/// middle above its corners, along the normal n of their diagonals, lengthens all four triangles alike and not each as
+/// it leans: with m' = m − w n in place of the middle m,
+///
+///     ‖s_u‖² + θ w² ⟨g_u²⟩ in place of ‖s_u‖²,   likewise along v,
+///
+/// g the gradient of the middle's weight, averaged over the cell, and θ a tenth: tension still draws middles flat. In
+/// the plane nothing changes. (Averages against locking: Chen et al., "Locking-free Simulation of Isometric Thin
+/// Plates", 2019, of strains around vertices.)
+class CrossedMembrane final : public TriangleMembrane {
+ public:
+  /// The sheet's triangles are cells, four by four: (a, b, m), (b, c, m), (c, d, m), (d, a, m).
+  CrossedMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
+                  const ShearParameters& shear);
+
+  void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
+  void attach(const solver::BlockMatrix& matrix) override;
+  /// The matrix is that of Gauss and Newton and of the stresses, without what they turn n by, for every linearisation.
+  void add(const Evaluation& at) const override;
+  double energy(std::span<const Vec3> x) const override;
+
+ private:
+  /// Four corners and the middle.
+  struct Cell {
+    std::array<Index, 5> particles;
+    double bulge_u = 0, bulge_v = 0;  // θ ⟨g_u²⟩, θ ⟨g_v²⟩ [1/m²]
+  };
+  using Five = std::array<Vec3, 5>;
+  /// A cell as it lies, or as it moves.
+  struct State {
+    Five flat;          // corners and m'
+    double height = 0;  // w
+    Vec3 normal, lean;  // n, and the middle less the mean of the corners
+    std::array<Vec3, 2> diagonals;
+    double size = 0;  // of their cross product
+  };
+  double strain(std::size_t triangle, std::span<const Vec3> x) const override;
+  State state_of(const Cell& cell, std::span<const Vec3> x) const;
+  static Gradient gradient_of(const Element& element, const Five& flat, std::size_t k);
+  static void pull_back(const State& state, Five& force, double along_height);
+  void push_forward(const Cell& cell, const State& state, std::span<const Vec3> v, Five& flat, double& height) const;
+  void add_matrix(std::size_t cell, const State& state, const Evaluation& at) const;
+
+  std::vector<Cell> cells_;
+  std::vector<std::array<solver::Slot, 25>> cell_slots_;
+};
+
+}  // namespace weft::forces

@@ -1,0 +1,109 @@
+// The membrane of crossed cells: exact where it must be, and in the plane that of its triangles.
+#include "forces/crossed_membrane.hpp"
+
+#include <gtest/gtest.h>
+
+#include "forces/sheets.hpp"
+
+namespace weft::forces {
+namespace {
+
+using testing::kGrid;
+using testing::Positions;
+
+constexpr double kStiffness = 1000;  // [N/m]
+
+mesh::Sheet crossed_sheet() {
+  return mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::crossed));
+}
+
+StretchParameters stretch(double viscosity) {
+  return {kStiffness, 0.7 * kStiffness, viscosity};
+}
+ShearParameters shear(double viscosity) {
+  return {0.3 * kStiffness, 0.5 * viscosity};
+}
+
+/// Off their places by up to `size` [m], in the plane or anywhere.
+Positions crumpled(const mesh::Sheet& sheet, double size, bool in_plane) {
+  Positions x = sheet.rest;
+  const Positions noise = testing::random_vectors(x.size(), size, 5);
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += in_plane ? Vec3(noise[i].x(), noise[i].y(), 0) : noise[i];
+  return x;
+}
+
+TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
+  const mesh::Sheet sheet = crossed_sheet();
+  const CrossedMembrane membrane(sheet, 0, stretch(0), shear(0));
+  const Positions x = crumpled(sheet, 0.006, false), f = testing::force_of(membrane, x, testing::zeros(x));
+  double largest = 0;
+  for (const Vec3& force : f) largest = std::max(largest, force.norm());
+  constexpr double kStep = 1e-7;
+  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    sum += f[i], moment += x[i].cross(f[i]);
+    for (int axis = 0; axis < 3; ++axis) {
+      Positions more = x, less = x;
+      more[i][axis] += kStep, less[i][axis] -= kStep;
+      // Third derivatives times kStep², and energies of 1e-2 J rounded, over kStep: 1e-9.
+      EXPECT_NEAR(f[i][axis], (membrane.energy(less) - membrane.energy(more)) / (2 * kStep), 1e-7 * largest);
+    }
+  }
+  EXPECT_LT(sum.norm(), 1e-12 * largest);
+  EXPECT_LT(moment.norm(), 1e-12 * largest);
+}
+
+TEST(CrossedMembrane, IsThatOfItsTrianglesInThePlane) {
+  const mesh::Sheet sheet = crossed_sheet();
+  const CrossedMembrane crossed(sheet, 0, stretch(2), shear(2));
+  const TriangleMembrane plain(sheet, 0, stretch(2), shear(2));
+  const Positions x = testing::moved_rigidly(crumpled(sheet, 0.004, true));
+  const Positions v = testing::rigid_velocities(crumpled(sheet, 0.5, true));
+  EXPECT_NEAR(crossed.energy(x), plain.energy(x), 1e-12 * plain.energy(x));
+  EXPECT_NEAR(crossed.max_strain(x), plain.max_strain(x), 1e-12);
+  const Positions a = testing::force_of(crossed, x, testing::zeros(x)),
+                  b = testing::force_of(plain, x, testing::zeros(x));
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((a[i] - b[i]).norm(), 1e-11 * kStiffness * 0.02);
+}
+
+TEST(CrossedMembrane, ViscosityTakesEnergyAndNoneFromRigidMotion) {
+  const mesh::Sheet sheet = crossed_sheet();
+  const CrossedMembrane elastic(sheet, 0, stretch(0), shear(0)), viscous(sheet, 0, stretch(2), shear(2));
+  const Positions x = crumpled(sheet, 0.006, false), rest = testing::force_of(elastic, x, testing::zeros(x));
+  const auto power = [&](const Positions& v) {
+    const Positions f = testing::force_of(viscous, x, v);
+    double sum = 0, size = 0;
+    for (std::size_t i = 0; i < x.size(); ++i)
+      sum += (f[i] - rest[i]).dot(v[i]), size = std::max(size, (f[i] - rest[i]).norm());
+    return Vec2(sum, size);
+  };
+  EXPECT_LT(power(testing::random_vectors(x.size(), 1, 9)).x(), -1e-3);
+  EXPECT_LT(power(testing::rigid_velocities(x)).y(), 1e-11);
+}
+
+TEST(CrossedMembrane, MatrixIsTheJacobianWhereNothingIsStressedAndNeverIndefinite) {
+  const mesh::Sheet sheet = crossed_sheet();
+  CrossedMembrane membrane(sheet, 0, stretch(0), shear(0));
+  const Positions flat = sheet.rest, v = testing::zeros(flat);
+  const Eigen::MatrixXd k = testing::stiffness_of(membrane, flat, v, 0, Linearisation::definite);
+  constexpr double kStep = 1e-7;
+  for (std::size_t i = 0; i < flat.size(); ++i)
+    for (int axis = 0; axis < 3; ++axis) {
+      Positions more = flat, less = flat;
+      more[i][axis] += kStep, less[i][axis] -= kStep;
+      const Positions f_more = testing::force_of(membrane, more, v), f_less = testing::force_of(membrane, less, v);
+      for (std::size_t j = 0; j < flat.size(); ++j) {
+        const Vec3 difference = (f_less[j] - f_more[j]) / (2 * kStep);
+        const auto row = 3 * static_cast<Eigen::Index>(j), column = 3 * static_cast<Eigen::Index>(i) + axis;
+        EXPECT_LT((k.block<3, 1>(row, column) - difference).norm(), 1e-4 * kStiffness);  // lateral stress of kStep
+      }
+    }
+  for (const Linearisation form : {Linearisation::definite, Linearisation::abs_projected}) {
+    const Eigen::MatrixXd m = testing::stiffness_of(membrane, crumpled(sheet, 0.006, false), v, 0, form);
+    EXPECT_LT((m - m.transpose()).norm(), 1e-12 * m.norm());
+    EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(m).eigenvalues().minCoeff(), -1e-12 * m.norm());
+  }
+}
+
+}  // namespace
+}  // namespace weft::forces
