@@ -74,6 +74,17 @@ std::string markdown(const Table& table) {
   return text;
 }
 
+int Tally::wrong() const {
+  return of_[static_cast<std::size_t>(Verdict::unbounded)] + of_[static_cast<std::size_t>(Verdict::not_finite)];
+}
+
+std::string Tally::text() const {
+  std::string text;
+  for (std::size_t k = 0; k < kVerdicts; ++k)
+    text += fmt::format("{}{} {}", k > 0 ? ", " : "", of_[k], describe(static_cast<Verdict>(k)));
+  return text;
+}
+
 Table map_table(const std::vector<MapCell>& cells) {
   Table table{{"integrator", "stiffness_n_per_m", "step_s", "verdict", "swings", "stiffest_periods", "steps",
                "rejected_steps", "newton_a_step", "energy_gain", "max_strain", "cpu_s", "reason"}};

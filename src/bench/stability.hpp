@@ -16,6 +16,7 @@ enum class Verdict {
   unbounded,  ///< the same without a word
   not_finite,
 };
+inline constexpr std::size_t kVerdicts = 5;
 std::string_view describe(Verdict verdict);
 
 struct Outcome {

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <array>
 #include <cstdio>
 
 #include "bench/accuracy_report.hpp"
@@ -19,23 +18,13 @@
 namespace weft::cli {
 namespace {
 
-/// How often each verdict was given.
-struct Count {
-  std::array<int, 4> of{};
-  void add(bench::Verdict verdict) { ++of[static_cast<std::size_t>(verdict)]; }
-  int wrong() const { return of[2] + of[3]; }
-  std::string text() const {
-    return fmt::format("{} solved, {} refused by name, {} unbounded, {} not finite", of[0], of[1], of[2], of[3]);
-  }
-};
-
 bench::Outcome try_case(const bench::ExtremeCase& extreme) {
   scene::LoadResult loaded = scene::load_text(extreme.text, extreme.name + ".toml");
   if (!loaded.ok()) throw Error(ExitCode::internal, "{}", loaded.describe());
   return bench::try_scene(loaded.scene, extreme.frames, extreme.limit);
 }
 
-bench::Table try_cases(const std::filesystem::path& folder, Count& count) {
+bench::Table try_cases(const std::filesystem::path& folder, bench::Tally& count) {
   bench::Table table{{"case", "what", "verdict", "frames", "steps", "rejected", "Newton a step", "energy gain",
                       "max speed m/s", "CPU s", "reason"}};
   for (const bench::ExtremeCase& extreme : bench::extreme_cases()) {
@@ -66,7 +55,7 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
   std::vector<std::string> names{"stability.md", "stability_map.csv", "stability_map.svg", "stability_cases.csv"};
   for (const bench::ExtremeCase& extreme : bench::extreme_cases()) names.push_back("scenes/" + extreme.name + ".toml");
   check_outputs(paths, options, folder, names);
-  Count map_count, case_count;
+  bench::Tally map_count, case_count;
   log::info("stability: the map");
   double map_cpu_s = 0;
   const auto cells = bench::stability_map([&](const bench::MapCell& cell) {

@@ -78,6 +78,8 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   }
   builder_.add(proximities_, pinched_, {x_t0, x_t0, x_t1, h}, response_);
   if (!apart(x_t0, x_t1)) adopt_failing(x_t0, x_t1);
+  if (response_.lean(x_t1, 0.5 * candidates_.reach(), leaning_) && !apart(x_t0, leaning_))
+    adopt_failing(x_t0, leaning_);
   response_.prepare(x_t0, x_t1);
 }
 

@@ -109,6 +109,7 @@ class Engine {
   std::optional<CoherentDetection> coherence_;  // keeps pairs and closest points in place of the cache, where wanted
   ContactBuilder builder_;
   ContactResponse response_;
+  std::vector<Vec3> leaning_;
   PinchedPairs pinched_;
   CarriedStarts carried_;
 

@@ -75,6 +75,15 @@ TEST(Stability, PeriodsAreThoseOfAPlateAndOfAChain) {
   EXPECT_NEAR(stiffest_period(1000), 2 * std::numbers::pi / (2 * std::sqrt(1000 / (0.2 * 0.05 * 0.05))), 1e-12);
 }
 
+TEST(Report, TallyCountsEachVerdictAndWhatIsWrong) {
+  Tally tally;
+  for (const Verdict verdict :
+       {Verdict::solved, Verdict::solved, Verdict::refused, Verdict::warned, Verdict::unbounded, Verdict::not_finite})
+    tally.add(verdict);
+  EXPECT_EQ(tally.text(), "2 solved, 1 refused, 1 warned of, 1 unbounded, 1 not finite");
+  EXPECT_EQ(tally.wrong(), 2);
+}
+
 TEST(Report, FieldsWithCommasQuotesAndLinesAreQuoted) {
   EXPECT_EQ(csv({{"a", "b"}, {"1,2", "say \"x\""}, {"two\nlines", ""}}),
             "a,b\n\"1,2\",\"say \"\"x\"\"\"\n\"two\nlines\",\n");

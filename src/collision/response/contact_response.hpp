@@ -29,6 +29,10 @@ class ContactResponse {
   void add(const Contact& contact, std::span<const Vec3> x_t0);
   /// Holds a corner of a triangle of cloth that would meet an obstacle; only with velocity constraints.
   void add_wall(const Contact& contact, std::span<const Vec3> x_t0);
+  /// As that of VelocityConstraints; false with springs.
+  bool lean(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& leaning) const {
+    return walls_ && walls_->lean(x_t1, by, leaning);
+  }
   /// When all contacts known before the first solve are there.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 

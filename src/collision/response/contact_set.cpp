@@ -75,6 +75,14 @@ Vec3 slip_of(const Contact& contact, const Vec3& relative) {
 
 }  // namespace
 
+Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w) {
+  const double size = slip.norm();
+  if (size == 0) return across;
+  const Vec3 u = slip / size;
+  if (w.squaredNorm() > 1) w.normalize();
+  return across - 0.5 * (w * u.transpose() + u * w.transpose());
+}
+
 void ContactSet::add(const Contact& contact) {
   contacts_.push_back(contact);
   contacts_.back().static_friction = std::max(contact.friction, contact.static_friction);
@@ -133,18 +141,13 @@ Vec3 ContactSet::friction_against_load(const Contact& contact, const Vec3& slip)
   return friction_over_slip(contact, in_sticks.norm()) * in_sticks;
 }
 
-// λ/ψ (I − ψ' sym(w ûᵀ)) across the normal; definite, as ψ' ‖w‖ is kept to 1.
+// λ/ψ times the tangent.
 Mat3 ContactSet::friction_stiffness(std::size_t index, const Response& response, const ContactLag& lag) const {
   if (response.sliding == 0) return Mat3::Zero();
   const Contact& contact = contacts_[index];
-  Mat3 across = Mat3::Identity() - contact.normal * contact.normal.transpose();
-  if (const double size = response.slip.norm(); size > 0) {
-    const Vec3 u = response.slip / size;
-    Vec3 w = growth_of_slip_over_friction(contact, size / stick_slip_) * lag.drags[index];
-    if (w.squaredNorm() > 1) w.normalize();
-    across -= 0.5 * (w * u.transpose() + u * w.transpose());
-  }
-  return response.sliding * across;
+  const double growth = growth_of_slip_over_friction(contact, response.slip.norm() / stick_slip_);
+  return response.sliding * friction_tangent(Mat3::Identity() - contact.normal * contact.normal.transpose(),
+                                             response.slip, growth * lag.drags[index]);
 }
 
 void ContactSet::add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {

@@ -36,6 +36,10 @@ struct ContactLag {
   int updates = 0;             ///< since the step began
 };
 
+/// I − sym(w ûᵀ) in the directions `across` the normal, w being kept to a length of 1 so that this is definite: of
+/// friction −λ w' of a slip u = ψ(‖u‖) w', against λ/ψ, with w = ψ' w'. See ContactSet::linearise.
+Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w);
+
 /// Force of a contact: k d (1 + kStiffening (d / r)⁴) for a depth d = r − g of the gap g = n·(a − b) < r, from d = r on
 /// with the slope that it has there; n is kept from the start of the step: convex, with a Jacobian of rank one. A
 /// linear spring of cotton gives 0.1 N before the gap is closed, and a sheet that lies on the tip of a cone weighs 1 N.

@@ -42,6 +42,11 @@ bool feasible(std::span<const HalfSpace> all, const Vec3& u, double slack) {
   return std::all_of(all.begin(), all.end(), [&](const HalfSpace& h) { return h.normal.dot(u) >= h.bound - slack; });
 }
 
+// Share of Coulomb's limit over slip, for a slip in stick slips.
+double friction_over_slip(double slip) {
+  return slip < 1 ? 2 - slip : 1 / slip;
+}
+
 }  // namespace
 
 VelocityConstraints::VelocityConstraints(std::vector<double> masses)
@@ -153,6 +158,17 @@ void VelocityConstraints::hold(Touched& particle, const Vec3& u, Held held) {
   }
 }
 
+bool VelocityConstraints::lean(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& leaning) const {
+  bool any = false;
+  for (Index particle : remembered_) {
+    if (touched_of_[particle] >= 0) continue;
+    if (!any) leaning.assign(x_t1.begin(), x_t1.end());
+    any = true;
+    leaning[particle] -= by * memory_[particle].push.normalized();
+  }
+  return any;
+}
+
 void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   for (Touched& particle : touched_) {
     const Index i = particle.particle;
@@ -169,6 +185,8 @@ void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Ve
     }
     hold(particle, u, held);
     particle.friction_load = particle.memory.load;
+    const Vec3 slips = slip(particle, x_t1[i]) / (ContactSet::kStickSpeed * step_);
+    particle.drag = friction_over_slip(slips.norm()) * slips;
   }
   prescribe();
 }
@@ -303,11 +321,15 @@ Vec3 VelocityConstraints::slip(const Touched& particle, const Vec3& x_end) const
 }
 
 VelocityConstraints::Friction VelocityConstraints::friction(const Touched& particle, const Vec3& x_end) const {
-  const Vec3 s = slip(particle, x_end);
-  const double size = s.norm(), stick_slip = ContactSet::kStickSpeed * step_;
-  const double over_slip = size < stick_slip ? (2 - size / stick_slip) / stick_slip : 1 / size;
-  const double sliding = walls_[main_wall(particle)].friction * particle.friction_load * over_slip;
-  return {-sliding * s, sliding * free_directions(particle)};
+  const double stick_slip = ContactSet::kStickSpeed * step_;
+  const Vec3 slips = slip(particle, x_end) / stick_slip;
+  const double size = slips.norm();
+  const double limit = walls_[main_wall(particle)].friction * particle.friction_load;
+  const double sliding = limit * friction_over_slip(size);
+  const Mat3 free = free_directions(particle);
+  // By so much slip over friction grows with the slip.
+  const double growth = size < 1 ? 1 / ((2 - size) * (2 - size)) : 1;
+  return {-sliding * slips, sliding / stick_slip * friction_tangent(free, slips, growth * (free * particle.drag))};
 }
 
 void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const {

@@ -55,6 +55,12 @@ class VelocityConstraints {
   void add(Index particle, const Vec3& normal, double distance, double d_min, const Vec3& motion, double friction,
            double static_friction = 0);
 
+  /// Whether there are particles that walls held at the end of the last step and that have none now: corners of
+  /// triangles, whose walls are found where the triangle would meet an obstacle. `leaning` is x_t1 then, with these
+  /// particles moved `by` so much [m] to where the wall was: without it they would be let go by the first solve, in
+  /// step after step.
+  bool lean(std::span<const Vec3> x_t1, double by, std::vector<Vec3>& leaning) const;
+
   /// Which walls hold in the first solve: those that held at the end of the last step, and those that the particle
   /// would pass if it moved from x_t0 to x_t1.
   void prepare(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
@@ -70,8 +76,8 @@ class VelocityConstraints {
 
   /// force += friction of the sliding particles at x_end [N].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
-  /// As add_forces, and adds force over slip to the matrix, where x_end changes by `end_rate` per change of the
-  /// unknown.
+  /// As add_forces, and adds −∂f/∂x to the matrix, where x_end changes by `end_rate` per change of the unknown; in a
+  /// form that is definite, that of ContactSet::linearise.
   void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 
@@ -112,6 +118,7 @@ class VelocityConstraints {
     Vec3 x_t0 = Vec3::Zero();
     Vec3 u_held = Vec3::Zero();  // prescribed displacement [m], as far as held
     double friction_load = 0;    // that friction of this solve goes by [N]
+    Vec3 drag = Vec3::Zero();    // friction against its limit at unchanged velocity, where the step begins its search
     int flips = 0;               // changes of what holds it, in this step
     bool stops = false;          // slides so slowly that it sticks in the next step
   };
@@ -123,7 +130,7 @@ class VelocityConstraints {
   Mat3 free_directions(const Touched& particle) const;
   struct Friction {
     Vec3 force;
-    Mat3 stiffness;  // force over slip in the free directions [N/m]
+    Mat3 stiffness;  // −∂f/∂x, definite [N/m]
   };
   Friction friction(const Touched& particle, const Vec3& x_end) const;
   Vec3 slip(const Touched& particle, const Vec3& x_end) const;

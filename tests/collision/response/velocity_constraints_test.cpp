@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
 #include <cmath>
 #include <vector>
 
@@ -139,6 +140,65 @@ TEST(VelocityConstraints, SlidingThatStopsSticksUntilTheForceLeavesTheFrictionCo
     const Vec3 expected = tangential > 1 ? Vec3(kMu * weight, 0, 0) : Vec3(Vec3::Zero());
     EXPECT_LT((force[0] - expected).norm(), 1e-12 * weight);
   }
+}
+
+TEST(VelocityConstraints, LeanToWallsThatHeldAndAreNotThereNow) {
+  OneParticle particle;
+  std::vector<Vec3> leaning;
+  particle.wall(Vec3::UnitZ(), kDMin);
+  particle.x_t1[0] = Vec3(0, 0, -1e-4);
+  EXPECT_FALSE(particle.constraints.lean(particle.x_t1, 0.001, leaning));
+  particle.prepare();
+  particle.revise(Vec3::Zero(), kMass * kGravity * Vec3::UnitZ());
+  particle.constraints.accept();
+  particle.constraints.begin_step(kStep);
+  EXPECT_TRUE(particle.constraints.lean(particle.x_t1, 0.001, leaning));
+  EXPECT_LT((leaning[0] - Vec3(0, 0, -1.1e-3)).norm(), 1e-18);
+  particle.wall(Vec3::UnitZ(), kDMin);
+  EXPECT_FALSE(particle.constraints.lean(particle.x_t1, 0.001, leaning));
+}
+
+// Sliding and sticking slips (the stick slip is 2e-6 m), with the obstacle moving.
+TEST(VelocityConstraints, JacobianOfSlidingIsExactWhereItGoesOnAndNeverTooSoftWhereItBegins) {
+  constexpr double kMu = 0.5, kDelta = 1e-10;
+  const double weight = kMass * kGravity;
+  const Vec3 motion(1e-4, 0, 0);
+  for (const bool goes_on : {true, false})
+    for (const Vec3& slip : {Vec3(-0.001, 0.0004, 0), Vec3(3e-7, 4e-7, 0)}) {
+      OneParticle particle;
+      // At rest for two steps, pulled out of the cone, sliding.
+      for (int step = 0; step < 4; ++step) {
+        particle.constraints.begin_step(kStep);
+        particle.wall(Vec3::UnitZ(), kDMin, motion, kMu);
+        particle.x_t1[0] = motion + Vec3(0, 0, -1e-4);
+        if (step == 3 && goes_on) particle.x_t1[0] += slip;
+        particle.prepare();
+        if (step == 3) break;
+        particle.revise(motion, weight * Vec3(step == 2 ? 2 * kMu : 0, 0, 1));
+        particle.constraints.accept();
+      }
+      const auto force_at = [&](const Vec3& slid) {
+        std::vector<Vec3> force{Vec3::Zero()};
+        particle.constraints.add_forces(std::vector<Vec3>{motion + slid}, force);
+        return force[0];
+      };
+      ASSERT_NEAR(force_at(slip).norm(), weight * kMu * (slip.norm() < 1e-6 ? 0.4375 : 1), 1e-9 * weight);
+      std::vector<Vec3> force{Vec3::Zero()};
+      solver::LinearSystem system;
+      particle.constraints.linearise(std::vector<Vec3>{motion + slip}, 2, force, system);
+      ASSERT_EQ(system.diagonal_terms.size(), 1U);
+      EXPECT_EQ(force[0], force_at(slip));
+      Mat3 exact;
+      for (int k = 0; k < 3; ++k)
+        exact.col(k) = (force_at(slip - kDelta * Vec3::Unit(k)) - force_at(slip + kDelta * Vec3::Unit(k))) / kDelta;
+      const Mat3 got = system.diagonal_terms[0].stiffness;
+      // Rounding of differences: 1e-16 of the force over 1e-10 m, and the third derivative.
+      const double size = 2 * weight * kMu / slip.norm();
+      if (goes_on)
+        EXPECT_LT((got - exact).norm(), 1e-4 * size);
+      else
+        EXPECT_GT(Eigen::SelfAdjointEigenSolver<Mat3>(got - exact).eigenvalues().minCoeff(), -1e-4 * size);
+    }
 }
 
 }  // namespace
