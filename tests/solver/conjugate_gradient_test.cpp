@@ -291,6 +291,109 @@ TEST(ConjugateGradient, ErrorsCountAsFarAsTheyShowInTheMetric) {
   EXPECT_GT(report.errors[0], 0.99 * testing::flat(x).norm());
 }
 
+// A sheet of kSide × kSide with springs of this stiffness to its neighbours, against a metric of 1, and bending beside:
+// rows sum up to the metric.
+constexpr Index kSide = 12;
+LinearSystem sheet(double stiffness, Random& random) {
+  BlockMatrix::Couplings links, bends;
+  for (Index i = 0; i < kSide * kSide; ++i) {
+    if (i % kSide > 0) links.emplace_back(i - 1, i);
+    if (i >= kSide) links.emplace_back(i - kSide, i);
+    if (i % kSide > 1) bends.emplace_back(i - 2, i);
+  }
+  LinearSystem system;
+  system.matrix = BlockMatrix(kSide * kSide, links, bends);
+  BlockMatrix& matrix = system.matrix;
+  for (Index i = 0; i < matrix.rows(); ++i) matrix.add_scalar(matrix.diagonal(i), 1);
+  for (const auto& [i, j] : links) {
+    const Vec3 n = random.vector().normalized();
+    const Mat3 spring = stiffness * n * n.transpose();
+    for (Index k : {i, j}) matrix.add(matrix.diagonal(k), spring);
+    matrix.subtract(matrix.slot(i, j), spring);
+    matrix.subtract(matrix.slot(j, i), spring);
+  }
+  for (const auto& [i, j] : bends) {
+    for (Index k : {i, j}) matrix.add_scalar(matrix.diagonal(k), 0.1);
+    matrix.add_scalar(matrix.slot(i, j), -0.1);
+    matrix.add_scalar(matrix.slot(j, i), -0.1);
+  }
+  system.metric.assign(static_cast<std::size_t>(matrix.rows()), 1);
+  const Vec3 n = random.vector().normalized();
+  system.constraints = {{0, Mat3::Zero()}, {kSide - 1, Mat3::Identity() - n * n.transpose()}};
+  system.diagonal_terms = {{30, stiffness * n * n.transpose()}};
+  system.terms = {{{50, 75, 76, 87}, {-1, 0.4, 0.3, 0.3}, stiffness * n * n.transpose()}};
+  cut_groups(system, {36, 9});
+  return system;
+}
+
+// Systems with a metric are solved in single precision, others in double.
+TEST(ConjugateGradient, InSinglePrecisionIsAsExactAsItSaysAndAsFastAsInDouble) {
+  for (const double stiffness : {1.0, 1e3, 1e5, 1e6}) {
+    Random random(51);
+    const LinearSystem single = sheet(stiffness, random);
+    LinearSystem in_double = single;
+    in_double.metric.clear();
+    const auto b = random.vectors(single.matrix.rows());
+    const Eigen::VectorXd expected = direct_solution(single, b);
+    const Eigen::MatrixXd a = dense_with_terms(single);
+    const auto energy = [&](const Eigen::VectorXd& e) { return std::sqrt(e.dot(a * e)); };
+    for (const double share : {0.1, 0.01, 1e-3}) {
+      std::vector<Vec3> x(b.size()), y(b.size());
+      ConjugateGradient cg, other;
+      cg.prepare(single);
+      other.prepare(in_double);
+      const LinearReport report = cg.solve(b, {share}, 1000, x), reference = other.solve(b, {share}, 1000, y);
+      EXPECT_TRUE(report.converged);
+      // As many, but for those that end in double with the factor, and begin there anew: 167 for 149.
+      EXPECT_NEAR(report.iterations, reference.iterations, 1 + reference.iterations / 6);
+      // What single precision adds is below what was asked for.
+      EXPECT_LT(energy(testing::flat(x) - expected), energy(testing::flat(y) - expected) + share * energy(expected))
+          << stiffness << " to " << share;
+      EXPECT_EQ(x[0], Vec3::Zero());
+      const Vec3 entry = single.constraints[1].free * x[kSide - 1];
+      EXPECT_LT((entry - x[kSide - 1]).norm(), 1e-14 * entry.norm());
+    }
+  }
+}
+
+TEST(ConjugateGradient, SinglePrecisionLeavesToDoubleWhatIsBeyondIt) {
+  // Tighter than its reach, by an absolute size and by a share; and springs that it would round to more than the
+  // metric.
+  for (const double stiffness : {1e3, 1e6, 1e10}) {
+    Random random(52);
+    const LinearSystem system = sheet(stiffness, random);
+    const auto b = random.vectors(system.matrix.rows());
+    const Eigen::VectorXd expected = direct_solution(system, b);
+    for (const double absolute : {0.0, 1e-8}) {
+      std::vector<Vec3> x(b.size());
+      ConjugateGradient cg;
+      cg.prepare(system);
+      const double allowed[] = {absolute};
+      const LinearGoal goal = absolute > 0 ? LinearGoal{0, allowed} : LinearGoal{1e-10};
+      EXPECT_TRUE(cg.solve(b, goal, 5000, x).converged) << stiffness;
+      // Of a solution of norm 10; with 1e10 roundings of 1e-16 times that are in it, and in the direct solution.
+      EXPECT_LT((testing::flat(x) - expected).norm(), stiffness > 1e9 ? 1e-4 : 1e-7) << stiffness;
+    }
+  }
+}
+
+TEST(ConjugateGradient, MotionThatAllShareIsExactInSinglePrecisionHoweverStiffTheThreads) {
+  Random random(53);
+  LinearSystem system = sheet(1e6, random);
+  system.constraints.clear();
+  system.terms.clear();
+  system.diagonal_terms.clear();
+  // All blocks sum up to the metric, so this is what moves all by (1, 2, 3).
+  const std::vector<Vec3> b(system.metric.size(), Vec3(1, 2, 3));
+  std::vector<Vec3> x(b.size());
+  ConjugateGradient cg;
+  cg.prepare(system);
+  const LinearReport report = cg.solve(b, {0.1}, 100, x, b);
+  EXPECT_LE(report.iterations, 1);
+  // Sums of eight blocks in double leave 1e-10 of 1e6, and numbers are rounded by 6e-8.
+  for (const Vec3& v : x) EXPECT_LT((v - Vec3(1, 2, 3)).norm(), 1e-6);
+}
+
 TEST(ConjugateGradient, BeginsWithTheBestMultipleOfADirection) {
   Random random(36);
   const LinearSystem system = testing::random_system(40, 30, random);
