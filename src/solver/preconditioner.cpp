@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <utility>
 
 #include "core/parallel.hpp"
@@ -17,6 +18,11 @@ constexpr std::size_t kMaxLevels = 12;
 // Where constraints leave a group no motion its block is zero, and so is its residual: a shift of the diagonal by this
 // share of its mean makes it definite.
 constexpr double kSingularShift = 1e-9;
+
+// Share of its neighbours in the groups that a member is interpolated from.
+constexpr double kSmoothing = 0.6;
+// Share of the strain between groups that is left where it is spread over them, from level to level.
+constexpr double kSpread = 0.5;
 
 std::size_t index(Index i) {
   return static_cast<std::size_t>(i);
@@ -88,13 +94,6 @@ void Preconditioner<Real>::prepare_levels() {
       level.group_of = levels_[l - 1].group_of;
       for (Index& group : level.group_of) group = grouping.of[index(group)];
     }
-    level.start.assign(index(grouping.count) + 1, 0);
-    for (Index group : grouping.of) ++level.start[index(group) + 1];
-    for (std::size_t g = 0; g < index(grouping.count); ++g) level.start[g + 1] += level.start[g];
-    level.members.resize(grouping.of.size());
-    std::vector<Index> next = level.start;
-    for (std::size_t m = 0; m < grouping.of.size(); ++m)
-      level.members[index(next[index(grouping.of[m])]++)] = static_cast<Index>(m);
     level.parent = l + 1 < levels_.size() ? system_->groupings[l + 1].of : std::vector<Index>();
     level.of_matrix.assign(index(grouping.count), Mat3::Zero());
     level.touched.assign(index(grouping.count), 0);
@@ -110,7 +109,69 @@ void Preconditioner<Real>::prepare_levels() {
   if (levels_.empty()) return;
   const Index size = 3 * system_->groupings.back().count;
   patches_of_matrix_.setZero(size, size);
+  find_weights();
   find_shared_levels();
+}
+
+template <class Real>
+typename Preconditioner<Real>::Weights Preconditioner<Real>::Weights::transposed(std::size_t rows) const {
+  Weights result;
+  result.start.assign(rows + 1, 0);
+  for (Index column : columns) ++result.start[index(column) + 1];
+  std::partial_sum(result.start.begin(), result.start.end(), result.start.begin());
+  result.columns.resize(columns.size());
+  result.values.resize(values.size());
+  std::vector<Index> next = result.start;
+  for (std::size_t row = 0; row + 1 < start.size(); ++row)
+    for (Index s = start[row]; s < start[row + 1]; ++s) {
+      const Index to = next[index(columns[s])]++;
+      result.columns[index(to)] = static_cast<Index>(row);
+      result.values[index(to)] = values[s];
+    }
+  return result;
+}
+
+// From full blocks: who shares one is a neighbour, and so are groups that neighbours are in.
+template <class Real>
+void Preconditioner<Real>::find_weights() {
+  const BlockMatrix::Pattern& full = system_->matrix.full();
+  std::vector<std::vector<Index>> neighbours(inverse_.size());
+  for (std::size_t i = 0; i < neighbours.size(); ++i)
+    for (Index s = full.start[i]; s < full.start[i + 1]; ++s)
+      if (full.columns[s] != static_cast<Index>(i)) neighbours[i].push_back(full.columns[s]);
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    const Grouping& grouping = system_->groupings[l];
+    std::vector<std::vector<Index>> next(index(grouping.count));
+    Weights weights;
+    weights.start.assign(1, 0);
+    for (std::size_t m = 0; m < neighbours.size(); ++m) {
+      const Index own = grouping.of[m];
+      std::vector<Index> groups;
+      for (Index n : neighbours[m]) groups.push_back(grouping.of[index(n)]);
+      const double share = groups.empty() ? 0 : kSmoothing / static_cast<double>(groups.size());
+      groups.push_back(own);
+      std::ranges::sort(groups);
+      for (auto first = groups.begin(); first != groups.end();) {
+        const auto last = std::upper_bound(first, groups.end(), *first);
+        const auto count = static_cast<double>(last - first);
+        const double weight = *first != own        ? share * count
+                              : groups.size() == 1 ? 1
+                                                   : 1 - kSmoothing + share * (count - 1);
+        weights.columns.push_back(*first);
+        weights.values.push_back(static_cast<Real>(weight));
+        if (*first != own) next[index(own)].push_back(*first);
+        first = last;
+      }
+      weights.start.push_back(static_cast<Index>(weights.columns.size()));
+    }
+    for (std::vector<Index>& of_group : next) {
+      std::ranges::sort(of_group);
+      of_group.erase(std::unique(of_group.begin(), of_group.end()), of_group.end());
+    }
+    levels_[l].of_members = weights.transposed(index(grouping.count));
+    levels_[l].of_groups = std::move(weights);
+    neighbours = std::move(next);
+  }
 }
 
 template <class Real>
@@ -173,8 +234,8 @@ void Preconditioner<Real>::invert_particles() {
   });
 }
 
-// The blocks of a part of the matrix, each into the first group that has both its row and its column, from there into
-// larger and larger ones.
+// The blocks of a part of the matrix but its metric, each into the first group that has both its row and its column,
+// from there into larger and larger ones.
 template <class Real>
 void Preconditioner<Real>::sum_blocks(std::size_t part) {
   const std::size_t depth = levels_.size();
@@ -196,6 +257,7 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
   for (Index i = parts_[part].begin; i < parts_[part].end; ++i) {
     std::fill_n(own.begin(), depth, Mat3::Zero());
     std::fill_n(own_scalars.begin(), depth, 0.0);
+    if (!system_->metric.empty()) own[0] -= filtered(i, system_->metric[i] * Mat3::Identity(), i);
     for (Index s = full.start[i]; s < full.start[i + 1]; ++s) {
       const Index j = full.columns[s];
       const Eigen::Map<const Mat3> block(matrix.values().data() + 9 * index(s));
@@ -225,11 +287,42 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
   for (std::size_t l = 1; l < depth; ++l)
     for (std::size_t g = levels_[l - 1].of_part[part].begin; g < levels_[l - 1].of_part[part].end; ++g)
       levels_[l].of_matrix[index(levels_[l - 1].parent[g])] += levels_[l - 1].of_matrix[g];
-  const Level& patches = levels_.back();
-  for (std::size_t g = patches.of_part[part].begin; g < patches.of_part[part].end; ++g) {
-    const auto at = static_cast<Eigen::Index>(3 * g);
-    patches_of_matrix_.block<3, 3>(at, at) += patches.of_matrix[g];
+  scale_sums(part);
+}
+
+// Takes the share of the sums of a part that is left on their level, and adds what is the same on all of them: the
+// metric, and what holds particles.
+template <class Real>
+void Preconditioner<Real>::scale_sums(std::size_t part) {
+  std::vector<Mat3> lasting;  // of the members, from the part's first on, then of groups
+  std::size_t first = index(parts_[part].begin);
+  for (Index i = parts_[part].begin; i < parts_[part].end; ++i) {
+    lasting.push_back(system_->metric.empty() ? Mat3(Mat3::Zero()) : Mat3(system_->metric[i] * Mat3::Identity()));
+    if (is_free(i)) continue;
+    const Mat3 free = constraints_[index(constraint_of_[i])].free, held = Mat3::Identity() - free;
+    const Mat3 block = system_->matrix.block(system_->matrix.diagonal(i));
+    lasting.back() = free * lasting.back() * free + held * block * held;
   }
+  double share = 1;
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    Level& level = levels_[l];
+    share *= kSpread;
+    const Range groups = level.of_part[part];
+    std::vector<Mat3> sums(groups.end - groups.begin, Mat3::Zero());
+    for (std::size_t m = 0; m < lasting.size(); ++m)
+      sums[index(system_->groupings[l].of[first + m]) - groups.begin] += lasting[m];
+    for (std::size_t g = groups.begin; g < groups.end; ++g)
+      level.of_matrix[g] = share * level.of_matrix[g] + sums[g - groups.begin];
+    lasting = std::move(sums);
+    first = groups.begin;
+  }
+  const Level& patches = levels_.back();
+  const Range groups = patches.of_part[part];
+  const auto at = static_cast<Eigen::Index>(3 * groups.begin), size = static_cast<Eigen::Index>(3 * groups.end) - at;
+  patches_of_matrix_.block(at, at, size, size) *= share;
+  for (std::size_t g = groups.begin; g < groups.end; ++g)
+    patches_of_matrix_.block<3, 3>(static_cast<Eigen::Index>(3 * g), static_cast<Eigen::Index>(3 * g)) +=
+        patches.of_matrix[g];
 }
 
 // Calls body(i, block, j) for all that the terms couple.
@@ -303,15 +396,12 @@ void Preconditioner<Real>::restrict_residual(std::span<const Quad<Real>> r, std:
     Level& level = levels_[l];
     const std::span<const Quad<Real>> members = l == 0 ? r : std::span<const Quad<Real>>(levels_[l - 1].residual);
     for (std::size_t p : parts)
-      for (std::size_t g = level.of_part[p].begin; g < level.of_part[p].end; ++g) {
-        Quad<Real> sum{};
-        for (Index m = level.start[g]; m < level.start[g + 1]; ++m) sum += members[index(level.members[m])];
-        level.residual[g] = sum;
-      }
+      for (std::size_t g = level.of_part[p].begin; g < level.of_part[p].end; ++g)
+        level.residual[g] = level.of_members.sum(g, members);
   }
 }
 
-// From the largest groups down: each adds the correction of the group that it is in.
+// From the largest groups down: each adds what the corrections of larger ones make of it.
 template <class Real>
 void Preconditioner<Real>::correct_groups(std::span<const std::size_t> parts) {
   Level& patches = levels_.back();
@@ -329,7 +419,8 @@ void Preconditioner<Real>::correct_groups(std::span<const std::size_t> parts) {
     Level& level = levels_[l];
     for (std::size_t p : parts)
       for (std::size_t g = level.of_part[p].begin; g < level.of_part[p].end; ++g)
-        level.correction[g] = level.inverse[g] * level.residual[g] + levels_[l + 1].correction[index(level.parent[g])];
+        level.correction[g] =
+            level.inverse[g] * level.residual[g] + levels_[l + 1].of_groups.sum(g, levels_[l + 1].correction);
   }
 }
 
@@ -349,7 +440,7 @@ void Preconditioner<Real>::apply(std::span<const Quad<Real>> r, std::span<Quad<R
       }
       const Level& level = levels_.front();
       for (std::size_t i = first + begin; i < first + end; ++i)
-        z[i] = inverse_[i] * r[i] + level.correction[index(level.group_of[i])];
+        z[i] = inverse_[i] * r[i] + level.of_groups.sum(i, level.correction);
     });
     for (const Filter& filter : filters_[p]) z[filter.particle] = filter.free * z[filter.particle];
   }

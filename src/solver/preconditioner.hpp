@@ -11,12 +11,19 @@
 
 namespace weft::solver {
 
-/// P⁻¹ = Σ_l R_lᵀ A_l⁻¹ R_l on the free directions: R_l sums over the groups of level l (of a single particle first),
-/// A_l is the diagonal of 3×3 blocks of R_l A R_lᵀ, and on the last level all of that matrix. Each level sees motion
-/// about as long as its groups are wide (additive Schwarz with piecewise constant coarse spaces; Bramble, Pasciak & Xu,
-/// "Parallel Multilevel Preconditioners", 1990). Constraints are applied before preconditioning: blocks are those of
-/// S A S + (I − S) (prefiltering, Tamstorf, Jones & McCormick, "Smoothed Aggregation Multigrid for Cloth Simulation",
-/// 2015). It is set up in double and applied in `Real`.
+/// P⁻¹ = S Σ_l P_l A_l⁻¹ P_lᵀ S, S the projection on the free directions. P_0 is the identity, A_0 the diagonal of 3×3
+/// blocks of A, prefiltered: of S A S + (I − S) (Tamstorf, Jones & McCormick, "Smoothed Aggregation Multigrid for Cloth
+/// Simulation", 2015). Each further level sees motion about as long as its groups are wide (Bramble, Pasciak & Xu,
+/// "Parallel Multilevel Preconditioners", 1990): P_l interpolates from groups, P_l = Q_1 Q_2 … Q_l, where Q_k takes to
+/// each member of a group the average of the groups that it and its neighbours are in, as a step of damped Jacobi on
+/// the graph of the matrix makes it of constants (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
+///
+/// A_l should be the diagonal of P_lᵀ A P_l, and on the last level all of it. That is dear, and known well enough from
+/// sums over groups, R_l A R_lᵀ: where groups move as wholes all strain is in the seams between them, and where it is
+/// spread over the width of a group there is half as much of it, each time that the width doubles. Of the matrix but
+/// its metric a share of 1/2^l is taken; of the metric, and of terms, which know no neighbours, all.
+///
+/// It is set up in double and applied in `Real`.
 template <class Real>
 class Preconditioner {
  public:
@@ -30,11 +37,25 @@ class Preconditioner {
   struct Range {
     std::size_t begin = 0, end = 0;
   };
+  /// Rows of weights.
+  struct Weights {
+    std::vector<Index> start;  // rows + 1 entries into columns
+    std::vector<Index> columns;
+    std::vector<Real> values;
+
+    Quad<Real> sum(std::size_t row, std::span<const Quad<Real>> of) const {
+      Quad<Real> result{};
+      for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
+      return result;
+    }
+    Weights transposed(std::size_t rows) const;
+  };
   /// Groups between single particles and patches.
   struct Level {
     std::vector<Index> group_of;           // per particle
     std::vector<Index> parent;             // per group, on the next level
-    std::vector<Index> start, members;     // of each group, on the level before; members of g from start[g] on
+    Weights of_groups;                     // per member (a particle, a group of the level before)
+    Weights of_members;                    // per group
     std::vector<Range> of_part;            // groups of each part
     std::vector<Mat3> of_matrix;           // per group, without terms
     std::vector<char> touched;             // per group: by terms, when `inverse` was made
@@ -42,8 +63,10 @@ class Preconditioner {
     std::vector<Quad<Real>> residual, correction;
   };
   void prepare_levels();
+  void find_weights();
   void find_shared_levels();
   void sum_blocks(std::size_t part);
+  void scale_sums(std::size_t part);
   void mark_touched();
   void invert_particles();
   void invert_groups();

@@ -35,8 +35,6 @@ constexpr std::size_t kLeastDelay = 3, kDelayShare = 5;
 // Least share of the energy norm that must be solved before the metric alone may end a solve: stiff motion comes first,
 // and shows nothing in it.
 constexpr double kSolvedInEnergy = 0.3;
-// Share of the solution, in the energy norm, below which single precision does not tell what is left.
-constexpr double kSingleReach = 1e-4;
 
 // Whether an error that fell from `before` to `now` times what it may be, in kPaceInterval iterations, needs more than
 // kMinIterationsLeft to get there.
@@ -79,12 +77,6 @@ double Progress::farthest_from(const LinearGoal& goal, std::span<const std::size
     farthest = std::max(farthest, std::sqrt(parts[p].error_energy()) / allowed);
   }
   return farthest;
-}
-
-double Progress::largest_share(std::span<const std::size_t> selected) const {
-  double largest = 0;
-  for (std::size_t p : selected) largest = std::max(largest, parts[p].error_energy() / parts[p].energy);
-  return std::sqrt(largest);
 }
 
 // Calls body(begin, end) for chunks of the rows of the selected parts.
@@ -231,7 +223,6 @@ End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progre
     if (!(curvature > 0)) return kSingle ? End::needs_double : End::indefinite;
     advance(rz / curvature, progress);
     if (progress.meets(goal, selected_)) return End::converged;
-    if (kSingle && progress.largest_share(selected_) < kSingleReach) return End::needs_double;
     // Directions made without the factor say nothing about those with it.
     bool restart = false;
     if (progress.iterations == 1) progress.paced_from = progress.farthest_from(goal, selected_);

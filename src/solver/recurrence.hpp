@@ -39,15 +39,13 @@ struct Progress {
   bool meets(const LinearGoal& goal, std::span<const std::size_t> parts) const;
   /// The largest error of these parts, in shares of what it may be: the square of it in the energy norm.
   double farthest_from(const LinearGoal& goal, std::span<const std::size_t> parts) const;
-  /// The largest error of these parts, as a share of what was solved, in the energy norm.
-  double largest_share(std::span<const std::size_t> parts) const;
 };
 
 enum class End {
   converged,
   out_of_iterations,
   indefinite,    ///< a direction of no or negative curvature came up
-  needs_double,  ///< single precision only: what is left is for double
+  needs_double,  ///< single precision only: what is left is for double, begun anew
 };
 
 template <class Real>
