@@ -48,29 +48,27 @@ void ConjugateGradient::filter(std::span<Vec3> b) const {
   }
 }
 
-Recurrence<double>& ConjugateGradient::in_double() {
-  if (!double_is_prepared_) double_.prepare(*system_);
-  double_is_prepared_ = true;
-  return double_;
+template <class Real>
+Recurrence<Real>& ConjugateGradient::prepared(InPrecision<Real>& in) {
+  if (!in.is_prepared) in.recurrence.prepare(*system_, in.has_sums ? Sums::kept : Sums::anew);
+  in.is_prepared = in.has_sums = true;
+  return in.recurrence;
 }
 
-void ConjugateGradient::prepare(const LinearSystem& system) {
+void ConjugateGradient::prepare(const LinearSystem& system, Sums sums) {
   system_ = &system;
   all_parts_.resize(parts_of(system).size());
   std::iota(all_parts_.begin(), all_parts_.end(), std::size_t{0});
   is_single_ = suits_single(system);
-  double_is_prepared_ = false;
-  if (is_single_)
-    single_.prepare(system);
-  else
-    in_double();
+  single_.is_prepared = double_.is_prepared = false;
+  if (sums == Sums::anew) single_.has_sums = double_.has_sums = false;
 }
 
 std::span<const Vec3> ConjugateGradient::precondition(std::span<const Vec3> b) {
   if (is_single_)
-    copy_into(single_.precondition(b), preconditioned_);
+    copy_into(prepared(single_).precondition(b), preconditioned_);
   else
-    copy_into(in_double().precondition(b), preconditioned_);
+    copy_into(prepared(double_).precondition(b), preconditioned_);
   return preconditioned_;
 }
 
@@ -87,13 +85,13 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal&
   progress.parts.resize(all_parts_.size());
   End end = End::needs_double;
   if (is_single_ && goal.relative >= kSingleGoal) {
-    end = single_.solve(b, goal, max_iterations, x, start, parts, progress);
+    end = prepared(single_).solve(b, goal, max_iterations, x, start, parts, progress);
     filter(x);
-    copy_into(single_.residual(), residual_);
+    copy_into(single_.recurrence.residual(), residual_);
   }
   if (end == End::needs_double) {
-    end = in_double().solve(b, goal, max_iterations, x, start, parts, progress);
-    copy_into(double_.residual(), residual_);
+    end = prepared(double_).solve(b, goal, max_iterations, x, start, parts, progress);
+    copy_into(double_.recurrence.residual(), residual_);
   }
   LinearReport report{progress.iterations, {}, end == End::converged, end != End::indefinite};
   // Where nothing is left nothing is to be estimated.

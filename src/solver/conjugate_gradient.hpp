@@ -24,8 +24,9 @@ struct LinearReport {
 /// is being solved is computed in double, and what this leaves is in it.
 class ConjugateGradient {
  public:
-  /// Prepares the preconditioner for this system, which must outlive the calls that follow.
-  void prepare(const LinearSystem& system);
+  /// Prepares the preconditioner for this system, which must outlive the calls that follow. Sums::kept: where it has
+  /// some since the last time that they were to be made anew.
+  void prepare(const LinearSystem& system, Sums sums = Sums::anew);
 
   /// P⁻¹ b, roughly the solution for b, which obeys the constraints; valid until the next call.
   std::span<const Vec3> precondition(std::span<const Vec3> b);
@@ -52,13 +53,20 @@ class ConjugateGradient {
   void filter(std::span<Vec3> b) const;
 
  private:
-  Recurrence<double>& in_double();
-
   const LinearSystem* system_ = nullptr;
-  bool is_single_ = false;           // single precision will do for the system as prepared
-  bool double_is_prepared_ = false;  // for it
-  Recurrence<float> single_;
-  Recurrence<double> double_;
+  bool is_single_ = false;  // single precision will do for the system as prepared
+  /// In one precision, and what it is prepared for.
+  template <class Real>
+  struct InPrecision {
+    Recurrence<Real> recurrence;
+    bool has_sums = false;     // since they were to be made anew
+    bool is_prepared = false;  // for the system as prepared
+  };
+  template <class Real>
+  Recurrence<Real>& prepared(InPrecision<Real>& in);
+
+  InPrecision<float> single_;
+  InPrecision<double> double_;
   std::vector<std::size_t> all_parts_;
   std::vector<Vec3> residual_, preconditioned_;
 };

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <numeric>
 #include <utility>
 
@@ -46,7 +47,7 @@ Mat3 Preconditioner<Real>::filtered(Index i, const Mat3& block, Index j) const {
 }
 
 template <class Real>
-void Preconditioner<Real>::prepare(const LinearSystem& system) {
+void Preconditioner<Real>::prepare(const LinearSystem& system, Sums sums) {
   const bool same_constraints =
       std::equal(constraints_.begin(), constraints_.end(), system.constraints.begin(), system.constraints.end(),
                  [](const auto& a, const auto& b) { return a.particle == b.particle && a.free == b.free; });
@@ -69,12 +70,18 @@ void Preconditioner<Real>::prepare(const LinearSystem& system) {
     }
   }
   changed_.resize(parts_.size());
-  for (std::size_t p = 0; p < parts_.size(); ++p) changed_[p] = !same || parts_[p].version != before[p].version;
+  sums_changed_.resize(parts_.size());
+  summed_.resize(parts_.size());
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    changed_[p] = !same || parts_[p].version != before[p].version;
+    sums_changed_[p] = !same || (sums == Sums::anew && parts_[p].version != summed_[p]);
+    if (sums_changed_[p]) summed_[p] = parts_[p].version;
+  }
   mark_touched();
   invert_particles();
   if (levels_.empty()) return;
   for (std::size_t p = 0; p < parts_.size(); ++p)
-    if (changed_[p]) sum_blocks(p);
+    if (sums_changed_[p]) sum_blocks(p);
   invert_groups();
   factorise_patches();
 }
@@ -249,10 +256,11 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
   std::array<Mat3, kMaxLevels> own;
   std::array<double, kMaxLevels> own_scalars{};
+  const double share = std::pow(kSpread, static_cast<double>(depth));
   const auto add_to_patches = [&](Index i, Index j, const auto& block) {
     // The factorisation reads the lower triangle only.
     const Index patch_i = patch_of[index(i)], patch_j = patch_of[index(j)];
-    if (patch_i > patch_j) patches_of_matrix_.block<3, 3>(3 * patch_i, 3 * patch_j) += block;
+    if (patch_i > patch_j) patches_of_matrix_.block<3, 3>(3 * patch_i, 3 * patch_j) += share * block;
   };
   for (Index i = parts_[part].begin; i < parts_[part].end; ++i) {
     std::fill_n(own.begin(), depth, Mat3::Zero());
@@ -318,8 +326,6 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
   }
   const Level& patches = levels_.back();
   const Range groups = patches.of_part[part];
-  const auto at = static_cast<Eigen::Index>(3 * groups.begin), size = static_cast<Eigen::Index>(3 * groups.end) - at;
-  patches_of_matrix_.block(at, at, size, size) *= share;
   for (std::size_t g = groups.begin; g < groups.end; ++g)
     patches_of_matrix_.block<3, 3>(static_cast<Eigen::Index>(3 * g), static_cast<Eigen::Index>(3 * g)) +=
         patches.of_matrix[g];
@@ -354,7 +360,7 @@ void Preconditioner<Real>::invert_groups() {
     for (std::size_t m = 0; m < touched.size(); ++m)
       if (touched[m]) level.touched[index(of[m])] = anew[l][index(of[m])] = 1;
     for (std::size_t p = 0; p < parts_.size(); ++p)
-      if (changed_[p])
+      if (sums_changed_[p])
         std::fill(anew[l].begin() + static_cast<std::ptrdiff_t>(level.of_part[p].begin),
                   anew[l].begin() + static_cast<std::ptrdiff_t>(level.of_part[p].end), 1);
     blocks[l] = level.of_matrix;
@@ -385,8 +391,8 @@ void Preconditioner<Real>::factorise_patches() {
   const double trace = patch_matrix_.trace();
   patch_matrix_.diagonal().array() +=
       trace > 0 ? kSingularShift * trace / static_cast<double>(patch_matrix_.rows()) : 1;
-  patch_solver_.compute(patch_matrix_);
-  patch_factor_ = patch_solver_.matrixLLT().template cast<Real>();
+  const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(patch_matrix_);
+  patch_factor_ = patch_matrix_.template cast<Real>();
 }
 
 // From particles to groups to larger groups.

@@ -11,6 +11,10 @@
 
 namespace weft::solver {
 
+/// Whether sums over groups are made of the matrix as it is, or may be those of the same constraints and an earlier
+/// matrix. Particles have their blocks, and terms are seen, either way.
+enum class Sums { anew, kept };
+
 /// P⁻¹ = S Σ_l P_l A_l⁻¹ P_lᵀ S, S the projection on the free directions. P_0 is the identity, A_0 the diagonal of 3×3
 /// blocks of A, prefiltered: of S A S + (I − S) (Tamstorf, Jones & McCormick, "Smoothed Aggregation Multigrid for Cloth
 /// Simulation", 2015). Each further level sees motion about as long as its groups are wide (Bramble, Pasciak & Xu,
@@ -28,7 +32,7 @@ template <class Real>
 class Preconditioner {
  public:
   /// Reads the system, which must outlive the calls that follow. What has not changed since the last time is kept.
-  void prepare(const LinearSystem& system);
+  void prepare(const LinearSystem& system, Sums sums = Sums::anew);
 
   /// z = P⁻¹ r on the rows of these parts, as if r were zero on the others. r obeys the constraints, and so does z.
   void apply(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, std::span<const std::size_t> parts);
@@ -80,7 +84,8 @@ class Preconditioner {
 
   const LinearSystem* system_ = nullptr;
   std::vector<Part> parts_;                      // as the sums were made
-  std::vector<char> changed_;                    // per part, since then
+  std::vector<std::uint64_t> summed_;            // per part, its version then
+  std::vector<char> changed_, sums_changed_;     // per part: its rows, its sums over groups
   std::vector<ParticleConstraint> constraints_;  // as the sums were made
   std::vector<Index> constraint_of_;             // per particle, −1 for none
   struct Filter {
@@ -94,7 +99,6 @@ class Preconditioner {
   // Per block of the matrix the first level on which row and column are in the same group, or the number of levels.
   std::vector<std::uint8_t> shared_full_, shared_isotropic_;
   Eigen::MatrixXd patches_of_matrix_, patch_matrix_;
-  Eigen::LLT<Eigen::MatrixXd> patch_solver_;
   Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> patch_factor_;
   Eigen::Vector<Real, Eigen::Dynamic> patch_vector_;
 };

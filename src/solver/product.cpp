@@ -28,8 +28,16 @@ BlockMatrix::Pattern beside_diagonal(const BlockMatrix::Pattern& pattern) {
   return result;
 }
 
-Quad<float> in_single(const Quad<double>& q) {
-  return __builtin_convertvector(q, Quad<float>);
+using Octet = float __attribute__((vector_size(32)));
+
+Octet in_single(const Quad<double>& low, const Quad<double>& high) {
+  return __builtin_shufflevector(__builtin_convertvector(low, Quad<float>), __builtin_convertvector(high, Quad<float>),
+                                 0, 1, 2, 3, 4, 5, 6, 7);
+}
+
+// What the first eight entries of a block, column by column, are multiplied with.
+Octet thrice(const Quad<float>& v) {
+  return __builtin_shufflevector(v, v, 0, 0, 0, 1, 1, 1, 2, 2);
 }
 
 }  // namespace
@@ -37,17 +45,18 @@ Quad<float> in_single(const Quad<double>& q) {
 void DifferenceMatrix::take_pattern(const BlockMatrix& matrix) {
   full_ = beside_diagonal(matrix.full());
   isotropic_ = beside_diagonal(matrix.isotropic());
-  // One more at the end, so that a column loads as four.
-  values_.assign(9 * full_.columns.size() + 1, 0);
+  octets_.assign(full_.columns.size(), Octet{});
+  ninths_.assign(full_.columns.size(), 0);
+  octets_of_sum_.assign(static_cast<std::size_t>(matrix.rows()), Octet{});
+  ninths_of_sum_.assign(static_cast<std::size_t>(matrix.rows()), 0);
   scalars_.assign(isotropic_.columns.size(), 0);
-  row_sums_.assign(9 * static_cast<std::size_t>(matrix.rows()) + 1, 0);
 }
 
 void DifferenceMatrix::take_rows(const BlockMatrix& matrix, std::size_t begin, std::size_t end) {
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
   for (std::size_t row = begin; row < end; ++row) {
     const double* from = matrix.values().data() + 9 * static_cast<std::size_t>(full.start[row]);
-    float* to = values_.data() + 9 * static_cast<std::size_t>(full_.start[row]);
+    auto to = static_cast<std::size_t>(full_.start[row]);
     Quad<double> low{}, high{};
     double last = 0, scalars = 0;
     for (Index s = full.start[row]; s < full.start[row + 1]; ++s, from += 9) {
@@ -56,41 +65,38 @@ void DifferenceMatrix::take_rows(const BlockMatrix& matrix, std::size_t begin, s
       high += high_of_block;
       last += from[8];
       if (full.columns[s] == static_cast<Index>(row)) continue;
-      store_quad(to, in_single(low_of_block));
-      store_quad(to + 4, in_single(high_of_block));
-      to[8] = static_cast<float>(from[8]);
-      to += 9;
+      octets_[to] = in_single(low_of_block, high_of_block);
+      ninths_[to++] = static_cast<float>(from[8]);
     }
     // Its diagonal is full.
     for (Index s = isotropic.start[row]; s < isotropic.start[row + 1]; ++s) {
       scalars += matrix.scalars()[s];
       scalars_[s] = static_cast<float>(matrix.scalars()[s]);
     }
-    float* sum = row_sums_.data() + 9 * row;
-    store_quad(sum, in_single(low + Quad<double>{scalars, 0, 0, 0}));
-    store_quad(sum + 4, in_single(high + Quad<double>{scalars, 0, 0, 0}));
-    sum[8] = static_cast<float>(last + scalars);
+    octets_of_sum_[row] = in_single(low + Quad<double>{scalars, 0, 0, 0}, high + Quad<double>{scalars, 0, 0, 0});
+    ninths_of_sum_[row] = static_cast<float>(last + scalars);
   }
 }
 
 void DifferenceMatrix::multiply(std::span<const Quad<float>> x, std::span<Quad<float>> y, std::size_t begin,
                                 std::size_t end) const {
-  const float* value = values_.data() + 9 * static_cast<std::size_t>(full_.start[begin]);
   for (std::size_t row = begin; row < end; ++row) {
     const Quad<float> own = x[row];
-    const float* of_sum = row_sums_.data() + 9 * row;
-    // The last number of a column is the first of the next and is thrown away.
-    Quad<float> sum0 = load_quad(of_sum) * own[0], sum1 = load_quad(of_sum + 3) * own[1],
-                sum2 = load_quad(of_sum + 6) * own[2], sum3{};
-    for (Index s = full_.start[row]; s < full_.start[row + 1]; ++s, value += 9) {
-      const Quad<float> apart = x[static_cast<std::size_t>(full_.columns[s])] - own;
-      sum0 += load_quad(value) * apart[0];
-      sum1 += load_quad(value + 3) * apart[1];
-      sum2 += load_quad(value + 6) * apart[2];
+    // Products with the columns, one after the other; in `ninth` only the third number counts.
+    Octet sum = octets_of_sum_[row] * thrice(own);
+    Quad<float> ninth = ninths_of_sum_[row] * own, isotropic{};
+    for (Index s = full_.start[row]; s < full_.start[row + 1]; ++s) {
+      const Quad<float> apart = x[full_.columns[s]] - own;
+      sum += octets_[s] * thrice(apart);
+      ninth += ninths_[s] * apart;
     }
     for (Index s = isotropic_.start[row]; s < isotropic_.start[row + 1]; ++s)
-      sum3 += scalars_[s] * (x[static_cast<std::size_t>(isotropic_.columns[s])] - own);
-    y[row] = three_of((sum0 + sum1) + (sum2 + sum3));
+      isotropic += scalars_[s] * (x[isotropic_.columns[s]] - own);
+    const Quad<float> of_first = __builtin_shufflevector(sum, sum, 0, 1, 2, 3),
+                      of_second = __builtin_shufflevector(sum, sum, 3, 4, 5, 6),
+                      of_third = __builtin_shufflevector(sum, sum, 6, 7, 6, 7);
+    const Quad<float> third = __builtin_shufflevector(of_third, ninth, 0, 1, 6, 7);
+    y[row] = three_of((of_first + of_second) + (third + isotropic));
   }
 }
 

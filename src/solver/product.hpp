@@ -21,9 +21,13 @@ class DifferenceMatrix {
 
  private:
   BlockMatrix::Pattern full_, isotropic_;  // without the diagonal
-  std::vector<float> values_;              // as those of BlockMatrix
+  /// Of a block, column by column, eight numbers that load at once, and the ninth.
+  using Octet = float __attribute__((vector_size(32)));
+  std::vector<Octet> octets_;  // of full blocks
+  std::vector<float> ninths_;
+  std::vector<Octet> octets_of_sum_;  // D_i of a row
+  std::vector<float> ninths_of_sum_;
   std::vector<float> scalars_;
-  std::vector<float> row_sums_;  // D_i, as `values_`
 };
 
 /// S A, A being the matrix with all terms.

@@ -91,7 +91,7 @@ void Recurrence<Real>::for_rows(const Body& body) const {
 }
 
 template <class Real>
-void Recurrence<Real>::prepare(const LinearSystem& system) {
+void Recurrence<Real>::prepare(const LinearSystem& system, Sums sums) {
   system_ = &system;
   const auto rows = static_cast<std::size_t>(system.matrix.rows());
   for (auto* vector : {&x_, &r_, &z_, &p_, &q_})
@@ -100,7 +100,7 @@ void Recurrence<Real>::prepare(const LinearSystem& system) {
   all_parts_.resize(parts_.size());
   std::iota(all_parts_.begin(), all_parts_.end(), std::size_t{0});
   product_.prepare(system);
-  preconditioner_.prepare(system);
+  preconditioner_.prepare(system, sums);
   factor_state_ = Factor::not_made;
 }
 

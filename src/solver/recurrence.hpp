@@ -52,7 +52,7 @@ template <class Real>
 class Recurrence {
  public:
   /// Reads the system, which must outlive the calls that follow.
-  void prepare(const LinearSystem& system);
+  void prepare(const LinearSystem& system, Sums sums);
 
   /// P⁻¹ b, valid until the next call.
   std::span<const Quad<Real>> precondition(std::span<const Vec3> b);

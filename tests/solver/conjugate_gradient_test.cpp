@@ -128,6 +128,41 @@ TEST(ConjugateGradient, APartWithAnotherVersionIsReadAnew) {
   EXPECT_EQ(norm(used, b), norm(fresh, b));
 }
 
+// What was kept of an earlier matrix must not outlive the step: a run that is resumed there has none of it.
+TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
+  Random random(37);
+  LinearSystem system = system_of_parts(random);
+  cut_groups(system, {30, 6});
+  const auto b = random.vectors(system.matrix.rows());
+  const auto stiffen = [&](double by) {
+    for (Index i = 20; i < 40; ++i) system.matrix.add_scalar(system.matrix.diagonal(i), by);
+    ++system.parts[1].version;
+  };
+  const auto solution = [&](ConjugateGradient& cg, double share) {
+    std::vector<Vec3> x(b.size());
+    cg.solve(b, {share}, 3, x);
+    return x;
+  };
+  for (const double metric : {1e-9, 1.0}) {  // in double only, and in both
+    system.metric.assign(b.size(), metric);
+    ConjugateGradient used;
+    used.prepare(system);
+    norm(used, b);
+    stiffen(1000);
+    used.prepare(system, Sums::kept);
+    ConjugateGradient fresh;
+    fresh.prepare(system, Sums::kept);  // nothing is there to be kept
+    EXPECT_NE(norm(used, b), norm(fresh, b));
+    // Double has not been used before where single precision is.
+    EXPECT_EQ(solution(used, 1e-9) == solution(fresh, 1e-9), metric == 1);
+    stiffen(1000);
+    for (ConjugateGradient* cg : {&used, &fresh}) cg->prepare(system);
+    EXPECT_EQ(norm(used, b), norm(fresh, b));
+    EXPECT_EQ(solution(used, 1e-9), solution(fresh, 1e-9));
+    EXPECT_EQ(solution(used, 0.01), solution(fresh, 0.01));
+  }
+}
+
 TEST(ConjugateGradient, GroupsCarryAPushAlongAStiffChainInFewerIterations) {
   // A free chain of 200 particles, springs a million times stiffer than what holds a particle in its place.
   constexpr Index kRows = 200;
@@ -342,7 +377,7 @@ TEST(ConjugateGradient, InSinglePrecisionIsAsExactAsItSaysAndAsFastAsInDouble) {
       const LinearReport report = cg.solve(b, {share}, 1000, x);
       Recurrence<double> in_double;
       Progress progress{{{}}};
-      in_double.prepare(system);
+      in_double.prepare(system, Sums::anew);
       EXPECT_EQ(in_double.solve(b, {share}, 1000, y, {}, std::array{std::size_t{0}}, progress), End::converged);
       EXPECT_TRUE(report.converged);
       // As many, but for those that end in double with the factor, and begin there anew.
