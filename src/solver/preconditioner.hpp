@@ -27,6 +27,9 @@ enum class Sums { anew, kept };
 /// spread over the width of a group there is half as much of it, each time that the width doubles. Of the matrix but
 /// its metric a share of 1/2^l is taken; of the metric, and of terms, which know no neighbours, all.
 ///
+/// Threads far stiffer than mass stay constant on groups, P_l = R_lᵀ with all of the sums: interpolation bends folds,
+/// and then sums over seams say nothing of threads that run elsewhere within groups.
+///
 /// It is set up in double and applied in `Real`.
 template <class Real>
 class Preconditioner {
@@ -66,6 +69,7 @@ class Preconditioner {
     std::vector<QuadBlock<Real>> inverse;  // with them
     std::vector<Quad<Real>> residual, correction;
   };
+  bool is_stiff() const;
   void prepare_levels();
   void find_weights();
   void find_shared_levels();
@@ -83,6 +87,7 @@ class Preconditioner {
   Mat3 filtered(Index i, const Mat3& block, Index j) const;
 
   const LinearSystem* system_ = nullptr;
+  bool smooth_ = true;                           // levels interpolate
   std::vector<Part> parts_;                      // as the sums were made
   std::vector<std::uint64_t> summed_;            // per part, its version then
   std::vector<char> changed_, sums_changed_;     // per part: its rows, its sums over groups

@@ -36,9 +36,9 @@ struct Progress {
   bool nothing_left = false;
   double paced_from = 0;  ///< error at the last look at the pace, in shares of what it may be
 
-  bool meets(const LinearGoal& goal, std::span<const std::size_t> parts) const;
+  bool meets(const LinearGoal& goal, std::span<const std::size_t> selected) const;
   /// The largest error of these parts, in shares of what it may be: the square of it in the energy norm.
-  double farthest_from(const LinearGoal& goal, std::span<const std::size_t> parts) const;
+  double farthest_from(const LinearGoal& goal, std::span<const std::size_t> selected) const;
 };
 
 enum class End {
