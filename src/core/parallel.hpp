@@ -27,15 +27,16 @@ void parallel_for(std::size_t count, std::size_t chunk, const Body& body) {
   }
 }
 
-/// Sum over [0, count) of body(begin, end) per chunk; the additions happen in chunk order.
+/// Sum over [0, count) of body(begin, end) per chunk, numbers or vectors of them; the additions happen in chunk order.
 template <class Body>
-double parallel_sum(std::size_t count, std::size_t chunk, const Body& body) {
+auto parallel_sum(std::size_t count, std::size_t chunk, const Body& body) {
+  using Sum = decltype(body(std::size_t{0}, count));
   const std::size_t chunks = (count + chunk - 1) / chunk;
-  if (chunks <= 1) return count == 0 ? 0.0 : body(std::size_t{0}, count);
-  std::vector<double> partial(chunks);
+  if (chunks <= 1) return count == 0 ? Sum{} : body(std::size_t{0}, count);
+  std::vector<Sum> partial(chunks);
   parallel_for(count, chunk, [&](std::size_t begin, std::size_t end) { partial[begin / chunk] = body(begin, end); });
-  double sum = 0;
-  for (double p : partial) sum += p;
+  Sum sum{};
+  for (const Sum& p : partial) sum += p;
   return sum;
 }
 

@@ -260,7 +260,8 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     evaluate(now, stage);
     std::fill(force_.begin(), force_.end(), Vec3::Zero());
     system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, done + report.newton_iterations, force_);
-    cg_.prepare(linear);
+    // Groups stand for long waves, whose stiffness hardly changes within a step.
+    cg_.prepare(linear, report.newton_iterations == 0 ? solver::Sums::anew : solver::Sums::kept);
     gather_residual(masses, stage);
     estimate_local_errors(masses, now, stage, h);
     allow_velocities(now, h);

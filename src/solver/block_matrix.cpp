@@ -4,6 +4,7 @@
 #include <cassert>
 #include <iterator>
 #include <numeric>
+#include <type_traits>
 
 namespace weft::solver {
 
@@ -76,15 +77,15 @@ void BlockMatrix::copy_rows(const BlockMatrix& other, Index begin, Index end) {
   copy(isotropic_, 1, other.scalars_, scalars_);
 }
 
-void BlockMatrix::multiply(std::span<const Vec3> x, std::span<Vec3> y, std::size_t begin, std::size_t end) const {
+template <class Vector>
+void BlockMatrix::multiply(std::span<const Vector> x, std::span<Vector> y, std::size_t begin, std::size_t end) const {
   const double* value = values_.data() + 9 * static_cast<std::size_t>(blocks_.start[begin]);
-  const double* vector = x.data()->data();
-  const auto entry = [&](Index column) { return vector + 3 * static_cast<std::size_t>(column); };
+  const auto entry = [&](Index column) -> const Vector& { return x[static_cast<std::size_t>(column)]; };
   for (std::size_t row = begin; row < end; ++row) {
     // Lane 3 holds the first entry of the next column and is thrown away.
     Lanes sum0{}, sum1{}, sum2{};
     for (Index s = blocks_.start[row]; s < blocks_.start[row + 1]; ++s, value += 9) {
-      const double* xj = entry(blocks_.columns[s]);
+      const Vector& xj = entry(blocks_.columns[s]);
       sum0 += load_lanes(value) * xj[0];
       sum1 += load_lanes(value + 3) * xj[1];
       sum2 += load_lanes(value + 6) * xj[2];
@@ -92,14 +93,21 @@ void BlockMatrix::multiply(std::span<const Vec3> x, std::span<Vec3> y, std::size
     const Lanes sum = sum0 + sum1 + sum2;
     double y0 = sum[0], y1 = sum[1], y2 = sum[2];
     for (Index s = isotropic_.start[row]; s < isotropic_.start[row + 1]; ++s) {
-      const double* xj = entry(isotropic_.columns[s]);
+      const Vector& xj = entry(isotropic_.columns[s]);
       const double factor = scalars_[s];
       y0 += factor * xj[0];
       y1 += factor * xj[1];
       y2 += factor * xj[2];
     }
-    y[row] = {y0, y1, y2};
+    if constexpr (std::is_same_v<Vector, Vec3>)
+      y[row] = {y0, y1, y2};
+    else
+      y[row] = Vector{y0, y1, y2, 0};
   }
 }
+
+template void BlockMatrix::multiply(std::span<const Vec3>, std::span<Vec3>, std::size_t, std::size_t) const;
+template void BlockMatrix::multiply(std::span<const Quad<double>>, std::span<Quad<double>>, std::size_t,
+                                    std::size_t) const;
 
 }  // namespace weft::solver

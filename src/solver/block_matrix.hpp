@@ -2,28 +2,25 @@
 #pragma once
 
 #include <array>
-#include <cstring>
 #include <span>
 #include <utility>
 #include <vector>
 
 #include "core/types.hpp"
+#include "solver/quads.hpp"
 
 namespace weft::solver {
 
 /// Position of one block among the values of a BlockMatrix; negative where it is a multiple of the unit matrix.
 using Slot = Index;
 
-/// Four doubles in one register where the CPU has it; the compiler splits it where it does not.
-using Lanes = double __attribute__((vector_size(32)));
+using Lanes = Quad<double>;
 
 inline Lanes load_lanes(const double* p) {
-  Lanes lanes;
-  std::memcpy(&lanes, p, sizeof lanes);
-  return lanes;
+  return load_quad(p);
 }
 inline void store_lanes(double* p, const Lanes& lanes) {
-  std::memcpy(p, &lanes, sizeof lanes);
+  store_quad(p, lanes);
 }
 
 /// A 3×3 block as the matrix stores it, column by column, in registers: entries 0 to 3, 4 to 7, and 8.
@@ -121,23 +118,33 @@ class BlockMatrix {
     }
   }
 
-  /// y = A x over the rows [begin, end); x and y have one entry per block row and must not overlap.
-  void multiply(std::span<const Vec3> x, std::span<Vec3> y, std::size_t begin, std::size_t end) const;
+  /// y = A x over the rows [begin, end); x and y have one entry per block row, Vec3 or Quad<double>, and must not
+  /// overlap.
+  template <class Vector>
+  void multiply(std::span<const Vector> x, std::span<Vector> y, std::size_t begin, std::size_t end) const;
 
- private:
+  /// Where blocks are.
   struct Pattern {
-    std::vector<Index> start;    // rows + 1 entries into columns
-    std::vector<Index> columns;  // ascending within a row
+    std::vector<Index> start;    ///< rows + 1 entries into columns
+    std::vector<Index> columns;  ///< ascending within a row
 
     /// Of sorted pairs without repeats.
     static Pattern of(Index rows, const Couplings& pairs);
     /// Where (row, column) is, −1 where it is not.
     Index find(Index row, Index column) const;
   };
+  /// Of full blocks, whose entries are in values(), nine for each and column by column; three more follow the last, so
+  /// that a column loads as four.
+  const Pattern& full() const { return blocks_; }
+  std::span<const double> values() const { return values_; }
+  /// Of multiples of the unit matrix, which are in scalars().
+  const Pattern& isotropic() const { return isotropic_; }
+  std::span<const double> scalars() const { return scalars_; }
 
+ private:
   Pattern blocks_, isotropic_;
   std::vector<Slot> diagonal_;   // per row
-  std::vector<double> values_;   // 9 per block, column-major, and 3 more at the end so that a column loads as four
+  std::vector<double> values_;   // 9 per block, and 3
   std::vector<double> scalars_;  // per isotropic block
 };
 

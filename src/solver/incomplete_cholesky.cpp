@@ -79,12 +79,13 @@ bool IncompleteCholesky::try_factorise(double shift) {
   return true;
 }
 
-double IncompleteCholesky::add(double factor, std::span<const Vec3> r, std::span<Vec3> z, std::span<const Part> parts) {
+double IncompleteCholesky::add(double factor, std::span<const Quad<double>> r, std::span<Quad<double>> z,
+                               std::span<const Part> parts) {
   double sum = 0;
   for (const Part& part : parts) {
     const std::size_t first = index(part.begin), end = index(part.end);
     for (std::size_t i = first; i < end; ++i) {
-      Vec3 left = r[i];
+      Vec3 left = vec3_of(r[i]);
       const std::size_t last = row_start_[i + 1] - 1;
       for (std::size_t s = row_start_[i]; s < last; ++s) left.noalias() -= factor_[s] * y_[index(columns_[s])];
       y_[i].noalias() = factor_[last] * left;
@@ -94,8 +95,8 @@ double IncompleteCholesky::add(double factor, std::span<const Vec3> r, std::span
       const Vec3 of_row = factor_[last].transpose() * y_[i];
       for (std::size_t s = row_start_[i]; s < last; ++s)
         y_[index(columns_[s])].noalias() -= factor_[s].transpose() * of_row;
-      z[i] += factor * of_row;
-      sum += factor * r[i].dot(of_row);
+      z[i] += factor * quad_of<double>(of_row);
+      sum += factor * vec3_of(r[i]).dot(of_row);
     }
   }
   return sum;

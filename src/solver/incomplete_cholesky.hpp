@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/linear_system.hpp"
+#include "solver/quads.hpp"
 
 namespace weft::solver {
 
@@ -19,7 +20,7 @@ class IncompleteCholesky {
 
   /// z += factor (L Lᵀ)⁻¹ r on the rows of these parts; returns what that adds to r·z. r obeys the constraints, z does
   /// up to rounding.
-  double add(double factor, std::span<const Vec3> r, std::span<Vec3> z, std::span<const Part> parts);
+  double add(double factor, std::span<const Quad<double>> r, std::span<Quad<double>> z, std::span<const Part> parts);
 
  private:
   void read(const LinearSystem& system);

@@ -7,58 +7,108 @@
 #include <vector>
 
 #include "solver/linear_system.hpp"
+#include "solver/quads.hpp"
 
 namespace weft::solver {
 
-/// P⁻¹ = Σ_l R_lᵀ A_l⁻¹ R_l on the free directions: R_l sums over the groups of level l (of a single particle first),
-/// A_l is the diagonal of 3×3 blocks of R_l A R_lᵀ, and on the last level all of that matrix. Each level sees motion
-/// about as long as its groups are wide (additive Schwarz with piecewise constant coarse spaces; Bramble, Pasciak & Xu,
-/// "Parallel Multilevel Preconditioners", 1990). Constraints are applied before preconditioning: blocks are those of
-/// S A S + (I − S) (prefiltering, Tamstorf, Jones & McCormick, "Smoothed Aggregation Multigrid for Cloth Simulation",
-/// 2015).
+/// Whether sums over groups are made of the matrix as it is, or may be those of the same constraints and an earlier
+/// matrix. Particles have their blocks, and terms are seen, either way.
+enum class Sums { anew, kept };
+
+/// P⁻¹ = S Σ_l P_l A_l⁻¹ P_lᵀ S, S the projection on the free directions. P_0 is the identity, A_0 the diagonal of 3×3
+/// blocks of A, prefiltered: of S A S + (I − S) (Tamstorf, Jones & McCormick, "Smoothed Aggregation Multigrid for Cloth
+/// Simulation", 2015). Each further level sees motion about as long as its groups are wide (Bramble, Pasciak & Xu,
+/// "Parallel Multilevel Preconditioners", 1990): P_l interpolates from groups, P_l = Q_1 Q_2 … Q_l, where Q_k takes to
+/// each member of a group the average of the groups that it and its neighbours are in, as a step of damped Jacobi on
+/// the graph of the matrix makes it of constants (smoothed aggregation: Vaněk, Mandel & Brezina, 1996).
+///
+/// A_l should be the diagonal of P_lᵀ A P_l, and on the last level all of it. That is dear, and known well enough from
+/// sums over groups, R_l A R_lᵀ: where groups move as wholes all strain is in the seams between them, and where it is
+/// spread over the width of a group there is half as much of it, each time that the width doubles. Of the matrix but
+/// its metric a share of 1/2^l is taken; of the metric, and of terms, which know no neighbours, all.
+///
+/// Threads far stiffer than mass stay constant on groups, P_l = R_lᵀ with all of the sums: interpolation bends folds,
+/// and then sums over seams say nothing of threads that run elsewhere within groups.
+///
+/// It is set up in double and applied in `Real`.
+template <class Real>
 class Preconditioner {
  public:
-  /// Reads the system, which must outlive the calls that follow. What depends on the matrix and the constraints alone
-  /// is kept while they stay the same.
-  void prepare(const LinearSystem& system);
+  /// Reads the system, which must outlive the calls that follow. What has not changed since the last time is kept.
+  void prepare(const LinearSystem& system, Sums sums = Sums::anew);
 
-  /// z = P⁻¹ r on the rows of these parts, as if r were zero on the others; returns r·z there. r obeys the constraints,
-  /// and so does z.
-  double apply(std::span<const Vec3> r, std::span<Vec3> z, std::span<const std::size_t> parts);
-
-  /// Sets the constrained part of each entry to zero.
-  void filter(std::span<Vec3> b) const;
+  /// z = P⁻¹ r on the rows of these parts, as if r were zero on the others. r obeys the constraints, and so does z.
+  void apply(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, std::span<const std::size_t> parts);
 
  private:
   struct Range {
     std::size_t begin = 0, end = 0;
   };
+  /// Rows of weights.
+  struct Weights {
+    std::vector<Index> start;  // rows + 1 entries into columns
+    std::vector<Index> columns;
+    std::vector<Real> values;
+
+    Quad<Real> sum(std::size_t row, std::span<const Quad<Real>> of) const {
+      Quad<Real> result{};
+      for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
+      return result;
+    }
+    Weights transposed(std::size_t rows) const;
+  };
   /// Groups between single particles and patches.
   struct Level {
-    std::vector<Index> group_of;  // per particle
-    std::vector<Range> of_part;   // groups of each part
-    std::vector<Mat3> of_matrix;  // per group, without terms
-    std::vector<Mat3> inverse;    // with them
-    std::vector<Vec3> residual, correction;
+    std::vector<Index> group_of;           // per particle
+    std::vector<Index> parent;             // per group, on the next level
+    Weights of_groups;                     // per member (a particle, a group of the level before)
+    Weights of_members;                    // per group
+    std::vector<Range> of_part;            // groups of each part
+    std::vector<Mat3> of_matrix;           // per group, without terms
+    std::vector<char> touched;             // per group: by terms, when `inverse` was made
+    std::vector<QuadBlock<Real>> inverse;  // with them
+    std::vector<Quad<Real>> residual, correction;
   };
+  bool is_stiff() const;
   void prepare_levels();
-  void prepare_particles();
+  void find_weights();
+  void find_shared_levels();
   void sum_blocks(std::size_t part);
-  void add_terms();
-  void restrict_residual(std::span<const Vec3> r, std::span<const std::size_t> parts);
+  void scale_sums(std::size_t part);
+  void mark_touched();
+  void invert_particles();
+  void invert_groups();
+  void factorise_patches();
+  template <class Body>
+  void for_each_term(const Body& body) const;
+  void restrict_residual(std::span<const Quad<Real>> r, std::span<const std::size_t> parts);
   void correct_groups(std::span<const std::size_t> parts);
   bool is_free(Index i) const { return constraint_of_[i] < 0; }
   Mat3 filtered(Index i, const Mat3& block, Index j) const;
 
   const LinearSystem* system_ = nullptr;
+  bool smooth_ = true;                           // levels interpolate
   std::vector<Part> parts_;                      // as the sums were made
-  std::vector<ParticleConstraint> constraints_;  // likewise
+  std::vector<std::uint64_t> summed_;            // per part, its version then
+  std::vector<char> changed_, sums_changed_;     // per part: its rows, its sums over groups
+  std::vector<ParticleConstraint> constraints_;  // as the sums were made
   std::vector<Index> constraint_of_;             // per particle, −1 for none
-  std::vector<Mat3> inverse_diagonal_;           // already filtered: S P⁻¹ S
-  std::vector<Level> levels_;                    // the last one is that of the patches
+  struct Filter {
+    Index particle;
+    QuadBlock<Real> free;
+  };
+  std::vector<std::vector<Filter>> filters_;    // per part
+  std::vector<char> touched_, touched_before_;  // per particle: by terms
+  std::vector<QuadBlock<Real>> inverse_;        // per particle, already filtered: S P⁻¹ S
+  std::vector<Level> levels_;                   // the last one is that of the patches
+  // Per block of the matrix the first level on which row and column are in the same group, or the number of levels.
+  std::vector<std::uint8_t> shared_full_, shared_isotropic_;
   Eigen::MatrixXd patches_of_matrix_, patch_matrix_;
-  Eigen::LLT<Eigen::MatrixXd> patch_solver_;
-  Eigen::VectorXd patch_vector_;
+  Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> patch_factor_;
+  Eigen::Vector<Real, Eigen::Dynamic> patch_vector_;
 };
+
+extern template class Preconditioner<float>;
+extern template class Preconditioner<double>;
 
 }  // namespace weft::solver

@@ -44,15 +44,15 @@ TEST(BlockMatrix, ProductIsThatOfTheDenseMatrix) {
 
   const auto x = random.vectors(kRows);
   std::vector<Vec3> y(kRows, Vec3::Constant(99));
-  matrix.multiply(x, y, 0, kRows);
+  matrix.multiply<Vec3>(x, y, 0, kRows);
   // Sums of up to 40 products of numbers below 1: 40 roundings of 40 · 1.1e-16 at most, 2e-13.
   EXPECT_LT((testing::flat(y) - expected * testing::flat(x)).cwiseAbs().maxCoeff(), 2e-13);
 
   // In pieces: the same bits, and nothing outside of the piece is touched.
   std::vector<Vec3> pieces(kRows, Vec3::Constant(99));
-  matrix.multiply(x, pieces, 0, 5);
+  matrix.multiply<Vec3>(x, pieces, 0, 5);
   EXPECT_EQ(pieces[5], Vec3(Vec3::Constant(99)));
-  matrix.multiply(x, pieces, 5, kRows);
+  matrix.multiply<Vec3>(x, pieces, 5, kRows);
   EXPECT_EQ(pieces, y);
 }
 
@@ -102,11 +102,11 @@ TEST(BlockMatrix, WithIsotropicBlocksIsTheDenseMatrix) {
   }
   const auto x = random.vectors(kRows);
   std::vector<Vec3> y(kRows), pieces(kRows);
-  matrix.multiply(x, y, 0, kRows);
+  matrix.multiply<Vec3>(x, y, 0, kRows);
   // As above.
   EXPECT_LT((testing::flat(y) - expected * testing::flat(x)).cwiseAbs().maxCoeff(), 2e-13);
-  matrix.multiply(x, pieces, 0, 5);
-  matrix.multiply(x, pieces, 5, kRows);
+  matrix.multiply<Vec3>(x, pieces, 0, 5);
+  matrix.multiply<Vec3>(x, pieces, 5, kRows);
   EXPECT_EQ(pieces, y);
   matrix.set_zero();
   EXPECT_TRUE(matrix.block(matrix.slot(0, 2)).isZero(0));

@@ -87,7 +87,7 @@ inline Eigen::MatrixXd dense(const BlockMatrix& matrix) {
   for (std::size_t i = 0; i < rows; ++i)
     for (int axis = 0; axis < 3; ++axis) {
       x[i][axis] = 1;
-      matrix.multiply(x, y, 0, rows);
+      matrix.multiply<Vec3>(x, y, 0, rows);
       x[i][axis] = 0;
       for (std::size_t r = 0; r < rows; ++r)
         full.block<3, 1>(static_cast<Eigen::Index>(3 * r), static_cast<Eigen::Index>(3 * i) + axis) = y[r];
@@ -127,6 +127,20 @@ inline void cut_groups(LinearSystem& system, const std::vector<Index>& counts) {
     system.groupings.push_back(std::move(grouping));
     members = count;
   }
+}
+
+/// As the inner loops have it.
+template <class Real = double>
+std::vector<Quad<Real>> quads(std::span<const Vec3> x) {
+  std::vector<Quad<Real>> result;
+  for (const Vec3& v : x) result.push_back(quad_of<Real>(v));
+  return result;
+}
+template <class Quad>
+std::vector<Vec3> vectors(const std::vector<Quad>& x) {
+  std::vector<Vec3> result;
+  for (const Quad& q : x) result.push_back(vec3_of(q));
+  return result;
 }
 
 inline Eigen::Map<const Eigen::VectorXd> flat(std::span<const Vec3> x) {

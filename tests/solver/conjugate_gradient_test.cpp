@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 
 #include "core/parallel.hpp"
@@ -125,6 +126,41 @@ TEST(ConjugateGradient, APartWithAnotherVersionIsReadAnew) {
   used.prepare(system);
   fresh.prepare(system);
   EXPECT_EQ(norm(used, b), norm(fresh, b));
+}
+
+// What was kept of an earlier matrix must not outlive the step: a run that is resumed there has none of it.
+TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
+  Random random(37);
+  LinearSystem system = system_of_parts(random);
+  cut_groups(system, {30, 6});
+  const auto b = random.vectors(system.matrix.rows());
+  const auto stiffen = [&](double by) {
+    for (Index i = 20; i < 40; ++i) system.matrix.add_scalar(system.matrix.diagonal(i), by);
+    ++system.parts[1].version;
+  };
+  const auto solution = [&](ConjugateGradient& cg, double share) {
+    std::vector<Vec3> x(b.size());
+    cg.solve(b, {share}, 3, x);
+    return x;
+  };
+  for (const double metric : {1e-9, 1.0}) {  // in double only, and in both
+    system.metric.assign(b.size(), metric);
+    ConjugateGradient used;
+    used.prepare(system);
+    norm(used, b);
+    stiffen(1000);
+    used.prepare(system, Sums::kept);
+    ConjugateGradient fresh;
+    fresh.prepare(system, Sums::kept);  // nothing is there to be kept
+    EXPECT_NE(norm(used, b), norm(fresh, b));
+    // Double has not been used before where single precision is.
+    EXPECT_EQ(solution(used, 1e-9) == solution(fresh, 1e-9), metric == 1);
+    stiffen(1000);
+    for (ConjugateGradient* cg : {&used, &fresh}) cg->prepare(system);
+    EXPECT_EQ(norm(used, b), norm(fresh, b));
+    EXPECT_EQ(solution(used, 1e-9), solution(fresh, 1e-9));
+    EXPECT_EQ(solution(used, 0.01), solution(fresh, 0.01));
+  }
 }
 
 TEST(ConjugateGradient, GroupsCarryAPushAlongAStiffChainInFewerIterations) {
@@ -289,6 +325,109 @@ TEST(ConjugateGradient, ErrorsCountAsFarAsTheyShowInTheMetric) {
   const LinearReport report = cg.solve(b, {}, 1, x);  // the block diagonal is exact here: one step
   EXPECT_LE(report.errors[0], testing::flat(x).norm() * (1 + 1e-12));
   EXPECT_GT(report.errors[0], 0.99 * testing::flat(x).norm());
+}
+
+// A sheet of kSide × kSide with springs of this stiffness to its neighbours, against a metric of 1, and bending beside:
+// rows sum up to the metric.
+constexpr Index kSide = 12;
+LinearSystem sheet(double stiffness, Random& random) {
+  BlockMatrix::Couplings links, bends;
+  for (Index i = 0; i < kSide * kSide; ++i) {
+    if (i % kSide > 0) links.emplace_back(i - 1, i);
+    if (i >= kSide) links.emplace_back(i - kSide, i);
+    if (i % kSide > 1) bends.emplace_back(i - 2, i);
+  }
+  LinearSystem system;
+  system.matrix = BlockMatrix(kSide * kSide, links, bends);
+  BlockMatrix& matrix = system.matrix;
+  for (Index i = 0; i < matrix.rows(); ++i) matrix.add_scalar(matrix.diagonal(i), 1);
+  for (const auto& [i, j] : links) {
+    const Vec3 n = random.vector().normalized();
+    const Mat3 spring = stiffness * n * n.transpose();
+    for (Index k : {i, j}) matrix.add(matrix.diagonal(k), spring);
+    matrix.subtract(matrix.slot(i, j), spring);
+    matrix.subtract(matrix.slot(j, i), spring);
+  }
+  for (const auto& [i, j] : bends) {
+    for (Index k : {i, j}) matrix.add_scalar(matrix.diagonal(k), 0.1);
+    matrix.add_scalar(matrix.slot(i, j), -0.1);
+    matrix.add_scalar(matrix.slot(j, i), -0.1);
+  }
+  system.metric.assign(static_cast<std::size_t>(matrix.rows()), 1);
+  const Vec3 n = random.vector().normalized();
+  system.constraints = {{0, Mat3::Zero()}, {kSide - 1, Mat3::Identity() - n * n.transpose()}};
+  system.diagonal_terms = {{30, stiffness * n * n.transpose()}};
+  system.terms = {{{50, 75, 76, 87}, {-1, 0.4, 0.3, 0.3}, stiffness * n * n.transpose()}};
+  cut_groups(system, {36, 9});
+  return system;
+}
+
+TEST(ConjugateGradient, InSinglePrecisionIsAsExactAsItSaysAndAsFastAsInDouble) {
+  for (const double stiffness : {1.0, 1e3, 1e5, 1e6}) {
+    Random random(51);
+    const LinearSystem system = sheet(stiffness, random);
+    const auto b = random.vectors(system.matrix.rows());
+    const Eigen::VectorXd expected = direct_solution(system, b);
+    const Eigen::MatrixXd a = dense_with_terms(system);
+    const auto energy = [&](const Eigen::VectorXd& e) { return std::sqrt(e.dot(a * e)); };
+    for (const double share : {0.1, 0.01, 1e-3}) {
+      std::vector<Vec3> x(b.size()), y(b.size(), Vec3::Zero());
+      ConjugateGradient cg;
+      cg.prepare(system);
+      const LinearReport report = cg.solve(b, {share}, 1000, x);
+      Recurrence<double> in_double;
+      Progress progress{{{}}};
+      in_double.prepare(system, Sums::anew);
+      EXPECT_EQ(in_double.solve(b, {share}, 1000, y, {}, std::array{std::size_t{0}}, progress), End::converged);
+      EXPECT_TRUE(report.converged);
+      // As many, but for those that end in double with the factor, and begin there anew.
+      EXPECT_NEAR(report.iterations, progress.iterations, 1 + progress.iterations / 6);
+      // What single precision adds is below what was asked for.
+      EXPECT_LT(energy(testing::flat(x) - expected), energy(testing::flat(y) - expected) + share * energy(expected))
+          << stiffness << " to " << share;
+      EXPECT_EQ(x[0], Vec3::Zero());
+      const Vec3 entry = system.constraints[1].free * x[kSide - 1];
+      EXPECT_LT((entry - x[kSide - 1]).norm(), 1e-14 * entry.norm());
+    }
+  }
+}
+
+TEST(ConjugateGradient, SinglePrecisionLeavesToDoubleWhatIsBeyondIt) {
+  // Tighter than its reach, by an absolute size and by a share; and springs that it would round to more than the
+  // metric.
+  for (const double stiffness : {1e3, 1e6, 1e10}) {
+    Random random(52);
+    const LinearSystem system = sheet(stiffness, random);
+    const auto b = random.vectors(system.matrix.rows());
+    const Eigen::VectorXd expected = direct_solution(system, b);
+    for (const double absolute : {0.0, 1e-8}) {
+      std::vector<Vec3> x(b.size());
+      ConjugateGradient cg;
+      cg.prepare(system);
+      const double allowed[] = {absolute};
+      const LinearGoal goal = absolute > 0 ? LinearGoal{0, allowed} : LinearGoal{1e-10};
+      EXPECT_TRUE(cg.solve(b, goal, 5000, x).converged) << stiffness;
+      // Of a solution of norm 10; with 1e10 roundings of 1e-16 times that are in it, and in the direct solution.
+      EXPECT_LT((testing::flat(x) - expected).norm(), stiffness > 1e9 ? 1e-4 : 1e-7) << stiffness;
+    }
+  }
+}
+
+TEST(ConjugateGradient, MotionThatAllShareIsExactInSinglePrecisionHoweverStiffTheThreads) {
+  Random random(53);
+  LinearSystem system = sheet(1e6, random);
+  system.constraints.clear();
+  system.terms.clear();
+  system.diagonal_terms.clear();
+  // All blocks sum up to the metric, so this is what moves all by (1, 2, 3).
+  const std::vector<Vec3> b(system.metric.size(), Vec3(1, 2, 3));
+  std::vector<Vec3> x(b.size());
+  ConjugateGradient cg;
+  cg.prepare(system);
+  const LinearReport report = cg.solve(b, {0.1}, 100, x, b);
+  EXPECT_LE(report.iterations, 1);
+  // Sums of eight blocks in double leave 1e-10 of 1e6, and numbers are rounded by 6e-8.
+  for (const Vec3& v : x) EXPECT_LT((v - Vec3(1, 2, 3)).norm(), 1e-6);
 }
 
 TEST(ConjugateGradient, BeginsWithTheBestMultipleOfADirection) {

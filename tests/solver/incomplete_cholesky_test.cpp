@@ -19,9 +19,11 @@ Eigen::MatrixXd dense_inverse(IncompleteCholesky& factor, const LinearSystem& sy
   const auto rows = static_cast<std::size_t>(system.matrix.rows());
   Eigen::MatrixXd inverse(s.rows(), s.cols());
   for (Eigen::Index column = 0; column < s.cols(); ++column) {
-    std::vector<Vec3> r(rows), z(rows, Vec3::Zero());
+    std::vector<Vec3> r(rows);
     for (std::size_t i = 0; i < rows; ++i) r[i] = s.col(column).segment<3>(static_cast<Eigen::Index>(3 * i));
-    const double sum = factor.add(1, r, z, parts_of(system));
+    std::vector<Quad<double>> in_quads(rows, Quad<double>{});
+    const double sum = factor.add(1, testing::quads(r), in_quads, parts_of(system));
+    const std::vector<Vec3> z = testing::vectors(in_quads);
     inverse.col(column) = s * testing::flat(z);
     EXPECT_NEAR(sum, testing::flat(r).dot(testing::flat(z)), 1e-12 * (1 + std::abs(sum)));
   }

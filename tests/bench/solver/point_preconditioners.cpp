@@ -10,6 +10,22 @@
 namespace weft::bench {
 namespace {
 
+// Vectors as the program's inner loops have them, and back.
+class InQuads {
+ public:
+  template <class Body>
+  void apply(std::span<const Vec3> r, std::span<Vec3> z, const Body& body) {
+    r_.clear();
+    for (const Vec3& v : r) r_.push_back(solver::quad_of<double>(v));
+    z_.resize(r.size());
+    body(std::span<const solver::Quad<double>>(r_), std::span<solver::Quad<double>>(z_));
+    for (std::size_t i = 0; i < z.size(); ++i) z[i] = solver::vec3_of(z_[i]);
+  }
+
+ private:
+  std::vector<solver::Quad<double>> r_, z_;
+};
+
 class OfTheProgram final : public Inverse {
  public:
   explicit OfTheProgram(bool levels) : levels_(levels) {}
@@ -23,13 +39,14 @@ class OfTheProgram final : public Inverse {
   }
   void apply(std::span<const Vec3> r, std::span<Vec3> z) override {
     const std::size_t all = 0;
-    preconditioner_.apply(r, z, {&all, 1});
+    vectors_.apply(r, z, [&](auto from, auto to) { preconditioner_.apply(from, to, {&all, 1}); });
   }
 
  private:
   bool levels_;
   solver::LinearSystem without_levels_;
-  solver::Preconditioner preconditioner_;
+  solver::Preconditioner<double> preconditioner_;
+  InQuads vectors_;
 };
 
 // L Lᵀ with the pattern of the matrix, row by row; where a pivot fails, once more with a larger diagonal (Manteuffel,
@@ -115,15 +132,21 @@ class LevelsAndFactor final : public Inverse {
   }
   void apply(std::span<const Vec3> r, std::span<Vec3> z) override {
     const std::size_t all = 0;
-    levels_.apply(r, z, {&all, 1});
-    factor_.add(16, r, z, solver::parts_of(*system_));
-    levels_.filter(z);
+    vectors_.apply(r, z, [&](auto from, auto to) {
+      levels_.apply(from, to, {&all, 1});
+      factor_.add(16, from, to, solver::parts_of(*system_));
+    });
+    for (const auto& c : system_->constraints) {
+      Vec3& entry = z[static_cast<std::size_t>(c.particle)];
+      entry = (c.free * entry).eval();
+    }
   }
 
  private:
   const solver::LinearSystem* system_ = nullptr;
-  solver::Preconditioner levels_;
+  solver::Preconditioner<double> levels_;
   solver::IncompleteCholesky factor_;
+  InQuads vectors_;
 };
 
 }  // namespace

@@ -86,6 +86,7 @@ SheetSystem sheet_system(int side, double stiffness, Pose pose) {
   sheet.b = still;
   problem.linearise({sheet.x, still, sheet.x, 1 / kStep, 1}, 0, sheet.b);
   sheet.system = problem.linear_system();
+  for (const double mass : cloth.masses()) sheet.system.metric.push_back(mass / (kStep * kStep));
   if (pose == Pose::hanging)
     for (int i : {0, side - 1}) sheet.system.constraints.push_back({grid.index(i, 0), Mat3::Zero()});
   else
@@ -116,7 +117,7 @@ SheetSystem sheet_system(int side, double stiffness, Pose pose) {
 
 void multiply(const solver::LinearSystem& system, std::span<const Vec3> p, std::span<Vec3> q) {
   const auto at = [](Index i) { return static_cast<std::size_t>(i); };
-  system.matrix.multiply(p, q, 0, at(system.matrix.rows()));
+  system.matrix.multiply<Vec3>(p, q, 0, at(system.matrix.rows()));
   for (const auto& term : system.diagonal_terms) q[at(term.particle)] += term.stiffness * p[at(term.particle)];
   for (const auto& term : system.terms) {
     Vec3 sum = Vec3::Zero();
