@@ -86,7 +86,7 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
     Positions after = v, before = v, product(x.size(), Vec3::Zero());
     for (std::size_t i = 0; i < x.size(); ++i) after[i] += kEpsilon * change[i], before[i] -= kEpsilon * change[i];
     const Positions f_after = force_at(after), f_before = force_at(before);
-    matrix.multiply(change, product, 0, x.size());
+    matrix.multiply<Vec3>(change, product, 0, x.size());
     double of_matrix = 0, of_force = 0;
     for (std::size_t i = 0; i < x.size(); ++i) {
       of_matrix += change[i].dot(product[i]);

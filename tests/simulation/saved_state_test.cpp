@@ -205,7 +205,8 @@ TEST(SavedStates, OfAPrerollKeepWhatItsFramesHaveSaid) {
 }
 
 TEST(SavedStates, AfterRejectedAndInexactStepsGoOnTheSameWay) {
-  scene::Scene scene = support::scene_of_text(kDrape, {"time.integrator=bdf2", "solver.newton_iterations=6"});
+  scene::Scene scene = support::scene_of_text(
+      kDrape, {"time.integrator=bdf2", "solver.newton_iterations=9", "solver.newton_tolerance=0.01"});
   const Continued rejected = continue_runs(scene, {12, {5, 6, 8, 9}});
   EXPECT_EQ(rejected.difference, "");
   EXPECT_GT(rejected.rejected_steps, 0);
