@@ -24,6 +24,8 @@ constexpr int kMostBends = 8;
 // Share of the cloth's energy, of motion and elastic, that pushing it apart may add to a step, and it is done; and from
 // which the step is done again in halves where the way has bent as often as it may.
 constexpr double kUnfeltGain = 0.1, kCorrectionGain = 0.2;
+// What it may add to the largest strain, and it is done.
+constexpr double kUnfeltStrain = 0.05;
 // Of its limit to stretch, what cloth may be stretched by, and by how much more within time.step where it is beyond
 // that, before a step is taken in two: what strikes cloth fast drags it along by contacts that were found before. Pins
 // that are drawn apart are slower.
@@ -236,12 +238,14 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
       ++adoptions;
       if (solved) response.revise(now.x, next_.x, force_on);
     } else if (may_bend) {
-      const double before = solved ? energy(next_) : 0;
+      const double before = solved ? energy(next_) : 0, strain = solved ? cloth_.max_strain(next_.particles()) : 0;
       if (collisions_->push_apart(h, false, false, now, next_)) {
         bends = kMostBends;  // and what is stuck shows once this is solved
         continue;
       }
-      if (solved && added_share(before, h) <= kUnfeltGain) return std::nullopt;
+      if (solved && added_share(before, h) <= kUnfeltGain &&
+          cloth_.max_strain(next_.particles()) <= strain + kUnfeltStrain)
+        return std::nullopt;
       collisions_->go_on_from(next_);
       problem_.forget_contacts();
       ++bends;
