@@ -156,10 +156,13 @@ TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
     // Double has not been used before where single precision is.
     EXPECT_EQ(solution(used, 1e-9) == solution(fresh, 1e-9), metric == 1);
     stiffen(1000);
-    for (ConjugateGradient* cg : {&used, &fresh}) cg->prepare(system);
-    EXPECT_EQ(norm(used, b), norm(fresh, b));
-    EXPECT_EQ(solution(used, 1e-9), solution(fresh, 1e-9));
-    EXPECT_EQ(solution(used, 0.01), solution(fresh, 0.01));
+    used.prepare(system);
+    ConjugateGradient last;
+    last.prepare(system);
+    EXPECT_EQ(norm(used, b), norm(last, b));
+    // Single precision has summed up already, where it is used: double has to do so for itself.
+    EXPECT_EQ(solution(used, 1e-9), solution(last, 1e-9));
+    EXPECT_EQ(solution(used, 0.01), solution(last, 0.01));
   }
 }
 

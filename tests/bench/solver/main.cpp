@@ -135,16 +135,22 @@ const std::vector<Entry>& entries() {
 
 Row measure_program(const SheetSystem& sheet, Pose pose, double stiffness) {
   Row row{kProgram, pose, stiffness, sheet.side * sheet.side, 0, 0, 0, {}, {}};
+  solver::LinearSystem system = sheet.system;
+  system.parts = {{0, system.matrix.rows()}};
   const double before = bytes_in_use();
   std::vector<Vec3> x(sheet.b.size()), q(sheet.b.size());
   solver::ConjugateGradient solver;
   for (Solution* solution : {&row.loose, &row.tight}) {
     const double tolerance = solution == &row.loose ? kTolerances[0] : kTolerances[1];
+    // The levels of this precision, which are kept from step to step.
+    solver.prepare(system);
+    solver.solve(sheet.b, {tolerance}, 1, x);
     // It goes by errors: the share of them that leaves the share asked for in ours is found first.
     double share = tolerance;
     do {
+      ++system.parts.front().version;
       const double start = thread_cpu_seconds();
-      solver.prepare(sheet.system);
+      solver.prepare(system);
       row.setup = thread_cpu_seconds() - start;
       const solver::LinearReport report = solver.solve(sheet.b, {share}, kMostIterations, x);
       solution->seconds = thread_cpu_seconds() - start - row.setup;
