@@ -384,7 +384,7 @@ TEST(ConjugateGradient, InSinglePrecisionIsAsExactAsItSaysAndAsFastAsInDouble) {
       EXPECT_EQ(in_double.solve(b, {share}, 1000, y, {}, std::array{std::size_t{0}}, progress), End::converged);
       EXPECT_TRUE(report.converged);
       // As many, but for those that end in double with the factor, and begin there anew.
-      EXPECT_NEAR(report.iterations, progress.iterations, 1 + progress.iterations / 6);
+      EXPECT_NEAR(report.iterations, progress.iterations, 1 + progress.iterations / 6.0);
       // What single precision adds is below what was asked for.
       EXPECT_LT(energy(testing::flat(x) - expected), energy(testing::flat(y) - expected) + share * energy(expected))
           << stiffness << " to " << share;
