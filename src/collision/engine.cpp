@@ -70,7 +70,7 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   x_t0_ = x_t0;
   pushed_.clear();
   carried_.begin_step(x_t0, x_t1, motions);
-  find_contacts(x_t0, x_t1);
+  find_near(x_t0, x_t1, proximities_);
   if (!pinched_.empty()) {
     pinched_.release(candidates_.hierarchies(), x_t0);
     for (const FeaturePair& push : pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.reach()))
@@ -86,20 +86,21 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
 void Engine::go_on_from(std::span<const Vec3> x) {
   const StepMotion motion{x_t0_, x, x, step_};
   carried_.begin_step(x, x, {});
-  find_contacts(x, x);
-  builder_.add(proximities_, pinched_, motion, response_);
+  if (coherence_) candidates_.drop();  // what is kept was closest where the step began
+  find_near(x, x, near_bend_);
+  builder_.add(near_bend_, pinched_, motion, response_);
   for (const CornerPair& pair : pushed_) builder_.add_failing(pair, motion, response_);
 }
 
 // Features near each other at x_from, and no contacts yet.
-void Engine::find_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1) {
+void Engine::find_near(std::span<const Vec3> x_from, std::span<const Vec3> x_t1, std::vector<Proximity>& near) {
   if (!candidates_.covers_start(x_from) || !candidates_.covers_end(x_t1)) collect(x_from, x_t1);
   if (coherence_) {
-    proximities_.clear();
-    std::ranges::copy_if(coherence_->proximities(), std::back_inserter(proximities_),
+    near.clear();
+    std::ranges::copy_if(coherence_->proximities(), std::back_inserter(near),
                          [&](const Proximity& proximity) { return proximity.distance < candidates_.reach(); });
   } else {
-    finder_.find(x_from, candidates_.reach(), proximities_);
+    finder_.find(x_from, candidates_.reach(), near);
   }
   response_.begin_step(step_);
   builder_.begin_step();

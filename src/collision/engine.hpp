@@ -98,7 +98,7 @@ class Engine {
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
-  void find_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1);
+  void find_near(std::span<const Vec3> x_from, std::span<const Vec3> x_t1, std::vector<Proximity>& near);
   template <class Archive>
   void serialize_candidates(Archive& archive);
 
@@ -117,6 +117,7 @@ class Engine {
   std::span<const Vec3> x_t0_;           // where the step began
   std::vector<CornerPair> pushed_;       // pairs that were pushed apart in it
   std::vector<Proximity> proximities_;   // at the start of the step
+  std::vector<Proximity> near_bend_;     // where its way last bent
   std::span<const CornerPair> failing_;  // of the last call of apart()
 };
 

@@ -148,6 +148,7 @@ double Recurrence<Real>::apply_preconditioner(std::span<Quad<Real>> z, bool with
 template <class Real>
 void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, std::span<const Vec3> start,
                              Progress& progress) {
+  along_ = 0;
   product_.select(selected_);
   moved_.resize(selected_.size());
   rz_.resize(selected_.size());
@@ -165,24 +166,24 @@ void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, s
   }
 }
 
-// A step along `start`.
+// A step along `start`, which stays beside x_, in double.
 template <class Real>
 void Recurrence<Real>::begin_along(std::span<const Vec3> start) {
+  start_.assign(start.begin(), start.end());
+  for (const ParticleConstraint& c : system_->constraints)
+    start_[static_cast<std::size_t>(c.particle)] = c.free * start_[static_cast<std::size_t>(c.particle)];
   for_rows([&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) p_[i] = quad_of<Real>(start[i]);
+    for (std::size_t i = first; i < end; ++i) p_[i] = quad_of<Real>(start_[i]);
   });
-  product_.filter(p_);
   const double curvature = multiply();
   if (!(curvature > 0)) return;
   double slope = 0;
   for (std::size_t part : selected_)
     for (auto i = parts_[part].begin; i < parts_[part].end; ++i) slope += sum_of_three(products(p_[i], r_[i]));
-  const Real alpha = static_cast<Real>(slope / curvature);
+  along_ = slope / curvature;
+  const Real alpha = static_cast<Real>(along_);
   for_rows([&](std::size_t first, std::size_t end) {
-    for (std::size_t i = first; i < end; ++i) {
-      x_[i] = alpha * p_[i];
-      r_[i] -= alpha * q_[i];
-    }
+    for (std::size_t i = first; i < end; ++i) r_[i] -= alpha * q_[i];
   });
 }
 
@@ -250,8 +251,12 @@ End Recurrence<Real>::solve(std::span<const Vec3> b, const LinearGoal& goal, int
   selected_.assign(parts.begin(), parts.end());
   begin(b, x, start, progress);
   const End end = iterate(goal, max_iterations, progress);
+  if (end == End::needs_double && progress.iterations == 0) return end;  // that begins anew
   for (std::size_t part : selected_)
     for (auto i = parts_[part].begin; i < parts_[part].end; ++i) x[i] += vec3_of(x_[i]);
+  if (along_ != 0)
+    for (std::size_t part : selected_)
+      for (auto i = parts_[part].begin; i < parts_[part].end; ++i) x[i] += along_ * start_[i];
   return end;
 }
 

@@ -84,6 +84,8 @@ class Recurrence {
   enum class Factor { not_made, made, none } factor_state_ = Factor::not_made;  // of the system as prepared
   std::vector<Part> factor_parts_;                                              // scratch
   std::vector<Quad<Real>> x_, r_, z_, p_, q_;
+  std::vector<Vec3> start_;         // as far as constraints let it
+  double along_ = 0;                // what the solution has of it, beside x_
   std::vector<double> moved_, rz_;  // of each selected part: Σ metric ‖p‖², r·z
 };
 

@@ -4,6 +4,7 @@
 #include <Eigen/Dense>
 #include <random>
 
+#include "solver/conjugate_gradient.hpp"
 #include "solver/linear_system.hpp"
 
 namespace weft::solver::testing {
@@ -145,6 +146,34 @@ std::vector<Vec3> vectors(const std::vector<Quad>& x) {
 
 inline Eigen::Map<const Eigen::VectorXd> flat(std::span<const Vec3> x) {
   return {x.data()->data(), static_cast<Eigen::Index>(3 * x.size())};
+}
+
+// Three parts of twenty particles, coupled by contacts alone.
+inline LinearSystem system_of_parts(Random& random) {
+  constexpr Index kRows = 60, kPart = 20;
+  LinearSystem system = testing::random_system(kRows, 30, random);
+  std::vector<std::pair<Index, Index>> couplings;
+  for (Index i = 0; i < kRows; ++i)
+    for (Index j = kPart * (i / kPart); j < i; ++j)
+      if (random.below(5) == 0) couplings.emplace_back(i, j);
+  system.matrix = BlockMatrix(kRows, couplings);
+  for (Index i = 0; i < kRows; ++i) system.matrix.add(system.matrix.diagonal(i), random.definite(20));
+  for (const auto& [i, j] : couplings) {
+    const Mat3 block = random.definite(0);
+    system.matrix.add(system.matrix.slot(i, j), block);
+    system.matrix.add(system.matrix.slot(j, i), block);
+  }
+  for (Index p = 0; p < 3; ++p) system.parts.push_back({kPart * p, kPart * (p + 1)});
+  return system;
+}
+
+/// √(bᵀ P⁻¹ b) of the constrained part of b.
+inline double norm(ConjugateGradient& cg, std::vector<Vec3> b) {
+  cg.filter(b);
+  const std::span<const Vec3> z = cg.precondition(b);
+  double sum = 0;
+  for (std::size_t i = 0; i < b.size(); ++i) sum += b[i].dot(z[i]);
+  return std::sqrt(sum);
 }
 
 }  // namespace weft::solver::testing

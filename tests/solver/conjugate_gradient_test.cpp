@@ -14,23 +14,16 @@ namespace {
 
 using testing::cut_groups;
 using testing::dense_with_terms;
+using testing::norm;
 using testing::projection;
 using testing::Random;
+using testing::system_of_parts;
 
 Eigen::VectorXd direct_solution(const LinearSystem& system, std::span<const Vec3> b) {
   const Eigen::MatrixXd s = projection(system);
   const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(s.rows(), s.cols());
   const Eigen::MatrixXd filtered = s * dense_with_terms(system) * s + (identity - s);
   return filtered.ldlt().solve(s * testing::flat(b));
-}
-
-/// √(bᵀ P⁻¹ b) of the constrained part of b.
-double norm(ConjugateGradient& cg, std::vector<Vec3> b) {
-  cg.filter(b);
-  const std::span<const Vec3> z = cg.precondition(b);
-  double sum = 0;
-  for (std::size_t i = 0; i < b.size(); ++i) sum += b[i].dot(z[i]);
-  return std::sqrt(sum);
 }
 
 TEST(ConjugateGradient, AgreesWithTheDirectSolutionUnderContactsAndConstraints) {
@@ -74,25 +67,6 @@ TEST(ConjugateGradient, WithGroupsAgreesWithTheDirectSolutionUnderContactsAndCon
   }
 }
 
-// Three parts of twenty particles, coupled by contacts alone.
-LinearSystem system_of_parts(Random& random) {
-  constexpr Index kRows = 60, kPart = 20;
-  LinearSystem system = testing::random_system(kRows, 30, random);
-  std::vector<std::pair<Index, Index>> couplings;
-  for (Index i = 0; i < kRows; ++i)
-    for (Index j = kPart * (i / kPart); j < i; ++j)
-      if (random.below(5) == 0) couplings.emplace_back(i, j);
-  system.matrix = BlockMatrix(kRows, couplings);
-  for (Index i = 0; i < kRows; ++i) system.matrix.add(system.matrix.diagonal(i), random.definite(20));
-  for (const auto& [i, j] : couplings) {
-    const Mat3 block = random.definite(0);
-    system.matrix.add(system.matrix.slot(i, j), block);
-    system.matrix.add(system.matrix.slot(j, i), block);
-  }
-  for (Index p = 0; p < 3; ++p) system.parts.push_back({kPart * p, kPart * (p + 1)});
-  return system;
-}
-
 TEST(ConjugateGradient, PartsAreSolvedAsIfAllOthersWereHeld) {
   for (const std::vector<Index>& counts : {std::vector<Index>{}, {6}, {30, 6}}) {
     Random random(31);
@@ -126,44 +100,6 @@ TEST(ConjugateGradient, APartWithAnotherVersionIsReadAnew) {
   used.prepare(system);
   fresh.prepare(system);
   EXPECT_EQ(norm(used, b), norm(fresh, b));
-}
-
-// What was kept of an earlier matrix must not outlive the step: a run that is resumed there has none of it.
-TEST(ConjugateGradient, SumsAreKeptUntilTheyAreToBeMadeAnewInBothPrecisions) {
-  Random random(37);
-  LinearSystem system = system_of_parts(random);
-  cut_groups(system, {30, 6});
-  const auto b = random.vectors(system.matrix.rows());
-  const auto stiffen = [&](double by) {
-    for (Index i = 20; i < 40; ++i) system.matrix.add_scalar(system.matrix.diagonal(i), by);
-    ++system.parts[1].version;
-  };
-  const auto solution = [&](ConjugateGradient& cg, double share) {
-    std::vector<Vec3> x(b.size());
-    cg.solve(b, {share}, 3, x);
-    return x;
-  };
-  for (const double metric : {1e-9, 1.0}) {  // in double only, and in both
-    system.metric.assign(b.size(), metric);
-    ConjugateGradient used;
-    used.prepare(system);
-    norm(used, b);
-    stiffen(1000);
-    used.prepare(system, Sums::kept);
-    ConjugateGradient fresh;
-    fresh.prepare(system, Sums::kept);  // nothing is there to be kept
-    EXPECT_NE(norm(used, b), norm(fresh, b));
-    // Double has not been used before where single precision is.
-    EXPECT_EQ(solution(used, 1e-9) == solution(fresh, 1e-9), metric == 1);
-    stiffen(1000);
-    used.prepare(system);
-    ConjugateGradient last;
-    last.prepare(system);
-    EXPECT_EQ(norm(used, b), norm(last, b));
-    // Single precision has summed up already, where it is used: double has to do so for itself.
-    EXPECT_EQ(solution(used, 1e-9), solution(last, 1e-9));
-    EXPECT_EQ(solution(used, 0.01), solution(last, 0.01));
-  }
 }
 
 TEST(ConjugateGradient, GroupsCarryAPushAlongAStiffChainInFewerIterations) {
