@@ -86,6 +86,7 @@ class Recurrence {
   std::vector<Quad<Real>> x_, r_, z_, p_, q_;
   std::vector<Vec3> start_;         // as far as constraints let it
   double along_ = 0;                // what the solution has of it, beside x_
+  double along_energy_ = 0;         // and what that gains
   std::vector<double> moved_, rz_;  // of each selected part: Σ metric ‖p‖², r·z
 };
 
