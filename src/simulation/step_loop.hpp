@@ -36,7 +36,7 @@ class StepLoop {
     Moment now;
     integrator::Stepper stepper;
     std::optional<integrator::StepControl> control;  // where the scene has a tolerance instead of a step
-    double longest;                                  // step after one that stretched cloth too far [s]; else infinite
+    double longest;                                  // step after one that was not solved [s]; else infinite
   };
   const Progress& progress() const { return progress_; }
   /// After a failure, between two frames.
@@ -82,7 +82,6 @@ class StepLoop {
   integrator::StepReport solve(double h, integrator::Stepper::Start start, bool look, FrameReport& report);
   static Rejection reason_of(const integrator::StepReport& step);
   void accept(double h, FrameReport& report);
-  bool stretches_too_far(double h) const;
   void measure_stretch(FrameReport& report);
   [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
 
