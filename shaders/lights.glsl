@@ -9,12 +9,9 @@ struct Light {
   vec4 color;                     // linear; w: 1 / width of the soft edge of the cone
   vec4 shadow;                    // penumbra width for each unit of depth, depth bias, texel size
 };
-// There is always one light at least: loops over them test at the end, as llvmpipe runs the round that finds a test at
-// the start false all the same, with all pixels masked.
-layout(std140, binding = 1) uniform Lights {
-  Light lights[4];
-  ivec4 light_count;
-};
+// LIGHTS of them are there, one at least. Index them by constants: llvmpipe reads a member at a variable index once for
+// each pixel.
+layout(std140, binding = 1) uniform Lights { Light lights[4]; };
 layout(binding = 0) uniform sampler2DArrayShadow shadow_compare;
 layout(binding = 1) uniform sampler2DArray shadow_depth;
 layout(binding = 2) uniform sampler2DArray shadow_range;

@@ -1,100 +1,70 @@
 // Light from the sky, ambient occlusion, reflections and the way to the screen; used by all drawn surfaces.
 #include "frame.glsl"
 #include "lights.glsl"
-layout(binding = 4) uniform sampler2D normals;
-layout(binding = 5) uniform sampler2D uv_heat_materials;
-layout(binding = 8) uniform sampler2D distances;
-layout(binding = 7) uniform sampler2D materials;  // a row for each: front colour, roughness; back colour, thread spacing;
-                                                  // heat scale, checker
-layout(binding = 3) uniform sampler2D soft_light;  // openness, share of light 0, surface, distance; see soft_light.frag
-
-struct Seen {
-  vec3 position_world;
-  vec3 normal_world;  // unit, toward the viewer
-  float distance_view;
-  vec2 rest_uv;
-  float heat;
-  bool front;
-  float surface;  // row of its material
-  vec4 front_roughness, back_spacing, heat_checker;  // of its material
-};
-
-Seen look_up_seen() {
-  ivec2 pixel = ivec2(gl_FragCoord.xy);
-  vec4 other = texelFetch(uv_heat_materials, pixel, 0);
-  int row = int(other.w);
-  Seen seen;
-  seen.distance_view = texelFetch(distances, pixel, 0).r;
-  seen.position_world =
-      world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, seen.distance_view)) + frame.eye_world.xyz;
-  seen.normal_world = normalize(texelFetch(normals, pixel, 0).xyz);
-  seen.rest_uv = other.xy;
-  seen.heat = other.z;
-  seen.surface = float(row);
-  seen.front = other.w - float(row) < 0.25;
-  seen.front_roughness = texelFetch(materials, ivec2(0, row), 0);
-  seen.back_spacing = texelFetch(materials, ivec2(1, row), 0);
-  seen.heat_checker = texelFetch(materials, ivec2(2, row), 0);
-  return seen;
-}
+#include "soft_light.glsl"
+layout(binding = 4) uniform sampler2D normals_heat;
+layout(binding = 5) uniform sampler2D rest_uvs;
+layout(binding = 8) uniform sampler2D distances_surfaces;
+layout(binding = 7) uniform sampler2D materials;  // a row for each surface: front colour, roughness; back colour, thread
+                                                  // spacing; heat scale
+layout(binding = 3) uniform sampler2D soft_light;  // soft_light.frag
 
 struct Softness {
-  float open;        // share of the surroundings that light this point
-  float first_lit;   // share of light 0 that reaches it
-  bool first_known;  // false where the neighbours disagree, as along the edge of a crisp shadow
+  float open;   // share of the surroundings that light this point
+  vec2 lit;     // shares of the first two lights that reach it
+  bvec2 known;  // false where the neighbours disagree, as along the edge of a crisp shadow
 };
+const Softness kAllOpen = Softness(1.0, vec2(1.0), bvec2(true));
 
-#ifdef SOFT_LIGHT
 // Sums over texels of the small picture, each weighted by how surely it shows the surface seen.
 struct SoftSums {
-  float weight, open, lit, least, most;
+  float weight, open;
+  vec2 lit, least, most;
 };
 
-void add_soft_texel(inout SoftSums sums, ivec2 at, float weight, Seen seen) {
+void add_soft_texel(inout SoftSums sums, ivec2 at, float weight, float distance_view, float surface) {
   vec4 texel = texelFetch(soft_light, clamp(at, ivec2(0), textureSize(soft_light, 0) - 1), 0);
-  float same = max(1.0 - abs(texel.w - seen.distance_view) / (0.02 * seen.distance_view), 0.0);
+  float same = max(1.0 - abs(texel.w - distance_view) / (0.02 * distance_view), 0.0);
   // Where cloth lies on a floor both are as far away, but not in the same light.
-  same *= float(texel.z == seen.surface);
+  same *= float(soft_surface(texel) == surface);
   weight *= max(same, 1e-4);
   sums.weight += weight;
-  sums.open += weight * texel.x;
-  sums.lit += weight * texel.y;
-  sums.least = min(sums.least, same > 0.0 ? texel.y : 1.0);
-  sums.most = max(sums.most, same > 0.0 ? texel.y : 0.0);
+  sums.open += weight * soft_open(texel);
+  sums.lit += weight * texel.yz;
+  sums.least = min(sums.least, same > 0.0 ? texel.yz : vec2(1.0));
+  sums.most = max(sums.most, same > 0.0 ? texel.yz : vec2(0.0));
 }
-#endif
 
 // What the small picture knows of this pixel, from its neighbours there, as far as they lie on the same surface.
-Softness look_up_softness(Seen seen) {
-#ifdef SOFT_LIGHT
+Softness look_up_softness(float distance_view, float surface) {
   vec2 at = gl_FragCoord.xy * frame.viewport.zw * vec2(textureSize(soft_light, 0)) - 0.5;
   ivec2 corner = ivec2(floor(at));
   vec2 f = at - floor(at);
-  SoftSums sums = SoftSums(0.0, 0.0, 0.0, 1.0, 0.0);
+  SoftSums sums = SoftSums(0.0, 0.0, vec2(0.0), vec2(1.0), vec2(0.0));
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
     vec2 side = mix(1.0 - f, f, vec2(step));
-    add_soft_texel(sums, corner + step, side.x * side.y + 0.01, seen);
+    add_soft_texel(sums, corner + step, side.x * side.y + 0.01, distance_view, surface);
   }
   // Where none of the four is of this surface, as beside a nearer thing, the four around them are asked as well.
   int more = sums.weight < 2e-3 ? 4 : 0;
-  for (int i = 0; i < more; ++i) add_soft_texel(sums, corner + ivec2(i & 1, i >> 1) * 3 - 1, 0.1, seen);
-  bool known = sums.most >= sums.least && sums.most - sums.least < 0.2;
+  for (int i = 0; i < more; ++i) {
+    add_soft_texel(sums, corner + ivec2(i & 1, i >> 1) * 3 - 1, 0.1, distance_view, surface);
+  }
+  vec2 spread = sums.most - sums.least;
+  bvec2 known = bvec2(spread.x >= 0.0 && spread.x < 0.2, spread.y >= 0.0 && spread.y < 0.2);
   return Softness(sums.open / sums.weight, sums.lit / sums.weight, known);
-#else
-  return Softness(1.0, 1.0, false);
-#endif
 }
 
 // Share of light i at a point, from the small picture where that knows it. The search at full size is left out of
 // programs without FULL_SHADOWS, as llvmpipe would run a round of it for every pixel: 40 ns.
 float share_of_light(int i, Softness soft, vec3 position_world, vec3 n_toward_light, bool wanted) {
 #ifdef FULL_SHADOWS
-  bool known = i == 0 && soft.first_known;
+  bool known = i < 2 && soft.known[min(i, 1)];
   float searched = visibility(i, position_world, n_toward_light, wanted && !known);
-  return known ? soft.first_lit : searched;
+  return known ? soft.lit[min(i, 1)] : searched;
 #else
-  return soft.first_lit;
+  return soft.lit[min(i, 1)];
 #endif
 }
 

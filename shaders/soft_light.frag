@@ -1,13 +1,13 @@
 // What changes slowly over the picture, drawn small: how much of its surroundings each point sees, and how much of the
-// first light. Openness comes from two sources: what the camera sees nearby (creases, contacts), and maps of the
+// first two lights. Openness comes from two sources: what the camera sees nearby (creases, contacts), and maps of the
 // scene from straight above and below (the soft dark under large things).
 #include "frame.glsl"
 #include "lights.glsl"
-layout(binding = 4) uniform sampler2D normals;
-layout(binding = 5) uniform sampler2D uv_heat_materials;
-layout(binding = 8) uniform sampler2D distances;
+#include "soft_light.glsl"
+layout(binding = 4) uniform sampler2D normals_heat;
+layout(binding = 8) uniform sampler2D distances_surfaces;
 layout(binding = 6) uniform sampler2DArray sky_maps;  // layer 0 from above, 1 from below
-layout(location = 0) out vec4 soft_light;  // x: openness, y: share of light 0, z: surface, w: distance [m]
+layout(location = 0) out vec4 soft_light;
 
 // Scalable ambient obscurance (McGuire, Mara, Luebke 2012, Eq. 1): the mean of how far neighbours stand out of the
 // tangent plane, so that it hardly depends on the distance at which taps happen to land.
@@ -23,7 +23,7 @@ float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, float turn, bool wanted
     direction = next_direction(direction);
     // At the texel's centre, where its distance was taken: half a pixel off, a floor seen at an angle shades itself.
     tap_uv = (floor(tap_uv * frame.viewport.xy) + 0.5) * frame.viewport.zw;
-    vec3 v = position_view(tap_uv, textureLod(distances, tap_uv, 0.0).r) - p_view;
+    vec3 v = position_view(tap_uv, textureLod(distances_surfaces, tap_uv, 0.0).r) - p_view;
     float d_sq = dot(v, v), fall = max(1.0 - d_sq / (radius * radius), 0.0);
     sum += fall * max(dot(v, n_view) + 4e-4 * p_view.z, 0.0) * inversesqrt(d_sq + 1e-8);
   }
@@ -60,28 +60,35 @@ float sky_openness(vec3 p_world, vec3 n_world, float turn, bool wanted) {
   return clamp(1.0 - covered, 0.0, 1.0);
 }
 
+float share(int i, vec3 p_world, vec3 n_world, float surface) {
+  float cone;
+  vec3 l = toward_light(i, p_world, cone);
+  return visibility(i, p_world, dot(n_world, l) < 0.0 ? -n_world : n_world, surface != kNothing && cone > 0.0);
+}
+
 void main() {
   // The pixel of the full picture at the centre of this one.
   ivec2 pixel = ivec2(gl_FragCoord.xy * float(REDUCTION));
   vec2 uv = (vec2(pixel) + 0.5) * frame.viewport.zw;
   pixel = min(pixel, ivec2(frame.viewport.xy) - 1);
-  float distance_view = texelFetch(distances, pixel, 0).r;
-  bool surface = distance_view < frame.frustum.w;
-  vec3 n_world = surface ? normalize(texelFetch(normals, pixel, 0).xyz) : frame.up_world.xyz;
+  vec2 seen = texelFetch(distances_surfaces, pixel, 0).rg;
+  float distance_view = seen.x, surface = floor(seen.y);
+  vec3 n_world = frame.floor_plane_world.xyz;
+  if (surface >= kFirstSurface) n_world = normalize(texelFetch(normals_heat, pixel, 0).xyz);
   vec3 p_view = position_view(uv, distance_view), p_world = world_from_view(p_view) + frame.eye_world.xyz;
   float turn = pixel_noise(gl_FragCoord.xy);
   // Far from all subjects nothing is hidden from anything.
   vec3 away = p_world - frame.center_world.xyz;
   float beyond = frame.eye_world.w + frame.sky_light.w;
   float hidden = 1.0 - smoothstep(0.6, 1.0, dot(away, away) / (beyond * beyond));
-  bool near = surface && hidden > 0.0;
+  bool near = surface != kNothing && hidden > 0.0;
   float open = nearby_openness(uv, p_view, mat3(frame.view_from_world) * n_world, turn, near);
   open *= sky_openness(p_world, n_world, turn, near);
-  float cone;
-  vec3 l = toward_light(0, p_world, cone);
-  bool wanted = surface && light_count.x > 0 && cone > 0.0;
-  float lit = visibility(0, p_world, dot(n_world, l) < 0.0 ? -n_world : n_world, wanted);
   // Fades out, so that no edge shows where the search ends.
-  open = surface ? mix(1.0, open, hidden) : 1.0;
-  soft_light = vec4(open, lit, floor(texelFetch(uv_heat_materials, pixel, 0).w), distance_view);
+  open = mix(1.0, open, hidden);
+  vec2 lit = vec2(share(0, p_world, n_world, surface), 1.0);
+#if LIGHTS > 1
+  lit.y = share(1, p_world, n_world, surface);
+#endif
+  soft_light = vec4(pack_soft(surface, surface == kNothing ? 1.0 : open), lit, distance_view);
 }

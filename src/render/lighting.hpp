@@ -13,7 +13,7 @@ namespace weft::render {
 /// More lights than this are left out: each costs a shadow map.
 inline constexpr int kMaxLights = 4;
 
-/// The snapshot's lights, at most kMaxLights; where it has none, a warm key light from above, beside the camera.
+/// The snapshot's lights, at most kMaxLights; where it has none, one: a warm key light from above, beside the camera.
 std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, const ViewAxes& camera,
                                            const Vec3& up);
 
@@ -49,7 +49,6 @@ struct LightUniform {
 };
 struct LightsUniform {
   std::array<LightUniform, kMaxLights> lights;
-  Eigen::Vector4i count{0, 0, 0, 0};
 };
 
 /// Packs a light. `scale` is of its strength, for each channel.

@@ -23,9 +23,12 @@ void DepthProgram::draw(const Mat4& clip_from_world, const DrawCasters& casters)
   casters();
 }
 
-std::vector<std::string> ShadowMaps::defines(const QualitySettings& quality) {
-  return {"BLOCKER_TAPS " + std::to_string(quality.blocker_taps), "FILTER_TAPS " + std::to_string(quality.filter_taps),
-          "FILTER_FLOOR_TEXELS 1.2", "FILTER_LIMIT_TEXELS " + std::to_string(filter_limit(quality.shadow_size)) + ".0",
+std::vector<std::string> ShadowMaps::defines(const QualitySettings& quality, std::size_t light_count) {
+  return {"LIGHTS " + std::to_string(light_count),
+          "BLOCKER_TAPS " + std::to_string(quality.blocker_taps),
+          "FILTER_TAPS " + std::to_string(quality.filter_taps),
+          "FILTER_FLOOR_TEXELS 1.2",
+          "FILTER_LIMIT_TEXELS " + std::to_string(filter_limit(quality.shadow_size)) + ".0",
           "MAX_SLOPE_TEXELS 40.0"};
 }
 
@@ -67,8 +70,7 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
   reserve(std::max<int>(1, static_cast<int>(lights.size())));
   const int size = quality_.shadow_size;
   LightsUniform block;
-  block.count.x() = static_cast<int>(lights.size());
-  for (int i = 0; i < block.count.x(); ++i) {
+  for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
     const ShadowView view = fit_shadow(lights[i], caster_positions, up, size);
     block.lights[i] = pack_light(lights[i], view, scale, size);
     gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());

@@ -2,13 +2,33 @@
 
 #include <algorithm>
 
+#include "render/seen.hpp"
+
 namespace weft::render {
 namespace {
 
 constexpr int kSkySize = 256;  // texels: the dark under things is soft anyway
 
-std::vector<std::string> soft_light_defines(const QualitySettings& quality) {
-  std::vector<std::string> defines = ShadowMaps::defines(quality);
+constexpr int kTile = 8;    // texels of the small picture
+constexpr int kMargin = 2;  // texels that shading may look beyond a pixel's own; shaders/shading.glsl
+
+// Openness from which floor counts as open: what is left out is half a level of 255, less than the dither.
+constexpr float kOpen = 0.998f;
+
+/// As shaders/soft_light.glsl packs it.
+struct SoftTexel {
+  float surface_open, lit[kSoftLights], distance;
+
+  /// Floor here or a neighbour needs to look this texel up.
+  bool shades() const {
+    constexpr float kOpenPacked = kFloor + 0.9375f * kOpen;
+    if (surface_open < kFloor) return false;
+    return surface_open < kOpenPacked || surface_open >= kFirstSurface || lit[0] < 1 || lit[1] < 1;
+  }
+};
+
+std::vector<std::string> soft_light_defines(const QualitySettings& quality, std::size_t light_count) {
+  std::vector<std::string> defines = ShadowMaps::defines(quality, light_count);
   defines.push_back("NEARBY_TAPS " + std::to_string(quality.nearby_taps));
   defines.push_back("SKY_TAPS " + std::to_string(quality.sky_taps));
   defines.push_back("REDUCTION " + std::to_string(quality.soft_divisor));
@@ -19,9 +39,11 @@ std::vector<std::string> soft_light_defines(const QualitySettings& quality) {
 
 SoftLight::SoftLight(const Gl& gl, const QualitySettings& quality, int width, int height)
     : gl_(&gl),
+      quality_(quality),
+      picture_width_(width),
+      picture_height_(height),
       width_(std::max(1, width / quality.soft_divisor)),
       height_(std::max(1, height / quality.soft_divisor)),
-      soft_light_(gl, "fullscreen.vert", "soft_light.frag", soft_light_defines(quality)),
       blur_(gl, "fullscreen.vert", "soft_light_blur.frag", {"RADIUS 2"}),
       sky_(make_texture_array(gl, GL_DEPTH_COMPONENT32F, kSkySize, kSkySize, 2, GL_NEAREST)),
       light_(make_texture(gl, GL_RGBA32F, width_, height_, GL_NEAREST)),
@@ -47,17 +69,19 @@ void SoftLight::draw_sky_maps(const SkyView& above, const SkyView& below, const 
   }
 }
 
-void SoftLight::draw(const SkyView& above, const SkyView& below, const DepthProgram& depth,
+void SoftLight::draw(const SkyView& above, const SkyView& below, std::size_t light_count, const DepthProgram& depth,
                      const DrawCasters& casters) {
+  const std::size_t lights = std::clamp<std::size_t>(light_count, 1, kSoftLights);
+  std::optional<Program>& program = soft_light_[lights - 1];
+  if (!program) program.emplace(*gl_, "fullscreen.vert", "soft_light.frag", soft_light_defines(quality_, lights));
   gl_->Enable(GL_DEPTH_TEST);
   draw_sky_maps(above, below, depth, casters);
-
   gl_->Disable(GL_DEPTH_TEST);
   gl_->BindVertexArray(no_vertices_.name());
   gl_->BindFramebuffer(GL_FRAMEBUFFER, light_target_.name());
   gl_->Viewport(0, 0, width_, height_);
   gl_->BindTextureUnit(6, sky_.name());
-  soft_light_.use();
+  program->use();
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 
   // Across, then down, ending where it began.
@@ -69,6 +93,48 @@ void SoftLight::draw(const SkyView& above, const SkyView& below, const DepthProg
     gl_->DrawArrays(GL_TRIANGLES, 0, 3);
   }
   gl_->BindTextureUnit(3, light_.name());
+}
+
+std::vector<PixelArea> SoftLight::shaded_floor() const {
+  std::vector<SoftTexel> texels(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  gl_->GetTextureImage(light_.name(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(SoftTexel)),
+                       texels.data());
+  // Texel x counts for the tiles of x - kMargin and x + kMargin; flags begin at x = -kMargin.
+  const auto tiles = [](int texels_along) { return (texels_along + 2 * kMargin + kTile - 1) / kTile; };
+  const int columns = tiles(width_), rows = tiles(height_);
+  std::vector<std::uint8_t> flags(static_cast<std::size_t>(columns) * rows), row_flags(columns);
+  for (int y = 0; y < height_; ++y) {
+    std::fill(row_flags.begin(), row_flags.end(), 0);
+    const SoftTexel* row = texels.data() + static_cast<std::size_t>(y) * width_;
+    for (int x = 0; x < width_; ++x) {
+      const bool shades = row[x].shades();
+      row_flags[x / kTile] |= shades;
+      row_flags[(x + 2 * kMargin) / kTile] |= shades;
+    }
+    for (const int tile_row : {y / kTile, (y + 2 * kMargin) / kTile}) {
+      for (int i = 0; i < columns; ++i) flags[static_cast<std::size_t>(tile_row) * columns + i] |= row_flags[i];
+    }
+  }
+  // Runs of tiles become areas, widened to whole pixels.
+  const auto pixel = [](int tile, int size, int small_size, bool up) {
+    const int scaled = (tile * kTile - kMargin) * size + (up ? small_size - 1 : 0);
+    return std::clamp(scaled < 0 ? 0 : scaled / small_size, 0, size);
+  };
+  std::vector<PixelArea> areas;
+  for (int row = 0; row < rows; ++row) {
+    const std::uint8_t* row_of_flags = flags.data() + static_cast<std::size_t>(row) * columns;
+    for (int begin = 0; begin < columns; ++begin) {
+      if (!row_of_flags[begin]) continue;
+      int end = begin;
+      while (end < columns && row_of_flags[end]) ++end;
+      PixelArea area{pixel(begin, picture_width_, width_, false), pixel(row, picture_height_, height_, false), 0, 0};
+      area.width = pixel(end, picture_width_, width_, true) - area.x;
+      area.height = pixel(row + 1, picture_height_, height_, true) - area.y;
+      areas.push_back(area);
+      begin = end;
+    }
+  }
+  return areas;
 }
 
 }  // namespace weft::render

@@ -1,11 +1,18 @@
-// What changes slowly over the picture (ambient occlusion, the first light's share), drawn small;
+// What changes slowly over the picture (ambient occlusion, the first two lights' shares), drawn small;
 // shaders/soft_light.frag.
 #pragma once
 
+#include <optional>
+#include <vector>
+
 #include "render/quality.hpp"
 #include "render/shadow_maps.hpp"
+#include "render/view.hpp"
 
 namespace weft::render {
+
+/// Lights whose shares the small picture holds.
+inline constexpr int kSoftLights = 2;
 
 class SoftLight {
  public:
@@ -14,14 +21,20 @@ class SoftLight {
 
   /// Expects the frame and light blocks, the shadow maps and the geometry buffer bound. Leaves the result bound to
   /// unit 3.
-  void draw(const SkyView& above, const SkyView& below, const DepthProgram& depth, const DrawCasters& casters);
+  void draw(const SkyView& above, const SkyView& below, std::size_t light_count, const DepthProgram& depth,
+            const DrawCasters& casters);
+
+  /// Parts of the picture that hold all floor to which the small picture denies light or sky. Call after draw().
+  std::vector<PixelArea> shaded_floor() const;
 
  private:
   void draw_sky_maps(const SkyView& above, const SkyView& below, const DepthProgram& depth, const DrawCasters& casters);
 
   const Gl* gl_;
-  int width_, height_;
-  Program soft_light_, blur_;
+  QualitySettings quality_;
+  int picture_width_, picture_height_, width_, height_;
+  std::array<std::optional<Program>, kSoftLights> soft_light_;  // by number of lights, made when first needed
+  Program blur_;
   Texture sky_, light_, smoothed_;
   Framebuffer sky_target_, light_target_, smoothed_target_;
   VertexArray no_vertices_;
