@@ -1,8 +1,15 @@
 // Cloth and solid surfaces: direct light with soft shadows, light of the sky, and the sheen or gloss of the material.
 #include "shading.glsl"
+#include "soft_look_up.glsl"
+#include "dither.glsl"
 #ifdef CLOTH
 #include "weave.glsl"
 #endif
+layout(binding = 4) uniform sampler2D normals_heat;
+layout(binding = 5) uniform sampler2D rest_uvs;
+layout(binding = 8) uniform sampler2D distances_surfaces;
+layout(binding = 7) uniform sampler2D materials;  // a row for each surface: front colour, roughness; back colour, thread
+                                                  // spacing; heat scale
 layout(binding = 6) uniform sampler2D heat_colors;
 layout(location = 0) out vec4 color;
 
@@ -115,5 +122,5 @@ void main() {
   float mirror = (at.f0 + (1.0 - at.f0) * rim * (1.0 - roughness)) * soft.open;
   vec3 linear = albedo * light.diffuse * (1.0 - mirror) + surroundings * mirror + light.gloss;
 #endif
-  color = vec4(display(linear), 1.0);
+  color = vec4(encode(linear) + dither(gl_FragCoord.xy), 1.0);
 }

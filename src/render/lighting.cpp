@@ -89,6 +89,11 @@ std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot,
   return {key};
 }
 
+LightSet light_set(std::span<const frame::Light> lights) {
+  const auto is_spot = [](const frame::Light& light) { return light.kind == frame::Light::Kind::spot; };
+  return {lights.size(), std::any_of(lights.begin(), lights.end(), is_spot)};
+}
+
 ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size) {
   return light.kind == frame::Light::Kind::spot ? fit_spot(light, casters, up, map_size)
                                                 : fit_sun(light, casters, up, map_size);

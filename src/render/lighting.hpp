@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <span>
 #include <vector>
 
@@ -16,6 +17,14 @@ inline constexpr int kMaxLights = 4;
 /// The snapshot's lights, at most kMaxLights; where it has none, one: a warm key light from above, beside the camera.
 std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, const ViewAxes& camera,
                                            const Vec3& up);
+
+/// What shaders are compiled for.
+struct LightSet {
+  std::size_t count = 1;  ///< 1 to kMaxLights
+  bool spots = false;     ///< some are no suns
+  auto operator<=>(const LightSet&) const = default;
+};
+LightSet light_set(std::span<const frame::Light> lights);
 
 /// A parallel or central projection onto a shadow map.
 struct ShadowView {

@@ -15,7 +15,7 @@ QualitySettings quality_settings(Quality quality) {
     case Quality::final:
       break;
   }
-  return {true, 1536, 10, 16, 2, 10, 9, true};
+  return {true, 1024, 10, 16, 2, 6, 7, true};
 }
 
 }  // namespace weft::render

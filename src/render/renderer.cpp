@@ -212,7 +212,8 @@ void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double h
   // Of more lights the small picture does not know where they shine.
   std::vector<PixelArea> shaded_floor{{0, 0, settings.width, settings.height}};
   if (plan.lights.size() <= kSoftLights) shaded_floor = passes->soft_light.shaded_floor();
-  passes->shading.draw(materials, heat, plan.lights.size(), subjects, shaded_floor);
+  passes->shading.draw(materials, heat, light_set(plan.lights), plan.floor && plan.floor->look.checker, subjects,
+                       shaded_floor);
 }
 
 /// Shadow maps, then what is seen, then its soft light at reduced size, then colours, then clean outlines.
@@ -231,7 +232,7 @@ image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
   passes->geometry.draw(passes->surfaces, floor, plan.view.far);
   const double reach = sky_reach(plan.subjects);
   passes->soft_light.draw(fit_sky(plan.subjects, plan.up, reach, true), fit_sky(plan.subjects, plan.up, reach, false),
-                          plan.lights.size(), passes->depth, casters);
+                          light_set(plan.lights), passes->depth, casters);
   const PixelArea area = visible_area(plan.view, plan.caster_positions, settings.width, settings.height);
   shade(plan, area, heat_scale(snapshot, plan.stage));
   passes->shading.read(rgba);

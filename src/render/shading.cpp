@@ -8,11 +8,12 @@
 namespace weft::render {
 namespace {
 
-std::vector<std::string> shading_defines(const QualitySettings& quality, std::size_t light_count, bool full_shadows,
-                                         const char* more = nullptr) {
-  std::vector<std::string> defines = ShadowMaps::defines(quality, light_count);
+std::vector<std::string> shading_defines(const QualitySettings& quality, const LightSet& lights, bool full_shadows,
+                                         std::initializer_list<const char*> more = {}) {
+  std::vector<std::string> defines = ShadowMaps::defines(quality, lights);
+  defines.push_back("REDUCTION " + std::to_string(quality.soft_divisor));
   if (full_shadows) defines.push_back("FULL_SHADOWS");
-  if (more) defines.push_back(more);
+  defines.insert(defines.end(), more.begin(), more.end());
   return defines;
 }
 
@@ -32,6 +33,41 @@ Eigen::Vector4f texel(const Vec3& color, double fourth) {
   return result;
 }
 
+float clip_of(int pixel, int size) {
+  return 2 * static_cast<float>(pixel) / static_cast<float>(size) - 1;
+}
+
+/// Vertices of two coordinates in clip space at place 0.
+void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corners) {
+  gl.VertexArrayVertexBuffer(array.name(), 0, corners.name(), 0, sizeof(Eigen::Vector2f));
+  gl.EnableVertexArrayAttrib(array.name(), 0);
+  gl.VertexArrayAttribFormat(array.name(), 0, 2, GL_FLOAT, GL_FALSE, 0);
+  gl.VertexArrayAttribBinding(array.name(), 0, 0);
+}
+
+/// Cells of 16x16 pixels, each two triangles. What is interpolated over them is off by less than half a level of 255
+/// where it bends as floor does towards the horizon.
+struct Grid {
+  std::vector<Eigen::Vector2f> corners;
+  std::vector<GLuint> triangles;
+
+  Grid(int width, int height) {
+    constexpr int kCell = 16;
+    const int columns = (width + kCell - 1) / kCell, rows = (height + kCell - 1) / kCell;
+    for (int row = 0; row <= rows; ++row) {
+      for (int column = 0; column <= columns; ++column) {
+        corners.emplace_back(clip_of(kCell * column, width), clip_of(kCell * row, height));
+      }
+    }
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const auto a = static_cast<GLuint>(row * (columns + 1) + column), c = a + static_cast<GLuint>(columns) + 1;
+        triangles.insert(triangles.end(), {a, a + 1, c + 1, a, c + 1, c});
+      }
+    }
+  }
+};
+
 }  // namespace
 
 Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry)
@@ -39,32 +75,51 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
       width_(width),
       height_(height),
       quality_(quality),
-      backdrop_(gl, "fullscreen.vert", "backdrop.frag", shading_defines(quality, 1, false)),
+      backdrop_(gl, "fullscreen.vert", "backdrop.frag", shading_defines(quality, {}, false)),
       areas_(gl, "areas.vert", ""),
       picture_(make_texture(gl, GL_RGBA8, width, height, GL_NEAREST)),
       heat_colors_(make_heat_colors(gl)),
       target_(gl),
       no_vertices_(gl),
       area_array_(gl),
-      area_vertices_(gl) {
-  gl.VertexArrayVertexBuffer(area_array_.name(), 0, area_vertices_.name(), 0, sizeof(Eigen::Vector2f));
-  gl.EnableVertexArrayAttrib(area_array_.name(), 0);
-  gl.VertexArrayAttribFormat(area_array_.name(), 0, 2, GL_FLOAT, GL_FALSE, 0);
-  gl.VertexArrayAttribBinding(area_array_.name(), 0, 0);
+      grid_array_(gl),
+      area_vertices_(gl),
+      grid_vertices_(gl),
+      grid_triangles_(gl) {
+  describe_corners(gl, area_array_, area_vertices_);
+  describe_corners(gl, grid_array_, grid_vertices_);
+  const Grid grid(width, height);
+  upload<Eigen::Vector2f>(gl, grid_vertices_, grid.corners);
+  upload<GLuint>(gl, grid_triangles_, grid.triangles);
+  gl.VertexArrayElementBuffer(grid_array_.name(), grid_triangles_.name());
+  grid_indices_ = static_cast<GLsizei>(grid.triangles.size());
   gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT0, picture_.name(), 0);
   gl.NamedFramebufferTexture(target_.name(), GL_DEPTH_STENCIL_ATTACHMENT, geometry.depth_stencil().name(), 0);
   check_framebuffer(gl, target_, "picture");
 }
 
-// The first lights' shadows on the floor are as soft as the small picture has them.
-Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, std::size_t light_count)
-    : cloth(gl, "fullscreen.vert", "surface.frag",
-            shading_defines(quality, light_count, quality.crisp_shadows || light_count > kSoftLights, "CLOTH")),
-      solid(gl, "fullscreen.vert", "surface.frag",
-            shading_defines(quality, light_count, quality.crisp_shadows || light_count > kSoftLights)),
-      open_floor(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, light_count, false, "OPEN")),
-      shaded_floor(gl, "fullscreen.vert", "floor.frag",
-                   shading_defines(quality, light_count, light_count > kSoftLights)) {}
+// The first lights' shadows on the floor are as soft as the small picture has them. What a sun gives to open floor, and
+// how it fades out, changes so slowly over the picture that it may be interpolated; the edge of a spot or a checker
+// not.
+Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const LightSet& lights, bool checker)
+    : floor_on_grid(!lights.spots && !checker) {
+  const bool many = lights.count > kSoftLights, crisp = quality.crisp_shadows || many;
+  cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, {"CLOTH"}));
+  solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp));
+  const char* pattern = checker ? "CHECKER" : "PLAIN";
+  shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, many, {pattern}));
+  open_floor =
+      floor_on_grid
+          ? Program(gl, "open_floor.vert", "open_floor.frag", shading_defines(quality, lights, false))
+          : Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, false, {pattern, "OPEN"}));
+}
+
+const Shading::Programs& Shading::programs(const LightSet& lights, bool checker) {
+  const auto key = std::tuple(lights, checker);
+  const auto known = programs_.find(key);
+  return known != programs_.end() ? known->second
+                                  : programs_.emplace(key, Programs(*gl_, quality_, lights, checker)).first->second;
+}
 
 void Shading::upload_materials(std::span<const Material> materials, double heat_scale) {
   constexpr int kColumns = 3;  // of shading.glsl
@@ -85,10 +140,9 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
 void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
   if (areas.empty()) return;
   std::vector<Eigen::Vector2f> corners;
-  const auto clip = [](int pixel, int size) { return 2 * static_cast<float>(pixel) / static_cast<float>(size) - 1; };
   for (const PixelArea& area : areas) {
-    const float x0 = clip(area.x, width_), x1 = clip(area.x + area.width, width_);
-    const float y0 = clip(area.y, height_), y1 = clip(area.y + area.height, height_);
+    const float x0 = clip_of(area.x, width_), x1 = clip_of(area.x + area.width, width_);
+    const float y0 = clip_of(area.y, height_), y1 = clip_of(area.y + area.height, height_);
     corners.insert(corners.end(), {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y0}, {x1, y1}, {x0, y1}});
   }
   upload<Eigen::Vector2f>(*gl_, area_vertices_, corners);
@@ -100,13 +154,11 @@ void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
   gl_->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
   gl_->DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners.size()));
   gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-  gl_->BindVertexArray(no_vertices_.name());
 }
 
-void Shading::draw(std::span<const Material> materials, double heat_scale, std::size_t light_count,
+void Shading::draw(std::span<const Material> materials, double heat_scale, const LightSet& lights, bool checker,
                    const PixelArea& subjects, std::span<const PixelArea> shaded_floor) {
-  std::optional<Programs>& programs = programs_[light_count - 1];
-  if (!programs) programs.emplace(*gl_, quality_, light_count);
+  const Programs& chosen = programs(lights, checker);
   upload_materials(materials, heat_scale);
   gl_->BindTextureUnit(6, heat_colors_.name());
   gl_->BindTextureUnit(7, materials_.name());
@@ -116,20 +168,24 @@ void Shading::draw(std::span<const Material> materials, double heat_scale, std::
   gl_->Enable(GL_STENCIL_TEST);
   mark_shaded_floor(shaded_floor);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
-  gl_->BindVertexArray(no_vertices_.name());
   // Blocks without a pixel of the class are left after the stencil test.
-  const auto shade = [&](PixelClass pixel_class, const Program& program) {
+  const auto shade = [&](PixelClass pixel_class, const Program& program, bool on_grid = false) {
     gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(pixel_class), 0xFF);
     program.use();
-    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+    gl_->BindVertexArray((on_grid ? grid_array_ : no_vertices_).name());
+    if (on_grid) {
+      gl_->DrawElements(GL_TRIANGLES, grid_indices_, GL_UNSIGNED_INT, nullptr);
+    } else {
+      gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+    }
   };
   gl_->Enable(GL_SCISSOR_TEST);
   gl_->Scissor(subjects.x, subjects.y, subjects.width, subjects.height);
-  shade(PixelClass::cloth, programs->cloth);
-  shade(PixelClass::solid, programs->solid);
+  shade(PixelClass::cloth, chosen.cloth);
+  shade(PixelClass::solid, chosen.solid);
   gl_->Disable(GL_SCISSOR_TEST);
-  if (!shaded_floor.empty()) shade(PixelClass::shaded_floor, programs->shaded_floor);
-  shade(PixelClass::floor, programs->open_floor);
+  if (!shaded_floor.empty()) shade(PixelClass::shaded_floor, chosen.shaded_floor);
+  shade(PixelClass::floor, chosen.open_floor, chosen.floor_on_grid);
   shade(PixelClass::backdrop, backdrop_);
   gl_->Disable(GL_STENCIL_TEST);
 }

@@ -23,13 +23,15 @@ void DepthProgram::draw(const Mat4& clip_from_world, const DrawCasters& casters)
   casters();
 }
 
-std::vector<std::string> ShadowMaps::defines(const QualitySettings& quality, std::size_t light_count) {
-  return {"LIGHTS " + std::to_string(light_count),
-          "BLOCKER_TAPS " + std::to_string(quality.blocker_taps),
-          "FILTER_TAPS " + std::to_string(quality.filter_taps),
-          "FILTER_FLOOR_TEXELS 1.2",
-          "FILTER_LIMIT_TEXELS " + std::to_string(filter_limit(quality.shadow_size)) + ".0",
-          "MAX_SLOPE_TEXELS 40.0"};
+std::vector<std::string> ShadowMaps::defines(const QualitySettings& quality, const LightSet& lights) {
+  std::vector<std::string> defines = {"LIGHTS " + std::to_string(lights.count),
+                                      "BLOCKER_TAPS " + std::to_string(quality.blocker_taps),
+                                      "FILTER_TAPS " + std::to_string(quality.filter_taps),
+                                      "FILTER_FLOOR_TEXELS 1.2",
+                                      "FILTER_LIMIT_TEXELS " + std::to_string(filter_limit(quality.shadow_size)) + ".0",
+                                      "MAX_SLOPE_TEXELS 40.0"};
+  if (lights.spots) defines.push_back("SPOTS");
+  return defines;
 }
 
 ShadowMaps::ShadowMaps(const Gl& gl, const QualitySettings& quality)

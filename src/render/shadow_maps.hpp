@@ -37,7 +37,7 @@ class ShadowMaps {
             const Vec3& scale, const DepthProgram& depth, const DrawCasters& casters);
 
   /// Lines for the shaders that include lights.glsl.
-  static std::vector<std::string> defines(const QualitySettings& quality, std::size_t light_count);
+  static std::vector<std::string> defines(const QualitySettings& quality, const LightSet& lights);
 
  private:
   void reserve(int layers);

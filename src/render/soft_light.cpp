@@ -27,8 +27,8 @@ struct SoftTexel {
   }
 };
 
-std::vector<std::string> soft_light_defines(const QualitySettings& quality, std::size_t light_count) {
-  std::vector<std::string> defines = ShadowMaps::defines(quality, light_count);
+std::vector<std::string> soft_light_defines(const QualitySettings& quality, const LightSet& lights) {
+  std::vector<std::string> defines = ShadowMaps::defines(quality, lights);
   defines.push_back("NEARBY_TAPS " + std::to_string(quality.nearby_taps));
   defines.push_back("SKY_TAPS " + std::to_string(quality.sky_taps));
   defines.push_back("REDUCTION " + std::to_string(quality.soft_divisor));
@@ -42,19 +42,24 @@ SoftLight::SoftLight(const Gl& gl, const QualitySettings& quality, int width, in
       quality_(quality),
       picture_width_(width),
       picture_height_(height),
-      width_(std::max(1, width / quality.soft_divisor)),
-      height_(std::max(1, height / quality.soft_divisor)),
-      blur_(gl, "fullscreen.vert", "soft_light_blur.frag", {"RADIUS 2"}),
+      width_((width + quality.soft_divisor - 1) / quality.soft_divisor),
+      height_((height + quality.soft_divisor - 1) / quality.soft_divisor),
+      distances_program_(gl, "fullscreen.vert", "soft_distances.frag",
+                         {"REDUCTION " + std::to_string(quality.soft_divisor)}),
+      blur_(gl, "fullscreen.vert", "soft_light_blur.frag"),
       sky_(make_texture_array(gl, GL_DEPTH_COMPONENT32F, kSkySize, kSkySize, 2, GL_NEAREST)),
+      distances_(make_texture(gl, GL_R32F, width_, height_, GL_NEAREST)),
       light_(make_texture(gl, GL_RGBA32F, width_, height_, GL_NEAREST)),
       smoothed_(make_texture(gl, GL_RGBA32F, width_, height_, GL_NEAREST)),
       sky_target_(gl),
+      distances_target_(gl),
       light_target_(gl),
       smoothed_target_(gl),
       no_vertices_(gl) {
   gl.NamedFramebufferTexture(light_target_.name(), GL_COLOR_ATTACHMENT0, light_.name(), 0);
   gl.NamedFramebufferTexture(smoothed_target_.name(), GL_COLOR_ATTACHMENT0, smoothed_.name(), 0);
-  for (const Framebuffer* target : {&light_target_, &smoothed_target_}) {
+  gl.NamedFramebufferTexture(distances_target_.name(), GL_COLOR_ATTACHMENT0, distances_.name(), 0);
+  for (const Framebuffer* target : {&distances_target_, &light_target_, &smoothed_target_}) {
     check_framebuffer(gl, *target, "soft light");
   }
 }
@@ -69,19 +74,26 @@ void SoftLight::draw_sky_maps(const SkyView& above, const SkyView& below, const 
   }
 }
 
-void SoftLight::draw(const SkyView& above, const SkyView& below, std::size_t light_count, const DepthProgram& depth,
+void SoftLight::draw(const SkyView& above, const SkyView& below, LightSet lights, const DepthProgram& depth,
                      const DrawCasters& casters) {
-  const std::size_t lights = std::clamp<std::size_t>(light_count, 1, kSoftLights);
-  std::optional<Program>& program = soft_light_[lights - 1];
-  if (!program) program.emplace(*gl_, "fullscreen.vert", "soft_light.frag", soft_light_defines(quality_, lights));
+  lights.count = std::min(lights.count, kSoftLights);
+  auto program = soft_light_.find(lights);
+  if (program == soft_light_.end()) {
+    Program made(*gl_, "fullscreen.vert", "soft_light.frag", soft_light_defines(quality_, lights));
+    program = soft_light_.emplace(lights, std::move(made)).first;
+  }
   gl_->Enable(GL_DEPTH_TEST);
   draw_sky_maps(above, below, depth, casters);
   gl_->Disable(GL_DEPTH_TEST);
   gl_->BindVertexArray(no_vertices_.name());
-  gl_->BindFramebuffer(GL_FRAMEBUFFER, light_target_.name());
   gl_->Viewport(0, 0, width_, height_);
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, distances_target_.name());
+  distances_program_.use();
+  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, light_target_.name());
   gl_->BindTextureUnit(6, sky_.name());
-  program->use();
+  gl_->BindTextureUnit(9, distances_.name());
+  program->second.use();
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 
   // Across, then down, ending where it began.
@@ -115,10 +127,9 @@ std::vector<PixelArea> SoftLight::shaded_floor() const {
       for (int i = 0; i < columns; ++i) flags[static_cast<std::size_t>(tile_row) * columns + i] |= row_flags[i];
     }
   }
-  // Runs of tiles become areas, widened to whole pixels.
-  const auto pixel = [](int tile, int size, int small_size, bool up) {
-    const int scaled = (tile * kTile - kMargin) * size + (up ? small_size - 1 : 0);
-    return std::clamp(scaled < 0 ? 0 : scaled / small_size, 0, size);
+  // Runs of tiles become areas.
+  const auto pixel = [&](int tile, int size) {
+    return std::clamp((tile * kTile - kMargin) * quality_.soft_divisor, 0, size);
   };
   std::vector<PixelArea> areas;
   for (int row = 0; row < rows; ++row) {
@@ -127,9 +138,9 @@ std::vector<PixelArea> SoftLight::shaded_floor() const {
       if (!row_of_flags[begin]) continue;
       int end = begin;
       while (end < columns && row_of_flags[end]) ++end;
-      PixelArea area{pixel(begin, picture_width_, width_, false), pixel(row, picture_height_, height_, false), 0, 0};
-      area.width = pixel(end, picture_width_, width_, true) - area.x;
-      area.height = pixel(row + 1, picture_height_, height_, true) - area.y;
+      PixelArea area{pixel(begin, picture_width_), pixel(row, picture_height_), 0, 0};
+      area.width = pixel(end, picture_width_) - area.x;
+      area.height = pixel(row + 1, picture_height_) - area.y;
       areas.push_back(area);
       begin = end;
     }

@@ -2,7 +2,7 @@
 // shaders/soft_light.frag.
 #pragma once
 
-#include <optional>
+#include <map>
 #include <vector>
 
 #include "render/quality.hpp"
@@ -12,7 +12,7 @@
 namespace weft::render {
 
 /// Lights whose shares the small picture holds.
-inline constexpr int kSoftLights = 2;
+inline constexpr std::size_t kSoftLights = 2;
 
 class SoftLight {
  public:
@@ -21,7 +21,7 @@ class SoftLight {
 
   /// Expects the frame and light blocks, the shadow maps and the geometry buffer bound. Leaves the result bound to
   /// unit 3.
-  void draw(const SkyView& above, const SkyView& below, std::size_t light_count, const DepthProgram& depth,
+  void draw(const SkyView& above, const SkyView& below, LightSet lights, const DepthProgram& depth,
             const DrawCasters& casters);
 
   /// Parts of the picture that hold all floor to which the small picture denies light or sky. Call after draw().
@@ -33,10 +33,10 @@ class SoftLight {
   const Gl* gl_;
   QualitySettings quality_;
   int picture_width_, picture_height_, width_, height_;
-  std::array<std::optional<Program>, kSoftLights> soft_light_;  // by number of lights, made when first needed
-  Program blur_;
-  Texture sky_, light_, smoothed_;
-  Framebuffer sky_target_, light_target_, smoothed_target_;
+  std::map<LightSet, Program> soft_light_;  // made when first needed
+  Program distances_program_, blur_;
+  Texture sky_, distances_, light_, smoothed_;
+  Framebuffer sky_target_, distances_target_, light_target_, smoothed_target_;
   VertexArray no_vertices_;
 };
 
