@@ -3,7 +3,6 @@ layout(std140, binding = 0) uniform Frame {
   mat4 clip_from_world;
   mat4 view_from_world;
   mat4 above_from_world;   // to texture space of the map seen from above
-  mat4 below_from_world;   // and from below
   vec4 eye_world;          // w: radius of the subjects [m]
   vec4 center_world;       // of the subjects
   vec4 up_world;

@@ -1,6 +1,6 @@
 // What changes slowly over the picture, drawn small: how much of its surroundings each point sees, and how much of the
-// first two lights. Openness comes from two sources: what the camera sees nearby (creases, contacts), and maps of the
-// scene from straight above and below (the soft dark under large things).
+// first two lights. Openness comes from two sources: what the camera sees nearby (creases, contacts), and a map of the
+// scene from straight above (the soft dark under large things).
 #include "frame.glsl"
 #include "lights.glsl"
 #include "shadows.glsl"
@@ -8,7 +8,7 @@
 layout(binding = 4) uniform sampler2D normals_heat;
 layout(binding = 8) uniform sampler2D distances_surfaces;
 layout(binding = 9) uniform sampler2D small_distances;
-layout(binding = 6) uniform sampler2DArray sky_maps;  // layer 0 from above, 1 from below
+layout(binding = 6) uniform sampler2D sky_map;  // depths of what is highest and lowest, seen from above
 layout(location = 0) out vec4 soft_light;
 
 // Directions and radii of the taps. Any 5x5 texels have the 25 values of each once, so that the mean over them, which
@@ -48,11 +48,9 @@ float sky_openness(vec3 p_world, vec3 n_world, float turn, bool wanted) {
   float reach = frame.sky_light.w, depth_metres = frame.ground_light.w;
   vec3 up = frame.up_world.xyz, across = frame.right_world.xyz, along = cross(up, across);
   vec3 above = (frame.above_from_world * vec4(p_world, 1.0)).xyz;
-  vec3 below = (frame.below_from_world * vec4(p_world, 1.0)).xyz;
   mat2 above_axes = mat2((mat3(frame.above_from_world) * across).xy, (mat3(frame.above_from_world) * along).xy);
-  mat2 below_axes = mat2((mat3(frame.below_from_world) * across).xy, (mat3(frame.below_from_world) * along).xy);
   // A texel stands for all of its width: on a slope its height is off, and the slope must not cover itself.
-  float texel_metres = 1.0 / (float(textureSize(sky_maps, 0).x) * length(above_axes[0]));
+  float texel_metres = 1.0 / (float(textureSize(sky_map, 0).x) * length(above_axes[0]));
   float slack = texel_metres * length(n_world - dot(n_world, up) * up), covered = 0.0;
   vec2 direction = first_direction(turn);
   int taps = wanted ? SKY_TAPS : 0;
@@ -64,10 +62,10 @@ float sky_openness(vec3 p_world, vec3 n_world, float turn, bool wanted) {
     direction = next_direction(direction);
     float ring = 12.5663706 * reach * r * t;
     // Depth 1 is no caster: what lies deeper than the map reaches, as a floor under a band that falls, is not covered.
-    float highest = textureLod(sky_maps, vec3(above.xy + above_axes * offset, 0.0), 0.0).r;
-    float height = (above.z - highest) * depth_metres, covers = float(highest < 1.0 && height > 2e-3);
-    float lowest = (textureLod(sky_maps, vec3(below.xy + below_axes * offset, 1.0), 0.0).r - below.z) * depth_metres;
-    if (lowest > 2e-3) height = lowest;
+    vec2 depths = textureLod(sky_map, above.xy + above_axes * offset, 0.0).rg;
+    vec2 heights = (above.z - depths) * depth_metres;
+    float covers = float(depths.x < 1.0 && heights.x > 2e-3);
+    float height = heights.y > 2e-3 ? heights.y : heights.x;
     vec3 w = across * offset.x + along * offset.y + up * height;
     float d_sq = dot(w, w);
     covered += covers * ring * max(dot(n_world, w) - slack, 0.0) * height / (d_sq * (3.14159265 * d_sq + ring / 9.0));

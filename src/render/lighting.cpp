@@ -99,8 +99,8 @@ ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, 
                                                 : fit_sun(light, casters, up, map_size);
 }
 
-SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach, bool from_above) {
-  const ViewAxes axes = view_axes(from_above ? Vec3(-up) : up, up.unitOrthogonal());
+SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach) {
+  const ViewAxes axes = view_axes(-up, up.unitOrthogonal());
   const Mat4 view = look_along(Vec3::Zero(), axes);
   Box3 bounds_view;
   for (int corner = 0; corner < 8; ++corner) {

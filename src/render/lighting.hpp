@@ -39,13 +39,13 @@ struct ShadowView {
 /// Fits a shadow map of `map_size` texels to the given casters (world space), as tightly as they allow.
 ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size);
 
-/// A parallel view from straight above (`from_above`) or below that covers `bounds` and `reach` metres more, for the
+/// A parallel view from straight above that covers `bounds` and `reach` metres more, for the
 /// light of the sky that things take from each other. Depth 0 to 1 covers `depth_metres`.
 struct SkyView {
   Mat4 clip_from_world = Mat4::Identity();
   double depth_metres = 1;
 };
-SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach, bool from_above);
+SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach);
 
 /// Light block of shaders/lights.glsl, std140.
 struct LightUniform {

@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <cstring>
+
+#include "render/depth_raster.hpp"
 
 namespace weft::render {
 namespace {
@@ -112,23 +113,11 @@ void Outlines::sample(const DrawnMesh& mesh, float surface, const View& view) {
     if (std::min({clip_[a].w(), clip_[b].w(), clip_[c].w()}) >= view.near) {
       sample(vertices_[a], vertices_[b], vertices_[c], surface);
     } else {
-      sample_clipped({clip_[a], clip_[b], clip_[c]}, surface, view);
+      clip_near({clip_[a], clip_[b], clip_[c]}, [&](const auto& p, const auto& q, const auto& r) {
+        sample(to_picture(p), to_picture(q), to_picture(r), surface);
+      });
     }
   }
-}
-
-/// A triangle of which part is not in front of the viewer: what is left of it at the near plane has three or four
-/// corners (Sutherland and Hodgman 1974).
-void Outlines::sample_clipped(const std::array<Eigen::Vector4d, 3>& clip, float surface, const View& view) {
-  std::array<Vertex, 4> left;
-  std::size_t count = 0;
-  for (int i = 0; i < 3; ++i) {
-    const Eigen::Vector4d &from = clip[i], &to = clip[(i + 1) % 3];
-    const double before = from.w() - view.near, after = to.w() - view.near;
-    if (before >= 0) left[count++] = to_picture(from);
-    if ((before >= 0) != (after >= 0)) left[count++] = to_picture(from + before / (before - after) * (to - from));
-  }
-  for (std::size_t i = 2; i < count; ++i) sample(left[0], left[i - 1], left[i], surface);
 }
 
 /// Takes the triangle over where it is nearer than what the samples show.

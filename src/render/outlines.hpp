@@ -14,12 +14,6 @@
 
 namespace weft::render {
 
-/// One surface as it was drawn: world positions [m] and triangles of them.
-struct DrawnMesh {
-  std::span<const Vec3> positions;
-  std::span<const Triangle> triangles;
-};
-
 /// Works on the processor: a few thousand pixels of a picture have outlines, and OpenGL can only sample all of it.
 class Outlines {
  public:
@@ -51,7 +45,6 @@ class Outlines {
   void find(std::span<const Seen> seen, const PixelArea& area);
   void number();
   void sample(const DrawnMesh& mesh, float surface, const View& view);
-  void sample_clipped(const std::array<Eigen::Vector4d, 3>& clip, float surface, const View& view);
   void sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface);
   void sample_floor(const Floor& floor, const View& view);
   std::uint32_t resolve(std::size_t slot, std::span<const Seen> seen, const std::uint32_t* picture) const;

@@ -103,7 +103,6 @@ struct Renderer::Impl {
 
   // GL objects; made and deleted with the context current.
   struct Passes {
-    DepthProgram depth;
     ShadowMaps shadows;
     SoftLight soft_light;
     GeometryBuffer geometry;
@@ -113,8 +112,7 @@ struct Renderer::Impl {
     std::vector<SurfaceBuffers> surfaces;
 
     Passes(const Gl& gl, const QualitySettings& quality, const Settings& settings)
-        : depth(gl),
-          shadows(gl, quality),
+        : shadows(gl, quality),
           soft_light(gl, quality, settings.width, settings.height),
           geometry(gl, settings.width, settings.height),
           shading(gl, quality, settings.width, settings.height, geometry),
@@ -138,7 +136,6 @@ struct Renderer::Impl {
   void upload_frame(const Plan& plan);
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
   image::Image draw(const frame::FrameSnapshot& snapshot);
-  void smooth_outlines(const Plan& plan, const PixelArea& subjects);
 };
 
 Renderer::Impl::Impl(const Settings& wanted)
@@ -223,28 +220,22 @@ image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
   update_floor(plan);
   upload_frame(plan);
   gl.Disable(GL_DITHER);
-  const DrawCasters casters = [&] {
-    for (const SurfaceBuffers& surface : passes->surfaces) surface.draw();
-  };
+  std::vector<DrawnMesh> meshes;
+  for (const SurfaceBuffers& surface : passes->surfaces) meshes.push_back({surface.positions(), surface.triangles()});
   const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
 
-  passes->shadows.draw(plan.lights, plan.caster_positions, plan.up, plan.exposure.direct, passes->depth, casters);
+  passes->shadows.draw(plan.lights, plan.caster_positions, meshes, plan.up, plan.exposure.direct);
   passes->geometry.draw(passes->surfaces, floor, plan.view.far);
-  const double reach = sky_reach(plan.subjects);
-  passes->soft_light.draw(fit_sky(plan.subjects, plan.up, reach, true), fit_sky(plan.subjects, plan.up, reach, false),
-                          light_set(plan.lights), passes->depth, casters);
+  const SkyView above = fit_sky(plan.subjects, plan.up, sky_reach(plan.subjects));
+  passes->soft_light.draw(meshes, above, light_set(plan.lights));
   const PixelArea area = visible_area(plan.view, plan.caster_positions, settings.width, settings.height);
   shade(plan, area, heat_scale(snapshot, plan.stage));
   passes->shading.read(rgba);
-  if (outlines) smooth_outlines(plan, area);
+  if (outlines) {
+    passes->geometry.read_seen(seen);
+    outlines->smooth(seen, meshes, plan.floor, plan.view, area, rgba);
+  }
   return to_image(rgba, settings.width, settings.height);
-}
-
-void Renderer::Impl::smooth_outlines(const Plan& plan, const PixelArea& subjects) {
-  std::vector<DrawnMesh> meshes;
-  for (const SurfaceBuffers& surface : passes->surfaces) meshes.push_back({surface.positions(), surface.triangles()});
-  passes->geometry.read_seen(seen);
-  outlines->smooth(seen, meshes, plan.floor, plan.view, subjects, rgba);
 }
 
 Renderer::Renderer(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}

@@ -6,6 +6,7 @@
 #include <tuple>
 
 #include "render/geometry_buffer.hpp"
+#include "render/gl/program.hpp"
 #include "render/quality.hpp"
 #include "render/shadow_maps.hpp"
 #include "render/view.hpp"

@@ -7,8 +7,6 @@
 namespace weft::render {
 namespace {
 
-constexpr int kSkySize = 256;  // texels: the dark under things is soft anyway
-
 constexpr int kTile = 8;    // texels of the small picture
 constexpr int kMargin = 2;  // texels that shading may look beyond a pixel's own; shaders/shading.glsl
 
@@ -47,11 +45,10 @@ SoftLight::SoftLight(const Gl& gl, const QualitySettings& quality, int width, in
       distances_program_(gl, "fullscreen.vert", "soft_distances.frag",
                          {"REDUCTION " + std::to_string(quality.soft_divisor)}),
       blur_(gl, "fullscreen.vert", "soft_light_blur.frag"),
-      sky_(make_texture_array(gl, GL_DEPTH_COMPONENT32F, kSkySize, kSkySize, 2, GL_NEAREST)),
+      sky_(make_texture(gl, GL_RG32F, kSkySize, kSkySize, GL_NEAREST)),
       distances_(make_texture(gl, GL_R32F, width_, height_, GL_NEAREST)),
       light_(make_texture(gl, GL_RGBA32F, width_, height_, GL_NEAREST)),
       smoothed_(make_texture(gl, GL_RGBA32F, width_, height_, GL_NEAREST)),
-      sky_target_(gl),
       distances_target_(gl),
       light_target_(gl),
       smoothed_target_(gl),
@@ -64,26 +61,15 @@ SoftLight::SoftLight(const Gl& gl, const QualitySettings& quality, int width, in
   }
 }
 
-void SoftLight::draw_sky_maps(const SkyView& above, const SkyView& below, const DepthProgram& depth,
-                              const DrawCasters& casters) {
-  gl_->BindFramebuffer(GL_FRAMEBUFFER, sky_target_.name());
-  gl_->Viewport(0, 0, kSkySize, kSkySize);
-  for (int layer = 0; layer < 2; ++layer) {
-    gl_->NamedFramebufferTextureLayer(sky_target_.name(), GL_DEPTH_ATTACHMENT, sky_.name(), 0, layer);
-    depth.draw((layer == 0 ? above : below).clip_from_world, casters);
-  }
-}
-
-void SoftLight::draw(const SkyView& above, const SkyView& below, LightSet lights, const DepthProgram& depth,
-                     const DrawCasters& casters) {
+void SoftLight::draw(std::span<const DrawnMesh> meshes, const SkyView& above, LightSet lights) {
   lights.count = std::min(lights.count, kSoftLights);
   auto program = soft_light_.find(lights);
   if (program == soft_light_.end()) {
     Program made(*gl_, "fullscreen.vert", "soft_light.frag", soft_light_defines(quality_, lights));
     program = soft_light_.emplace(lights, std::move(made)).first;
   }
-  gl_->Enable(GL_DEPTH_TEST);
-  draw_sky_maps(above, below, depth, casters);
+  draw_sky_map(meshes, above, sky_map_);
+  gl_->TextureSubImage2D(sky_.name(), 0, 0, 0, kSkySize, kSkySize, GL_RG, GL_FLOAT, sky_map_.data());
   gl_->Disable(GL_DEPTH_TEST);
   gl_->BindVertexArray(no_vertices_.name());
   gl_->Viewport(0, 0, width_, height_);

@@ -109,7 +109,7 @@ FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3&
   };
   const double radius = 0.5 * subjects.diagonal().norm(), reach = sky_reach(subjects);
   const double share = std::clamp(stage.sky_intensity, 0.0, 1.0);
-  const SkyView above = fit_sky(subjects, up, reach, true), below = fit_sky(subjects, up, reach, false);
+  const SkyView above = fit_sky(subjects, up, reach);
   const Vec3 sky = image::linear_from_srgb(stage.sky_color), ground = image::linear_from_srgb(stage.ground_color);
 
   FrameUniform frame;
@@ -133,7 +133,6 @@ FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3&
     frame.floor_plane_world = frame.floor_look = Eigen::Vector4f::Zero();
   }
   frame.above_from_world = (texture_from_clip() * above.clip_from_world).cast<float>();
-  frame.below_from_world = (texture_from_clip() * below.clip_from_world).cast<float>();
   return frame;
 }
 
