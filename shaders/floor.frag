@@ -1,6 +1,9 @@
-// The floor without end: lit like any matte surface near the subjects, the backdrop's own colour far away.
+// The floor without end: lit like any matte surface near the subjects, the backdrop's own colour far away. OPEN: where
+// the small picture shows neither shadow nor occlusion, as most floor is.
 #include "shading.glsl"
-#include "stage.glsl"
+#include "soft_look_up.glsl"
+#include "open_floor.glsl"
+#include "dither.glsl"
 layout(location = 0) out vec4 color;
 
 // Tiles of 0.5 m as a faint two-tone pattern, averaged over the pixel (box filter of a triangle wave, as in Quilez,
@@ -11,26 +14,35 @@ float tiles(vec2 at) {
   return 0.5 - 0.5 * i.x * i.y;
 }
 
+vec3 shaded_light(int i, Softness soft, vec3 position_world, vec3 n) {
+  vec3 light = light_on_floor(i, position_world, n);
+  return light * share_of_light(i, soft, position_world, n, light.g > 0.0);
+}
+
 void main() {
-  Seen seen = look_up_seen();
-  vec3 up = frame.up_world.xyz, n = seen.normal_world, surface_world = seen.position_world;
-  vec3 albedo = seen.front_roughness.rgb;
-  if (seen.heat_checker.y > 0.0) {
-    vec3 east = abs(up.x) > 0.5 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), north = cross(up, east);
-    albedo *= mix(0.94, 1.0, tiles(vec2(dot(surface_world, east), dot(surface_world, north)) / 0.5));
-  }
-  Softness soft = look_up_softness(seen);
-  vec3 diffuse = ambient_light(n, soft.open);
-  int i = 0;
-  do {
-    float cone;
-    vec3 l = toward_light(i, surface_world, cone);
-    float n_l = max(dot(n, l), 0.0);
-    float lit = share_of_light(i, soft, surface_world, n, n_l > 0.0);
-    diffuse += lights[i].color.rgb * (cone * n_l * lit);
-  } while (++i < light_count.x);
-  // A pool of light round the subjects that runs out slowly.
-  float away = max(length(surface_world - frame.center_world.xyz) / frame.eye_world.w - 1.5, 0.0) / 5.0;
-  float far = away * away / (1.0 + away * away);
-  color = vec4(display(mix(albedo * diffuse, backdrop_color(normalize(surface_world - frame.eye_world.xyz)), far)), 1.0);
+  vec3 up = frame.up_world.xyz, n = frame.floor_plane_world.xyz, albedo = frame.floor_look.rgb;
+  vec3 ray_world = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, 1.0));
+  float distance_view = floor_distance(ray_world);
+  vec3 position_world = frame.eye_world.xyz + distance_view * ray_world;
+#ifdef CHECKER
+  vec3 east = abs(up.x) > 0.5 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), north = cross(up, east);
+  albedo *= mix(0.94, 1.0, tiles(vec2(dot(position_world, east), dot(position_world, north)) / 0.5));
+#endif
+#ifdef OPEN
+  vec3 linear = open_floor(albedo, ray_world);
+#else
+  Softness soft = look_up_softness(distance_view, kFloor);
+  vec3 diffuse = ambient_light(n, soft.open) + shaded_light(0, soft, position_world, n);
+#if LIGHTS > 1
+  diffuse += shaded_light(1, soft, position_world, n);
+#endif
+#if LIGHTS > 2
+  diffuse += shaded_light(2, soft, position_world, n);
+#endif
+#if LIGHTS > 3
+  diffuse += shaded_light(3, soft, position_world, n);
+#endif
+  vec3 linear = fade_out(albedo * diffuse, position_world, ray_world);
+#endif
+  color = vec4(encode(linear) + dither(gl_FragCoord.xy), 1.0);
 }

@@ -3,7 +3,6 @@ layout(std140, binding = 0) uniform Frame {
   mat4 clip_from_world;
   mat4 view_from_world;
   mat4 above_from_world;   // to texture space of the map seen from above
-  mat4 below_from_world;   // and from below
   vec4 eye_world;          // w: radius of the subjects [m]
   vec4 center_world;       // of the subjects
   vec4 up_world;
@@ -13,7 +12,13 @@ layout(std140, binding = 0) uniform Frame {
   vec4 backdrop;           // linear colour at the horizon
   vec4 viewport;           // width, height [pixels], and their inverses
   vec4 frustum;            // tangents of half the opening, near, far [m]
+  vec4 floor_plane_world;  // unit normal, upward; w: height of the eye above it [m]
+  vec4 floor_look;         // linear colour; w: 1 with a checker
 } frame;
+
+// What the geometry buffer says of a pixel: distance along the view axis [m] and number of the surface, half more where
+// its back is seen. Nothing and the floor come first.
+const float kNothing = 0.0, kFloor = 1.0, kFirstSurface = 2.0;
 
 // Position of what is seen at `uv` (0 to 1 across the picture), `distance` metres away along the view axis.
 vec3 position_view(vec2 uv, float distance) {

@@ -1,14 +1,14 @@
 // What is seen at each pixel, for shading afterwards: llvmpipe shades whole 4x4 blocks of every triangle they touch,
-// which for the small triangles of cloth is some eight times the pixels seen.
+// which for the small triangles of cloth is some eight times the pixels seen. Of the floor only `seen` is kept.
 in vec3 surface_normal_world;
 in vec2 surface_uv;
 in float surface_heat;
-uniform float material;
-layout(location = 0) out vec4 normal_world;      // toward the viewer
-layout(location = 1) out vec4 uv_heat_material;  // material + 0.5 where the back is seen
-layout(location = 2) out float distance_view;    // along the view axis [m]
+uniform float surface;
+layout(location = 0) out vec4 normal_heat;       // world, toward the viewer
+layout(location = 1) out vec2 rest_uv;
+layout(location = 2) out vec2 distance_surface;  // frame.glsl
 void main() {
-  normal_world = vec4(gl_FrontFacing ? surface_normal_world : -surface_normal_world, 0.0);
-  uv_heat_material = vec4(surface_uv, surface_heat, material + (gl_FrontFacing ? 0.0 : 0.5));
-  distance_view = 1.0 / gl_FragCoord.w;
+  normal_heat = vec4(gl_FrontFacing ? surface_normal_world : -surface_normal_world, surface_heat);
+  rest_uv = surface_uv;
+  distance_surface = vec2(1.0 / gl_FragCoord.w, surface + (gl_FrontFacing ? 0.0 : 0.5));
 }

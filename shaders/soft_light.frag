@@ -1,29 +1,41 @@
 // What changes slowly over the picture, drawn small: how much of its surroundings each point sees, and how much of the
-// first light. Openness comes from two sources: what the camera sees nearby (creases, contacts), and maps of the
-// scene from straight above and below (the soft dark under large things).
+// first two lights. Openness comes from two sources: what the camera sees nearby (creases, contacts), and a map of the
+// scene from straight above (the soft dark under large things).
 #include "frame.glsl"
 #include "lights.glsl"
-layout(binding = 4) uniform sampler2D normals;
-layout(binding = 5) uniform sampler2D uv_heat_materials;
-layout(binding = 8) uniform sampler2D distances;
-layout(binding = 6) uniform sampler2DArray sky_maps;  // layer 0 from above, 1 from below
-layout(location = 0) out vec4 soft_light;  // x: openness, y: share of light 0, z: surface, w: distance [m]
+#include "shadows.glsl"
+#include "soft_light.glsl"
+layout(binding = 4) uniform sampler2D normals_heat;
+layout(binding = 8) uniform sampler2D distances_surfaces;
+layout(binding = 9) uniform sampler2D small_distances;
+layout(binding = 6) uniform sampler2D sky_map;  // depths of what is highest and lowest, seen from above
+layout(location = 0) out vec4 soft_light;
+
+// Directions and radii of the taps. Any 5x5 texels have the 25 values of each once, so that the mean over them, which
+// soft_light_blur.frag takes, is free of noise wherever the surface goes on.
+vec2 blur_jitter(vec2 texel) {
+  texel = floor(texel);
+  vec2 at = mod(texel + 2.0 * texel.yx, 5.0);
+  return (5.0 * at + at.yx + 0.5) / 25.0;
+}
 
 // Scalable ambient obscurance (McGuire, Mara, Luebke 2012, Eq. 1): the mean of how far neighbours stand out of the
 // tangent plane, so that it hardly depends on the distance at which taps happen to land.
-float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, float turn, bool wanted) {
+float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, vec2 jitter, bool wanted) {
   float radius = 0.16 * frame.eye_world.w;
   vec2 reach_uv = min(radius / (2.0 * frame.frustum.xy * -p_view.z), vec2(0.12));
+  ivec2 last = textureSize(small_distances, 0) - 1;
   float sum = 0.0;
-  vec2 direction = first_direction(turn);
+  vec2 direction = first_direction(jitter.x);
   int taps = wanted ? NEARBY_TAPS : 0;
   for (int k = 0; k < taps; ++k) {
     // Evenly spaced along the radius, not over the disc: contacts a few millimetres wide get their share of taps.
-    vec2 tap_uv = uv + (float(k) + 0.5) / float(NEARBY_TAPS) * direction * reach_uv;
+    vec2 tap_uv = uv + (float(k) + jitter.y) / float(NEARBY_TAPS) * direction * reach_uv;
     direction = next_direction(direction);
-    // At the texel's centre, where its distance was taken: half a pixel off, a floor seen at an angle shades itself.
-    tap_uv = (floor(tap_uv * frame.viewport.xy) + 0.5) * frame.viewport.zw;
-    vec3 v = position_view(tap_uv, textureLod(distances, tap_uv, 0.0).r) - p_view;
+    // At the pixel's centre, where its distance was taken: half a pixel off, a floor seen at an angle shades itself.
+    ivec2 texel = clamp(ivec2(tap_uv * frame.viewport.xy) / REDUCTION, ivec2(0), last);
+    tap_uv = (vec2(small_to_full(texel)) + 0.5) * frame.viewport.zw;
+    vec3 v = position_view(tap_uv, texelFetch(small_distances, texel, 0).r) - p_view;
     float d_sq = dot(v, v), fall = max(1.0 - d_sq / (radius * radius), 0.0);
     sum += fall * max(dot(v, n_view) + 4e-4 * p_view.z, 0.0) * inversesqrt(d_sq + 1e-8);
   }
@@ -36,52 +48,59 @@ float sky_openness(vec3 p_world, vec3 n_world, float turn, bool wanted) {
   float reach = frame.sky_light.w, depth_metres = frame.ground_light.w;
   vec3 up = frame.up_world.xyz, across = frame.right_world.xyz, along = cross(up, across);
   vec3 above = (frame.above_from_world * vec4(p_world, 1.0)).xyz;
-  vec3 below = (frame.below_from_world * vec4(p_world, 1.0)).xyz;
   mat2 above_axes = mat2((mat3(frame.above_from_world) * across).xy, (mat3(frame.above_from_world) * along).xy);
-  mat2 below_axes = mat2((mat3(frame.below_from_world) * across).xy, (mat3(frame.below_from_world) * along).xy);
-  float covered = 0.0;
+  // A texel stands for all of its width: on a slope its height is off, and the slope must not cover itself.
+  float texel_metres = 1.0 / (float(textureSize(sky_map, 0).x) * length(above_axes[0]));
+  float slack = texel_metres * length(n_world - dot(n_world, up) * up), covered = 0.0;
   vec2 direction = first_direction(turn);
   int taps = wanted ? SKY_TAPS : 0;
   for (int k = 0; k < taps; ++k) {
-    // Radius r = reach t^2 for t = (k + 1/2) / n, denser towards the zenith; patch area 2 pi r dr follows.
+    // Radius r = reach t^2 for t = (k + 1/2) / n, denser towards the zenith; patch area 2 pi r dr = ring dt
+    // follows. Very near ones count as if their ring were cut in nine, whatever the number of taps.
     float t = (float(k) + 0.5) / float(SKY_TAPS), r = reach * t * t;
     vec2 offset = direction * r;
     direction = next_direction(direction);
-    float area = 12.5663706 * reach * r * t / float(SKY_TAPS);
+    float ring = 12.5663706 * reach * r * t;
     // Depth 1 is no caster: what lies deeper than the map reaches, as a floor under a band that falls, is not covered.
-    float highest = textureLod(sky_maps, vec3(above.xy + above_axes * offset, 0.0), 0.0).r;
-    float height = (above.z - highest) * depth_metres, covers = float(highest < 1.0 && height > 2e-3);
-    float lowest = (textureLod(sky_maps, vec3(below.xy + below_axes * offset, 1.0), 0.0).r - below.z) * depth_metres;
-    if (lowest > 2e-3) height = lowest;
+    vec2 depths = textureLod(sky_map, above.xy + above_axes * offset, 0.0).rg;
+    vec2 heights = (above.z - depths) * depth_metres;
+    float covers = float(depths.x < 1.0 && heights.x > 2e-3);
+    float height = heights.y > 2e-3 ? heights.y : heights.x;
     vec3 w = across * offset.x + along * offset.y + up * height;
     float d_sq = dot(w, w);
-    covered += covers * area * max(dot(n_world, w), 0.0) * height / (d_sq * (3.14159265 * d_sq + area));
+    covered += covers * ring * max(dot(n_world, w) - slack, 0.0) * height / (d_sq * (3.14159265 * d_sq + ring / 9.0));
   }
-  return clamp(1.0 - covered, 0.0, 1.0);
+  return clamp(1.0 - covered / float(SKY_TAPS), 0.0, 1.0);
+}
+
+float share(int i, vec3 p_world, vec3 n_world, float surface) {
+  float cone;
+  vec3 l = toward_light(i, p_world, cone);
+  return visibility(i, p_world, dot(n_world, l) < 0.0 ? -n_world : n_world, surface != kNothing && cone > 0.0);
 }
 
 void main() {
-  // The pixel of the full picture at the centre of this one.
-  ivec2 pixel = ivec2(gl_FragCoord.xy * float(REDUCTION));
+  ivec2 pixel = small_to_full(ivec2(gl_FragCoord.xy));
   vec2 uv = (vec2(pixel) + 0.5) * frame.viewport.zw;
   pixel = min(pixel, ivec2(frame.viewport.xy) - 1);
-  float distance_view = texelFetch(distances, pixel, 0).r;
-  bool surface = distance_view < frame.frustum.w;
-  vec3 n_world = surface ? normalize(texelFetch(normals, pixel, 0).xyz) : frame.up_world.xyz;
+  vec2 seen = texelFetch(distances_surfaces, pixel, 0).rg;
+  float distance_view = seen.x, surface = floor(seen.y);
+  vec3 n_world = frame.floor_plane_world.xyz;
+  if (surface >= kFirstSurface) n_world = normalize(texelFetch(normals_heat, pixel, 0).xyz);
   vec3 p_view = position_view(uv, distance_view), p_world = world_from_view(p_view) + frame.eye_world.xyz;
-  float turn = pixel_noise(gl_FragCoord.xy);
+  vec2 jitter = blur_jitter(gl_FragCoord.xy);
   // Far from all subjects nothing is hidden from anything.
   vec3 away = p_world - frame.center_world.xyz;
   float beyond = frame.eye_world.w + frame.sky_light.w;
   float hidden = 1.0 - smoothstep(0.6, 1.0, dot(away, away) / (beyond * beyond));
-  bool near = surface && hidden > 0.0;
-  float open = nearby_openness(uv, p_view, mat3(frame.view_from_world) * n_world, turn, near);
-  open *= sky_openness(p_world, n_world, turn, near);
-  float cone;
-  vec3 l = toward_light(0, p_world, cone);
-  bool wanted = surface && light_count.x > 0 && cone > 0.0;
-  float lit = visibility(0, p_world, dot(n_world, l) < 0.0 ? -n_world : n_world, wanted);
+  bool near = surface != kNothing && hidden > 0.0;
+  float open = nearby_openness(uv, p_view, mat3(frame.view_from_world) * n_world, jitter, near);
+  open *= sky_openness(p_world, n_world, jitter.x, near);
   // Fades out, so that no edge shows where the search ends.
-  open = surface ? mix(1.0, open, hidden) : 1.0;
-  soft_light = vec4(open, lit, floor(texelFetch(uv_heat_materials, pixel, 0).w), distance_view);
+  open = mix(1.0, open, hidden);
+  vec2 lit = vec2(share(0, p_world, n_world, surface), 1.0);
+#if LIGHTS > 1
+  lit.y = share(1, p_world, n_world, surface);
+#endif
+  soft_light = vec4(pack_soft(surface, surface == kNothing ? 1.0 : open), lit, distance_view);
 }

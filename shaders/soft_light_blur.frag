@@ -1,19 +1,27 @@
 // Mean openness over pixels of the same surface, along one axis at a time: evens out the noise of the taps, keeps
 // outlines. The share of light is softened over a pixel only: its steps would show as a sawtooth at full size.
+#include "soft_light.glsl"
 layout(binding = 3) uniform sampler2D soft_light_map;
 uniform ivec2 axis;
 layout(location = 0) out vec4 soft_light;
+
 void main() {
   ivec2 here = ivec2(gl_FragCoord.xy), last = textureSize(soft_light_map, 0) - 1;
-  vec4 center = texelFetch(soft_light_map, here, 0);
-  vec2 sum = vec2(center.x, 1.0), lit = vec2(center.y, 1.0);
-  for (int i = -RADIUS; i <= RADIUS; ++i) {
-    if (i == 0) continue;
-    vec4 tap = texelFetch(soft_light_map, clamp(here + i * axis, ivec2(0), last), 0);
+  vec4 taps[5];
+  for (int i = 0; i < 5; ++i) taps[i] = texelFetch(soft_light_map, clamp(here + (i - 2) * axis, ivec2(0), last), 0);
+  vec4 center = taps[2];
+  // How the surface goes on to both sides, so that slanted ones count in full and the noise of all taps cancels out.
+  float before = center.w - taps[1].w, after = taps[3].w - center.w;
+  float slope = before * after > 0.0 ? sign(after) * min(abs(before), abs(after)) : 0.0;
+  vec2 sum = vec2(soft_open(center), 1.0);
+  vec3 lit = vec3(center.yz, 1.0);
+  for (int i = 0; i < 5; ++i) {
+    if (i == 2) continue;
     // A step of 2 percent of the distance is another fold.
-    float same = tap.z == center.z ? max(1.0 - abs(tap.w - center.w) / (0.02 * center.w), 0.0) : 0.0;
-    sum += vec2(tap.x, 1.0) * same;
-    if (abs(i) == 1) lit += vec2(tap.y, 1.0) * (0.5 * same);
+    float step = abs(taps[i].w - center.w - float(i - 2) * slope) / (0.01 * center.w);
+    float same = soft_surface(taps[i]) == soft_surface(center) ? clamp(2.0 - step, 0.0, 1.0) : 0.0;
+    sum += vec2(soft_open(taps[i]), 1.0) * same;
+    if (abs(i - 2) == 1) lit += vec3(taps[i].yz, 1.0) * (0.5 * same);
   }
-  soft_light = vec4(sum.x / sum.y, lit.x / lit.y, center.zw);
+  soft_light = vec4(pack_soft(soft_surface(center), sum.x / sum.y), lit.xy / lit.z, center.w);
 }

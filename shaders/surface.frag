@@ -1,8 +1,15 @@
 // Cloth and solid surfaces: direct light with soft shadows, light of the sky, and the sheen or gloss of the material.
 #include "shading.glsl"
+#include "soft_look_up.glsl"
+#include "dither.glsl"
 #ifdef CLOTH
 #include "weave.glsl"
 #endif
+layout(binding = 4) uniform sampler2D normals_heat;
+layout(binding = 5) uniform sampler2D rest_uvs;
+layout(binding = 8) uniform sampler2D distances_surfaces;
+layout(binding = 7) uniform sampler2D materials;  // a row for each surface: front colour, roughness; back colour, thread
+                                                  // spacing; heat scale
 layout(binding = 6) uniform sampler2D heat_colors;
 layout(location = 0) out vec4 color;
 
@@ -15,78 +22,105 @@ float highlight(vec3 n, vec3 v, vec3 l, float alpha, float f0) {
   return fresnel * a_sq / (d * d) * 0.25 / mix(2.0 * n_l * n_v, n_l + n_v, alpha) * 2.0 * n_l;
 }
 
-void main() {
-  Seen seen = look_up_seen();
-  vec3 v = normalize(frame.eye_world.xyz - seen.position_world);
-  // Near outlines a smooth normal may lean away from the eye; bend it back to the horizon.
-  vec3 n = normalize(seen.normal_world + v * max(0.02 - dot(seen.normal_world, v), 0.0));
-  float roughness = seen.front_roughness.w;
+// What the pixel shows, as far as light on it needs to know.
+struct Point {
+  vec3 position_world, n, n_smooth, v;
+  float shine, alpha, f0;
+};
+struct LightSums {
+  vec3 diffuse, through, gloss;
+};
+
+void add_light(inout LightSums sums, int i, Point at, Softness soft) {
+  float cone;
+  vec3 l = toward_light(i, at.position_world, cone);
+  float side = dot(at.n_smooth, l);
+  // Solid surfaces take nothing from behind; cloth lets some through.
 #ifdef CLOTH
-  vec3 albedo = seen.front ? seen.front_roughness.rgb : seen.back_spacing.rgb;
+  bool wanted = cone > 0.0;
 #else
-  vec3 albedo = seen.front_roughness.rgb;
+  bool wanted = cone > 0.0 && side > 0.0;
 #endif
-  vec3 n_smooth = n;
+  float lit = share_of_light(i, soft, at.position_world, side < 0.0 ? -at.n_smooth : at.n_smooth, wanted);
+  vec3 strength = lights[i].color.rgb * (cone * lit);
+  sums.diffuse += strength * (max(dot(at.n, l), 0.0) * smoothstep(0.0, 0.06, side));
 #ifdef CLOTH
-  vec3 behind = seen.front ? seen.back_spacing.rgb : seen.front_roughness.rgb;
-  float shine = 1.0;
-  float spacing = seen.back_spacing.w;
+  // Light on the far side shines through between the threads.
+  sums.through += strength * max(-side, 0.0);
+  sums.gloss += strength * (at.shine * highlight(at.n, at.v, l, max(at.alpha, 0.2), at.f0) * step(0.0, side));
+#else
+  sums.gloss += strength * (highlight(at.n, at.v, l, at.alpha, at.f0) * smoothstep(0.0, 0.06, side));
+#endif
+}
+
+void main() {
+  ivec2 pixel = ivec2(gl_FragCoord.xy);
+  vec2 seen = texelFetch(distances_surfaces, pixel, 0).rg;
+  float distance_view = seen.x, surface = floor(seen.y);
+  vec4 normal_heat = texelFetch(normals_heat, pixel, 0);
+  int row = int(surface - kFirstSurface);
+  vec4 front_roughness = texelFetch(materials, ivec2(0, row), 0);
+  vec4 back_spacing = texelFetch(materials, ivec2(1, row), 0);
+  float heat_scale = texelFetch(materials, ivec2(2, row), 0).x;
+
+  Point at;
+  vec3 offset_world = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, distance_view));
+  at.position_world = offset_world + frame.eye_world.xyz;
+  at.v = -normalize(offset_world);
+  // Near outlines a smooth normal may lean away from the eye; bend it back to the horizon.
+  vec3 n_seen = normalize(normal_heat.xyz);
+  at.n = at.n_smooth = normalize(n_seen + at.v * max(0.02 - dot(n_seen, at.v), 0.0));
+  float roughness = front_roughness.w;
+  at.alpha = max(roughness * roughness, 0.02);
+  at.f0 = 0.04 * (1.0 - 0.9 * roughness * roughness);
+  at.shine = 1.0;
+  vec3 albedo = front_roughness.rgb;
+#ifdef CLOTH
+  bool front = seen.y - surface < 0.25;
+  albedo = front ? front_roughness.rgb : back_spacing.rgb;
+  vec3 behind = front ? back_spacing.rgb : front_roughness.rgb;
+  float spacing = back_spacing.w;
+  vec2 rest_uv = texelFetch(rest_uvs, pixel, 0).xy;
   if (spacing > 0.0) {
-    Weave woven = weave(seen.rest_uv, spacing, n, seen.position_world);
-    n = woven.normal_world;
+    Weave woven = weave(rest_uv, spacing, at.n, at.position_world);
+    at.n = woven.normal_world;
     albedo *= woven.tone;
-    shine = woven.shine;
+    at.shine = woven.shine;
   }
 #endif
-  float heat_scale = seen.heat_checker.x;
   if (heat_scale > 0.0) {
-    float hot = clamp(seen.heat * heat_scale, 0.0, 1.0);
+    float hot = clamp(normal_heat.w * heat_scale, 0.0, 1.0);
     albedo = textureLod(heat_colors, vec2((hot * 255.0 + 0.5) / 256.0, 0.5), 0.0).rgb;
 #ifdef CLOTH
     behind = albedo;
 #endif
   }
 
-  Softness soft = look_up_softness(seen);
-  vec3 diffuse = ambient_light(n, soft.open);
-  vec3 through = vec3(0.0), gloss = vec3(0.0);
-  float alpha = max(roughness * roughness, 0.02), f0 = 0.04 * (1.0 - 0.9 * roughness * roughness);
-  int i = 0;
-  do {
-    float cone;
-    vec3 l = toward_light(i, seen.position_world, cone);
-    float side = dot(n_smooth, l);
-    // Solid surfaces take nothing from behind; cloth lets some through.
-#ifdef CLOTH
-    bool wanted = cone > 0.0;
-#else
-    bool wanted = cone > 0.0 && side > 0.0;
+  Softness soft = look_up_softness(distance_view, surface);
+  LightSums light = LightSums(ambient_light(at.n, soft.open), vec3(0.0), vec3(0.0));
+  add_light(light, 0, at, soft);
+#if LIGHTS > 1
+  add_light(light, 1, at, soft);
 #endif
-    float lit = share_of_light(i, soft, seen.position_world, side < 0.0 ? -n_smooth : n_smooth, wanted);
-    vec3 strength = lights[i].color.rgb * (cone * lit);
-    float n_l = max(dot(n, l), 0.0) * smoothstep(0.0, 0.06, side);
-    diffuse += strength * n_l;
-#ifdef CLOTH
-    // Light on the far side shines through between the threads.
-    through += strength * max(-side, 0.0);
-    gloss += strength * shine * highlight(n, v, l, max(alpha, 0.2), f0) * step(0.0, side);
-#else
-    gloss += strength * highlight(n, v, l, alpha, f0) * smoothstep(0.0, 0.06, side);
+#if LIGHTS > 2
+  add_light(light, 2, at, soft);
 #endif
-  } while (++i < light_count.x);
+#if LIGHTS > 3
+  add_light(light, 3, at, soft);
+#endif
 
-  float edge = 1.0 - max(dot(n_smooth, v), 0.0), rim = edge * edge * edge * edge;
+  float edge = 1.0 - max(dot(at.n_smooth, at.v), 0.0), rim = edge * edge * edge * edge;
 #ifdef CLOTH
   // Fibres that stand out catch light at grazing angles: a soft sheen in a paler tone of the cloth.
-  vec3 sheen = mix(albedo, vec3(0.5), 0.35) * 0.55 * rim * diffuse;
-  vec3 linear = albedo * (diffuse + 0.22 * behind * through) + sheen + gloss;
+  vec3 sheen = mix(albedo, vec3(0.5), 0.35) * 0.55 * rim * light.diffuse;
+  vec3 linear = albedo * (light.diffuse + 0.22 * behind * light.through) + sheen + light.gloss;
 #else
   // A studio seen in the gloss: bright above, darker towards the ground.
-  vec3 r = reflect(-v, n);
+  vec3 r = reflect(-at.v, at.n);
   float r_up = dot(r, frame.up_world.xyz);
   vec3 surroundings = mix(frame.ground_light.rgb * 0.6, frame.sky_light.rgb * 1.3, smoothstep(-0.25, 0.5, r_up));
-  float mirror = (f0 + (1.0 - f0) * rim * (1.0 - roughness)) * soft.open;
-  vec3 linear = albedo * diffuse * (1.0 - mirror) + surroundings * mirror + gloss;
+  float mirror = (at.f0 + (1.0 - at.f0) * rim * (1.0 - roughness)) * soft.open;
+  vec3 linear = albedo * light.diffuse * (1.0 - mirror) + surroundings * mirror + light.gloss;
 #endif
-  color = vec4(display(linear), 1.0);
+  color = vec4(encode(linear) + dither(gl_FragCoord.xy), 1.0);
 }

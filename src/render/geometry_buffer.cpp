@@ -7,15 +7,15 @@ GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
       width_(width),
       height_(height),
       program_(gl, "geometry.vert", "geometry.frag"),
-      material_(program_.uniform("material")),
-      normal_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
-      uv_heat_material_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
-      distance_(make_texture(gl, GL_R32F, width, height, GL_NEAREST)),
+      surface_(program_.uniform("surface")),
+      normal_heat_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
+      uv_(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
+      seen_(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
       depth_stencil_(make_texture(gl, GL_DEPTH24_STENCIL8, width, height, GL_NEAREST)),
       target_(gl) {
-  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT0, normal_.name(), 0);
-  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT1, uv_heat_material_.name(), 0);
-  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT2, distance_.name(), 0);
+  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT0, normal_heat_.name(), 0);
+  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT1, uv_.name(), 0);
+  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT2, seen_.name(), 0);
   gl.NamedFramebufferTexture(target_.name(), GL_DEPTH_STENCIL_ATTACHMENT, depth_stencil_.name(), 0);
   const GLenum outputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
   gl.NamedFramebufferDrawBuffers(target_.name(), 3, outputs);
@@ -29,7 +29,7 @@ void GeometryBuffer::set_class(PixelClass pixel_class) const {
 void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, double far) {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
   gl_->Viewport(0, 0, width_, height_);
-  const float nothing[] = {static_cast<float>(far), 0, 0, 0};
+  const float nothing[] = {static_cast<float>(far), kNothing, 0, 0};
   gl_->ClearBufferfv(GL_COLOR, 2, nothing);
   gl_->ClearBufferfi(GL_DEPTH_STENCIL, 0, 1.0f, static_cast<GLint>(PixelClass::backdrop));
   gl_->Enable(GL_DEPTH_TEST);
@@ -38,28 +38,28 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorB
   program_.use();
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     set_class(surfaces[i].surface().kind == frame::ObjectKind::cloth ? PixelClass::cloth : PixelClass::solid);
-    gl_->Uniform1f(material_, static_cast<float>(i));
+    gl_->Uniform1f(surface_, static_cast<float>(kFirstSurface + i));
     surfaces[i].draw();
   }
   if (floor) {
     set_class(PixelClass::floor);
-    gl_->Uniform1f(material_, static_cast<float>(surfaces.size()));
-    // From below one looks through the floor.
+    gl_->Uniform1f(surface_, kFloor);
+    // From below one looks through the floor. Its normal is that of a plane, and it has no rest coordinates.
     gl_->Enable(GL_CULL_FACE);
+    for (const GLuint unused : {0, 1}) gl_->ColorMaski(unused, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     floor->draw();
+    for (const GLuint unused : {0, 1}) gl_->ColorMaski(unused, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl_->Disable(GL_CULL_FACE);
   }
   gl_->Disable(GL_STENCIL_TEST);
-  gl_->BindTextureUnit(4, normal_.name());
-  gl_->BindTextureUnit(5, uv_heat_material_.name());
-  gl_->BindTextureUnit(8, distance_.name());
+  gl_->BindTextureUnit(4, normal_heat_.name());
+  gl_->BindTextureUnit(5, uv_.name());
+  gl_->BindTextureUnit(8, seen_.name());
 }
 
-std::vector<float> GeometryBuffer::read_distances() const {
-  std::vector<float> distances(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  gl_->GetTextureImage(distance_.name(), 0, GL_RED, GL_FLOAT, static_cast<GLsizei>(distances.size() * sizeof(float)),
-                       distances.data());
-  return distances;
+void GeometryBuffer::read_seen(std::vector<Seen>& seen) const {
+  seen.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  gl_->GetTextureImage(seen_.name(), 0, GL_RG, GL_FLOAT, static_cast<GLsizei>(seen.size() * sizeof(Seen)), seen.data());
 }
 
 }  // namespace weft::render

@@ -1,28 +1,29 @@
-// What is seen at each pixel before any light: normal, distance, rest coordinates, heat and material.
+// What is seen at each pixel before any light: normal, heat, rest coordinates, distance and surface.
 #pragma once
 
-#include <functional>
 #include <span>
+#include <vector>
 
 #include "render/gl/program.hpp"
+#include "render/seen.hpp"
 #include "render/surface_buffers.hpp"
 
 namespace weft::render {
 
-/// Stencil values that tell the shading passes apart.
-enum class PixelClass : int { backdrop = 0, cloth = 1, solid = 2, floor = 3 };
+/// Stencil values that tell the shading passes apart. A floor pixel becomes shaded floor where Shading finds that
+/// soft light changes it; the lower two bits tell the rest.
+enum class PixelClass : int { backdrop = 0, cloth = 1, solid = 2, floor = 3, shaded_floor = 7 };
 
 class GeometryBuffer {
  public:
   GeometryBuffer(const Gl& gl, int width, int height);
 
-  /// Draws all surfaces and, where not null, the floor. Surface i gets material i, the floor the one after the last.
-  /// `far` is the distance stored where nothing is [m]. Leaves the results bound to units 4 and 5, distances
-  /// to unit 8.
+  /// Draws all surfaces and, where not null, the floor. `far` is the distance stored where nothing is [m]. Leaves the
+  /// results bound to units 4, 5 and 8.
   void draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, double far);
 
-  /// Distances along the view axis [m], lowest row first.
-  std::vector<float> read_distances() const;
+  /// Reads what each pixel shows, lowest row first.
+  void read_seen(std::vector<Seen>& seen) const;
 
   /// Depth and stencil, for the passes that shade by class.
   const Texture& depth_stencil() const { return depth_stencil_; }
@@ -33,8 +34,8 @@ class GeometryBuffer {
   const Gl* gl_;
   int width_, height_;
   Program program_;
-  GLint material_;
-  Texture normal_, uv_heat_material_, distance_, depth_stencil_;
+  GLint surface_;
+  Texture normal_heat_, uv_, seen_, depth_stencil_;
   Framebuffer target_;
 };
 

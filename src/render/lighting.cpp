@@ -89,13 +89,18 @@ std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot,
   return {key};
 }
 
+LightSet light_set(std::span<const frame::Light> lights) {
+  const auto is_spot = [](const frame::Light& light) { return light.kind == frame::Light::Kind::spot; };
+  return {lights.size(), std::any_of(lights.begin(), lights.end(), is_spot)};
+}
+
 ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size) {
   return light.kind == frame::Light::Kind::spot ? fit_spot(light, casters, up, map_size)
                                                 : fit_sun(light, casters, up, map_size);
 }
 
-SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach, bool from_above) {
-  const ViewAxes axes = view_axes(from_above ? Vec3(-up) : up, up.unitOrthogonal());
+SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach) {
+  const ViewAxes axes = view_axes(-up, up.unitOrthogonal());
   const Mat4 view = look_along(Vec3::Zero(), axes);
   Box3 bounds_view;
   for (int corner = 0; corner < 8; ++corner) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <compare>
 #include <span>
 #include <vector>
 
@@ -13,9 +14,17 @@ namespace weft::render {
 /// More lights than this are left out: each costs a shadow map.
 inline constexpr int kMaxLights = 4;
 
-/// The snapshot's lights, at most kMaxLights; where it has none, a warm key light from above, beside the camera.
+/// The snapshot's lights, at most kMaxLights; where it has none, one: a warm key light from above, beside the camera.
 std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, const ViewAxes& camera,
                                            const Vec3& up);
+
+/// What shaders are compiled for.
+struct LightSet {
+  std::size_t count = 1;  ///< 1 to kMaxLights
+  bool spots = false;     ///< some are no suns
+  auto operator<=>(const LightSet&) const = default;
+};
+LightSet light_set(std::span<const frame::Light> lights);
 
 /// A parallel or central projection onto a shadow map.
 struct ShadowView {
@@ -30,13 +39,13 @@ struct ShadowView {
 /// Fits a shadow map of `map_size` texels to the given casters (world space), as tightly as they allow.
 ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size);
 
-/// A parallel view from straight above (`from_above`) or below that covers `bounds` and `reach` metres more, for the
+/// A parallel view from straight above that covers `bounds` and `reach` metres more, for the
 /// light of the sky that things take from each other. Depth 0 to 1 covers `depth_metres`.
 struct SkyView {
   Mat4 clip_from_world = Mat4::Identity();
   double depth_metres = 1;
 };
-SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach, bool from_above);
+SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach);
 
 /// Light block of shaders/lights.glsl, std140.
 struct LightUniform {
@@ -49,7 +58,6 @@ struct LightUniform {
 };
 struct LightsUniform {
   std::array<LightUniform, kMaxLights> lights;
-  Eigen::Vector4i count{0, 0, 0, 0};
 };
 
 /// Packs a light. `scale` is of its strength, for each channel.

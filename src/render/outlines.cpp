@@ -1,78 +1,266 @@
 #include "render/outlines.hpp"
 
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "render/depth_raster.hpp"
+
 namespace weft::render {
+namespace {
 
-Outlines::Outlines(const Gl& gl, int width, int height, int samples)
-    : gl_(&gl),
-      width_(width),
+constexpr int kWord = 64;
+
+// Offsets of the samples from the pixel's lower left corner: no two in a row or column of eighths, so that edges near
+// the axes get nine steps as well. The pattern is that of Direct3D's 8 samples.
+constexpr float kOffsetX[] = {9 / 16.f, 7 / 16.f, 13 / 16.f, 5 / 16.f, 3 / 16.f, 1 / 16.f, 11 / 16.f, 15 / 16.f};
+constexpr float kOffsetY[] = {5 / 16.f, 11 / 16.f, 9 / 16.f, 3 / 16.f, 13 / 16.f, 7 / 16.f, 15 / 16.f, 1 / 16.f};
+
+// Where something ends or folds, 1 / distance, which is linear over the picture of any plane, has a kink or a step.
+constexpr float kKink = 1e-3f;
+// A sample shows what its pixel shows where both are as far away to this part.
+constexpr float kSameDistance = 2e-3f;
+
+/// Twice the signed area of the triangle of an edge from a to b and a place, positive on its left. Exactly the opposite
+/// for the edge from b to a, as both measure from the same end: no sample falls between two triangles.
+struct Edge {
+  float along, across, from_x, from_y;
+
+  template <class Vertex>
+  Edge(const Vertex& a, const Vertex& b) {
+    const bool swapped = a.x != b.x ? a.x > b.x : a.y > b.y;
+    const Vertex &p = swapped ? b : a, &q = swapped ? a : b;
+    const float sign = swapped ? -1 : 1;
+    along = sign * (p.y - q.y);
+    across = sign * (q.x - p.x);
+    from_x = p.x;
+    from_y = p.y;
+  }
+  float at(float x, float y) const { return along * (x - from_x) + across * (y - from_y); }
+};
+
+}  // namespace
+
+Outlines::Outlines(int width, int height)
+    : width_(width),
       height_(height),
-      inside_(gl, "fullscreen.vert", "inside.frag"),
-      surface_(gl, "geometry.vert", "edges.frag"),
-      rest_(gl, "fullscreen.vert", "edges.frag", {"REST"}),
-      color_(make_multisample_texture(gl, GL_RGBA8, width, height, samples)),
-      depth_(make_multisample_texture(gl, GL_DEPTH_COMPONENT24, width, height, samples)),
-      target_(gl),
-      resolved_(gl),
-      no_vertices_(gl) {
-  gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT0, color_.name(), 0);
-  gl.NamedFramebufferTexture(target_.name(), GL_DEPTH_ATTACHMENT, depth_.name(), 0);
-  check_framebuffer(gl, target_, "outlines");
-}
+      words_((width + kWord - 1) / kWord),
+      bits_(static_cast<std::size_t>(words_) * height),
+      first_(bits_.size()) {}
 
-void Outlines::draw_surface(const SurfaceBuffers& surface, const View& view, const OutlineTiles& tiles) const {
-  // Pixel coordinates of all vertices; those not in front of the viewer take any triangle in.
-  constexpr float kFar = 1e9f;
-  std::vector<Eigen::Array2f> low, high;
-  for (const Vec3& position : surface.positions()) {
-    const Eigen::Vector4d clip = view.clip_from_world * position.homogeneous();
-    const bool in_front = clip.w() > view.near;
-    const Eigen::Array2f pixel(static_cast<float>((0.5 + 0.5 * clip.x() / clip.w()) * width_),
-                               static_cast<float>((0.5 + 0.5 * clip.y() / clip.w()) * height_));
-    low.push_back(in_front ? Eigen::Array2f(pixel - 1) : Eigen::Array2f::Constant(-kFar));
-    high.push_back(in_front ? Eigen::Array2f(pixel + 1) : Eigen::Array2f::Constant(kFar));
+/// Sets the bits of the pixels of the area whose neighbours show another surface, or another part of their own.
+void Outlines::find(std::span<const Seen> seen, const PixelArea& area) {
+  std::fill(bits_.begin(), bits_.end(), Bits{0});
+  // Three rows of 1 / distance at a time, with a column more on either side.
+  const std::size_t stride = static_cast<std::size_t>(width_) + 2;
+  nearness_.resize(3 * stride);
+  const auto load = [&](int row) {
+    const Seen* from = seen.data() + static_cast<std::size_t>(std::clamp(row, 0, height_ - 1)) * width_;
+    float* to = nearness_.data() + static_cast<std::size_t>((row + 3) % 3) * stride + 1;
+    for (int x = 0; x < width_; ++x) to[x] = 1 / from[x].distance;
+    to[-1] = to[0];
+    to[width_] = to[width_ - 1];
+    return to;
+  };
+  load(area.y - 1);
+  load(area.y);
+  std::vector<std::uint8_t> flags(static_cast<std::size_t>(width_));
+  const int left = area.x, right = area.x + area.width;
+  for (int y = area.y; y < area.y + area.height; ++y) {
+    load(y + 1);
+    const auto row = [&](int k) { return nearness_.data() + static_cast<std::size_t>((k + 3) % 3) * stride + 1; };
+    const float *below = row(y - 1), *here = row(y), *above = row(y + 1);
+    const Seen* own = seen.data() + static_cast<std::size_t>(y) * width_;
+    const Seen *lower = y > 0 ? own - width_ : own, *upper = y + 1 < height_ ? own + width_ : own;
+    for (int x = left; x < right; ++x) {
+      const float across = std::abs(here[x - 1] + here[x + 1] - 2 * here[x]);
+      const float along = std::abs(below[x] + above[x] - 2 * here[x]);
+      flags[x] = (std::max(across, along) > kKink * here[x]) | (own[x].surface != lower[x].surface) |
+                 (own[x].surface != upper[x].surface);
+    }
+    for (int x = std::max(left, 1); x < right; ++x) flags[x] |= own[x].surface != own[x - 1].surface;
+    for (int x = left; x < std::min(right, width_ - 1); ++x) flags[x] |= own[x].surface != own[x + 1].surface;
+    Bits* bits = bits_.data() + static_cast<std::size_t>(y) * words_;
+    for (int x = left; x < right; ++x) bits[x / kWord] |= Bits{flags[x]} << (x % kWord);
   }
-  surface.draw_some([&](Index a, Index b, Index c) {
-    const Eigen::Array2f least = low[a].min(low[b]).min(low[c]), most = high[a].max(high[b]).max(high[c]);
-    return tiles.any(least.x(), least.y(), most.x(), most.y());
-  });
 }
 
-void Outlines::draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, const GeometryBuffer& geometry,
-                    const Texture& shaded, const View& view, const PixelArea& area) {
+/// Gives each of those pixels its samples.
+void Outlines::number() {
+  pixels_.clear();
+  for (std::size_t word = 0; word < bits_.size(); ++word) {
+    first_[word] = static_cast<int>(pixels_.size());
+    const int y = static_cast<int>(word) / words_, x = static_cast<int>(word) % words_ * kWord;
+    for (Bits left = bits_[word]; left; left &= left - 1) pixels_.push_back({x + std::countr_zero(left), y});
+  }
+  samples_.assign(pixels_.size(), {});
+}
+
+Outlines::Vertex Outlines::to_picture(const Eigen::Vector4d& clip) const {
+  const double nearness = 1 / clip.w();
+  return {static_cast<float>((0.5 + 0.5 * clip.x() * nearness) * width_),
+          static_cast<float>((0.5 + 0.5 * clip.y() * nearness) * height_), static_cast<float>(nearness)};
+}
+
+void Outlines::sample(const DrawnMesh& mesh, float surface, const View& view) {
+  clip_.clear();
+  vertices_.clear();
+  for (const Vec3& position : mesh.positions) {
+    clip_.push_back(view.clip_from_world * position.homogeneous());
+    vertices_.push_back(to_picture(clip_.back()));
+  }
+  for (const auto& [a, b, c] : mesh.triangles) {
+    if (std::min({clip_[a].w(), clip_[b].w(), clip_[c].w()}) >= view.near) {
+      sample(vertices_[a], vertices_[b], vertices_[c], surface);
+    } else {
+      clip_near({clip_[a], clip_[b], clip_[c]}, [&](const auto& p, const auto& q, const auto& r) {
+        sample(to_picture(p), to_picture(q), to_picture(r), surface);
+      });
+    }
+  }
+}
+
+/// Takes the triangle over where it is nearer than what the samples show.
+void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface) {
+  const auto [x_min, x_max] = std::minmax({a.x, b.x, c.x});
+  const auto [y_min, y_max] = std::minmax({a.y, b.y, c.y});
+  if (!(x_max >= 0 && y_max >= 0 && x_min < static_cast<float>(width_) && y_min < static_cast<float>(height_))) return;
+  const int x0 = std::max(0, static_cast<int>(x_min)), y0 = std::max(0, static_cast<int>(y_min));
+  const int x1 = static_cast<int>(std::min(x_max, static_cast<float>(width_ - 1)));
+  const int y1 = static_cast<int>(std::min(y_max, static_cast<float>(height_ - 1)));
+
+  // Bits of the columns x0 to x1 in word `word`.
+  const auto columns = [&](int word) {
+    const int from = std::max(x0 - word * kWord, 0), to = std::min(x1 - word * kWord, kWord - 1);
+    return (~Bits{0} << from) & (~Bits{0} >> (kWord - 1 - to));
+  };
+  const int word0 = x0 / kWord, word1 = x1 / kWord;
+  int y = y0;
+  const auto row_has_outlines = [&](int row) {
+    for (int word = word0; word <= word1; ++word) {
+      if (bits_[static_cast<std::size_t>(row) * words_ + word] & columns(word)) return true;
+    }
+    return false;
+  };
+  while (y <= y1 && !row_has_outlines(y)) ++y;
+  if (y > y1) return;
+
+  const Edge edges[] = {{a, b}, {b, c}, {c, a}};
+  const float area = (b.x - a.x) * (c.y - a.y) - (c.x - a.x) * (b.y - a.y);
+  if (!(std::abs(area) > 0)) return;
+  // Seen from behind, all edges run the other way round.
+  const float side = area > 0 ? 1.0f : -1.0f, shown = area > 0 ? surface : surface + 0.5f;
+  const float b_a = b.nearness - a.nearness, c_a = c.nearness - a.nearness;
+  const float slope_x = (b_a * (c.y - a.y) - c_a * (b.y - a.y)) / area;
+  const float slope_y = (c_a * (b.x - a.x) - b_a * (c.x - a.x)) / area;
+  // Slivers have wild slopes.
+  const auto [least, most] = std::minmax({a.nearness, b.nearness, c.nearness});
+
+  float edge_offsets[3][kSamples], nearness_offsets[kSamples];
+  for (int s = 0; s < kSamples; ++s) {
+    for (int e = 0; e < 3; ++e) edge_offsets[e][s] = edges[e].along * kOffsetX[s] + edges[e].across * kOffsetY[s];
+    nearness_offsets[s] = slope_x * kOffsetX[s] + slope_y * kOffsetY[s];
+  }
+  for (; y <= y1; ++y) {
+    for (int word = word0; word <= word1; ++word) {
+      const std::size_t at = static_cast<std::size_t>(y) * words_ + word;
+      for (Bits left = bits_[at] & columns(word); left; left &= left - 1) {
+        const int bit = std::countr_zero(left);
+        Samples& samples = samples_[first_[at] + std::popcount(bits_[at] & ((Bits{1} << bit) - 1))];
+        const float px = static_cast<float>(word * kWord + bit), py = static_cast<float>(y);
+        float corner[3];
+        for (int e = 0; e < 3; ++e) corner[e] = edges[e].at(px, py);
+        const float corner_nearness = a.nearness + slope_x * (px - a.x) + slope_y * (py - a.y);
+        for (int s = 0; s < kSamples; ++s) {
+          const float e0 = side * (corner[0] + edge_offsets[0][s]), e1 = side * (corner[1] + edge_offsets[1][s]);
+          const float e2 = side * (corner[2] + edge_offsets[2][s]);
+          const float near = std::min(std::max(corner_nearness + nearness_offsets[s], least), most);
+          const bool wins = (std::min(e0, std::min(e1, e2)) >= 0) & (near > samples.nearness[s]);
+          samples.nearness[s] = wins ? near : samples.nearness[s];
+          samples.surface[s] = wins ? shown : samples.surface[s];
+        }
+      }
+    }
+  }
+}
+
+/// The floor fills what lies behind all surfaces, where it is seen from above.
+void Outlines::sample_floor(const Floor& floor, const View& view) {
+  const double height = floor.normal.dot(view.eye - floor.point);
+  if (height <= 0) return;
+  // Of the ray through a place of the picture, one metre along the view axis: how far it comes down.
+  const double x = -2 * view.tan_half_width / width_ * floor.normal.dot(view.axes.right);
+  const double y = -2 * view.tan_half_height / height_ * floor.normal.dot(view.axes.up);
+  const double corner = -floor.normal.dot(view.axes.forward) - 0.5 * (x * width_ + y * height_);
+  for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
+    Samples& samples = samples_[slot];
+    const double base = corner + x * pixels_[slot].x + y * pixels_[slot].y;
+    for (int s = 0; s < kSamples; ++s) {
+      const float near = static_cast<float>((base + x * kOffsetX[s] + y * kOffsetY[s]) / height);
+      const bool wins = near > samples.nearness[s];
+      samples.nearness[s] = wins ? near : samples.nearness[s];
+      samples.surface[s] = wins ? static_cast<float>(kFloor) : samples.surface[s];
+    }
+  }
+}
+
+/// Mean of the samples' colours. Each is that of the pixel itself where it shows the same, else of the pixel around it
+/// that shows the same surface nearest to the sample's distance.
+std::uint32_t Outlines::resolve(std::size_t slot, std::span<const Seen> seen, const std::uint32_t* picture) const {
+  const auto [x, y] = pixels_[slot];
+  const Samples& samples = samples_[slot];
+  const std::size_t here = static_cast<std::size_t>(y) * width_ + x;
+  const int x0 = std::max(x - 1, 0), x1 = std::min(x + 1, width_ - 1);
+  const int y0 = std::max(y - 1, 0), y1 = std::min(y + 1, height_ - 1);
+  std::uint32_t sums[3] = {};
+  std::size_t chosen = here;
+  float chosen_nearness = -1, chosen_surface = -1;
+  for (int s = 0; s < kSamples; ++s) {
+    const float surface = samples.surface[s], nearness = samples.nearness[s];
+    // Most samples want the same as the one before.
+    if (surface != chosen_surface || std::abs(nearness - chosen_nearness) > kSameDistance * nearness) {
+      chosen = here;
+      chosen_surface = surface;
+      chosen_nearness = nearness;
+      // How unlike the pixel is, as a part of the distance; any other surface is more unlike than the same one.
+      const auto unlike = [&](std::size_t at) {
+        if (seen[at].surface != surface) return 1e9f;
+        return surface < kFloor ? 0.0f : std::abs(seen[at].distance * nearness - 1);
+      };
+      float least = unlike(here);
+      if (least > kSameDistance) {
+        for (int j = y0; j <= y1; ++j) {
+          for (int i = x0; i <= x1; ++i) {
+            const std::size_t there = static_cast<std::size_t>(j) * width_ + i;
+            const float difference = unlike(there);
+            if (difference >= least) continue;
+            least = difference;
+            chosen = there;
+          }
+        }
+      }
+    }
+    const std::uint32_t color = picture[chosen];
+    for (int channel = 0; channel < 3; ++channel) sums[channel] += color >> (8 * channel) & 0xFF;
+  }
+  std::uint32_t mean = 0;
+  for (int channel = 0; channel < 3; ++channel) mean |= (sums[channel] + kSamples / 2) / kSamples << (8 * channel);
+  return mean;
+}
+
+void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
+                      const View& view, const PixelArea& area, std::span<std::uint32_t> picture) {
   if (area.width <= 0 || area.height <= 0) return;
-  gl_->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
-  gl_->Viewport(0, 0, width_, height_);
-  // All that has outlines lies in the area, often less than half of the picture.
-  gl_->Enable(GL_SCISSOR_TEST);
-  gl_->Scissor(area.x, area.y, area.width, area.height);
-  const float nothing = 1.0f;
-  gl_->ClearBufferfv(GL_DEPTH, 0, &nothing);
-  gl_->Enable(GL_DEPTH_TEST);
-  gl_->DepthFunc(GL_LEQUAL);
-  gl_->BindTextureUnit(9, shaded.name());
-  gl_->BindVertexArray(no_vertices_.name());
-  inside_.use();
-  gl_->DepthRange(0, 0);
-  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
-  gl_->DepthRange(0, 1);
-  surface_.use();
-  // Small triangles cost several times more with four samples, and most of them lie inside.
-  const OutlineTiles tiles(geometry.read_distances(), width_, height_);
-  for (const SurfaceBuffers& surface : surfaces) draw_surface(surface, view, tiles);
-  if (floor) {
-    gl_->Enable(GL_CULL_FACE);
-    floor->draw();
-    gl_->Disable(GL_CULL_FACE);
+  find(seen, area);
+  number();
+  for (std::size_t i = 0; i < meshes.size(); ++i) sample(meshes[i], static_cast<float>(kFirstSurface + i), view);
+  if (floor) sample_floor(*floor, view);
+  // All are resolved before the first is written: they look at each other.
+  resolved_.clear();
+  for (std::size_t slot = 0; slot < pixels_.size(); ++slot) resolved_.push_back(resolve(slot, seen, picture.data()));
+  for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
+    picture[static_cast<std::size_t>(pixels_[slot].y) * width_ + pixels_[slot].x] = resolved_[slot];
   }
-  rest_.use();
-  gl_->Uniform1f(rest_.uniform("rest_distance"), static_cast<float>(view.far));
-  gl_->BindVertexArray(no_vertices_.name());
-  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
-  gl_->Disable(GL_SCISSOR_TEST);
-  const GLint right = area.x + area.width, top = area.y + area.height;
-  gl_->NamedFramebufferTexture(resolved_.name(), GL_COLOR_ATTACHMENT0, shaded.name(), 0);
-  gl_->BlitNamedFramebuffer(target_.name(), resolved_.name(), area.x, area.y, right, top, area.x, area.y, right, top,
-                            GL_COLOR_BUFFER_BIT, GL_NEAREST);
 }
 
 }  // namespace weft::render

@@ -1,33 +1,64 @@
-// Antialiasing: the geometry once more with several samples a pixel, coloured from the shaded picture.
+// Antialiasing: where surfaces end or fold, pixels are sampled eight times, and each sample takes the colour of its own
+// surface from the pixels around.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <optional>
 #include <span>
+#include <vector>
 
-#include "render/geometry_buffer.hpp"
-#include "render/gl/program.hpp"
-#include "render/outline_tiles.hpp"
+#include "render/seen.hpp"
+#include "render/shaded_mesh.hpp"
 #include "render/view.hpp"
 
 namespace weft::render {
 
+/// Works on the processor: a few thousand pixels of a picture have outlines, and OpenGL can only sample all of it.
 class Outlines {
  public:
-  Outlines(const Gl& gl, int width, int height, int samples);
+  Outlines(int width, int height);
 
-  /// Antialiases the part of `shaded` inside `area`, in place. Expects the distances of the geometry buffer bound to
-  /// unit 8 and the frame block.
-  void draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, const GeometryBuffer& geometry,
-            const Texture& shaded, const View& view, const PixelArea& area);
+  /// Antialiases `picture`, RGBA bytes with the lowest row first, inside `area`. `seen` tells what each of its pixels
+  /// shows; `meshes` are all surfaces but the floor, mesh i with the number kFirstSurface + i.
+  void smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
+              const View& view, const PixelArea& area, std::span<std::uint32_t> picture);
+
+  /// Pixels of the last picture that were sampled.
+  std::size_t count() const { return pixels_.size(); }
 
  private:
-  void draw_surface(const SurfaceBuffers& surface, const View& view, const OutlineTiles& tiles) const;
+  static constexpr int kSamples = 8;
+  /// What the samples of one pixel show: 1 / distance [1/m], 0 for nothing, and the surface.
+  struct Samples {
+    float nearness[kSamples] = {}, surface[kSamples] = {};
+  };
+  /// A vertex in the picture: pixels from its lower left corner, and 1 / distance [1/m].
+  struct Vertex {
+    float x, y, nearness;
+  };
+  struct Pixel {
+    int x, y;
+  };
+  using Bits = std::uint64_t;
 
-  const Gl* gl_;
-  int width_, height_;
-  Program inside_, surface_, rest_;
-  Texture color_, depth_;
-  Framebuffer target_, resolved_;
-  VertexArray no_vertices_;
+  void find(std::span<const Seen> seen, const PixelArea& area);
+  void number();
+  void sample(const DrawnMesh& mesh, float surface, const View& view);
+  void sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface);
+  void sample_floor(const Floor& floor, const View& view);
+  std::uint32_t resolve(std::size_t slot, std::span<const Seen> seen, const std::uint32_t* picture) const;
+  Vertex to_picture(const Eigen::Vector4d& clip) const;
+
+  int width_, height_, words_;  // words of bits in a row
+  std::vector<Bits> bits_;      // a bit for each pixel with an outline
+  std::vector<int> first_;      // for each word: samples of its lowest pixel
+  std::vector<Pixel> pixels_;
+  std::vector<Samples> samples_;
+  std::vector<std::uint32_t> resolved_;
+  std::vector<float> nearness_;
+  std::vector<Eigen::Vector4d> clip_;
+  std::vector<Vertex> vertices_;
 };
 
 }  // namespace weft::render

@@ -9,13 +9,13 @@ namespace weft::render {
 QualitySettings quality_settings(Quality quality) {
   switch (quality) {
     case Quality::draft:
-      return {1, 512, 4, 6, 4, 3, 3, false};
+      return {false, 512, 4, 6, 4, 3, 3, false};
     case Quality::preview:
-      return {1, 640, 5, 8, 4, 5, 5, false};
+      return {true, 640, 5, 8, 4, 5, 5, false};
     case Quality::final:
       break;
   }
-  return {4, 1536, 10, 16, 2, 10, 9, true};
+  return {true, 1024, 10, 16, 2, 6, 7, true};
 }
 
 }  // namespace weft::render

@@ -6,11 +6,11 @@
 namespace weft::render {
 
 struct QualitySettings {
-  int samples;       ///< for antialiasing; 1 or 4, more llvmpipe has not
+  bool smooth_outlines;
   int shadow_size;   ///< texels of a shadow map's side; a multiple of 16
   int blocker_taps;  ///< of the search for what makes a penumbra
   int filter_taps;   ///< of the penumbra itself
-  int soft_divisor;  ///< the picture of soft light is this much smaller; 0: none
+  int soft_divisor;  ///< the picture of soft light is this much smaller
   int nearby_taps, sky_taps;
   bool crisp_shadows;  ///< search at full size along the edges of the first light's shadows on the subjects
 };

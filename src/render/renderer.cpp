@@ -1,6 +1,7 @@
 #include "render/renderer.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 
 #include "core/error.hpp"
@@ -77,6 +78,19 @@ Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Camera& camera
   return plan;
 }
 
+/// RGB, top row first, from RGBA with the lowest row first.
+image::Image to_image(std::span<const std::uint32_t> rgba, int width, int height) {
+  image::Image image(width, height);
+  for (int y = 0; y < height; ++y) {
+    const std::uint32_t* from = rgba.data() + static_cast<std::size_t>(height - 1 - y) * width;
+    std::uint8_t* to = image.pixel(0, y);
+    // Whole words, each over the spare byte of the one before; the last has no room for its own.
+    for (int x = 0; x < width - 1; ++x) std::memcpy(to + 3 * x, from + x, 4);
+    std::memcpy(to + 3 * (width - 1), from + width - 1, 3);
+  }
+  return image;
+}
+
 }  // namespace
 
 struct Renderer::Impl {
@@ -89,28 +103,28 @@ struct Renderer::Impl {
 
   // GL objects; made and deleted with the context current.
   struct Passes {
-    DepthProgram depth;
     ShadowMaps shadows;
-    std::optional<SoftLight> soft_light;
+    SoftLight soft_light;
     GeometryBuffer geometry;
     Shading shading;
-    std::optional<Outlines> outlines;
     FloorBuffers floor;
     Buffer frame_block;
     std::vector<SurfaceBuffers> surfaces;
 
     Passes(const Gl& gl, const QualitySettings& quality, const Settings& settings)
-        : depth(gl),
-          shadows(gl, quality),
+        : shadows(gl, quality),
+          soft_light(gl, quality, settings.width, settings.height),
           geometry(gl, settings.width, settings.height),
           shading(gl, quality, settings.width, settings.height, geometry),
           floor(gl),
-          frame_block(gl) {
-      if (quality.samples > 1) outlines.emplace(gl, settings.width, settings.height, quality.samples);
-      if (quality.soft_divisor > 0) soft_light.emplace(gl, quality, settings.width, settings.height);
-    }
+          frame_block(gl) {}
   };
   std::optional<Passes> passes;
+  std::optional<Outlines> outlines;
+
+  // The picture and what it shows, lowest row first; kept for their memory.
+  std::vector<std::uint32_t> rgba;
+  std::vector<Seen> seen;
 
   explicit Impl(const Settings& wanted);
   ~Impl();
@@ -120,9 +134,8 @@ struct Renderer::Impl {
   void update_surfaces(const frame::FrameSnapshot& snapshot);
   void update_floor(const Plan& plan);
   void upload_frame(const Plan& plan);
-  void shade(const Plan& plan, double heat);
-  void draw(const frame::FrameSnapshot& snapshot);
-  image::Image read() const;
+  void shade(const Plan& plan, const PixelArea& subjects, double heat);
+  image::Image draw(const frame::FrameSnapshot& snapshot);
 };
 
 Renderer::Impl::Impl(const Settings& wanted)
@@ -138,6 +151,7 @@ Renderer::Impl::Impl(const Settings& wanted)
                 settings.height);
   }
   passes.emplace(gl, quality, settings);
+  if (quality.smooth_outlines) outlines.emplace(settings.width, settings.height);
   check_errors(gl, "preparing to draw");
 }
 
@@ -181,61 +195,47 @@ void Renderer::Impl::update_floor(const Plan& plan) {
 }
 
 void Renderer::Impl::upload_frame(const Plan& plan) {
-  const FrameUniform block =
-      pack_frame(plan.view, plan.stage, plan.up, plan.subjects, plan.exposure, settings.width, settings.height);
+  const FrameUniform block = pack_frame(plan.view, plan.stage, plan.up, plan.subjects, plan.floor, plan.exposure,
+                                        settings.width, settings.height);
   gl.NamedBufferData(passes->frame_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
 }
 
-void Renderer::Impl::shade(const Plan& plan, double heat) {
+void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
   std::vector<Shading::Material> materials;
   for (const SurfaceBuffers& surface : passes->surfaces) {
     materials.push_back({surface.surface().appearance, surface.surface().kind == frame::ObjectKind::cloth});
   }
-  if (plan.floor) materials.push_back({plan.floor->look, false});
-  passes->shading.draw(materials, heat, plan.lights.size());
+  // Of more lights the small picture does not know where they shine.
+  std::vector<PixelArea> shaded_floor{{0, 0, settings.width, settings.height}};
+  if (plan.lights.size() <= kSoftLights) shaded_floor = passes->soft_light.shaded_floor();
+  passes->shading.draw(materials, heat, light_set(plan.lights), plan.floor && plan.floor->look.checker, subjects,
+                       shaded_floor);
 }
 
 /// Shadow maps, then what is seen, then its soft light at reduced size, then colours, then clean outlines.
-void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
+image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
   const Plan plan = make_plan(snapshot, choose_camera(snapshot), aspect());
   update_surfaces(snapshot);
   update_floor(plan);
   upload_frame(plan);
   gl.Disable(GL_DITHER);
-  const DrawCasters casters = [&] {
-    for (const SurfaceBuffers& surface : passes->surfaces) surface.draw();
-  };
+  std::vector<DrawnMesh> meshes;
+  for (const SurfaceBuffers& surface : passes->surfaces) meshes.push_back({surface.positions(), surface.triangles()});
   const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
 
-  passes->shadows.draw(plan.lights, plan.caster_positions, plan.up, plan.exposure.direct, passes->depth, casters);
+  passes->shadows.draw(plan.lights, plan.caster_positions, meshes, plan.up, plan.exposure.direct);
   passes->geometry.draw(passes->surfaces, floor, plan.view.far);
-  if (passes->soft_light) {
-    const double reach = sky_reach(plan.subjects);
-    passes->soft_light->draw(fit_sky(plan.subjects, plan.up, reach, true),
-                             fit_sky(plan.subjects, plan.up, reach, false), passes->depth, casters);
+  const SkyView above = fit_sky(plan.subjects, plan.up, sky_reach(plan.subjects));
+  passes->soft_light.draw(meshes, above, light_set(plan.lights));
+  const PixelArea area = visible_area(plan.view, plan.caster_positions, settings.width, settings.height);
+  shade(plan, area, heat_scale(snapshot, plan.stage));
+  passes->shading.read(rgba);
+  if (outlines) {
+    passes->geometry.read_seen(seen);
+    outlines->smooth(seen, meshes, plan.floor, plan.view, area, rgba);
   }
-  shade(plan, heat_scale(snapshot, plan.stage));
-  if (passes->outlines) {
-    const PixelArea area = visible_area(plan.view, plan.caster_positions, settings.width, settings.height);
-    passes->outlines->draw(passes->surfaces, floor, passes->geometry, passes->shading.picture(), plan.view, area);
-  }
-}
-
-image::Image Renderer::Impl::read() const {
-  const Texture& picture = passes->shading.picture();
-  const std::size_t width = static_cast<std::size_t>(settings.width),
-                    height = static_cast<std::size_t>(settings.height);
-  std::vector<std::uint8_t> rgba(width * height * 4);
-  gl.GetTextureImage(picture.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(rgba.size()), rgba.data());
-  image::Image image(settings.width, settings.height);
-  // OpenGL's first row is the lowest.
-  for (std::size_t y = 0; y < height; ++y) {
-    const std::uint8_t* from = rgba.data() + (height - 1 - y) * width * 4;
-    std::uint8_t* to = image.rgb.data() + y * width * 3;
-    for (std::size_t x = 0; x < width; ++x, from += 4, to += 3) std::copy_n(from, 3, to);
-  }
-  return image;
+  return to_image(rgba, settings.width, settings.height);
 }
 
 Renderer::Renderer(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}
@@ -251,8 +251,7 @@ image::Image Renderer::draw(const frame::FrameSnapshot& snapshot) {
   const WallTimer wall;
   const double cpu_start = process_cpu_seconds();
   const CurrentContext current(*impl_->context);
-  impl_->draw(snapshot);
-  image::Image image = impl_->read();
+  image::Image image = impl_->draw(snapshot);
   check_errors(impl_->gl, "drawing");
   impl_->times = {wall.seconds(), process_cpu_seconds() - cpu_start};
   return image;

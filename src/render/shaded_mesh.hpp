@@ -31,6 +31,12 @@ class CornerMap {
 /// triangles without area.
 std::vector<Vec3> area_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions);
 
+/// One surface as it is drawn: world positions [m] and triangles of them.
+struct DrawnMesh {
+  std::span<const Vec3> positions;
+  std::span<const Triangle> triangles;
+};
+
 /// A mesh in which a vertex on a crease appears once for each normal it has.
 struct ShadedMesh {
   std::vector<Index> source;        ///< per drawn vertex: the vertex of the surface it stands for

@@ -3,15 +3,17 @@
 #include <algorithm>
 
 #include "image/color.hpp"
+#include "render/soft_light.hpp"
 
 namespace weft::render {
 namespace {
 
-std::vector<std::string> shading_defines(const QualitySettings& quality, bool full_shadows, bool cloth = false) {
-  std::vector<std::string> defines = ShadowMaps::defines(quality);
-  if (quality.soft_divisor > 0) defines.push_back("SOFT_LIGHT");
+std::vector<std::string> shading_defines(const QualitySettings& quality, const LightSet& lights, bool full_shadows,
+                                         std::initializer_list<const char*> more = {}) {
+  std::vector<std::string> defines = ShadowMaps::defines(quality, lights);
+  defines.push_back("REDUCTION " + std::to_string(quality.soft_divisor));
   if (full_shadows) defines.push_back("FULL_SHADOWS");
-  if (cloth) defines.push_back("CLOTH");
+  defines.insert(defines.end(), more.begin(), more.end());
   return defines;
 }
 
@@ -31,6 +33,41 @@ Eigen::Vector4f texel(const Vec3& color, double fourth) {
   return result;
 }
 
+float clip_of(int pixel, int size) {
+  return 2 * static_cast<float>(pixel) / static_cast<float>(size) - 1;
+}
+
+/// Vertices of two coordinates in clip space at place 0.
+void describe_corners(const Gl& gl, const VertexArray& array, const Buffer& corners) {
+  gl.VertexArrayVertexBuffer(array.name(), 0, corners.name(), 0, sizeof(Eigen::Vector2f));
+  gl.EnableVertexArrayAttrib(array.name(), 0);
+  gl.VertexArrayAttribFormat(array.name(), 0, 2, GL_FLOAT, GL_FALSE, 0);
+  gl.VertexArrayAttribBinding(array.name(), 0, 0);
+}
+
+/// Cells of 16x16 pixels, each two triangles. What is interpolated over them is off by less than half a level of 255
+/// where it bends as floor does towards the horizon.
+struct Grid {
+  std::vector<Eigen::Vector2f> corners;
+  std::vector<GLuint> triangles;
+
+  Grid(int width, int height) {
+    constexpr int kCell = 16;
+    const int columns = (width + kCell - 1) / kCell, rows = (height + kCell - 1) / kCell;
+    for (int row = 0; row <= rows; ++row) {
+      for (int column = 0; column <= columns; ++column) {
+        corners.emplace_back(clip_of(kCell * column, width), clip_of(kCell * row, height));
+      }
+    }
+    for (int row = 0; row < rows; ++row) {
+      for (int column = 0; column < columns; ++column) {
+        const auto a = static_cast<GLuint>(row * (columns + 1) + column), c = a + static_cast<GLuint>(columns) + 1;
+        triangles.insert(triangles.end(), {a, a + 1, c + 1, a, c + 1, c});
+      }
+    }
+  }
+};
+
 }  // namespace
 
 Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry)
@@ -38,22 +75,51 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
       width_(width),
       height_(height),
       quality_(quality),
+      backdrop_(gl, "fullscreen.vert", "backdrop.frag", shading_defines(quality, {}, false)),
+      areas_(gl, "areas.vert", ""),
       picture_(make_texture(gl, GL_RGBA8, width, height, GL_NEAREST)),
       heat_colors_(make_heat_colors(gl)),
       target_(gl),
-      no_vertices_(gl) {
+      no_vertices_(gl),
+      area_array_(gl),
+      grid_array_(gl),
+      area_vertices_(gl),
+      grid_vertices_(gl),
+      grid_triangles_(gl) {
+  describe_corners(gl, area_array_, area_vertices_);
+  describe_corners(gl, grid_array_, grid_vertices_);
+  const Grid grid(width, height);
+  upload<Eigen::Vector2f>(gl, grid_vertices_, grid.corners);
+  upload<GLuint>(gl, grid_triangles_, grid.triangles);
+  gl.VertexArrayElementBuffer(grid_array_.name(), grid_triangles_.name());
+  grid_indices_ = static_cast<GLsizei>(grid.triangles.size());
   gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT0, picture_.name(), 0);
   gl.NamedFramebufferTexture(target_.name(), GL_DEPTH_STENCIL_ATTACHMENT, geometry.depth_stencil().name(), 0);
   check_framebuffer(gl, target_, "picture");
 }
 
-Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, bool many_lights)
-    : cloth(gl, "fullscreen.vert", "surface.frag",
-            shading_defines(quality, many_lights || quality.crisp_shadows, true)),
-      solid(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, many_lights || quality.crisp_shadows)),
-      // The floor takes the first light's shadows as soft as the small picture has them, where there is one.
-      floor(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, many_lights || quality.soft_divisor == 0)),
-      backdrop(gl, "fullscreen.vert", "backdrop.frag", shading_defines(quality, false)) {}
+// The first lights' shadows on the floor are as soft as the small picture has them. What a sun gives to open floor, and
+// how it fades out, changes so slowly over the picture that it may be interpolated; the edge of a spot or a checker
+// not.
+Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const LightSet& lights, bool checker)
+    : floor_on_grid(!lights.spots && !checker) {
+  const bool many = lights.count > kSoftLights, crisp = quality.crisp_shadows || many;
+  cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, {"CLOTH"}));
+  solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp));
+  const char* pattern = checker ? "CHECKER" : "PLAIN";
+  shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, many, {pattern}));
+  open_floor =
+      floor_on_grid
+          ? Program(gl, "open_floor.vert", "open_floor.frag", shading_defines(quality, lights, false))
+          : Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, false, {pattern, "OPEN"}));
+}
+
+const Shading::Programs& Shading::programs(const LightSet& lights, bool checker) {
+  const auto key = std::tuple(lights, checker);
+  const auto known = programs_.find(key);
+  return known != programs_.end() ? known->second
+                                  : programs_.emplace(key, Programs(*gl_, quality_, lights, checker)).first->second;
+}
 
 void Shading::upload_materials(std::span<const Material> materials, double heat_scale) {
   constexpr int kColumns = 3;  // of shading.glsl
@@ -61,7 +127,7 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
   for (const auto& [look, cloth] : materials) {
     texels.push_back(texel(look.color, std::clamp(look.roughness, 0.0, 1.0)));
     texels.push_back(texel(look.back_color, look.thread_spacing));
-    texels.emplace_back(cloth ? static_cast<float>(heat_scale) : 0.0f, look.checker ? 1.0f : 0.0f, 0.0f, 0.0f);
+    texels.emplace_back(cloth ? static_cast<float>(heat_scale) : 0.0f, 0.0f, 0.0f, 0.0f);
   }
   const int rows = static_cast<int>(materials.size());
   if (rows > material_rows_) {
@@ -71,29 +137,63 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
   if (rows > 0) gl_->TextureSubImage2D(materials_.name(), 0, 0, 0, kColumns, rows, GL_RGBA, GL_FLOAT, texels.data());
 }
 
-void Shading::draw(std::span<const Material> materials, double heat_scale, std::size_t light_count) {
-  std::optional<Programs>& programs = light_count > 1 ? many_lights_ : one_light_;
-  if (!programs) programs.emplace(*gl_, quality_, light_count > 1);
+void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
+  if (areas.empty()) return;
+  std::vector<Eigen::Vector2f> corners;
+  for (const PixelArea& area : areas) {
+    const float x0 = clip_of(area.x, width_), x1 = clip_of(area.x + area.width, width_);
+    const float y0 = clip_of(area.y, height_), y1 = clip_of(area.y + area.height, height_);
+    corners.insert(corners.end(), {{x0, y0}, {x1, y0}, {x1, y1}, {x0, y0}, {x1, y1}, {x0, y1}});
+  }
+  upload<Eigen::Vector2f>(*gl_, area_vertices_, corners);
+  // Only floor has both of the lower bits.
+  gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::shaded_floor), static_cast<GLuint>(PixelClass::floor));
+  gl_->StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
+  gl_->BindVertexArray(area_array_.name());
+  areas_.use();
+  gl_->ColorMask(GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+  gl_->DrawArrays(GL_TRIANGLES, 0, static_cast<GLsizei>(corners.size()));
+  gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+}
+
+void Shading::draw(std::span<const Material> materials, double heat_scale, const LightSet& lights, bool checker,
+                   const PixelArea& subjects, std::span<const PixelArea> shaded_floor) {
+  const Programs& chosen = programs(lights, checker);
   upload_materials(materials, heat_scale);
   gl_->BindTextureUnit(6, heat_colors_.name());
   gl_->BindTextureUnit(7, materials_.name());
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
   gl_->Viewport(0, 0, width_, height_);
-  gl_->BindVertexArray(no_vertices_.name());
   gl_->Disable(GL_DEPTH_TEST);
   gl_->Enable(GL_STENCIL_TEST);
+  mark_shaded_floor(shaded_floor);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   // Blocks without a pixel of the class are left after the stencil test.
-  const std::pair<PixelClass, const Program*> passes[] = {{PixelClass::cloth, &programs->cloth},
-                                                          {PixelClass::solid, &programs->solid},
-                                                          {PixelClass::floor, &programs->floor},
-                                                          {PixelClass::backdrop, &programs->backdrop}};
-  for (const auto& [pixel_class, program] : passes) {
+  const auto shade = [&](PixelClass pixel_class, const Program& program, bool on_grid = false) {
     gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(pixel_class), 0xFF);
-    program->use();
-    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
-  }
+    program.use();
+    gl_->BindVertexArray((on_grid ? grid_array_ : no_vertices_).name());
+    if (on_grid) {
+      gl_->DrawElements(GL_TRIANGLES, grid_indices_, GL_UNSIGNED_INT, nullptr);
+    } else {
+      gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+    }
+  };
+  gl_->Enable(GL_SCISSOR_TEST);
+  gl_->Scissor(subjects.x, subjects.y, subjects.width, subjects.height);
+  shade(PixelClass::cloth, chosen.cloth);
+  shade(PixelClass::solid, chosen.solid);
+  gl_->Disable(GL_SCISSOR_TEST);
+  if (!shaded_floor.empty()) shade(PixelClass::shaded_floor, chosen.shaded_floor);
+  shade(PixelClass::floor, chosen.open_floor, chosen.floor_on_grid);
+  shade(PixelClass::backdrop, backdrop_);
   gl_->Disable(GL_STENCIL_TEST);
+}
+
+void Shading::read(std::vector<std::uint32_t>& rgba) const {
+  rgba.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  gl_->GetTextureImage(picture_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(4 * rgba.size()),
+                       rgba.data());
 }
 
 }  // namespace weft::render

@@ -1,12 +1,15 @@
 // Light and colour of every pixel of the geometry buffer.
 #pragma once
 
-#include <optional>
+#include <map>
 #include <span>
+#include <tuple>
 
 #include "render/geometry_buffer.hpp"
+#include "render/gl/program.hpp"
 #include "render/quality.hpp"
 #include "render/shadow_maps.hpp"
+#include "render/view.hpp"
 
 namespace weft::render {
 
@@ -15,31 +18,39 @@ class Shading {
   Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry);
 
   /// Looks of the surfaces in the order of their materials. `heat_scale`: 1 / hottest value, 0 for the surfaces' own
-  /// colours; only cloth shows heat. Expects the frame and light blocks, shadow maps, soft light and geometry bound.
+  /// colours; only cloth shows heat. `subjects` holds all of them; floor, checkered or not, is lit and open outside
+  /// `shaded_floor`. Expects the frame and light blocks, shadow maps, soft light and geometry bound.
   struct Material {
     frame::Appearance appearance;
     bool cloth = false;
   };
-  void draw(std::span<const Material> materials, double heat_scale, std::size_t light_count);
+  void draw(std::span<const Material> materials, double heat_scale, const LightSet& lights, bool checker,
+            const PixelArea& subjects, std::span<const PixelArea> shaded_floor);
 
-  /// The picture in sRGB bytes, lowest row first.
-  const Texture& picture() const { return picture_; }
+  /// Reads the picture: RGBA bytes in sRGB, lowest row first.
+  void read(std::vector<std::uint32_t>& rgba) const;
 
  private:
   void upload_materials(std::span<const Material> materials, double heat_scale);
+  void mark_shaded_floor(std::span<const PixelArea> areas);
 
   struct Programs {
-    Program cloth, solid, floor, backdrop;
-    Programs(const Gl& gl, const QualitySettings& quality, bool many_lights);
+    Program cloth, solid, open_floor, shaded_floor;
+    bool floor_on_grid;  // open_floor is lit at the corners of the grid
+    Programs(const Gl& gl, const QualitySettings& quality, const LightSet& lights, bool checker);
   };
+  const Programs& programs(const LightSet& lights, bool checker);
 
   const Gl* gl_;
   int width_, height_;
   QualitySettings quality_;
-  std::optional<Programs> one_light_, many_lights_;  // made when first needed
+  std::map<std::tuple<LightSet, bool>, Programs> programs_;  // made when first needed
+  Program backdrop_, areas_;
   Texture picture_, heat_colors_, materials_;
   Framebuffer target_;
-  VertexArray no_vertices_;
+  VertexArray no_vertices_, area_array_, grid_array_;
+  Buffer area_vertices_, grid_vertices_, grid_triangles_;
+  GLsizei grid_indices_ = 0;
   int material_rows_ = 0;
 };
 

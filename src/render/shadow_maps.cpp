@@ -2,10 +2,12 @@
 
 #include <algorithm>
 
+#include "render/depth_raster.hpp"
+
 namespace weft::render {
 namespace {
 
-constexpr int kBlock = 16;  // texels of a shadow map's side that share one range: two reductions by 4
+constexpr int kBlock = 16;  // texels of a shadow map's side that share one range
 
 // Widest filter, in texels: a penumbra may take this much to each side. Wider ones would need more taps to stay smooth.
 constexpr int filter_limit(int map_size) {
@@ -14,32 +16,19 @@ constexpr int filter_limit(int map_size) {
 
 }  // namespace
 
-void DepthProgram::draw(const Mat4& clip_from_world, const DrawCasters& casters) const {
-  const float far = 1.0f;
-  gl_->ClearBufferfv(GL_DEPTH, 0, &far);
-  program_.use();
-  const Eigen::Matrix4f matrix = clip_from_world.cast<float>();
-  gl_->UniformMatrix4fv(place_, 1, GL_FALSE, matrix.data());
-  casters();
-}
-
-std::vector<std::string> ShadowMaps::defines(const QualitySettings& quality) {
-  return {"BLOCKER_TAPS " + std::to_string(quality.blocker_taps), "FILTER_TAPS " + std::to_string(quality.filter_taps),
-          "FILTER_FLOOR_TEXELS 1.2", "FILTER_LIMIT_TEXELS " + std::to_string(filter_limit(quality.shadow_size)) + ".0",
-          "MAX_SLOPE_TEXELS 40.0"};
+std::vector<std::string> ShadowMaps::defines(const QualitySettings& quality, const LightSet& lights) {
+  std::vector<std::string> defines = {"LIGHTS " + std::to_string(lights.count),
+                                      "BLOCKER_TAPS " + std::to_string(quality.blocker_taps),
+                                      "FILTER_TAPS " + std::to_string(quality.filter_taps),
+                                      "FILTER_FLOOR_TEXELS 1.2",
+                                      "FILTER_LIMIT_TEXELS " + std::to_string(filter_limit(quality.shadow_size)) + ".0",
+                                      "MAX_SLOPE_TEXELS 40.0"};
+  if (lights.spots) defines.push_back("SPOTS");
+  return defines;
 }
 
 ShadowMaps::ShadowMaps(const Gl& gl, const QualitySettings& quality)
-    : gl_(&gl),
-      quality_(quality),
-      reduce_depth_(gl, "fullscreen.vert", "shadow_reduce.frag", {"FROM_DEPTH"}),
-      reduce_range_(gl, "fullscreen.vert", "shadow_reduce.frag"),
-      spread_(gl, "fullscreen.vert", "shadow_spread.frag"),
-      compare_(gl),
-      raw_(gl),
-      framebuffer_(gl),
-      no_vertices_(gl),
-      light_block_(gl) {
+    : gl_(&gl), quality_(quality), compare_(gl), raw_(gl), light_block_(gl) {
   for (const Sampler* sampler : {&compare_, &raw_}) {
     gl.SamplerParameteri(sampler->name(), GL_TEXTURE_WRAP_S, GL_CLAMP_TO_EDGE);
     gl.SamplerParameteri(sampler->name(), GL_TEXTURE_WRAP_T, GL_CLAMP_TO_EDGE);
@@ -55,30 +44,23 @@ void ShadowMaps::reserve(int layers) {
   if (layers <= layers_) return;
   const int size = quality_.shadow_size, coarse = size / kBlock;
   depth_ = make_texture_array(*gl_, GL_DEPTH_COMPONENT32F, size, size, layers, GL_NEAREST);
-  range_quarter_ = make_texture_array(*gl_, GL_RG32F, size / 4, size / 4, layers, GL_NEAREST);
   range_ = make_texture_array(*gl_, GL_RG32F, coarse, coarse, layers, GL_NEAREST);
-  range_spread_ = make_texture_array(*gl_, GL_RG32F, coarse, coarse, layers, GL_NEAREST);
   layers_ = layers;
 }
 
-void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3> caster_positions, const Vec3& up,
-                      const Vec3& scale, const DepthProgram& depth, const DrawCasters& casters) {
+void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3> caster_positions,
+                      std::span<const DrawnMesh> casters, const Vec3& up, const Vec3& scale) {
   // One layer at least, so that the samplers always have something to look at.
   reserve(std::max<int>(1, static_cast<int>(lights.size())));
-  const int size = quality_.shadow_size;
+  const int size = quality_.shadow_size, coarse = size / kBlock;
   LightsUniform block;
-  block.count.x() = static_cast<int>(lights.size());
-  for (int i = 0; i < block.count.x(); ++i) {
+  for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
     const ShadowView view = fit_shadow(lights[i], caster_positions, up, size);
     block.lights[i] = pack_light(lights[i], view, scale, size);
-    gl_->BindFramebuffer(GL_FRAMEBUFFER, framebuffer_.name());
-    gl_->NamedFramebufferTexture(framebuffer_.name(), GL_COLOR_ATTACHMENT0, 0, 0);
-    gl_->NamedFramebufferTextureLayer(framebuffer_.name(), GL_DEPTH_ATTACHMENT, depth_.name(), 0, i);
-    check_framebuffer(*gl_, framebuffer_, "shadow map");
-    gl_->Viewport(0, 0, size, size);
-    gl_->Enable(GL_DEPTH_TEST);
-    depth.draw(view.clip_from_world, casters);
-    reduce(i);
+    draw_depths(casters, view.clip_from_world);
+    find_ranges();
+    gl_->TextureSubImage3D(depth_.name(), 0, 0, 0, i, size, size, 1, GL_DEPTH_COMPONENT, GL_FLOAT, depths_.data());
+    gl_->TextureSubImage3D(range_.name(), 0, 0, 0, i, coarse, coarse, 1, GL_RG, GL_FLOAT, ranges_.data());
   }
   gl_->NamedBufferData(light_block_.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl_->BindBufferBase(GL_UNIFORM_BUFFER, 1, light_block_.name());
@@ -90,32 +72,72 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
   gl_->BindSampler(2, 0);
 }
 
-void ShadowMaps::reduce(int layer) {
-  struct Step {
-    const Program& program;
-    const Texture &from, &to;
-    int size;
-    int axis_x;
-  };
+void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world) {
   const int size = quality_.shadow_size;
-  const int spread_radius = filter_limit(size) / kBlock + 1;
-  const Step steps[] = {{reduce_depth_, depth_, range_quarter_, size / 4, 0},
-                        {reduce_range_, range_quarter_, range_, size / kBlock, 0},
-                        {spread_, range_, range_spread_, size / kBlock, 1},
-                        {spread_, range_spread_, range_, size / kBlock, 0}};
-  gl_->Disable(GL_DEPTH_TEST);
-  gl_->BindVertexArray(no_vertices_.name());
-  gl_->NamedFramebufferTexture(framebuffer_.name(), GL_DEPTH_ATTACHMENT, 0, 0);
-  gl_->BindSampler(0, 0);
-  for (const Step& step : steps) {
-    gl_->NamedFramebufferTextureLayer(framebuffer_.name(), GL_COLOR_ATTACHMENT0, step.to.name(), 0, layer);
-    gl_->Viewport(0, 0, step.size, step.size);
-    gl_->BindTextureUnit(0, step.from.name());
-    step.program.use();
-    gl_->Uniform1i(step.program.uniform("layer"), layer);
-    gl_->Uniform2i(step.program.uniform("axis"), step.axis_x, 1 - step.axis_x);
-    gl_->Uniform1i(step.program.uniform("radius"), spread_radius);
-    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  depths_.assign(static_cast<std::size_t>(size) * size, 1.0f);
+  const auto write = [depths = depths_.data()](int at, bool covered, float depth) {
+    const float before = depths[at], nearer = std::min(before, depth);
+    depths[at] = covered ? nearer : before;
+  };
+  const auto place = [&](const Eigen::Vector4d& clip) {
+    const Vec3 at = (texture_from_clip() * (clip / clip.w())).head<3>();
+    return Eigen::Vector3f(at.cwiseProduct(Vec3(size, size, 1)).cast<float>());
+  };
+  std::vector<Eigen::Vector4d> clip;
+  std::vector<Eigen::Vector3f> places;
+  for (const DrawnMesh& mesh : casters) {
+    clip.clear();
+    places.clear();
+    for (const Vec3& position : mesh.positions) {
+      clip.push_back(clip_from_world * position.homogeneous());
+      places.push_back(place(clip.back()));
+    }
+    const auto in_front = [&](Index vertex) { return clip[vertex].z() >= -clip[vertex].w(); };
+    for (const auto& [a, b, c] : mesh.triangles) {
+      if (in_front(a) && in_front(b) && in_front(c)) {
+        fill_triangle(places[a], places[b], places[c], size, write);
+      } else {
+        clip_near({clip[a], clip[b], clip[c]}, [&](const auto& p, const auto& q, const auto& r) {
+          fill_triangle(place(p), place(q), place(r), size, write);
+        });
+      }
+    }
+  }
+}
+
+/// Ranges of blocks and of what lies within reach of the widest filter, so that a block answers for every tap that
+/// starts in it.
+void ShadowMaps::find_ranges() {
+  const int size = quality_.shadow_size, coarse = size / kBlock;
+  ranges_.assign(static_cast<std::size_t>(coarse) * coarse, {});
+  for (int y = 0; y < size; ++y) {
+    const float* depths = depths_.data() + static_cast<std::size_t>(y) * size;
+    Range* ranges = ranges_.data() + static_cast<std::size_t>(y / kBlock) * coarse;
+    for (int block = 0; block < coarse; ++block, depths += kBlock) {
+      float nearest = ranges[block].nearest, farthest = ranges[block].farthest;
+      for (int i = 0; i < kBlock; ++i) nearest = std::min(nearest, depths[i]);
+      for (int i = 0; i < kBlock; ++i) farthest = std::max(farthest, depths[i]);
+      ranges[block] = {nearest, farthest};
+    }
+  }
+  for (Range& range : ranges_) range.farthest = range.farthest == 1 ? 1e9f : range.farthest;
+  spread_ranges(1, coarse);
+  spread_ranges(coarse, 1);
+}
+
+/// Takes in the neighbours along lines whose elements lie `step` apart, the lines `other_step`.
+void ShadowMaps::spread_ranges(int step, int other_step) {
+  const int coarse = quality_.shadow_size / kBlock, radius = filter_limit(quality_.shadow_size) / kBlock + 1;
+  std::vector<Range> line(static_cast<std::size_t>(coarse));
+  for (int k = 0; k < coarse; ++k) {
+    Range* ranges = ranges_.data() + static_cast<std::ptrdiff_t>(k) * other_step;
+    for (int i = 0; i < coarse; ++i) line[i] = ranges[static_cast<std::ptrdiff_t>(i) * step];
+    for (int i = 0; i < coarse; ++i) {
+      Range& range = ranges[static_cast<std::ptrdiff_t>(i) * step];
+      for (int j = std::max(0, i - radius); j <= std::min(coarse - 1, i + radius); ++j) {
+        range = {std::min(range.nearest, line[j].nearest), std::max(range.farthest, line[j].farthest)};
+      }
+    }
   }
 }
 

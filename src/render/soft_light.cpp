@@ -2,13 +2,31 @@
 
 #include <algorithm>
 
+#include "render/seen.hpp"
+
 namespace weft::render {
 namespace {
 
-constexpr int kSkySize = 256;  // texels: the dark under things is soft anyway
+constexpr int kTile = 8;    // texels of the small picture
+constexpr int kMargin = 2;  // texels that shading may look beyond a pixel's own; shaders/shading.glsl
 
-std::vector<std::string> soft_light_defines(const QualitySettings& quality) {
-  std::vector<std::string> defines = ShadowMaps::defines(quality);
+// Openness from which floor counts as open: what is left out is half a level of 255, less than the dither.
+constexpr float kOpen = 0.998f;
+
+/// As shaders/soft_light.glsl packs it.
+struct SoftTexel {
+  float surface_open, lit[kSoftLights], distance;
+
+  /// Floor here or a neighbour needs to look this texel up.
+  bool shades() const {
+    constexpr float kOpenPacked = kFloor + 0.9375f * kOpen;
+    if (surface_open < kFloor) return false;
+    return surface_open < kOpenPacked || surface_open >= kFirstSurface || lit[0] < 1 || lit[1] < 1;
+  }
+};
+
+std::vector<std::string> soft_light_defines(const QualitySettings& quality, const LightSet& lights) {
+  std::vector<std::string> defines = ShadowMaps::defines(quality, lights);
   defines.push_back("NEARBY_TAPS " + std::to_string(quality.nearby_taps));
   defines.push_back("SKY_TAPS " + std::to_string(quality.sky_taps));
   defines.push_back("REDUCTION " + std::to_string(quality.soft_divisor));
@@ -19,45 +37,49 @@ std::vector<std::string> soft_light_defines(const QualitySettings& quality) {
 
 SoftLight::SoftLight(const Gl& gl, const QualitySettings& quality, int width, int height)
     : gl_(&gl),
-      width_(std::max(1, width / quality.soft_divisor)),
-      height_(std::max(1, height / quality.soft_divisor)),
-      soft_light_(gl, "fullscreen.vert", "soft_light.frag", soft_light_defines(quality)),
-      blur_(gl, "fullscreen.vert", "soft_light_blur.frag", {"RADIUS 2"}),
-      sky_(make_texture_array(gl, GL_DEPTH_COMPONENT32F, kSkySize, kSkySize, 2, GL_NEAREST)),
+      quality_(quality),
+      picture_width_(width),
+      picture_height_(height),
+      width_((width + quality.soft_divisor - 1) / quality.soft_divisor),
+      height_((height + quality.soft_divisor - 1) / quality.soft_divisor),
+      distances_program_(gl, "fullscreen.vert", "soft_distances.frag",
+                         {"REDUCTION " + std::to_string(quality.soft_divisor)}),
+      blur_(gl, "fullscreen.vert", "soft_light_blur.frag"),
+      sky_(make_texture(gl, GL_RG32F, kSkySize, kSkySize, GL_NEAREST)),
+      distances_(make_texture(gl, GL_R32F, width_, height_, GL_NEAREST)),
       light_(make_texture(gl, GL_RGBA32F, width_, height_, GL_NEAREST)),
       smoothed_(make_texture(gl, GL_RGBA32F, width_, height_, GL_NEAREST)),
-      sky_target_(gl),
+      distances_target_(gl),
       light_target_(gl),
       smoothed_target_(gl),
       no_vertices_(gl) {
   gl.NamedFramebufferTexture(light_target_.name(), GL_COLOR_ATTACHMENT0, light_.name(), 0);
   gl.NamedFramebufferTexture(smoothed_target_.name(), GL_COLOR_ATTACHMENT0, smoothed_.name(), 0);
-  for (const Framebuffer* target : {&light_target_, &smoothed_target_}) {
+  gl.NamedFramebufferTexture(distances_target_.name(), GL_COLOR_ATTACHMENT0, distances_.name(), 0);
+  for (const Framebuffer* target : {&distances_target_, &light_target_, &smoothed_target_}) {
     check_framebuffer(gl, *target, "soft light");
   }
 }
 
-void SoftLight::draw_sky_maps(const SkyView& above, const SkyView& below, const DepthProgram& depth,
-                              const DrawCasters& casters) {
-  gl_->BindFramebuffer(GL_FRAMEBUFFER, sky_target_.name());
-  gl_->Viewport(0, 0, kSkySize, kSkySize);
-  for (int layer = 0; layer < 2; ++layer) {
-    gl_->NamedFramebufferTextureLayer(sky_target_.name(), GL_DEPTH_ATTACHMENT, sky_.name(), 0, layer);
-    depth.draw((layer == 0 ? above : below).clip_from_world, casters);
+void SoftLight::draw(std::span<const DrawnMesh> meshes, const SkyView& above, LightSet lights) {
+  lights.count = std::min(lights.count, kSoftLights);
+  auto program = soft_light_.find(lights);
+  if (program == soft_light_.end()) {
+    Program made(*gl_, "fullscreen.vert", "soft_light.frag", soft_light_defines(quality_, lights));
+    program = soft_light_.emplace(lights, std::move(made)).first;
   }
-}
-
-void SoftLight::draw(const SkyView& above, const SkyView& below, const DepthProgram& depth,
-                     const DrawCasters& casters) {
-  gl_->Enable(GL_DEPTH_TEST);
-  draw_sky_maps(above, below, depth, casters);
-
+  draw_sky_map(meshes, above, sky_map_);
+  gl_->TextureSubImage2D(sky_.name(), 0, 0, 0, kSkySize, kSkySize, GL_RG, GL_FLOAT, sky_map_.data());
   gl_->Disable(GL_DEPTH_TEST);
   gl_->BindVertexArray(no_vertices_.name());
-  gl_->BindFramebuffer(GL_FRAMEBUFFER, light_target_.name());
   gl_->Viewport(0, 0, width_, height_);
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, distances_target_.name());
+  distances_program_.use();
+  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  gl_->BindFramebuffer(GL_FRAMEBUFFER, light_target_.name());
   gl_->BindTextureUnit(6, sky_.name());
-  soft_light_.use();
+  gl_->BindTextureUnit(9, distances_.name());
+  program->second.use();
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 
   // Across, then down, ending where it began.
@@ -69,6 +91,47 @@ void SoftLight::draw(const SkyView& above, const SkyView& below, const DepthProg
     gl_->DrawArrays(GL_TRIANGLES, 0, 3);
   }
   gl_->BindTextureUnit(3, light_.name());
+}
+
+std::vector<PixelArea> SoftLight::shaded_floor() const {
+  std::vector<SoftTexel> texels(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  gl_->GetTextureImage(light_.name(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(SoftTexel)),
+                       texels.data());
+  // Texel x counts for the tiles of x - kMargin and x + kMargin; flags begin at x = -kMargin.
+  const auto tiles = [](int texels_along) { return (texels_along + 2 * kMargin + kTile - 1) / kTile; };
+  const int columns = tiles(width_), rows = tiles(height_);
+  std::vector<std::uint8_t> flags(static_cast<std::size_t>(columns) * rows), row_flags(columns);
+  for (int y = 0; y < height_; ++y) {
+    std::fill(row_flags.begin(), row_flags.end(), 0);
+    const SoftTexel* row = texels.data() + static_cast<std::size_t>(y) * width_;
+    for (int x = 0; x < width_; ++x) {
+      const bool shades = row[x].shades();
+      row_flags[x / kTile] |= shades;
+      row_flags[(x + 2 * kMargin) / kTile] |= shades;
+    }
+    for (const int tile_row : {y / kTile, (y + 2 * kMargin) / kTile}) {
+      for (int i = 0; i < columns; ++i) flags[static_cast<std::size_t>(tile_row) * columns + i] |= row_flags[i];
+    }
+  }
+  // Runs of tiles become areas.
+  const auto pixel = [&](int tile, int size) {
+    return std::clamp((tile * kTile - kMargin) * quality_.soft_divisor, 0, size);
+  };
+  std::vector<PixelArea> areas;
+  for (int row = 0; row < rows; ++row) {
+    const std::uint8_t* row_of_flags = flags.data() + static_cast<std::size_t>(row) * columns;
+    for (int begin = 0; begin < columns; ++begin) {
+      if (!row_of_flags[begin]) continue;
+      int end = begin;
+      while (end < columns && row_of_flags[end]) ++end;
+      PixelArea area{pixel(begin, picture_width_), pixel(row, picture_height_), 0, 0};
+      area.width = pixel(end, picture_width_) - area.x;
+      area.height = pixel(row + 1, picture_height_) - area.y;
+      areas.push_back(area);
+      begin = end;
+    }
+  }
+  return areas;
 }
 
 }  // namespace weft::render

@@ -34,7 +34,7 @@ void describe_vertices(const Gl& gl, const VertexArray& array, const Buffer& ver
 }  // namespace
 
 SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface)
-    : gl_(&gl), surface_(std::move(surface)), array_(gl), vertices_(gl), triangles_(gl), some_triangles_(gl) {
+    : gl_(&gl), surface_(std::move(surface)), array_(gl), vertices_(gl), triangles_(gl) {
   describe_vertices(gl, array_, vertices_);
   gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
 }
@@ -64,15 +64,6 @@ void SurfaceBuffers::draw() const {
   if (mesh_.triangles.empty()) return;
   gl_->BindVertexArray(array_.name());
   gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * mesh_.triangles.size()), GL_UNSIGNED_INT, nullptr);
-}
-
-void SurfaceBuffers::draw_triangles(std::span<const Triangle> triangles) const {
-  if (triangles.empty()) return;
-  upload<Triangle>(*gl_, some_triangles_, triangles);
-  gl_->VertexArrayElementBuffer(array_.name(), some_triangles_.name());
-  gl_->BindVertexArray(array_.name());
-  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles.size()), GL_UNSIGNED_INT, nullptr);
-  gl_->VertexArrayElementBuffer(array_.name(), triangles_.name());
 }
 
 FloorBuffers::FloorBuffers(const Gl& gl) : gl_(&gl), array_(gl), vertices_(gl) {

@@ -19,28 +19,18 @@ class SurfaceBuffers {
   /// Takes over the positions of a frame. Throws Error(internal) where their number is not that of the surface.
   void update(const frame::SurfaceState& state);
   void draw() const;
-  /// Draws only the triangles of which `wanted(a, b, c)` is true, given their drawn vertices.
-  template <class Wanted>
-  void draw_some(const Wanted& wanted) const {
-    std::vector<Triangle> chosen;
-    for (const Triangle& t : mesh_.triangles) {
-      if (wanted(t[0], t[1], t[2])) chosen.push_back(t);
-    }
-    draw_triangles(chosen);
-  }
-  /// World position of each drawn vertex [m].
+  /// World position of each drawn vertex [m], and triangles of them.
   std::span<const Vec3> positions() const { return positions_; }
+  std::span<const Triangle> triangles() const { return mesh_.triangles; }
 
  private:
-  void draw_triangles(std::span<const Triangle> triangles) const;
-
   const Gl* gl_;
   std::shared_ptr<const frame::Surface> surface_;
   CornerMap corners_;
   std::size_t vertex_count_ = 0;
   bool mapped_ = false;
   VertexArray array_;
-  Buffer vertices_, triangles_, some_triangles_;
+  Buffer vertices_, triangles_;
   ShadedMesh mesh_;
   std::vector<Vec3> positions_;
 };

@@ -102,14 +102,14 @@ Exposure expose(const frame::Stage& stage, const std::optional<Floor>& floor, st
 }
 
 FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,
-                        const Exposure& exposure, int width, int height) {
+                        const std::optional<Floor>& floor, const Exposure& exposure, int width, int height) {
   const auto four = [](const Vec3& v, double w) {
     return Eigen::Vector4f(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
                            static_cast<float>(w));
   };
   const double radius = 0.5 * subjects.diagonal().norm(), reach = sky_reach(subjects);
   const double share = std::clamp(stage.sky_intensity, 0.0, 1.0);
-  const SkyView above = fit_sky(subjects, up, reach, true), below = fit_sky(subjects, up, reach, false);
+  const SkyView above = fit_sky(subjects, up, reach);
   const Vec3 sky = image::linear_from_srgb(stage.sky_color), ground = image::linear_from_srgb(stage.ground_color);
 
   FrameUniform frame;
@@ -126,8 +126,13 @@ FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3&
                     1.0f / static_cast<float>(height)};
   frame.frustum = {static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height),
                    static_cast<float>(view.near), static_cast<float>(view.far)};
+  if (floor) {
+    frame.floor_plane_world = four(floor->normal, floor->normal.dot(view.eye - floor->point));
+    frame.floor_look = four(image::linear_from_srgb(floor->look.color), floor->look.checker ? 1 : 0);
+  } else {
+    frame.floor_plane_world = frame.floor_look = Eigen::Vector4f::Zero();
+  }
   frame.above_from_world = (texture_from_clip() * above.clip_from_world).cast<float>();
-  frame.below_from_world = (texture_from_clip() * below.clip_from_world).cast<float>();
   return frame;
 }
 

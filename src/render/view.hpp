@@ -45,11 +45,11 @@ PixelArea visible_area(const View& view, std::span<const Vec3> points, int width
 /// Frame block, std140.
 struct FrameUniform {
   // Matrices first: Eigen aligns them to 16 or 32 bytes, as the CPU level has it, std140 to 16.
-  Eigen::Matrix4f clip_from_world, view_from_world, above_from_world, below_from_world;
+  Eigen::Matrix4f clip_from_world, view_from_world, above_from_world;
   Eigen::Vector4f eye_world, center_world, up_world, right_world;
-  Eigen::Vector4f sky_light, ground_light, backdrop, viewport, frustum;
+  Eigen::Vector4f sky_light, ground_light, backdrop, viewport, frustum, floor_plane_world, floor_look;
 };
-static_assert(offsetof(FrameUniform, eye_world) == 4 * 64 && offsetof(FrameUniform, frustum) == 4 * 64 + 8 * 16);
+static_assert(offsetof(FrameUniform, eye_world) == 3 * 64 && offsetof(FrameUniform, floor_look) == 3 * 64 + 10 * 16);
 
 /// How far the sky occlusion looks for things overhead [m].
 double sky_reach(const Box3& subjects);
@@ -67,6 +67,6 @@ Exposure expose(const frame::Stage& stage, const std::optional<Floor>& floor, st
                 double share);
 
 FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,
-                        const Exposure& exposure, int width, int height);
+                        const std::optional<Floor>& floor, const Exposure& exposure, int width, int height);
 
 }  // namespace weft::render

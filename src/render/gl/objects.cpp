@@ -45,12 +45,6 @@ Texture make_texture_array(const Gl& gl, GLenum format, int width, int height, i
   return texture;
 }
 
-Texture make_multisample_texture(const Gl& gl, GLenum format, int width, int height, int samples) {
-  Texture texture(gl, GLenum{GL_TEXTURE_2D_MULTISAMPLE});
-  gl.TextureStorage2DMultisample(texture.name(), samples, format, width, height, GL_TRUE);
-  return texture;
-}
-
 void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char* what) {
   const GLenum status = gl.CheckNamedFramebufferStatus(framebuffer.name(), GL_FRAMEBUFFER);
   if (status != GL_FRAMEBUFFER_COMPLETE) {

@@ -91,8 +91,6 @@ using ProgramName = GlObject<ProgramKind>;
 Texture make_texture(const Gl& gl, GLenum format, int width, int height, GLenum filter);
 /// The same with `layers` slices (GL_TEXTURE_2D_ARRAY).
 Texture make_texture_array(const Gl& gl, GLenum format, int width, int height, int layers, GLenum filter);
-/// A multisampled texture to draw into.
-Texture make_multisample_texture(const Gl& gl, GLenum format, int width, int height, int samples);
 
 /// Throws Error(internal) naming `what` where a framebuffer cannot be drawn to.
 void check_framebuffer(const Gl& gl, const Framebuffer& framebuffer, const char* what);

@@ -1,0 +1,11 @@
+// A texel of the small picture: x: number of the surface, and openness as the fraction; y, z: shares of the first two
+// lights; w: distance [m].
+float soft_surface(vec4 texel) { return floor(texel.x); }
+float soft_open(vec4 texel) { return fract(texel.x) / 0.9375; }
+float pack_soft(float surface, float open) { return surface + 0.9375 * open; }
+
+#ifdef REDUCTION
+// The pixel of the whole picture that a texel of the small one looks at, and the other way.
+ivec2 small_to_full(ivec2 texel) { return texel * REDUCTION + REDUCTION / 2; }
+vec2 full_to_small(vec2 pixel_center) { return (pixel_center - (float(REDUCTION / 2) + 0.5)) / float(REDUCTION); }
+#endif
