@@ -95,8 +95,23 @@ void Stepper::gather_residual(std::span<const double> masses, const Stage& stage
   cg_.filter(residual_);
 }
 
+// At the current stage.
+void Stepper::linearise(System& system, const State& now, const Stage& stage, int iteration) {
+  const Stopwatch watch(times_.forces);
+  evaluate(now, stage);
+  std::fill(force_.begin(), force_.end(), Vec3::Zero());
+  system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, iteration, force_);
+}
+
+// P⁻¹ of it, valid until the next call.
+std::span<const Vec3> Stepper::precondition(std::span<const Vec3> residual) {
+  const Stopwatch watch(times_.preconditioner);
+  return cg_.precondition(residual);
+}
+
 // At the current stage: of the equation itself, or of what the last linearisation made of it.
 void Stepper::residual(System& system, const State& now, const Stage& stage, Equation equation) {
+  const Stopwatch watch(times_.forces);
   evaluate(now, stage);
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
   const StagePoint at{x_, v_, x_end_, 1 / stage.beta, stage.end_rate};
@@ -151,7 +166,7 @@ void Stepper::estimate_left(const solver::LinearReport& solved, double fraction,
     for (std::size_t p : unsolved_)
       for (auto i = parts_[p].rows.begin; i < parts_[p].rows.end; ++i) scratch_[i] -= cg_.residual()[i];
   measure(delta_, masses, changes_);
-  measure(cg_.precondition(scratch_), masses, speeds_);
+  measure(precondition(scratch_), masses, speeds_);
   for (std::size_t p = 0; p < parts_.size(); ++p)
     parts_[p].left = speeds_[p] * (foreseen_[p] > 0 ? std::max(1.0, changes_[p] / foreseen_[p]) : 1);
   if (whole)
@@ -256,16 +271,18 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
 
   const int done = start == Start::next ? std::exchange(unfinished_, 0) : 0;
   StepReport report;
+  times_ = {};
   do {
-    evaluate(now, stage);
-    std::fill(force_.begin(), force_.end(), Vec3::Zero());
-    system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, done + report.newton_iterations, force_);
+    linearise(system, now, stage, done + report.newton_iterations);
     // Groups stand for long waves, whose stiffness hardly changes within a step.
-    cg_.prepare(linear, report.newton_iterations == 0 ? solver::Sums::anew : solver::Sums::kept);
+    {
+      const Stopwatch watch(times_.preconditioner);
+      cg_.prepare(linear, report.newton_iterations == 0 ? solver::Sums::anew : solver::Sums::kept);
+    }
     gather_residual(masses, stage);
     estimate_local_errors(masses, now, stage, h);
     allow_velocities(now, h);
-    measure(cg_.precondition(residual_), masses, foreseen_);
+    measure(precondition(residual_), masses, foreseen_);
     const bool first = report.newton_iterations == 0 && start == Start::unchanged_velocity;
     const solver::LinearReport solved =
         solve_linear(report.newton_iterations, first ? likely_change(masses, now) : std::span<const Vec3>());
@@ -275,7 +292,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     const double fraction = search_along_delta(system, now, stage);
     if (!std::isfinite(fraction)) {
       report.verdict = Verdict::not_finite;
-      return report;
+      break;
     }
     residual(system, now, stage, Equation::itself);
     estimate_local_errors(masses, now, stage, h);
@@ -289,6 +306,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     else if (!is_solved() && report.newton_iterations >= look_after)
       report.verdict = Verdict::unfinished;
   } while (!is_solved() && report.verdict == Verdict::solved);
+  report.times = times_;
   unfinished_ = report.verdict == Verdict::unfinished ? report.newton_iterations : 0;
   if (report.verdict == Verdict::solved || report.verdict == Verdict::unfinished) finish(now, stage, held, next);
   return report;
@@ -313,6 +331,7 @@ solver::LinearReport Stepper::solve_linear(int iteration, std::span<const Vec3> 
   const double share = damps || iteration > 0 ? kLinearShare : kUndampedLinearShare;
   const double relative = (damps ? 1 : kUndampedTolerance) * parameters_.linear_tolerance;
   for (const PartState& part : parts_) goals_.push_back(share * part.allowed * std::sqrt(part.mass));
+  const Stopwatch watch(times_.linear);
   return cg_.solve(residual_, {relative, goals_}, parameters_.max_linear_iterations, delta_, start, unsolved_);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/archive.hpp"
+#include "core/timer.hpp"
 #include "integrator/system.hpp"
 #include "solver/conjugate_gradient.hpp"
 
@@ -30,6 +31,12 @@ struct NewtonParameters {
 enum class Verdict { solved, unfinished, not_finite, newton_stalled, indefinite };
 std::string_view describe(Verdict verdict);
 
+struct StageTimes {
+  StageTime forces;          ///< evaluated, and their matrix put together
+  StageTime preconditioner;  ///< set up, and applied to residuals
+  StageTime linear;          ///< iterations of the linear solver
+};
+
 struct StepReport {
   Verdict verdict = Verdict::solved;
   int newton_iterations = 0;
@@ -39,6 +46,7 @@ struct StepReport {
   /// for the time of a swing [m].
   double solver_error = 0;
   double left = 0, allowed = 0;  ///< velocity that the solver left in the worst part, and might have [m/s]
+  StageTimes times;
 };
 
 /// Every method is one implicit stage  x = x̂ + β v,  M (v − v̂) = β f(x, v)  with its own β, x̂ and v̂:
@@ -128,6 +136,7 @@ class Stepper {
   solver::LinearReport solve_linear(int iteration, std::span<const Vec3> start);
   double search_along_delta(System& system, const State& now, const Stage& stage);
   enum class Equation { itself, linear };
+  void linearise(System& system, const State& now, const Stage& stage, int iteration);
   void residual(System& system, const State& now, const Stage& stage, Equation equation);
   void evaluate(const State& now, const Stage& stage);
   void gather_residual(std::span<const double> masses, const Stage& stage);
@@ -135,6 +144,7 @@ class Stepper {
   void allow_velocities(const State& now, double h);
   static double carried_on(double h);
   static double root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of);
+  std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void measure(std::span<const Vec3> displacements, std::span<const double> masses, std::vector<double>& speeds) const;
   void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);
   void select_unsolved();
@@ -151,6 +161,7 @@ class Stepper {
   int unfinished_ = 0;     // iterations of the last solve, where that ended for a look
 
   // Scratch of one step.
+  StageTimes times_;
   solver::ConjugateGradient cg_;
   std::vector<PartState> parts_;
   std::vector<std::size_t> unsolved_;

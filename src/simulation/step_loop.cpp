@@ -8,7 +8,7 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
-#include "simulation/stopwatch.hpp"
+#include "core/timer.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -208,7 +208,7 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   problem_.begin_step(t + h - start_, held_, pins_.pulls());
   if (!collisions_) return reason_of(solve(h, Start::unchanged_velocity, false, report));
   {
-    const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
+    const Stopwatch watch(report.collide);
     collisions_->begin_step(t, h, held_, progress_.now, next_);
   }
   collision::ContactResponse& response = collisions_->response();
@@ -225,7 +225,7 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
     const integrator::StepReport step =
         solve(h, start, look && (start == Start::unchanged_velocity || may_bend), report);
     if (Rejection rejection = reason_of(step)) return rejection;
-    const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
+    const Stopwatch watch(report.collide);
     const bool solved = step.verdict == integrator::Verdict::solved;
     look = true;
     const bool may_adopt = bends == 0 && adoptions + 1 < response.most_solves();
@@ -289,6 +289,9 @@ integrator::StepReport StepLoop::solve(double h, integrator::Stepper::Start star
                              look ? kLookAfter : std::numeric_limits<int>::max());
   report.newton_iterations += step.newton_iterations;
   report.linear_iterations += step.linear_iterations;
+  report.forces += step.times.forces;
+  report.preconditioner += step.times.preconditioner;
+  report.linear += step.times.linear;
   local_error_ = step.local_error;
   solver_error_ = step.solver_error;
   return step;

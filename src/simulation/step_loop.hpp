@@ -43,6 +43,7 @@ class StepLoop {
   void return_to(Progress progress) { progress_ = std::move(progress); }
 
   const ClothSystem& cloth() const { return cloth_; }
+  const StepProblem& problem() const { return problem_; }
   /// Particles that are held, by pins or by the response to contacts.
   std::size_t held() const { return held_.size(); }
   /// nullptr where nothing collides.
