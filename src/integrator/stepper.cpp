@@ -69,14 +69,14 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
   std::copy_n(now.x.begin(), n, x_hat_.begin());
   v_hat_ = now.v;
   if (method_ == Method::implicit_midpoint) return {0.5 * h, 2};
-  if (method_ == Method::implicit_euler || previous_h_ == 0) return {h, 1};
+  if (method_ == Method::implicit_euler || history_.h == 0) return {h, 1};
 
   // BDF2 with variable steps; those who choose them keep to longest_step().
-  const double r = h / previous_h_;
+  const double r = h / history_.h;
   const double now_weight = (1 + r) * (1 + r) / (1 + 2 * r), before_weight = r * r / (1 + 2 * r);
   for (std::size_t i = 0; i < n; ++i) {
-    x_hat_[i] = now_weight * now.x[i] - before_weight * previous_.x[i];
-    v_hat_[i] = now_weight * now.v[i] - before_weight * previous_.v[i];
+    x_hat_[i] = now_weight * now.x[i] - before_weight * history_.before.x[i];
+    v_hat_[i] = now_weight * now.v[i] - before_weight * history_.before.v[i];
   }
   return {h * (1 + r) / (1 + 2 * r), 1};
 }
@@ -236,7 +236,7 @@ void Stepper::prepare_guess(const System& system, const State& now, const Stage&
 // and the flat sheet stays flat: as a residual that is far below the weight its rigid motion alone was left uneven.
 std::span<const Vec3> Stepper::likely_change(std::span<const double> masses, const State& now) {
   for (std::size_t i = 0; i < masses.size(); ++i)
-    scratch_[i] = previous_h_ > 0 ? Vec3(now.v[i] - previous_.v[i]) : Vec3(constant_force_[i] / masses[i]);
+    scratch_[i] = history_.h > 0 ? Vec3(now.v[i] - history_.before.v[i]) : Vec3(constant_force_[i] / masses[i]);
   return scratch_;
 }
 
@@ -371,8 +371,8 @@ Vec3 Stepper::v_end(const State& now, const Stage& stage, std::size_t i) const {
 
 // Of the step as it is at the current iterate; the formulas stand at the class.
 void Stepper::estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h) {
-  const bool first_order = method_ == Method::implicit_euler || previous_h_ == 0;
-  const double r = first_order ? 1 : h / previous_h_;
+  const bool first_order = method_ == Method::implicit_euler || history_.h == 0;
+  const double r = first_order ? 1 : h / history_.h;
   const bool bdf2 = method_ == Method::bdf2;
   const double of_gain = bdf2 ? 0.75 * h : 0.5 * h;
   const double of_change = bdf2 ? h * h * (1 + r) / (2 * (1 + 2 * r)) : h * h * r / (6 * (1 + r));
@@ -381,13 +381,13 @@ void Stepper::estimate_local_errors(std::span<const double> masses, const State&
     if (first_order)
       scratch_[i] = of_gain * gain;
     else
-      scratch_[i] = of_change * (gain / h - (now.v[i] - previous_.v[i]) / previous_h_);
+      scratch_[i] = of_change * (gain / h - (now.v[i] - history_.before.v[i]) / history_.h);
   }
   cg_.filter(scratch_);
   for (PartState& part : parts_) part.local_error = root_mean_square(part, masses, scratch_);
-  if (method_ != Method::implicit_euler || previous_h_ == 0) return;
+  if (method_ != Method::implicit_euler || history_.h == 0) return;
   for (std::size_t i = 0; i < masses.size(); ++i)
-    scratch_[i] = 0.5 * (v_[i] - now.v[i] - h / previous_h_ * (now.v[i] - previous_.v[i]));
+    scratch_[i] = 0.5 * (v_[i] - now.v[i] - h / history_.h * (now.v[i] - history_.before.v[i]));
   cg_.filter(scratch_);
   for (PartState& part : parts_) part.velocity_error = root_mean_square(part, masses, scratch_);
 }
@@ -398,14 +398,14 @@ Vec3 Stepper::constraint_force(Index particle, double mass) const {
 }
 
 double Stepper::longest_step() const {
-  const bool bounded = method_ == Method::bdf2 && previous_h_ > 0;
-  return bounded ? kLargestRatio * previous_h_ : std::numeric_limits<double>::infinity();
+  const bool bounded = method_ == Method::bdf2 && history_.h > 0;
+  return bounded ? kLargestRatio * history_.h : std::numeric_limits<double>::infinity();
 }
 
 void Stepper::accept(const State& before, double h) {
-  previous_.x.assign(before.x.begin(), before.x.begin() + std::ssize(before.v));
-  previous_.v = before.v;
-  previous_h_ = h;
+  history_.before.x.assign(before.x.begin(), before.x.begin() + std::ssize(before.v));
+  history_.before.v = before.v;
+  history_.h = h;
 }
 
 }  // namespace weft::integrator

@@ -5,6 +5,7 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/archive.hpp"
@@ -96,20 +97,28 @@ class Stepper {
   /// Makes `before`, the state at the start of the step over h just accepted, the history of the next step.
   void accept(const State& before, double h);
 
+  /// What the next step knows of those before: all that lasts from step to step.
+  struct History {
+    State before;  ///< the last step accepted began there
+    double h = 0;  ///< and was so long [s]; 0: there is none
+  };
+  const History& history() const { return history_; }
+  void return_to(History history) { history_ = std::move(history); }
+
   /// Longest step that may follow the last one accepted [s]; infinite where the method has no bound.
   double longest_step() const;
 
   /// Forgets the history: the next BDF2 step is an Euler step. For the start and after a jump.
-  void restart() { previous_h_ = 0; }
+  void restart() { history_.h = 0; }
 
   /// The history, of so many particles. Throws std::runtime_error where it cannot be.
   template <class Archive>
   void serialize(Archive& archive, std::size_t particles) {
-    archive.value(previous_h_);
-    if constexpr (Archive::kReads) require(previous_h_ >= 0 && std::isfinite(previous_h_), "a step length");
-    if (previous_h_ == 0) return;
-    serialize_points(archive, previous_.x, particles);
-    serialize_points(archive, previous_.v, particles);
+    archive.value(history_.h);
+    if constexpr (Archive::kReads) require(history_.h >= 0 && std::isfinite(history_.h), "a step length");
+    if (history_.h == 0) return;
+    serialize_points(archive, history_.before.x, particles);
+    serialize_points(archive, history_.before.v, particles);
   }
 
  private:
@@ -155,10 +164,9 @@ class Stepper {
 
   Method method_;
   NewtonParameters parameters_;
-  State previous_;
-  double previous_h_ = 0;  // 0: no history
-  double beta_ = 0;        // of the last stage [s]
-  int unfinished_ = 0;     // iterations of the last solve, where that ended for a look
+  History history_;
+  double beta_ = 0;     // of the last stage [s]
+  int unfinished_ = 0;  // iterations of the last solve, where that ended for a look
 
   // Scratch of one step.
   StageTimes times_;

@@ -79,14 +79,14 @@ FrameReport Simulation::Impl::advance() {
   report.time = report.frame / scene.time.fps;
   {
     const Stopwatch watch(report.simulate);
-    const StepLoop::Progress start = steps.progress();
+    StepLoop::Checkpoint start = steps.checkpoint();
     try {
       steps.advance(time(), report.time, report);
       measure_energies(report);
       if (std::optional<std::string> warning = energy_bound->check(report.frame, report))
         report.warnings.push_back(*std::move(warning));
     } catch (const Error&) {
-      steps.return_to(start);
+      steps.return_to(std::move(start));
       throw;
     }
   }
