@@ -6,11 +6,13 @@
 #include <fstream>
 #include <system_error>
 
-#include "assets/isolated.hpp"
 #include "core/error.hpp"
+#include "core/isolated.hpp"
 
 namespace weft::assets {
 namespace {
+
+constexpr std::uint64_t kMostAddresses = std::uint64_t{16} << 30;  // that reading may ask for [bytes]
 
 /// A PLY header without end keeps assimp 5.2 busy for ever; refusing it here spares the user the wait for the time
 /// limit.
@@ -57,7 +59,7 @@ void Source::check() const {
 std::string Source::read(const std::function<std::string()>& read) const {
   check();
   try {
-    return run_isolated(read, time_limit(std::filesystem::file_size(file)));
+    return run_isolated(read, {"the reader", time_limit(std::filesystem::file_size(file)), kMostAddresses});
   } catch (const std::exception& error) {
     fail(error.what());
   }

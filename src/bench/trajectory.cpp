@@ -70,7 +70,7 @@ void Recorder::see(const frame::SnapshotPtr& snapshot, const frame::FrameReport&
     frame.x.insert(frame.x.end(), snapshot->states[c].positions.begin(), snapshot->states[c].positions.end());
   frame.v.assign(velocities.begin(), velocities.end());
   Work& work = trajectory_.work;
-  work.cpu_s += report.simulate_cpu_s;
+  work.cpu_s += report.simulate.cpu_s;
   work.steps += report.steps;
   work.rejected_steps += report.rejected_steps;
   work.newton_iterations += report.newton_iterations;

@@ -129,9 +129,10 @@ void serialize(Archive& archive, frame::Light& light) {
 // Its frame and time are those of the snapshot.
 template <class Archive>
 void serialize(Archive& archive, frame::FrameReport& report) {
+  for (StageTime* stage : {&report.simulate, &report.collide, &report.forces, &report.preconditioner, &report.linear})
+    serialize_values(archive, stage->wall_s, stage->cpu_s);
   for (double* number :
-       {&report.simulate_wall_s, &report.simulate_cpu_s, &report.collide_wall_s, &report.collide_cpu_s,
-        &report.error_estimate, &report.solver_error, &report.min_distance, &report.max_strain, &report.stretch_share,
+       {&report.error_estimate, &report.solver_error, &report.min_distance, &report.max_strain, &report.stretch_share,
         &report.kinetic_energy, &report.potential_energy, &report.elastic_energy})
     archive.value(*number);
   for (int* number : {&report.steps, &report.rejected_steps, &report.inexact_steps, &report.newton_iterations,

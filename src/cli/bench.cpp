@@ -1,13 +1,20 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cstdio>
 
 #include "bench/accuracy_report.hpp"
 #include "bench/report.hpp"
+#include "bench/speed_report.hpp"
 #include "bench/stability.hpp"
 #include "cli/commands.hpp"
 #include "cli/path_ledger.hpp"
 #include "cli/scene_input.hpp"
+#include "cli/signals.hpp"
+#include "cli/stages.hpp"
+#include "cli/system_info.hpp"
+#include "core/archive.hpp"
+#include "core/isolated.hpp"
 #include "core/log.hpp"
 #include "core/parallel.hpp"
 #include "core/progress.hpp"
@@ -82,48 +89,65 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
   return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;
 }
 
-scene::Scene scene_of(const BenchOptions& options) {
-  scene::LoadResult loaded = options.scene.empty()
-                                 ? scene::load_text(bench::kSwingingSheet, "swinging_sheet.toml", options.overrides)
-                                 : scene::load(options.scene, options.overrides);
+/// The scene of the options with `more` overrides; without one of theirs that which is built in, under this name.
+scene::Scene scene_of(const BenchOptions& options, const char* text, const char* name,
+                      const std::vector<std::string>& more = {}) {
+  std::vector<std::string> overrides = options.overrides;
+  overrides.insert(overrides.end(), more.begin(), more.end());
+  scene::LoadResult loaded =
+      options.scene.empty() ? scene::load_text(text, name, overrides) : scene::load(options.scene, overrides);
   if (!loaded.ok()) throw Error(ExitCode::scene_invalid, mistakes_text(loaded));
   return std::move(loaded.scene);
 }
 
+void check_moves(const scene::Scene& scene) {
+  if (scene.frame_count() < 2)
+    throw Error(ExitCode::scene_invalid,
+                "{}: time.duration: expected a frame after the start to measure at, got {:g} s", scene.file.string(),
+                scene.time.duration);
+}
+
+std::string title_of(const scene::Scene& scene) {
+  return scene.title.empty() ? scene.name : scene.title;
+}
+
 // Tells of each run, and how long the others will take.
-class AccuracyProgress {
+class RunProgress {
  public:
-  void operator()(const bench::Run& run, double done) {
+  explicit RunProgress(std::string name) : name_(std::move(name)) {}
+
+  /// `done`: share of all work.
+  void operator()(double done, const std::string& run) {
     remaining_.sample(timer_.seconds(), {static_cast<int>(done * kUnits), 0, 0});
     const auto left = remaining_.seconds();
-    log::info(fmt::format("accuracy: {:3.0f} %, {}, {:.3g} {}: {}{}", 100 * done, name_of(run.setting.integrator),
-                          run.setting.tolerance ? 1e3 * *run.setting.tolerance : 1e3 * run.setting.step,
-                          run.setting.tolerance ? "mm" : "ms",
-                          run.failed() ? run.failure : fmt::format("{:.2f} CPU s", run.work.cpu_s),
+    log::info(fmt::format("{}: {:3.0f} %, {}{}", name_, 100 * done, run,
                           left ? fmt::format(", about {} left", format_duration(*left)) : ""));
   }
 
  private:
+  std::string name_;
   static constexpr int kUnits = 100'000;
   WallTimer timer_;
   RemainingTime remaining_{{kUnits, 0, 0}};
 };
 
 ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path& folder) {
-  const scene::Scene scene = scene_of(options);
-  if (scene.frame_count() < 2)
-    throw Error(ExitCode::scene_invalid,
-                "{}: time.duration: expected a frame after the start to measure at, got {:g} s", scene.file.string(),
-                scene.time.duration);
-  const std::string name = "accuracy_" + scene.name, title = scene.title.empty() ? scene.name : scene.title;
+  const scene::Scene scene = scene_of(options, bench::kSwingingSheet, "swinging_sheet.toml");
+  check_moves(scene);
+  const std::string name = "accuracy_" + scene.name, title = title_of(scene);
   const std::string work = name + ".svg", settings = name + "_settings.svg";
   PathLedger paths;
   if (!options.scene.empty()) add_inputs(paths, scene);
   check_outputs(paths, options, folder, {name + ".md", name + ".csv", work, settings});
   // So that CPU seconds mean the same everywhere.
   set_thread_count(1);
-  AccuracyProgress progress;
-  const bench::Accuracy accuracy = bench::measure_accuracy(scene, std::ref(progress));
+  RunProgress progress("accuracy");
+  const bench::Accuracy accuracy = bench::measure_accuracy(scene, [&](const bench::Run& run, double done) {
+    progress(done, fmt::format("{}, {:.3g} {}: {}", name_of(run.setting.integrator),
+                               run.setting.tolerance ? 1e3 * *run.setting.tolerance : 1e3 * run.setting.step,
+                               run.setting.tolerance ? "mm" : "ms",
+                               run.failed() ? run.failure : fmt::format("{:.2f} CPU s", run.work.cpu_s)));
+  });
   write_file(folder / (name + ".csv"), bench::csv(bench::accuracy_table(accuracy)));
   write_file(folder / work, bench::work_svg(title, accuracy));
   write_file(folder / settings, bench::settings_svg(title, accuracy));
@@ -132,12 +156,123 @@ ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path
   return ExitCode::ok;
 }
 
+bench::SpeedFrames speed_frames(const BenchOptions& options, const scene::Scene& scene) {
+  const bench::SpeedFrames usual;
+  const int begin = options.frames.begin.value_or(usual.begin);
+  if (options.frames.end || options.frames.begin) {
+    const FrameRange range = resolve_frames({begin, options.frames.end, 1}, scene.frame_count());
+    return {range.begin, range.end};
+  }
+  check_moves(scene);
+  return {begin, std::min(usual.end, scene.frame_count())};
+}
+
+/// A run of speed that is to come.
+struct PlannedRun {
+  bench::SpeedSetting setting;
+  scene::Scene scene;
+};
+
+/// Reads all scenes, so that mistakes show at once.
+std::vector<PlannedRun> plan_speed(const BenchOptions& options, const scene::Scene& scene) {
+  const std::vector<int> all_cores = thread_count() > 1 ? std::vector{1, thread_count()} : std::vector{1};
+  const bool fixed_size = !bench::has_sizes(scene);
+  if (fixed_size) log::info("note: no cloth of the scene has particles to be set: it is measured at its own size");
+  std::vector<PlannedRun> runs;
+  for (const bench::SpeedSetting& setting :
+       bench::speed_settings(fixed_size ? std::vector<double>{1} : options.sizes,
+                             options.threads.empty() ? all_cores : options.threads, options.steps))
+    runs.push_back(
+        {setting, scene_of(options, bench::kSphereDrape, "sphere_drape.toml", bench::overrides_of(scene, setting))});
+  return runs;
+}
+
+bench::SpeedRun run_alone(const PlannedRun& planned, const bench::SpeedFrames& frames, const BenchOptions& options,
+                          const std::atomic<bool>& stop) {
+  const auto open_drawing = [&]() -> bench::Drawing {
+    SceneOptions drawing;
+    drawing.quality = *options.drawing;
+    drawing.threads = planned.setting.threads;
+    const std::shared_ptr<FramePainter> painter = make_gl_painter(render_settings(planned.scene, drawing));
+    return [painter](const frame::FrameSnapshot& snapshot) { painter->draw(snapshot); };
+  };
+  const auto work = [&] {
+    bench::SpeedRun run = bench::run_for_speed(planned.scene, planned.setting, frames,
+                                               options.drawing ? open_drawing : std::function<bench::Drawing()>());
+    ByteWriter writer;
+    serialize(writer, run);
+    return writer.bytes;
+  };
+  bench::SpeedRun run;
+  try {
+    const std::string bytes = run_isolated(work, {.name = "the run", .stop = &stop});
+    ByteReader reader{bytes};
+    serialize(reader, run);
+  } catch (const std::exception& error) {
+    if (stop) throw;
+    run.setting = planned.setting;
+    run.failure = error.what();
+  }
+  return run;
+}
+
+std::string describe(const bench::SpeedRun& run) {
+  const std::string setting = fmt::format("size {:g}, {} thread{}, step {:g}", run.setting.size, run.setting.threads,
+                                          run.setting.threads == 1 ? "" : "s", run.setting.step);
+  if (run.failed()) return fmt::format("{}: {}", setting, run.failure);
+  return fmt::format("{}: {} particles, {:.4g} CPU ms a frame", setting, run.particles,
+                     1e3 * run.all().cpu_s / run.frames);
+}
+
+ExitCode bench_speed(const BenchOptions& options, const std::filesystem::path& folder) {
+  const scene::Scene scene = scene_of(options, bench::kSphereDrape, "sphere_drape.toml");
+  bench::SpeedReport report{
+      title_of(scene), fmt::format("{}, {} cores", cpu_model(), thread_count()), speed_frames(options, scene), {}};
+  const std::vector<PlannedRun> planned = plan_speed(options, scene);
+  const std::string name = "speed_" + scene.name, plot = name + ".svg";
+  PathLedger paths;
+  if (!options.scene.empty()) add_inputs(paths, scene);
+  check_outputs(paths, options, folder, {name + ".md", name + ".csv", plot});
+  const StopSignals signals("what was measured is written");
+  RunProgress progress("speed");
+  double all_work = 0, done = 0;
+  for (const PlannedRun& run : planned) all_work += bench::expected_work(run.setting);
+  for (const PlannedRun& run : planned) {
+    try {
+      report.runs.push_back(run_alone(run, report.frames, options, signals.requested()));
+    } catch (const Error&) {
+      break;  // asked to end
+    }
+    // Whatever ends it, what was measured is there.
+    write_file(folder / (name + ".csv"), bench::csv(bench::speed_table(report.runs)));
+    done += bench::expected_work(run.setting);
+    progress(done / all_work, describe(report.runs.back()));
+  }
+  const bool whole = report.runs.size() == planned.size();
+  if (!report.runs.empty()) {
+    write_file(folder / plot, bench::speed_svg(report));
+    write_file(folder / (name + ".md"), bench::speed_markdown(report, plot));
+    fmt::print("{}written to {}\n", bench::conclusion(report.runs), (folder / (name + ".md")).string());
+  }
+  if (!whole) log::info(fmt::format("weft: interrupted after {} of {} runs", report.runs.size(), planned.size()));
+  if (!whole) return ExitCode::interrupted;
+  const bool any = std::ranges::any_of(report.runs, [](const bench::SpeedRun& run) { return !run.failed(); });
+  return any ? ExitCode::ok : ExitCode::simulation_failed;
+}
+
 }  // namespace
 
 ExitCode bench(const BenchOptions& options) {
   const std::filesystem::path folder = options.output.empty() ? "output/bench" : options.output;
-  return options.kind == BenchOptions::Kind::accuracy ? bench_accuracy(options, folder)
-                                                      : bench_stability(options, folder);
+  switch (options.kind) {
+    case BenchOptions::Kind::stability:
+      return bench_stability(options, folder);
+    case BenchOptions::Kind::accuracy:
+      return bench_accuracy(options, folder);
+    case BenchOptions::Kind::speed:
+      return bench_speed(options, folder);
+  }
+  return ExitCode::internal;
 }
 
 }  // namespace weft::cli

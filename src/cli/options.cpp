@@ -2,26 +2,20 @@
 
 #include <CLI/CLI.hpp>
 #include <array>
-#include <charconv>
-#include <cmath>
-#include <span>
 #include <utility>
 
+#include "cli/option_values.hpp"
 #include "core/error.hpp"
-#include "core/nearest.hpp"
 #include "core/version.hpp"
 
 namespace weft::cli {
 namespace {
 
 constexpr int kMaxThreads = 1024;
-constexpr double kMaxFps = 1000;
-
-template <class Value>
-using Choice = std::pair<const char*, Value>;
 
 constexpr std::array kBenches{Choice<BenchOptions::Kind>{"stability", BenchOptions::Kind::stability},
-                              Choice<BenchOptions::Kind>{"accuracy", BenchOptions::Kind::accuracy}};
+                              Choice<BenchOptions::Kind>{"accuracy", BenchOptions::Kind::accuracy},
+                              Choice<BenchOptions::Kind>{"speed", BenchOptions::Kind::speed}};
 constexpr std::array kQualities{Choice<render::Quality>{"draft", render::Quality::draft},
                                 Choice<render::Quality>{"preview", render::Quality::preview},
                                 Choice<render::Quality>{"final", render::Quality::final}};
@@ -34,58 +28,6 @@ constexpr std::array kFormats{
 constexpr std::array kProgressStyles{
     Choice<Progress::Style>{"auto", Progress::Style::automatic}, Choice<Progress::Style>{"bar", Progress::Style::bar},
     Choice<Progress::Style>{"plain", Progress::Style::plain}, Choice<Progress::Style>{"none", Progress::Style::none}};
-
-std::string did_you_mean(const std::string& name, std::span<const std::string> known) {
-  const std::string nearest = nearest_name(name, known);
-  return nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest);
-}
-
-template <class Value, std::size_t N>
-Value parse_choice(const char* option, const std::string& text, const std::array<Choice<Value>, N>& choices) {
-  std::vector<std::string> names;
-  for (const auto& [name, value] : choices) {
-    if (text == name) return value;
-    names.emplace_back(name);
-  }
-  throw Error(ExitCode::usage, "{}: expected {}, got {}{}", option, fmt::join(names, " or "), text,
-              did_you_mean(text, names));
-}
-
-int parse_integer(const char* option, const std::string& text, int low, int high) {
-  int value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || value < low || value > high) {
-    throw Error(ExitCode::usage, "{}: expected a whole number from {} to {}, got {}", option, low, high, text);
-  }
-  return value;
-}
-
-double parse_share(const char* option, const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value >= 0 && value <= 1)) {
-    throw Error(ExitCode::usage, "{}: expected a number from 0 to 1, got {}", option, text);
-  }
-  return value;
-}
-
-double parse_fps(const std::string& text) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size() || !(value > 0 && value <= kMaxFps)) {
-    throw Error(ExitCode::usage, "--fps: expected a number of frames a second, above 0 and up to {}, got {}", kMaxFps,
-                text);
-  }
-  return value;
-}
-
-std::string check_override(const std::string& text) {
-  if (text.find('=') == std::string::npos || text.front() == '=') {
-    throw Error(ExitCode::usage, "--set: expected path.to.key=value such as cloth.band.material.stretch=1e6, got {}",
-                text);
-  }
-  return text;
-}
 
 void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
   command
@@ -177,6 +119,7 @@ struct Parser {
   SchemaOptions schema;
   DoctorOptions doctor;
   BenchOptions bench;
+  std::string option_of_speed;  // one that was given; empty: none
   DiffOptions diff;
   AcceptOptions accept;
   ReviewOptions review;
@@ -305,22 +248,54 @@ struct Parser {
   }
 
   void add_bench() {
-    CLI::App& command = *app.add_subcommand("bench", "Measure: stability, or error against run time");
+    CLI::App& command = *app.add_subcommand("bench", "Measure: stability, error against run time, or speed");
     command
         .add_option_function<std::string>(
             "WHAT", [this](const std::string& text) { bench.kind = parse_choice("WHAT", text, kBenches); },
-            "stability: what comes of stiff and extreme scenes; accuracy: error against run time of a scene")
+            "stability: what comes of stiff and extreme scenes; accuracy: error against run time of a scene; speed: "
+            "time "
+            "by stage, iterations and memory over sizes, threads and steps")
         ->required()
         ->type_name("");
-    command.add_option("SCENE", bench.scene, "For accuracy: the scene, a TOML file [a swinging sheet]")->type_name("");
+    command
+        .add_option("SCENE", bench.scene, "For accuracy and speed: the scene, a TOML file [a swinging sheet; a drape]")
+        ->type_name("");
     add_overrides(command, bench.overrides);
     add_value(command, "-o,--output", "DIR", "Folder for tables and plots [output/bench]",
               [this](const std::string& text) { bench.output = text; });
     command.add_flag("--overwrite", bench.overwrite, "Replace files that exist already");
+    const auto of_speed = [&](const char* name, const char* value, const char* description,
+                              std::function<void(const std::string&)> read) {
+      add_value(command, name, value, description, [this, name, read](const std::string& text) {
+        read(text);
+        option_of_speed = name;
+      });
+    };
+    of_speed("--sizes", "F,F,...", "Of speed: particles along each side, times those of the scene [0.5,1,2,4]",
+             [this](const std::string& text) { bench.sizes = parse_list<double>("--sizes", text, parse_factor); });
+    of_speed("--threads", "N,N,...", "Of speed: numbers of threads [1 and all cores]", [this](const std::string& text) {
+      bench.threads = parse_list<int>("--threads", text, [](const char* option, const std::string& part) {
+        return parse_integer(option, part, 1, kMaxThreads);
+      });
+    });
+    of_speed("--steps", "F,F,...", "Of speed: time.step, or time.tolerance, times that of the scene [0.5,1,2]",
+             [this](const std::string& text) { bench.steps = parse_list<double>("--steps", text, parse_factor); });
+    of_speed("--frames", "A:B", "Of speed: frames to measure, from A up to but without B [1:9]",
+             [this](const std::string& text) {
+               bench.frames = parse_frames(text);
+               if (bench.frames.step != 1 || bench.frames.begin == 0)
+                 throw Error(ExitCode::usage,
+                             "--frames: expected A:B with A from 1, for frame 0 takes no time and each needs the one "
+                             "before, got {}",
+                             text);
+             });
+    of_speed("--draw", "draft|preview|final", "Of speed: draw each frame too, with such care",
+             [this](const std::string& text) { bench.drawing = parse_choice("--draw", text, kQualities); });
     command.footer(
         "\nExamples:\n"
         "  weft bench stability -o stability\n"
-        "  weft bench accuracy scenes/falling_band.toml --set time.duration=0.8 -o accuracy");
+        "  weft bench accuracy scenes/falling_band.toml --set time.duration=0.8 -o accuracy\n"
+        "  weft bench speed scenes/falling_band.toml --sizes 0.5,1,2 --frames 20:40 -o speed");
   }
 
   void add_diff() {
@@ -474,6 +449,8 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   const bool has_scene = !parser.bench.scene.empty() || !parser.bench.overrides.empty();
   if (name == "bench" && parser.bench.kind == BenchOptions::Kind::stability && has_scene)
     throw Error(ExitCode::usage, "weft bench stability: expected no SCENE and no --set, its scenes are its own");
+  if (name == "bench" && parser.bench.kind != BenchOptions::Kind::speed && !parser.option_of_speed.empty())
+    throw Error(ExitCode::usage, "weft bench: {} is for weft bench speed", parser.option_of_speed);
   if (name == "run") return parser.run;
   if (name == "simulate") return parser.simulate;
   if (name == "render") return parser.render;

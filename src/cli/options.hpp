@@ -79,11 +79,16 @@ struct DoctorOptions {
 };
 
 struct BenchOptions {
-  enum class Kind { stability, accuracy };
+  enum class Kind { stability, accuracy, speed };
   Kind kind = Kind::stability;
-  std::filesystem::path scene;         ///< of accuracy; empty: a sheet that swings
+  std::filesystem::path scene;         ///< of accuracy and speed; empty: one that is built in
   std::vector<std::string> overrides;  ///< of --set
-  std::filesystem::path output;        ///< folder; empty: output/bench
+  /// Of speed: what is varied, ascending, and which frames are measured.
+  std::vector<double> sizes{0.5, 1, 2, 4}, steps{0.5, 1, 2};
+  std::vector<int> threads;  ///< empty: 1, and all cores
+  FrameSelection frames;     ///< as typed
+  std::optional<render::Quality> drawing;
+  std::filesystem::path output;  ///< folder; empty: output/bench
   bool overwrite = false;
 };
 

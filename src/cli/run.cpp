@@ -17,6 +17,7 @@
 #include "cli/system_info.hpp"
 #include "cli/whole_output.hpp"
 #include "core/log.hpp"
+#include "core/memory.hpp"
 #include "core/parallel.hpp"
 #include "core/temporary_file.hpp"
 #include "video/encoder.hpp"

@@ -14,25 +14,6 @@
 
 namespace weft::cli {
 
-struct StageTime {
-  double wall_s = 0, cpu_s = 0;
-
-  StageTime& operator+=(const StageTime& other) {
-    wall_s += other.wall_s;
-    cpu_s += other.cpu_s;
-    return *this;
-  }
-};
-
-/// What `work` takes, in this thread.
-template <class Work>
-StageTime timed(const Work& work) {
-  const WallTimer wall;
-  const double cpu = thread_cpu_seconds();
-  work();
-  return {wall.seconds(), thread_cpu_seconds() - cpu};
-}
-
 /// What became of one frame.
 struct FrameRecord {
   simulation::FrameReport report;
@@ -71,7 +52,8 @@ struct RunReport {
 };
 
 struct StageTotals {
-  StageTime simulate, collide, render, encode, meshes;  ///< collide is a part of simulate
+  StageTime simulate, collide, forces, preconditioner, linear;  ///< the others are parts of simulate
+  StageTime render, encode, meshes;
 };
 
 StageTotals total_times(const std::vector<FrameRecord>& frames);

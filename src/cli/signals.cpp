@@ -20,6 +20,7 @@ std::atomic<bool> g_requested{false};
 std::atomic<long long> g_first{0};  // time of the first signal [ns]
 static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<long long>::is_always_lock_free,
               "a signal handler may only touch lock-free atomics");
+std::string_view g_promise;  // set before any handler is
 std::array<struct sigaction, kSignals.size()> g_previous;
 
 void say(std::string_view text) {
@@ -33,7 +34,9 @@ void on_signal(int) {
   const long long now = clock.tv_sec * 1'000'000'000LL + clock.tv_nsec;
   if (!g_requested.exchange(true)) {
     g_first = now;
-    say("\nfinishing the current frame; press again to quit at once\n");
+    say("\n");
+    say(g_promise);
+    say("; press again to quit at once\n");
   } else if (now - g_first > kRepeatWindow) {
     remove_temporary_files();
     say("\nquit at once; unfinished files are removed\n");
@@ -43,7 +46,8 @@ void on_signal(int) {
 
 }  // namespace
 
-StopSignals::StopSignals() {
+StopSignals::StopSignals(std::string_view promise) {
+  g_promise = promise;
   g_requested = false;
   struct sigaction action {};
   action.sa_handler = on_signal;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <atomic>
+#include <string_view>
 
 namespace weft::cli {
 
@@ -11,7 +12,8 @@ namespace weft::cli {
 /// ignore (nohup, background jobs) stay ignored. One object at a time.
 class StopSignals {
  public:
-  StopSignals();
+  /// `promise`: what is said to whoever asks; a literal.
+  explicit StopSignals(std::string_view promise = "finishing the current frame");
   ~StopSignals();
   StopSignals(const StopSignals&) = delete;
   StopSignals& operator=(const StopSignals&) = delete;

@@ -35,6 +35,9 @@ Json totals_json(const RunReport& report) {
   const StepTotals steps = total_steps(report.frames);
   return {{"simulate", totals.simulate.wall_s},
           {"collide", totals.collide.wall_s},
+          {"forces", totals.forces.wall_s},
+          {"preconditioner", totals.preconditioner.wall_s},
+          {"linear", totals.linear.wall_s},
           {"render", totals.render.wall_s},
           {"encode", totals.encode.wall_s},
           {"meshes", totals.meshes.wall_s},
@@ -43,6 +46,9 @@ Json totals_json(const RunReport& report) {
           {"wall", report.wall_s},
           {"simulate_cpu", totals.simulate.cpu_s},
           {"collide_cpu", totals.collide.cpu_s},
+          {"forces_cpu", totals.forces.cpu_s},
+          {"preconditioner_cpu", totals.preconditioner.cpu_s},
+          {"linear_cpu", totals.linear.cpu_s},
           {"render_cpu", totals.render.cpu_s},
           {"encode_cpu", totals.encode.cpu_s},
           {"meshes_cpu", totals.meshes.cpu_s},
@@ -68,8 +74,11 @@ std::size_t count_particles(const std::vector<simulation::ObjectInfo>& objects) 
 StageTotals total_times(const std::vector<FrameRecord>& frames) {
   StageTotals totals;
   for (const FrameRecord& record : frames) {
-    totals.simulate += {record.report.simulate_wall_s, record.report.simulate_cpu_s};
-    totals.collide += {record.report.collide_wall_s, record.report.collide_cpu_s};
+    totals.simulate += record.report.simulate;
+    totals.collide += record.report.collide;
+    totals.forces += record.report.forces;
+    totals.preconditioner += record.report.preconditioner;
+    totals.linear += record.report.linear;
     totals.render += record.render;
     totals.encode += record.encode;
     totals.meshes += record.meshes;
@@ -94,12 +103,12 @@ Json frame_json(const FrameRecord& record) {
   return {{"frame", report.frame},
           {"time_s", report.time},
           {"written", record.written},
-          {"simulate_ms", 1e3 * report.simulate_wall_s},
-          {"collide_ms", 1e3 * report.collide_wall_s},
+          {"simulate_ms", 1e3 * report.simulate.wall_s},
+          {"collide_ms", 1e3 * report.collide.wall_s},
           {"render_ms", 1e3 * record.render.wall_s},
           {"encode_ms", 1e3 * record.encode.wall_s},
-          {"simulate_cpu_ms", 1e3 * report.simulate_cpu_s},
-          {"collide_cpu_ms", 1e3 * report.collide_cpu_s},
+          {"simulate_cpu_ms", 1e3 * report.simulate.cpu_s},
+          {"collide_cpu_ms", 1e3 * report.collide.cpu_s},
           {"render_cpu_ms", 1e3 * record.render.cpu_s},
           {"encode_cpu_ms", 1e3 * record.encode.cpu_s},
           {"steps", report.steps},

@@ -1,7 +1,6 @@
 // What machine this is and what it gave us.
 #pragma once
 
-#include <cstdint>
 #include <string>
 
 namespace weft::cli {
@@ -11,8 +10,5 @@ std::string cpu_model();
 
 /// The same for the very same program only, 16 hexadecimal digits.
 std::string program_fingerprint();
-
-/// The most memory that the process held so far [bytes].
-std::int64_t peak_memory_bytes();
 
 }  // namespace weft::cli

@@ -31,4 +31,52 @@ inline double process_cpu_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
+/// What a stage of the work takes.
+struct StageTime {
+  double wall_s = 0, cpu_s = 0;
+
+  StageTime& operator+=(const StageTime& other) {
+    wall_s += other.wall_s;
+    cpu_s += other.cpu_s;
+    return *this;
+  }
+  StageTime& operator-=(const StageTime& other) {
+    wall_s -= other.wall_s;
+    cpu_s -= other.cpu_s;
+    return *this;
+  }
+};
+
+/// Where nothing but one line of work runs in the process: from here on stages are charged with the CPU time of all
+/// threads, those that help in parallel loops among them. Else with that of the thread that they run in, for beside a
+/// simulation others draw and encode. Call before any stage runs.
+inline bool stages_have_all_threads = false;
+
+/// Adds the wall and CPU time of a scope to those of a stage.
+class Stopwatch {
+ public:
+  explicit Stopwatch(StageTime& stage) : stage_(stage) {}
+  ~Stopwatch() { stage_ += {timer_.seconds(), cpu_seconds() - cpu_start_}; }
+  Stopwatch(const Stopwatch&) = delete;
+  Stopwatch& operator=(const Stopwatch&) = delete;
+
+ private:
+  static double cpu_seconds() { return stages_have_all_threads ? process_cpu_seconds() : thread_cpu_seconds(); }
+
+  StageTime& stage_;
+  WallTimer timer_;
+  double cpu_start_ = cpu_seconds();
+};
+
+/// What `work` takes.
+template <class Work>
+StageTime timed(const Work& work) {
+  StageTime stage;
+  {
+    const Stopwatch watch(stage);
+    work();
+  }
+  return stage;
+}
+
 }  // namespace weft

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/timer.hpp"
 #include "frame/frame_snapshot.hpp"
 
 namespace weft::frame {
@@ -12,11 +13,13 @@ namespace weft::frame {
 struct FrameReport {
   int frame = 0;
   double time = 0;  ///< [s]
-  double simulate_wall_s = 0, simulate_cpu_s = 0;
-  double collide_wall_s = 0, collide_cpu_s = 0;  ///< part of simulate
-  int steps = 0;                                 ///< accepted
-  int rejected_steps = 0;                        ///< done again, shorter
-  int inexact_steps = 0;                         ///< accepted although their error was above time.tolerance
+  StageTime simulate;
+  /// Parts of it: contacts found and surfaces kept apart; forces and their matrix; the preconditioner set up; the
+  /// iterations of the linear solver.
+  StageTime collide, forces, preconditioner, linear;
+  int steps = 0;              ///< accepted
+  int rejected_steps = 0;     ///< done again, shorter
+  int inexact_steps = 0;      ///< accepted although their error was above time.tolerance
   double error_estimate = 0;  ///< sum over the steps of what each adds to the error of positions [m], estimated
   double solver_error = 0;    ///< likewise, of what the solver left [m]
   int newton_iterations = 0;

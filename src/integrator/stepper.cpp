@@ -69,14 +69,14 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
   std::copy_n(now.x.begin(), n, x_hat_.begin());
   v_hat_ = now.v;
   if (method_ == Method::implicit_midpoint) return {0.5 * h, 2};
-  if (method_ == Method::implicit_euler || previous_h_ == 0) return {h, 1};
+  if (method_ == Method::implicit_euler || history_.h == 0) return {h, 1};
 
   // BDF2 with variable steps; those who choose them keep to longest_step().
-  const double r = h / previous_h_;
+  const double r = h / history_.h;
   const double now_weight = (1 + r) * (1 + r) / (1 + 2 * r), before_weight = r * r / (1 + 2 * r);
   for (std::size_t i = 0; i < n; ++i) {
-    x_hat_[i] = now_weight * now.x[i] - before_weight * previous_.x[i];
-    v_hat_[i] = now_weight * now.v[i] - before_weight * previous_.v[i];
+    x_hat_[i] = now_weight * now.x[i] - before_weight * history_.before.x[i];
+    v_hat_[i] = now_weight * now.v[i] - before_weight * history_.before.v[i];
   }
   return {h * (1 + r) / (1 + 2 * r), 1};
 }
@@ -95,8 +95,23 @@ void Stepper::gather_residual(std::span<const double> masses, const Stage& stage
   cg_.filter(residual_);
 }
 
+// At the current stage.
+void Stepper::linearise(System& system, const State& now, const Stage& stage, int iteration) {
+  const Stopwatch watch(times_.forces);
+  evaluate(now, stage);
+  std::fill(force_.begin(), force_.end(), Vec3::Zero());
+  system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, iteration, force_);
+}
+
+// P⁻¹ of it, valid until the next call.
+std::span<const Vec3> Stepper::precondition(std::span<const Vec3> residual) {
+  const Stopwatch watch(times_.preconditioner);
+  return cg_.precondition(residual);
+}
+
 // At the current stage: of the equation itself, or of what the last linearisation made of it.
 void Stepper::residual(System& system, const State& now, const Stage& stage, Equation equation) {
+  const Stopwatch watch(times_.forces);
   evaluate(now, stage);
   std::fill(force_.begin(), force_.end(), Vec3::Zero());
   const StagePoint at{x_, v_, x_end_, 1 / stage.beta, stage.end_rate};
@@ -151,7 +166,7 @@ void Stepper::estimate_left(const solver::LinearReport& solved, double fraction,
     for (std::size_t p : unsolved_)
       for (auto i = parts_[p].rows.begin; i < parts_[p].rows.end; ++i) scratch_[i] -= cg_.residual()[i];
   measure(delta_, masses, changes_);
-  measure(cg_.precondition(scratch_), masses, speeds_);
+  measure(precondition(scratch_), masses, speeds_);
   for (std::size_t p = 0; p < parts_.size(); ++p)
     parts_[p].left = speeds_[p] * (foreseen_[p] > 0 ? std::max(1.0, changes_[p] / foreseen_[p]) : 1);
   if (whole)
@@ -221,7 +236,7 @@ void Stepper::prepare_guess(const System& system, const State& now, const Stage&
 // and the flat sheet stays flat: as a residual that is far below the weight its rigid motion alone was left uneven.
 std::span<const Vec3> Stepper::likely_change(std::span<const double> masses, const State& now) {
   for (std::size_t i = 0; i < masses.size(); ++i)
-    scratch_[i] = previous_h_ > 0 ? Vec3(now.v[i] - previous_.v[i]) : Vec3(constant_force_[i] / masses[i]);
+    scratch_[i] = history_.h > 0 ? Vec3(now.v[i] - history_.before.v[i]) : Vec3(constant_force_[i] / masses[i]);
   return scratch_;
 }
 
@@ -256,16 +271,18 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
 
   const int done = start == Start::next ? std::exchange(unfinished_, 0) : 0;
   StepReport report;
+  times_ = {};
   do {
-    evaluate(now, stage);
-    std::fill(force_.begin(), force_.end(), Vec3::Zero());
-    system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, done + report.newton_iterations, force_);
+    linearise(system, now, stage, done + report.newton_iterations);
     // Groups stand for long waves, whose stiffness hardly changes within a step.
-    cg_.prepare(linear, report.newton_iterations == 0 ? solver::Sums::anew : solver::Sums::kept);
+    {
+      const Stopwatch watch(times_.preconditioner);
+      cg_.prepare(linear, report.newton_iterations == 0 ? solver::Sums::anew : solver::Sums::kept);
+    }
     gather_residual(masses, stage);
     estimate_local_errors(masses, now, stage, h);
     allow_velocities(now, h);
-    measure(cg_.precondition(residual_), masses, foreseen_);
+    measure(precondition(residual_), masses, foreseen_);
     const bool first = report.newton_iterations == 0 && start == Start::unchanged_velocity;
     const solver::LinearReport solved =
         solve_linear(report.newton_iterations, first ? likely_change(masses, now) : std::span<const Vec3>());
@@ -275,7 +292,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     const double fraction = search_along_delta(system, now, stage);
     if (!std::isfinite(fraction)) {
       report.verdict = Verdict::not_finite;
-      return report;
+      break;
     }
     residual(system, now, stage, Equation::itself);
     estimate_local_errors(masses, now, stage, h);
@@ -289,6 +306,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     else if (!is_solved() && report.newton_iterations >= look_after)
       report.verdict = Verdict::unfinished;
   } while (!is_solved() && report.verdict == Verdict::solved);
+  report.times = times_;
   unfinished_ = report.verdict == Verdict::unfinished ? report.newton_iterations : 0;
   if (report.verdict == Verdict::solved || report.verdict == Verdict::unfinished) finish(now, stage, held, next);
   return report;
@@ -313,6 +331,7 @@ solver::LinearReport Stepper::solve_linear(int iteration, std::span<const Vec3> 
   const double share = damps || iteration > 0 ? kLinearShare : kUndampedLinearShare;
   const double relative = (damps ? 1 : kUndampedTolerance) * parameters_.linear_tolerance;
   for (const PartState& part : parts_) goals_.push_back(share * part.allowed * std::sqrt(part.mass));
+  const Stopwatch watch(times_.linear);
   return cg_.solve(residual_, {relative, goals_}, parameters_.max_linear_iterations, delta_, start, unsolved_);
 }
 
@@ -352,8 +371,8 @@ Vec3 Stepper::v_end(const State& now, const Stage& stage, std::size_t i) const {
 
 // Of the step as it is at the current iterate; the formulas stand at the class.
 void Stepper::estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h) {
-  const bool first_order = method_ == Method::implicit_euler || previous_h_ == 0;
-  const double r = first_order ? 1 : h / previous_h_;
+  const bool first_order = method_ == Method::implicit_euler || history_.h == 0;
+  const double r = first_order ? 1 : h / history_.h;
   const bool bdf2 = method_ == Method::bdf2;
   const double of_gain = bdf2 ? 0.75 * h : 0.5 * h;
   const double of_change = bdf2 ? h * h * (1 + r) / (2 * (1 + 2 * r)) : h * h * r / (6 * (1 + r));
@@ -362,13 +381,13 @@ void Stepper::estimate_local_errors(std::span<const double> masses, const State&
     if (first_order)
       scratch_[i] = of_gain * gain;
     else
-      scratch_[i] = of_change * (gain / h - (now.v[i] - previous_.v[i]) / previous_h_);
+      scratch_[i] = of_change * (gain / h - (now.v[i] - history_.before.v[i]) / history_.h);
   }
   cg_.filter(scratch_);
   for (PartState& part : parts_) part.local_error = root_mean_square(part, masses, scratch_);
-  if (method_ != Method::implicit_euler || previous_h_ == 0) return;
+  if (method_ != Method::implicit_euler || history_.h == 0) return;
   for (std::size_t i = 0; i < masses.size(); ++i)
-    scratch_[i] = 0.5 * (v_[i] - now.v[i] - h / previous_h_ * (now.v[i] - previous_.v[i]));
+    scratch_[i] = 0.5 * (v_[i] - now.v[i] - h / history_.h * (now.v[i] - history_.before.v[i]));
   cg_.filter(scratch_);
   for (PartState& part : parts_) part.velocity_error = root_mean_square(part, masses, scratch_);
 }
@@ -379,14 +398,14 @@ Vec3 Stepper::constraint_force(Index particle, double mass) const {
 }
 
 double Stepper::longest_step() const {
-  const bool bounded = method_ == Method::bdf2 && previous_h_ > 0;
-  return bounded ? kLargestRatio * previous_h_ : std::numeric_limits<double>::infinity();
+  const bool bounded = method_ == Method::bdf2 && history_.h > 0;
+  return bounded ? kLargestRatio * history_.h : std::numeric_limits<double>::infinity();
 }
 
 void Stepper::accept(const State& before, double h) {
-  previous_.x.assign(before.x.begin(), before.x.begin() + std::ssize(before.v));
-  previous_.v = before.v;
-  previous_h_ = h;
+  history_.before.x.assign(before.x.begin(), before.x.begin() + std::ssize(before.v));
+  history_.before.v = before.v;
+  history_.h = h;
 }
 
 }  // namespace weft::integrator

@@ -5,9 +5,11 @@
 #include <limits>
 #include <span>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/archive.hpp"
+#include "core/timer.hpp"
 #include "integrator/system.hpp"
 #include "solver/conjugate_gradient.hpp"
 
@@ -30,6 +32,12 @@ struct NewtonParameters {
 enum class Verdict { solved, unfinished, not_finite, newton_stalled, indefinite };
 std::string_view describe(Verdict verdict);
 
+struct StageTimes {
+  StageTime forces;          ///< evaluated, and their matrix put together
+  StageTime preconditioner;  ///< set up, and applied to residuals
+  StageTime linear;          ///< iterations of the linear solver
+};
+
 struct StepReport {
   Verdict verdict = Verdict::solved;
   int newton_iterations = 0;
@@ -39,6 +47,7 @@ struct StepReport {
   /// for the time of a swing [m].
   double solver_error = 0;
   double left = 0, allowed = 0;  ///< velocity that the solver left in the worst part, and might have [m/s]
+  StageTimes times;
 };
 
 /// Every method is one implicit stage  x = x̂ + β v,  M (v − v̂) = β f(x, v)  with its own β, x̂ and v̂:
@@ -88,20 +97,28 @@ class Stepper {
   /// Makes `before`, the state at the start of the step over h just accepted, the history of the next step.
   void accept(const State& before, double h);
 
+  /// What the next step knows of those before: all that lasts from step to step.
+  struct History {
+    State before;  ///< the last step accepted began there
+    double h = 0;  ///< and was so long [s]; 0: there is none
+  };
+  const History& history() const { return history_; }
+  void return_to(History history) { history_ = std::move(history); }
+
   /// Longest step that may follow the last one accepted [s]; infinite where the method has no bound.
   double longest_step() const;
 
   /// Forgets the history: the next BDF2 step is an Euler step. For the start and after a jump.
-  void restart() { previous_h_ = 0; }
+  void restart() { history_.h = 0; }
 
   /// The history, of so many particles. Throws std::runtime_error where it cannot be.
   template <class Archive>
   void serialize(Archive& archive, std::size_t particles) {
-    archive.value(previous_h_);
-    if constexpr (Archive::kReads) require(previous_h_ >= 0 && std::isfinite(previous_h_), "a step length");
-    if (previous_h_ == 0) return;
-    serialize_points(archive, previous_.x, particles);
-    serialize_points(archive, previous_.v, particles);
+    archive.value(history_.h);
+    if constexpr (Archive::kReads) require(history_.h >= 0 && std::isfinite(history_.h), "a step length");
+    if (history_.h == 0) return;
+    serialize_points(archive, history_.before.x, particles);
+    serialize_points(archive, history_.before.v, particles);
   }
 
  private:
@@ -128,6 +145,7 @@ class Stepper {
   solver::LinearReport solve_linear(int iteration, std::span<const Vec3> start);
   double search_along_delta(System& system, const State& now, const Stage& stage);
   enum class Equation { itself, linear };
+  void linearise(System& system, const State& now, const Stage& stage, int iteration);
   void residual(System& system, const State& now, const Stage& stage, Equation equation);
   void evaluate(const State& now, const Stage& stage);
   void gather_residual(std::span<const double> masses, const Stage& stage);
@@ -135,6 +153,7 @@ class Stepper {
   void allow_velocities(const State& now, double h);
   static double carried_on(double h);
   static double root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of);
+  std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void measure(std::span<const Vec3> displacements, std::span<const double> masses, std::vector<double>& speeds) const;
   void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);
   void select_unsolved();
@@ -145,12 +164,12 @@ class Stepper {
 
   Method method_;
   NewtonParameters parameters_;
-  State previous_;
-  double previous_h_ = 0;  // 0: no history
-  double beta_ = 0;        // of the last stage [s]
-  int unfinished_ = 0;     // iterations of the last solve, where that ended for a look
+  History history_;
+  double beta_ = 0;     // of the last stage [s]
+  int unfinished_ = 0;  // iterations of the last solve, where that ended for a look
 
   // Scratch of one step.
+  StageTimes times_;
   solver::ConjugateGradient cg_;
   std::vector<PartState> parts_;
   std::vector<std::size_t> unsolved_;

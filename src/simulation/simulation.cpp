@@ -10,12 +10,12 @@
 #include "core/archive.hpp"
 #include "core/error.hpp"
 #include "core/log.hpp"
+#include "core/timer.hpp"
 #include "environment/environment.hpp"
 #include "simulation/energy_bound.hpp"
 #include "simulation/pin_doubts.hpp"
 #include "simulation/snapshots.hpp"
 #include "simulation/step_loop.hpp"
-#include "simulation/stopwatch.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -78,15 +78,15 @@ FrameReport Simulation::Impl::advance() {
   // Frame k is at k / fps exactly, whatever the steps between.
   report.time = report.frame / scene.time.fps;
   {
-    const Stopwatch watch(report.simulate_wall_s, report.simulate_cpu_s);
-    const StepLoop::Progress start = steps.progress();
+    const Stopwatch watch(report.simulate);
+    StepLoop::Checkpoint start = steps.checkpoint();
     try {
       steps.advance(time(), report.time, report);
       measure_energies(report);
       if (std::optional<std::string> warning = energy_bound->check(report.frame, report))
         report.warnings.push_back(*std::move(warning));
     } catch (const Error&) {
-      steps.return_to(start);
+      steps.return_to(std::move(start));
       throw;
     }
   }
@@ -161,6 +161,11 @@ FrameReport Simulation::advance() {
 }
 std::size_t Simulation::particles() const {
   return impl_->steps.cloth().masses().size();
+}
+
+MatrixSize Simulation::matrix() const {
+  const solver::BlockMatrix& matrix = impl_->steps.problem().memory().system.matrix;
+  return {matrix.full().columns.size(), matrix.isotropic().columns.size()};
 }
 
 ParticleState Simulation::state() const {

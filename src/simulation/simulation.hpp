@@ -38,6 +38,12 @@ std::vector<PlanItem> plan(const scene::Scene& scene);
 /// as Simulation's constructor does, for scenes with pins that move by keys.
 std::vector<std::string> doubts(const scene::Scene& scene);
 
+/// What the matrix of one iteration of Newton's method holds, contacts not counted.
+struct MatrixSize {
+  std::size_t full_blocks = 0;       ///< 3×3, diagonal included
+  std::size_t isotropic_blocks = 0;  ///< multiples of the unit matrix, one number each
+};
+
 class Simulation {
  public:
   /// Builds only what the scene names. Throws Error (asset_unreadable, scene_invalid).
@@ -59,6 +65,7 @@ class Simulation {
   bool run_preroll(const std::function<bool()>& proceed = [] { return true; });
   std::vector<ObjectInfo> objects() const;
   std::size_t particles() const;
+  MatrixSize matrix() const;
   /// Of the current frame; valid until the next advance().
   ParticleState state() const;
 

@@ -8,7 +8,7 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
-#include "simulation/stopwatch.hpp"
+#include "core/timer.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -90,8 +90,8 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
       cloth_(scene, environment),
       problem_(cloth_),
       pins_(scene, environment, first_particles(cloth_), cloth_.masses()),
-      progress_{start_of(environment, start), integrator::Stepper(method_of(scene.time.integrator), newton_of(scene)),
-                step_control_of(scene), std::numeric_limits<double>::infinity()} {
+      progress_{start_of(environment, start), step_control_of(scene), std::numeric_limits<double>::infinity()},
+      stepper_(method_of(scene.time.integrator), newton_of(scene)) {
   Moment& now = progress_.now;
   pins_.begin_step(start, 0, now.x);
   held_ = pins_.held();
@@ -120,8 +120,7 @@ void StepLoop::advance_equally(double t_t0, double t_t1, FrameReport& report) {
 // Goes from t to t + h, in two halves where one step is rejected, or longer than may follow the last one or than
 // obstacles allow.
 void StepLoop::advance_over(double t, double h, int halvings, FrameReport& report) {
-  const bool too_long =
-      h > (1 + 1e-9) * std::min(progress_.stepper.longest_step(), progress_.longest) || turns_too_far(t, h);
+  const bool too_long = h > (1 + 1e-9) * std::min(stepper_.longest_step(), progress_.longest) || turns_too_far(t, h);
   if (!too_long) {
     const Rejection rejection = attempt(t, h, scene_.solver.halvings - halvings, halvings == 0, report);
     if (!rejection) return accept(h, report);
@@ -140,7 +139,7 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
   double t = t_t0, h = 0;
   int left = 0, retries = 0;
   for (;;) {
-    const double longest = std::min(control.wanted(), progress_.stepper.longest_step());
+    const double longest = std::min(control.wanted(), stepper_.longest_step());
     const int needed = std::max(1, static_cast<int>(std::ceil((t_t1 - t) / longest - 1e-9)));
     if (needed != left) {
       left = needed;
@@ -199,13 +198,11 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   problem_.begin_step(t + h - start_, held_, pins_.pulls());
   if (!collisions_) return reason_of(solve(h, Start::unchanged_velocity, false, report));
   {
-    const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
+    const Stopwatch watch(report.collide);
     collisions_->begin_step(t, h, held_, progress_.now, next_);
   }
   collision::ContactResponse& response = collisions_->response();
-  const auto force_on = [&](Index particle) {
-    return progress_.stepper.constraint_force(particle, cloth_.masses()[particle]);
-  };
+  const auto force_on = [&](Index particle) { return stepper_.constraint_force(particle, cloth_.masses()[particle]); };
   const std::size_t pinned = held_.size();
   int adoptions = 0, bends = 0;
   bool look = true;
@@ -219,7 +216,7 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
       progress_.longest = 0.5 * h;
       return rejection;
     }
-    const Stopwatch watch(report.collide_wall_s, report.collide_cpu_s);
+    const Stopwatch watch(report.collide);
     const bool solved = step.verdict == integrator::Verdict::solved;
     look = true;
     const bool may_adopt = bends == 0 && adoptions + 1 < response.most_solves();
@@ -279,11 +276,13 @@ double StepLoop::added_share(double before, double h) const {
 
 // Into `next_`. `look`: where this takes long it ends unfinished, see kLookAfter.
 integrator::StepReport StepLoop::solve(double h, integrator::Stepper::Start start, bool look, FrameReport& report) {
-  const integrator::StepReport step =
-      progress_.stepper.step(problem_, progress_.now, h, scene_.physics.gravity, held_, next_, start,
-                             look ? kLookAfter : std::numeric_limits<int>::max());
+  const integrator::StepReport step = stepper_.step(problem_, progress_.now, h, scene_.physics.gravity, held_, next_,
+                                                    start, look ? kLookAfter : std::numeric_limits<int>::max());
   report.newton_iterations += step.newton_iterations;
   report.linear_iterations += step.linear_iterations;
+  report.forces += step.times.forces;
+  report.preconditioner += step.times.preconditioner;
+  report.linear += step.times.linear;
   local_error_ = step.local_error;
   solver_error_ = step.solver_error;
   return step;
@@ -298,7 +297,7 @@ StepLoop::Rejection StepLoop::reason_of(const integrator::StepReport& step) {
 
 // Makes `next_`, reached over h, the state.
 void StepLoop::accept(double h, FrameReport& report) {
-  progress_.stepper.accept(progress_.now, h);
+  stepper_.accept(progress_.now, h);
   pins_.accept();
   if (collisions_) collisions_->response().accept();
   std::swap(progress_.now, next_);
@@ -331,7 +330,7 @@ void StepLoop::serialize(Archive& archive) {
   serialize_points(archive, x, particles);
   std::ranges::copy(x, now.x.begin());
   serialize_points(archive, now.v, particles);
-  progress_.stepper.serialize(archive, particles);
+  stepper_.serialize(archive, particles);
   if (progress_.control) progress_.control->serialize(archive);
   archive.value(progress_.longest);
   if constexpr (Archive::kReads) require(progress_.longest > 0, "a step length");

@@ -34,15 +34,23 @@ class StepLoop {
   /// What the next step begins with, besides what follows from it.
   struct Progress {
     Moment now;
-    integrator::Stepper stepper;
     std::optional<integrator::StepControl> control;  // where the scene has a tolerance instead of a step
     double longest;                                  // step after one that was not solved [s]; else infinite
   };
   const Progress& progress() const { return progress_; }
-  /// After a failure, between two frames.
-  void return_to(Progress progress) { progress_ = std::move(progress); }
+  /// To return to after a failure, between two frames.
+  struct Checkpoint {
+    Progress progress;
+    integrator::Stepper::History history;
+  };
+  Checkpoint checkpoint() const { return {progress_, stepper_.history()}; }
+  void return_to(Checkpoint checkpoint) {
+    progress_ = std::move(checkpoint.progress);
+    stepper_.return_to(std::move(checkpoint.history));
+  }
 
   const ClothSystem& cloth() const { return cloth_; }
+  const StepProblem& problem() const { return problem_; }
   /// Particles that are held, by pins or by the response to contacts.
   std::size_t held() const { return held_.size(); }
   /// nullptr where nothing collides.
@@ -92,6 +100,7 @@ class StepLoop {
   StepProblem problem_;
   YieldingPins pins_;
   Progress progress_;
+  integrator::Stepper stepper_;
   Moment next_;                                // the end of the step at hand; once that is accepted, its start
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
   std::vector<integrator::HeldParticle> held_;

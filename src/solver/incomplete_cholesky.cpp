@@ -23,16 +23,21 @@ void IncompleteCholesky::read(const LinearSystem& system) {
   const Index rows = system.matrix.rows();
   std::vector<const Mat3*> free(index(rows), nullptr);
   for (const ParticleConstraint& c : system.constraints) free[index(c.particle)] = &c.free;
+  // Of both triangles' blocks the lower one has half, and the diagonal.
+  const std::size_t blocks = (system.matrix.blocks() + index(rows)) / 2;
   row_start_.assign(1, 0);
+  row_start_.reserve(index(rows) + 1);
   columns_.clear();
-  matrix_.clear();
+  columns_.reserve(blocks);
+  factor_.clear();
+  factor_.reserve(blocks);
   system.matrix.for_each_block(0, rows, [&](Index i, Index j, const auto& block) {
     if (j > i) return;
     columns_.push_back(j);
-    matrix_.push_back(block);
+    factor_.push_back(block);
     if (j == i) row_start_.push_back(columns_.size());
   });
-  const auto diagonal = [&](Index i) -> Mat3& { return matrix_[row_start_[index(i) + 1] - 1]; };
+  const auto diagonal = [&](Index i) -> Mat3& { return factor_[row_start_[index(i) + 1] - 1]; };
   for (const DiagonalTerm& term : system.diagonal_terms) diagonal(term.particle) += term.stiffness;
   for (const StencilTerm& term : system.terms)
     for (int k = 0; k < 4; ++k) diagonal(term.particles[k]) += term.weights[k] * term.weights[k] * term.stiffness;
@@ -40,28 +45,28 @@ void IncompleteCholesky::read(const LinearSystem& system) {
   for (Index i = 0; i < rows; ++i)
     for (std::size_t s = row_start_[index(i)]; s < row_start_[index(i) + 1]; ++s) {
       const Mat3 *free_i = free[index(i)], *free_j = free[index(columns_[s])];
-      if (free_i != nullptr) matrix_[s] = (*free_i * matrix_[s]).eval();
-      if (free_j != nullptr) matrix_[s] = (matrix_[s] * *free_j).eval();
-      if (columns_[s] == i && free_i != nullptr) matrix_[s] += Mat3::Identity() - *free_i;
+      if (free_i != nullptr) factor_[s] = (*free_i * factor_[s]).eval();
+      if (free_j != nullptr) factor_[s] = (factor_[s] * *free_j).eval();
+      if (columns_[s] == i && free_i != nullptr) factor_[s] += Mat3::Identity() - *free_i;
     }
 }
 
 bool IncompleteCholesky::factorise(const LinearSystem& system) {
-  read(system);
-  factor_.resize(matrix_.size());
-  y_.resize(row_start_.size() - 1);
-  for (double shift = 0; shift <= kLargestShift; shift = shift == 0 ? kFirstShift : 4 * shift)
+  for (double shift = 0; shift <= kLargestShift; shift = shift == 0 ? kFirstShift : 4 * shift) {
+    read(system);
+    y_.resize(row_start_.size() - 1);
     if (try_factorise(shift)) return true;
+  }
   return false;
 }
 
-// Row by row: L_ij = (A_ij − Σ_k L_ik L_jkᵀ) L_jj⁻ᵀ over the columns k that both rows have.
+// In place, row by row: L_ij = (A_ij − Σ_k L_ik L_jkᵀ) L_jj⁻ᵀ over the columns k that both rows have.
 bool IncompleteCholesky::try_factorise(double shift) {
   for (std::size_t i = 0; i + 1 < row_start_.size(); ++i) {
     const std::size_t begin = row_start_[i], last = row_start_[i + 1] - 1;
     for (std::size_t s = begin; s < last; ++s) {
       const std::size_t j = index(columns_[s]), end_of_j = row_start_[j + 1] - 1;
-      Mat3 sum = matrix_[s];
+      Mat3 sum = factor_[s];
       for (std::size_t p = begin, q = row_start_[j]; p < s && q < end_of_j;) {
         if (columns_[p] == columns_[q]) sum.noalias() -= factor_[p] * factor_[q].transpose();
         const bool step_p = columns_[p] <= columns_[q], step_q = columns_[q] <= columns_[p];
@@ -70,7 +75,7 @@ bool IncompleteCholesky::try_factorise(double shift) {
       }
       factor_[s].noalias() = sum * factor_[end_of_j].transpose();
     }
-    Mat3 pivot = (1 + shift) * matrix_[last];
+    Mat3 pivot = (1 + shift) * factor_[last];
     for (std::size_t s = begin; s < last; ++s) pivot.noalias() -= factor_[s] * factor_[s].transpose();
     const Eigen::LLT<Mat3> root(pivot);
     if (root.info() != Eigen::Success || !pivot.allFinite()) return false;

@@ -29,8 +29,7 @@ class IncompleteCholesky {
   // Rows of the lower triangle, columns ascending, the diagonal block last.
   std::vector<std::size_t> row_start_;
   std::vector<Index> columns_;
-  std::vector<Mat3> matrix_;
-  std::vector<Mat3> factor_;  // L, with L_ii⁻¹ in place of L_ii
+  std::vector<Mat3> factor_;  // as read the matrix, then L with L_ii⁻¹ in place of L_ii
   std::vector<Vec3> y_;
 };
 

@@ -81,10 +81,11 @@ struct Sample {
     frame::FrameReport report;
     report.frame = k;
     report.time = k / 25.0;
-    report.simulate_wall_s = 0.2;
-    report.simulate_cpu_s = 0.1;
-    report.collide_wall_s = 0.04;
-    report.collide_cpu_s = 0.03;
+    report.simulate = {0.2, 0.1};
+    report.collide = {0.04, 0.03};
+    report.forces = {0.05, 0.045};
+    report.preconditioner = {0.02, 0.015};
+    report.linear = {0.06, 0.055};
     report.steps = 10 + k;
     report.rejected_steps = 2;
     report.inexact_steps = 1;

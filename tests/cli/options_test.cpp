@@ -116,6 +116,34 @@ TEST(Options, MissingOrSurplusArgumentsAreRefused) {
   EXPECT_NE(refusal({"run", "a.toml", "--size", "64x64", "--size", "64x64"}), "accepted");
 }
 
+TEST(Options, OfSpeedAreListsAndForSpeedAlone) {
+  const auto bench = [](Arguments arguments) {
+    arguments.insert(arguments.begin(), {"bench", "speed"});
+    return std::get<BenchOptions>(parse_command_line(arguments));
+  };
+  const BenchOptions speed = bench({"--sizes", "2,0.5", "--threads", "4,1", "--steps", "1", "--frames", "3:7"});
+  EXPECT_EQ(speed.sizes, (std::vector<double>{0.5, 2}));
+  EXPECT_EQ(speed.threads, (std::vector<int>{1, 4}));
+  EXPECT_EQ(speed.frames.begin, 3);
+  EXPECT_FALSE(speed.drawing);
+  EXPECT_EQ(bench({"--draw", "preview"}).drawing, render::Quality::preview);
+  for (const char* wrong : {"0", "-1", "1;2", "nan", "1e9"})
+    EXPECT_EQ(refusal({"bench", "speed", "--sizes", wrong}),
+              std::string("--sizes: expected numbers from 0.01 to 100, got ") + wrong);
+  for (const char* wrong : {"1,", ",1", "1,,2"})
+    EXPECT_EQ(refusal({"bench", "speed", "--steps", wrong}),
+              std::string("--steps: expected numbers such as 1,2,4, got ") + wrong);
+  EXPECT_EQ(refusal({"bench", "speed", "--threads", "1,0"}),
+            "--threads: expected a whole number from 1 to 1024, got 0");
+  for (const char* wrong : {"0:3", "1:9:2"})
+    EXPECT_EQ(refusal({"bench", "speed", "--frames", wrong}),
+              std::string("--frames: expected A:B with A from 1, for frame 0 takes no time and each needs the one "
+                          "before, got ") +
+                  wrong);
+  EXPECT_EQ(refusal({"bench", "accuracy", "--steps", "1,2"}), "weft bench: --steps is for weft bench speed");
+  EXPECT_EQ(refusal({"bench", "sped"}), "WHAT: expected stability or accuracy or speed, got sped; did you mean speed?");
+}
+
 TEST(Options, HelpOfEachCommandShowsItsOptionsAndAnExample) {
   for (const std::string command : {"run", "check", "thumbnail"}) {
     const std::string help = std::get<PrintText>(parse_command_line({command, "--help"})).text;

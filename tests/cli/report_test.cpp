@@ -18,9 +18,9 @@ std::vector<FrameRecord> two_frames() {
   simulation::FrameReport& report = frames[1].report;
   report.frame = 1;
   report.time = 0.04;
-  report.simulate_wall_s = 0.020;
-  report.simulate_cpu_s = 0.018;
-  report.collide_wall_s = 0.005;
+  report.simulate.wall_s = 0.020;
+  report.simulate.cpu_s = 0.018;
+  report.collide.wall_s = 0.005;
   report.steps = 4;
   report.error_estimate = 0.00123;
   report.solver_error = 0.0002;

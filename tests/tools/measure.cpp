@@ -26,7 +26,7 @@ struct Request {
 void print(const MeasuredFrame& frame) {
   const auto& report = frame.report;
   std::printf("%5d %8.1f %8.1f %3d %2d %4d %5d %7d %6zu %8.4f %9.3g %9.3g %9.3g %9.2e %s %s\n", report.frame,
-              1e3 * report.simulate_cpu_s, 1e3 * report.collide_cpu_s, report.steps, report.rejected_steps,
+              1e3 * report.simulate.cpu_s, 1e3 * report.collide.cpu_s, report.steps, report.rejected_steps,
               report.newton_iterations, report.linear_iterations, report.constraints, frame.pairs, frame.max_stretch,
               frame.rms_speed, frame.largest_speed, report.kinetic_energy, report.min_distance, frame.between.c_str(),
               frame.max_stretch > 1.1 ? frame.stretched_at.c_str() : "");
@@ -38,7 +38,7 @@ void print(const MeasuredFrame& frame) {
 double median_after_contact_ms(const std::vector<MeasuredFrame>& frames) {
   const auto first = std::find_if(frames.begin(), frames.end(), [](const auto& f) { return f.report.proximities > 0; });
   std::vector<double> ms;
-  for (auto frame = first; frame != frames.end(); ++frame) ms.push_back(1e3 * frame->report.simulate_cpu_s);
+  for (auto frame = first; frame != frames.end(); ++frame) ms.push_back(1e3 * frame->report.simulate.cpu_s);
   if (ms.empty()) return 0;
   const auto middle = ms.begin() + static_cast<std::ptrdiff_t>(ms.size() / 2);
   std::nth_element(ms.begin(), middle, ms.end());
@@ -51,8 +51,8 @@ void print_summary(const std::vector<MeasuredFrame>& frames) {
   std::size_t pairs = 0, worst = 0;
   int rejected = 0, with_pairs = 0, pinched = 0, lagging = 0;
   for (const MeasuredFrame& frame : frames) {
-    simulate += frame.report.simulate_cpu_s;
-    collide += frame.report.collide_cpu_s;
+    simulate += frame.report.simulate.cpu_s;
+    collide += frame.report.collide.cpu_s;
     stretch = std::max(stretch, frame.max_stretch);
     pairs += frame.pairs;
     with_pairs += frame.pairs > 0;

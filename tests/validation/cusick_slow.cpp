@@ -125,7 +125,7 @@ Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles) {
   FrameReport report;
   for (int k = 1; k < scene.frame_count(); ++k) {
     report = simulation.advance();
-    result.cpu_s += report.simulate_cpu_s;
+    result.cpu_s += report.simulate.cpu_s;
   }
   EXPECT_LT(report.kinetic_energy, 1e-7);
   result.coefficient = overhang() / whole;

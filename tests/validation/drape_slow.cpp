@@ -31,7 +31,7 @@ Drape drape_with(double step_factor, double start_noise = 0) {
   Drape drape;
   for (const support::MeasuredFrame& frame : frames) {
     drape.stretch = std::max(drape.stretch, frame.max_stretch);
-    drape.cpu_s += frame.report.simulate_cpu_s;
+    drape.cpu_s += frame.report.simulate.cpu_s;
     if (frame.report.time > scene.time.duration - 1 + 1e-9)
       drape.rms_speed = std::max(drape.rms_speed, frame.rms_speed);
   }

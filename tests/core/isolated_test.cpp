@@ -1,18 +1,23 @@
-#include "assets/isolated.hpp"
+#include "core/isolated.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
-namespace weft::assets {
+#include "core/error.hpp"
+
+namespace weft {
 namespace {
 
 std::string reason(const std::function<std::string()>& work, unsigned cpu_seconds = 60) {
   try {
-    run_isolated(work, cpu_seconds);
+    run_isolated(work, {"the reader", cpu_seconds, std::uint64_t{16} << 30});
   } catch (const std::runtime_error& error) {
     return error.what();
   }
@@ -22,20 +27,20 @@ std::string reason(const std::function<std::string()>& work, unsigned cpu_second
 TEST(Isolated, WorkReturnsItsBytesWhateverTheyAre) {
   std::string bytes(3'000'000, '\0');  // more than a pipe holds at once
   for (std::size_t k = 0; k < bytes.size(); ++k) bytes[k] = static_cast<char>(k * k % 251);
-  EXPECT_EQ(run_isolated([&] { return bytes; }, 60), bytes);
-  EXPECT_EQ(run_isolated([] { return std::string(); }, 60), "");
+  EXPECT_EQ(run_isolated([&] { return bytes; }, {}), bytes);
+  EXPECT_EQ(run_isolated([] { return std::string(); }, {}), "");
 }
 
 TEST(Isolated, WorkChangesNothingInThisProcess) {
   int touched = 0;
-  run_isolated([&] { return std::to_string(++touched); }, 60);
+  run_isolated([&] { return std::to_string(++touched); }, {});
   EXPECT_EQ(touched, 0);
 }
 
 TEST(Isolated, WorkThatThrowsIsReportedInItsWords) {
   EXPECT_EQ(reason([]() -> std::string { throw std::runtime_error("line 7 is odd"); }), "line 7 is odd");
   EXPECT_EQ(reason([]() -> std::string { throw 7; }), "an exception without words");
-  EXPECT_EQ(reason([]() -> std::string { throw std::bad_alloc(); }), "it takes more memory than a mesh may");
+  EXPECT_EQ(reason([]() -> std::string { throw std::bad_alloc(); }), "the reader takes more memory than it may");
 }
 
 TEST(Isolated, WorkThatCrashesIsReportedBySignal) {
@@ -58,6 +63,23 @@ TEST(Isolated, WorkWithoutEndIsStopped) {
   EXPECT_EQ(reason(endless, 1), "the reader was stopped after 1 s of processor time");
 }
 
+TEST(Isolated, WorkIsKilledOnceItIsToStop) {
+  std::atomic<bool> stop = false;
+  const std::jthread asks([&] {
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+    stop = true;
+  });
+  const auto endless = []() -> std::string {
+    for (;;) ::pause();
+  };
+  try {
+    run_isolated(endless, {.stop = &stop});
+    FAIL() << "came back";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::interrupted);
+  }
+}
+
 #ifndef __SANITIZE_ADDRESS__
 TEST(Isolated, WorkThatWantsTooMuchMemoryIsRefused) {
   const auto greedy = [] {
@@ -65,9 +87,9 @@ TEST(Isolated, WorkThatWantsTooMuchMemoryIsRefused) {
     for (std::string& gigabyte : hoard) gigabyte.reserve(std::size_t{1} << 30);  // addresses only, no memory
     return std::to_string(hoard.size());
   };
-  EXPECT_EQ(reason(greedy), "it takes more memory than a mesh may");
+  EXPECT_EQ(reason(greedy), "the reader takes more memory than it may");
 }
 #endif
 
 }  // namespace
-}  // namespace weft::assets
+}  // namespace weft

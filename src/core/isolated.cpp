@@ -1,7 +1,8 @@
-#include "assets/isolated.hpp"
+#include "core/isolated.hpp"
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <poll.h>
 #include <sys/prctl.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -17,16 +18,20 @@
 #include <string_view>
 #include <system_error>
 
-namespace weft::assets {
-namespace {
+#include "core/error.hpp"
 
-constexpr rlim_t kAddressLimit = rlim_t{16} << 30;  // [bytes]
+namespace weft {
+namespace {
 
 /// First byte of the answer: what follows are the bytes of `work`, or the text of its exception.
 constexpr char kDone = 'D', kFailed = 'F';
 
 [[noreturn]] void fail(const char* what) {
   throw std::runtime_error(fmt::format("{}: {}", what, std::generic_category().message(errno)));
+}
+
+[[noreturn]] void throw_interrupted() {
+  throw Error(ExitCode::interrupted, "interrupted");
 }
 
 /// Descriptors of a pipe, closed at the end of the scope.
@@ -70,15 +75,16 @@ void send(int descriptor, std::string_view bytes) {
 }
 
 /// The child: never returns and runs no destructors of the parent's objects, whose files and threads are not its own.
-[[noreturn]] void run_child(const std::function<std::string()>& work, unsigned cpu_seconds, int answer) {
+[[noreturn]] void run_child(const std::function<std::string()>& work, const Isolation& isolation, int answer) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
   for (const int crash : {SIGSEGV, SIGBUS, SIGABRT, SIGFPE, SIGILL, SIGXCPU, SIGTERM}) std::signal(crash, SIG_DFL);
   // Ctrl-C reaches all of the terminal's processes; the parent decides what becomes of it.
-  std::signal(SIGINT, SIG_IGN);
+  for (const int request : {SIGINT, SIGHUP}) std::signal(request, SIG_IGN);
   limit(RLIMIT_CORE, 0, 0);
-  limit(RLIMIT_CPU, cpu_seconds, cpu_seconds + 1);  // first XCPU, a second later KILL
-#ifndef __SANITIZE_ADDRESS__                        // the address sanitizer reserves terabytes
-  limit(RLIMIT_AS, kAddressLimit, kAddressLimit);
+  // First XCPU, a second later KILL.
+  if (isolation.cpu_seconds > 0) limit(RLIMIT_CPU, isolation.cpu_seconds, isolation.cpu_seconds + 1);
+#ifndef __SANITIZE_ADDRESS__  // it reserves terabytes
+  if (isolation.addresses > 0) limit(RLIMIT_AS, isolation.addresses, isolation.addresses);
 #endif
   char kind = kDone;
   std::string bytes;
@@ -86,7 +92,7 @@ void send(int descriptor, std::string_view bytes) {
     bytes = work();
   } catch (const std::bad_alloc&) {
     kind = kFailed;
-    bytes = "it takes more memory than a mesh may";
+    bytes = isolation.name + " takes more memory than it may";
   } catch (const std::exception& error) {
     kind = kFailed;
     bytes = error.what();
@@ -99,10 +105,15 @@ void send(int descriptor, std::string_view bytes) {
   ::_exit(0);
 }
 
-std::string receive(int descriptor) {
+// Until the end, or until it is to stop.
+std::string receive(int descriptor, const std::atomic<bool>* stop) {
+  constexpr int kLookEvery = 100;  // [ms]
   std::string bytes;
   std::array<char, 1 << 16> buffer{};
   for (;;) {
+    pollfd wait{descriptor, POLLIN, 0};
+    while (stop != nullptr && ::poll(&wait, 1, kLookEvery) <= 0)
+      if (*stop) throw_interrupted();
     const ssize_t got = ::read(descriptor, buffer.data(), buffer.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail("reading from a child process");
@@ -137,28 +148,31 @@ class Child {
 
 }  // namespace
 
-std::string run_isolated(const std::function<std::string()>& work, unsigned cpu_seconds) {
+std::string run_isolated(const std::function<std::string()>& work, const Isolation& isolation) {
   Pipe pipe;
   const pid_t process = ::fork();
   if (process < 0) fail("no child process");
-  if (process == 0) run_child(work, cpu_seconds, pipe.write_end());
+  if (process == 0) run_child(work, isolation, pipe.write_end());
   Child child(process);
   pipe.close_write_end();
-  std::string answer = receive(pipe.read_end());
+  std::string answer = receive(pipe.read_end(), isolation.stop);
   const int status = child.wait();
+  // Whoever asked for an end may have asked the child too.
+  if (isolation.stop != nullptr && *isolation.stop) throw_interrupted();
   if (WIFSIGNALED(status)) {
     const int signal = WTERMSIG(status);
     if (signal == SIGXCPU)
-      throw std::runtime_error(fmt::format("the reader was stopped after {} s of processor time", cpu_seconds));
-    if (signal == SIGKILL) throw std::runtime_error("the reader was killed from outside, as for want of memory");
-    throw std::runtime_error(fmt::format("the reader crashed: {}", ::strsignal(signal)));
+      throw std::runtime_error(
+          fmt::format("{} was stopped after {} s of processor time", isolation.name, isolation.cpu_seconds));
+    if (signal == SIGKILL) throw std::runtime_error(isolation.name + " was killed from outside, as for want of memory");
+    throw std::runtime_error(fmt::format("{} crashed: {}", isolation.name, ::strsignal(signal)));
   }
   if (!WIFEXITED(status) || WEXITSTATUS(status) != 0 || answer.empty())
-    throw std::runtime_error("the reader ended without a word");
+    throw std::runtime_error(isolation.name + " ended without a word");
   const char kind = answer.front();
   answer.erase(0, 1);
   if (kind == kFailed) throw std::runtime_error(answer);
   return answer;
 }
 
-}  // namespace weft::assets
+}  // namespace weft

@@ -1,0 +1,55 @@
+// Texts of the command line as checked values. All throw Error(usage) with what was expected.
+#pragma once
+
+#include <array>
+#include <set>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/error.hpp"
+
+namespace weft::cli {
+
+/// "; did you mean X?", or nothing where none is near.
+std::string did_you_mean(const std::string& name, std::span<const std::string> known);
+
+template <class Value>
+using Choice = std::pair<const char*, Value>;
+
+template <class Value, std::size_t N>
+Value parse_choice(const char* option, const std::string& text, const std::array<Choice<Value>, N>& choices) {
+  std::vector<std::string> names;
+  for (const auto& [name, value] : choices) {
+    if (text == name) return value;
+    names.emplace_back(name);
+  }
+  throw Error(ExitCode::usage, "{}: expected {}, got {}{}", option, fmt::join(names, " or "), text,
+              did_you_mean(text, names));
+}
+
+int parse_integer(const char* option, const std::string& text, int low, int high);
+/// From 0 to 1.
+double parse_share(const char* option, const std::string& text);
+/// How many times something: above 0, as far as anyone would go.
+double parse_factor(const char* option, const std::string& text);
+double parse_fps(const std::string& text);
+
+/// `0.5,1,2`: ascending, each once.
+template <class Value, class Parse>
+std::vector<Value> parse_list(const char* option, const std::string& text, const Parse& parse) {
+  std::set<Value> values;
+  for (std::size_t begin = 0; begin <= text.size();) {
+    const std::size_t end = std::min(text.find(',', begin), text.size());
+    if (begin == end) throw Error(ExitCode::usage, "{}: expected numbers such as 1,2,4, got {}", option, text);
+    values.insert(parse(option, text.substr(begin, end - begin)));
+    begin = end + 1;
+  }
+  return {values.begin(), values.end()};
+}
+
+/// As it was, `key=value`.
+std::string check_override(const std::string& text);
+
+}  // namespace weft::cli
