@@ -33,7 +33,7 @@ std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec
   const Vec3 centres = sum(pair.a, x_t0) - sum(pair.b, x_t0);
   std::optional<Vec3> found;
   const auto try_direction = [&](const Vec3& direction) {
-    const double length = direction.stableNorm();
+    const double length = direction.norm();
     if (!(length > 0)) return false;
     const Vec3 n = (direction / length).cast<float>().cast<double>();
     if (separates(n, pair, x_t0, x_t1)) found = n;
