@@ -41,6 +41,9 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
 }
 
 void SurfaceBuffers::update(const frame::SurfaceState& state) {
+  // Obstacles mostly stand still.
+  if (mapped_ && state.positions == state_.positions && state.heat == state_.heat) return;
+  state_ = state;
   if (!mapped_ || vertex_count_ != state.positions.size()) {
     corners_ = CornerMap(surface_->triangles, state.positions.size());
     vertex_count_ = state.positions.size();

@@ -37,6 +37,7 @@ class SurfaceBuffers {
   Buffer vertices_, triangles_;
   ShadedMesh mesh_;
   std::vector<Vec3> positions_;
+  frame::SurfaceState state_;  // of the last frame
 };
 
 /// Two triangles that reach to the horizon, wound so that `normal` faces the viewer.
