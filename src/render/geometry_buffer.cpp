@@ -26,7 +26,8 @@ void GeometryBuffer::set_class(PixelClass pixel_class) const {
   gl_->StencilFunc(GL_ALWAYS, static_cast<GLint>(pixel_class), 0xFF);
 }
 
-void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, double far) {
+void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, const Vec3& eye,
+                          double far) {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
   gl_->Viewport(0, 0, width_, height_);
   const float nothing[] = {static_cast<float>(far), kNothing, 0, 0};
@@ -39,7 +40,10 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorB
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     set_class(surfaces[i].surface().kind == frame::ObjectKind::cloth ? PixelClass::cloth : PixelClass::solid);
     gl_->Uniform1f(surface_, static_cast<float>(kFirstSurface + i));
+    const bool cull = surfaces[i].hides_its_backs(eye);
+    if (cull) gl_->Enable(GL_CULL_FACE);
     surfaces[i].draw();
+    if (cull) gl_->Disable(GL_CULL_FACE);
   }
   if (floor) {
     set_class(PixelClass::floor);

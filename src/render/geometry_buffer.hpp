@@ -18,9 +18,9 @@ class GeometryBuffer {
  public:
   GeometryBuffer(const Gl& gl, int width, int height);
 
-  /// Draws all surfaces and, where not null, the floor. `far` is the distance stored where nothing is [m]. Leaves the
-  /// results bound to units 4, 5 and 8.
-  void draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, double far);
+  /// Draws all surfaces and, where not null, the floor as seen from `eye`. `far` is the distance stored where nothing
+  /// is [m]. Leaves the results bound to units 4, 5 and 8.
+  void draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, const Vec3& eye, double far);
 
   /// Reads what each pixel shows, lowest row first.
   void read_seen(std::vector<Seen>& seen) const;

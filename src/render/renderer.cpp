@@ -225,7 +225,7 @@ image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
   const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
 
   passes->shadows.draw(plan.lights, plan.caster_positions, meshes, plan.up, plan.exposure.direct);
-  passes->geometry.draw(passes->surfaces, floor, plan.view.far);
+  passes->geometry.draw(passes->surfaces, floor, plan.view.eye, plan.view.far);
   const SkyView above = fit_sky(plan.subjects, plan.up, sky_reach(plan.subjects));
   passes->soft_light.draw(meshes, above, light_set(plan.lights));
   const PixelArea area = visible_area(plan.view, plan.caster_positions, settings.width, settings.height);

@@ -1,7 +1,9 @@
 #include "render/shaded_mesh.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "core/error.hpp"
 
@@ -72,6 +74,16 @@ CornerMap::CornerMap(std::span<const Triangle> triangles, std::size_t vertex_cou
   for (std::size_t c = 0; c < corners_.size(); ++c) {
     corners_[next[triangles[c / 3][c % 3]]++] = static_cast<std::int32_t>(c);
   }
+}
+
+bool is_closed(std::span<const Triangle> triangles) {
+  std::vector<std::pair<Index, Index>> edges;
+  for (const Triangle& t : triangles) edges.insert(edges.end(), {{t[0], t[1]}, {t[1], t[2]}, {t[2], t[0]}});
+  std::sort(edges.begin(), edges.end());
+  if (std::adjacent_find(edges.begin(), edges.end()) != edges.end()) return false;
+  return !edges.empty() && std::all_of(edges.begin(), edges.end(), [&](const auto& edge) {
+    return std::binary_search(edges.begin(), edges.end(), std::pair(edge.second, edge.first));
+  });
 }
 
 std::vector<Vec3> area_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions) {

@@ -27,6 +27,9 @@ class CornerMap {
   std::vector<std::int32_t> first_{0}, corners_;
 };
 
+/// True where every edge is that of two triangles that run along it in opposite ways, so that a surface has an inside.
+bool is_closed(std::span<const Triangle> triangles);
+
 /// Twice the area times the unit normal of each triangle [m²]; counter-clockwise seen from the tip. Zero for
 /// triangles without area.
 std::vector<Vec3> area_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions);

@@ -75,7 +75,7 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
       width_(width),
       height_(height),
       quality_(quality),
-      backdrop_(gl, "fullscreen.vert", "backdrop.frag", shading_defines(quality, {}, false)),
+      backdrop_(gl, "backdrop.vert", "grid.frag", shading_defines(quality, {}, false)),
       areas_(gl, "areas.vert", ""),
       picture_(make_texture(gl, GL_RGBA8, width, height, GL_NEAREST)),
       heat_colors_(make_heat_colors(gl)),
@@ -108,10 +108,9 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
   solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp));
   const char* pattern = checker ? "CHECKER" : "PLAIN";
   shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, many, {pattern}));
-  open_floor =
-      floor_on_grid
-          ? Program(gl, "open_floor.vert", "open_floor.frag", shading_defines(quality, lights, false))
-          : Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, false, {pattern, "OPEN"}));
+  open_floor = floor_on_grid ? Program(gl, "open_floor.vert", "grid.frag", shading_defines(quality, lights, false))
+                             : Program(gl, "fullscreen.vert", "floor.frag",
+                                       shading_defines(quality, lights, false, {pattern, "OPEN"}));
 }
 
 const Shading::Programs& Shading::programs(const LightSet& lights, bool checker) {
@@ -186,7 +185,7 @@ void Shading::draw(std::span<const Material> materials, double heat_scale, const
   gl_->Disable(GL_SCISSOR_TEST);
   if (!shaded_floor.empty()) shade(PixelClass::shaded_floor, chosen.shaded_floor);
   shade(PixelClass::floor, chosen.open_floor, chosen.floor_on_grid);
-  shade(PixelClass::backdrop, backdrop_);
+  shade(PixelClass::backdrop, backdrop_, true);
   gl_->Disable(GL_STENCIL_TEST);
 }
 

@@ -13,17 +13,13 @@ constexpr int kMargin = 2;  // texels that shading may look beyond a pixel's own
 // Openness from which floor counts as open: what is left out is half a level of 255, less than the dither.
 constexpr float kOpen = 0.998f;
 
-/// As shaders/soft_light.glsl packs it.
-struct SoftTexel {
-  float surface_open, lit[kSoftLights], distance;
-
-  /// Floor here or a neighbour needs to look this texel up.
-  bool shades() const {
-    constexpr float kOpenPacked = kFloor + 0.9375f * kOpen;
-    if (surface_open < kFloor) return false;
-    return surface_open < kOpenPacked || surface_open >= kFirstSurface || lit[0] < 1 || lit[1] < 1;
-  }
-};
+/// Whether floor here or nearby needs to look the texel up.
+bool shades(const SoftTexel& texel) {
+  constexpr float kOpenPacked = kFloor + 0.9375f * kOpen;
+  if (texel.surface_open < kFloor) return false;
+  return texel.surface_open < kOpenPacked || texel.surface_open >= kFirstSurface || texel.lit[0] < 1 ||
+         texel.lit[1] < 1;
+}
 
 std::vector<std::string> soft_light_defines(const QualitySettings& quality, const LightSet& lights) {
   std::vector<std::string> defines = ShadowMaps::defines(quality, lights);
@@ -93,21 +89,21 @@ void SoftLight::draw(std::span<const DrawnMesh> meshes, const SkyView& above, Li
   gl_->BindTextureUnit(3, light_.name());
 }
 
-std::vector<PixelArea> SoftLight::shaded_floor() const {
-  std::vector<SoftTexel> texels(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  gl_->GetTextureImage(light_.name(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels.size() * sizeof(SoftTexel)),
-                       texels.data());
+std::vector<PixelArea> SoftLight::shaded_floor() {
+  texels_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
+  gl_->GetTextureImage(light_.name(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels_.size() * sizeof(SoftTexel)),
+                       texels_.data());
   // Texel x counts for the tiles of x - kMargin and x + kMargin; flags begin at x = -kMargin.
   const auto tiles = [](int texels_along) { return (texels_along + 2 * kMargin + kTile - 1) / kTile; };
   const int columns = tiles(width_), rows = tiles(height_);
   std::vector<std::uint8_t> flags(static_cast<std::size_t>(columns) * rows), row_flags(columns);
   for (int y = 0; y < height_; ++y) {
     std::fill(row_flags.begin(), row_flags.end(), 0);
-    const SoftTexel* row = texels.data() + static_cast<std::size_t>(y) * width_;
+    const SoftTexel* row = texels_.data() + static_cast<std::size_t>(y) * width_;
     for (int x = 0; x < width_; ++x) {
-      const bool shades = row[x].shades();
-      row_flags[x / kTile] |= shades;
-      row_flags[(x + 2 * kMargin) / kTile] |= shades;
+      const bool flag = shades(row[x]);
+      row_flags[x / kTile] |= flag;
+      row_flags[(x + 2 * kMargin) / kTile] |= flag;
     }
     for (const int tile_row : {y / kTile, (y + 2 * kMargin) / kTile}) {
       for (int i = 0; i < columns; ++i) flags[static_cast<std::size_t>(tile_row) * columns + i] |= row_flags[i];

@@ -16,6 +16,11 @@ namespace weft::render {
 /// Lights whose shares the small picture holds.
 inline constexpr std::size_t kSoftLights = 2;
 
+/// As shaders/soft_light.glsl packs it.
+struct SoftTexel {
+  float surface_open, lit[kSoftLights], distance;
+};
+
 class SoftLight {
  public:
   /// For pictures of width x height pixels.
@@ -26,7 +31,7 @@ class SoftLight {
   void draw(std::span<const DrawnMesh> meshes, const SkyView& above, LightSet lights);
 
   /// Parts of the picture that hold all floor to which the small picture denies light or sky. Call after draw().
-  std::vector<PixelArea> shaded_floor() const;
+  std::vector<PixelArea> shaded_floor();
 
  private:
   const Gl* gl_;
@@ -38,6 +43,7 @@ class SoftLight {
   Framebuffer distances_target_, light_target_, smoothed_target_;
   VertexArray no_vertices_;
   std::vector<SkyTexel> sky_map_;
+  std::vector<SoftTexel> texels_;
 };
 
 }  // namespace weft::render

@@ -35,15 +35,30 @@ void describe_vertices(const Gl& gl, const VertexArray& array, const Buffer& ver
 
 SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface)
     : gl_(&gl), surface_(std::move(surface)), array_(gl), vertices_(gl), triangles_(gl) {
+  closed_ = surface_->kind != frame::ObjectKind::cloth && is_closed(surface_->triangles);
   describe_vertices(gl, array_, vertices_);
   gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
 }
 
 void SurfaceBuffers::update(const frame::SurfaceState& state) {
+  // Obstacles mostly stand still.
+  if (mapped_ && state.positions == state_.positions && state.heat == state_.heat) return;
+  state_ = state;
   if (!mapped_ || vertex_count_ != state.positions.size()) {
     corners_ = CornerMap(surface_->triangles, state.positions.size());
     vertex_count_ = state.positions.size();
     mapped_ = true;
+  }
+  if (closed_) {
+    double volume = 0;  // six times what is enclosed: negative where the front is inside
+    bounds_.setEmpty();
+    for (const Vec3& position : state.positions) bounds_.extend(position);
+    for (const auto& [a, b, c] : surface_->triangles) {
+      const Vec3 from_center = state.positions[a] - bounds_.center();
+      volume +=
+          from_center.dot((state.positions[b] - state.positions[a]).cross(state.positions[c] - state.positions[a]));
+    }
+    outward_ = volume > 0;
   }
   mesh_ = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
   std::vector<DrawnVertex> vertices(mesh_.source.size());

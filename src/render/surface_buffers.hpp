@@ -19,6 +19,9 @@ class SurfaceBuffers {
   /// Takes over the positions of a frame. Throws Error(internal) where their number is not that of the surface.
   void update(const frame::SurfaceState& state);
   void draw() const;
+  /// Whether what is seen from `eye` is all front: a closed surface with its front outside, and the eye not near
+  /// inside.
+  bool hides_its_backs(const Vec3& eye) const { return outward_ && !bounds_.contains(eye); }
   /// World position of each drawn vertex [m], and triangles of them.
   std::span<const Vec3> positions() const { return positions_; }
   std::span<const Triangle> triangles() const { return mesh_.triangles; }
@@ -28,11 +31,13 @@ class SurfaceBuffers {
   std::shared_ptr<const frame::Surface> surface_;
   CornerMap corners_;
   std::size_t vertex_count_ = 0;
-  bool mapped_ = false;
+  bool mapped_ = false, closed_ = false, outward_ = false;
+  Box3 bounds_;
   VertexArray array_;
   Buffer vertices_, triangles_;
   ShadedMesh mesh_;
   std::vector<Vec3> positions_;
+  frame::SurfaceState state_;  // of the last frame
 };
 
 /// Two triangles that reach to the horizon, wound so that `normal` faces the viewer.

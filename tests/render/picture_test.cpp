@@ -92,6 +92,31 @@ TEST(Picture, NearerHidesFartherInEitherOrder) {
   }
 }
 
+// A tetrahedron, seen from outside and from within, with its fronts outside and inside. Light from the viewer's side
+// falls on its near side only; behind it and without it the backdrop is light grey.
+TEST(Picture, ClosedSurfacesAreSeenFromWithinAsWell) {
+  for (const bool outward : {true, false}) {
+    for (const bool within : {true, false}) {
+      frame::FrameSnapshot snapshot;
+      snapshot.stage = stage_without_sky();
+      std::vector<std::array<Index, 3>> triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+      if (!outward) {
+        for (auto& triangle : triangles) std::swap(triangle[0], triangle[1]);
+      }
+      add_surface(snapshot, frame::ObjectKind::obstacle, {{-9, -5, -5}, {9, -5, -5}, {0, 8, -5}, {0, 0, 9}}, triangles)
+          .appearance.color = kRed;
+      snapshot.cameras = {camera_at(within ? Vec3(0, 0, 0) : Vec3(0, -40, 0), Vec3(0, 10, 0), 40)};
+      snapshot.lights = {sun(Vec3::UnitY())};
+      const image::Image image = Renderer(settings(Quality::draft)).draw(snapshot);
+      const std::uint8_t* middle = image.pixel(160, 100);
+      EXPECT_LT(middle[1], 60) << outward << within;
+      if (!within) {
+        EXPECT_GT(middle[0], 100) << outward;
+      }
+    }
+  }
+}
+
 // A matte surface that faces a light of intensity 1 shows its own colour. Tolerance: a rough highlight of f0 = 0.004
 // adds under 1 level, dithering and the fitted sRGB curve under 1.
 TEST(Picture, MatteSurfaceFacingTheLightShowsItsOwnColor) {

@@ -84,5 +84,15 @@ TEST(ShadedMesh, TriangleNamingAMissingVertexIsAnError) {
   EXPECT_THROW(CornerMap(negative, 3), Error);
 }
 
+TEST(ShadedMesh, OnlyASurfaceWithoutBordersIsClosed) {
+  const std::vector<Triangle> tetrahedron = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  EXPECT_TRUE(is_closed(tetrahedron));
+  EXPECT_FALSE(is_closed(std::span(tetrahedron).first(3)));
+  // One triangle the wrong way round, one twice, and none.
+  EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
+  EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {2, 0, 3}}));
+  EXPECT_FALSE(is_closed({}));
+}
+
 }  // namespace
 }  // namespace weft::render

@@ -1,3 +1,4 @@
+// What changes so slowly over the picture that it is lit at the corners of a grid: backdrop, open floor under suns.
 #include "frame.glsl"
 #include "dither.glsl"
 noperspective in vec3 shown;
