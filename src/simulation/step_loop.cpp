@@ -85,7 +85,6 @@ Moment start_of(const environment::Environment& environment, double t) {
 
 StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& environment, double start)
     : scene_(scene),
-      environment_(environment),
       start_(start),
       cloth_(scene, environment),
       problem_(cloth_),

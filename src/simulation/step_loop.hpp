@@ -94,7 +94,6 @@ class StepLoop {
   [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
 
   const scene::Scene& scene_;
-  const environment::Environment& environment_;
   double start_;  // of the simulation [s]
   ClothSystem cloth_;
   StepProblem problem_;
