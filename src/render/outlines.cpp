@@ -212,7 +212,7 @@ void Outlines::sample_floor(const Floor& floor, const View& view) {
 /// Mean of the samples' colours. Each is that of the pixel itself where it shows the same, else of the pixel around it
 /// that shows the same surface nearest to the plane of the sample's triangle: of two sides of an edge, each its own.
 std::uint32_t Outlines::resolve(std::size_t slot, std::span<const Seen> seen, const std::uint32_t* picture) const {
-  const auto [x, y] = pixels_[slot];
+  const int x = pixels_[slot].x, y = pixels_[slot].y;
   const Samples& samples = samples_[slot];
   const int x0 = std::max(x - 1, 0), x1 = std::min(x + 1, width_ - 1);
   const int y0 = std::max(y - 1, 0), y1 = std::min(y + 1, height_ - 1);
