@@ -18,8 +18,9 @@ constexpr float kOffsetY[] = {5 / 16.f, 11 / 16.f, 9 / 16.f, 3 / 16.f, 13 / 16.f
 
 // Where something ends or folds, 1 / distance, which is linear over the picture of any plane, has a kink or a step.
 constexpr float kKink = 1e-3f;
-// A sample shows what its pixel shows where both are as far away to this part.
-constexpr float kSameDistance = 2e-3f;
+// A sample shows what its pixel shows where that lies in the plane of the sample's triangle, to this part of the
+// distance: a quarter of what counts as a kink.
+constexpr float kSamePlane = 2.5e-4f;
 
 /// Twice the signed area of the triangle of an edge from a to b and a place, positive on its left. Exactly the opposite
 /// for the edge from b to a, as both measure from the same end: no sample falls between two triangles.
@@ -177,6 +178,8 @@ void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float s
           const float near = std::min(std::max(corner_nearness + nearness_offsets[s], least), most);
           const bool wins = (std::min(e0, std::min(e1, e2)) >= 0) & (near > samples.nearness[s]);
           samples.nearness[s] = wins ? near : samples.nearness[s];
+          samples.slope_x[s] = wins ? slope_x : samples.slope_x[s];
+          samples.slope_y[s] = wins ? slope_y : samples.slope_y[s];
           samples.surface[s] = wins ? shown : samples.surface[s];
         }
       }
@@ -199,49 +202,51 @@ void Outlines::sample_floor(const Floor& floor, const View& view) {
       const float near = static_cast<float>((base + x * kOffsetX[s] + y * kOffsetY[s]) / height);
       const bool wins = near > samples.nearness[s];
       samples.nearness[s] = wins ? near : samples.nearness[s];
+      samples.slope_x[s] = wins ? static_cast<float>(x / height) : samples.slope_x[s];
+      samples.slope_y[s] = wins ? static_cast<float>(y / height) : samples.slope_y[s];
       samples.surface[s] = wins ? static_cast<float>(kFloor) : samples.surface[s];
     }
   }
 }
 
 /// Mean of the samples' colours. Each is that of the pixel itself where it shows the same, else of the pixel around it
-/// that shows the same surface nearest to the sample's distance.
+/// that shows the same surface nearest to the plane of the sample's triangle: of two sides of an edge, each its own.
 std::uint32_t Outlines::resolve(std::size_t slot, std::span<const Seen> seen, const std::uint32_t* picture) const {
-  const auto [x, y] = pixels_[slot];
+  const int x = pixels_[slot].x, y = pixels_[slot].y;
   const Samples& samples = samples_[slot];
-  const std::size_t here = static_cast<std::size_t>(y) * width_ + x;
   const int x0 = std::max(x - 1, 0), x1 = std::min(x + 1, width_ - 1);
   const int y0 = std::max(y - 1, 0), y1 = std::min(y + 1, height_ - 1);
+  const auto index = [&](int i, int j) { return static_cast<std::size_t>(j) * width_ + i; };
   std::uint32_t sums[3] = {};
-  std::size_t chosen = here;
-  float chosen_nearness = -1, chosen_surface = -1;
+  std::size_t chosen = 0;
   for (int s = 0; s < kSamples; ++s) {
-    const float surface = samples.surface[s], nearness = samples.nearness[s];
-    // Most samples want the same as the one before.
-    if (surface != chosen_surface || std::abs(nearness - chosen_nearness) > kSameDistance * nearness) {
-      chosen = here;
-      chosen_surface = surface;
-      chosen_nearness = nearness;
-      // How unlike the pixel is, as a part of the distance; any other surface is more unlike than the same one.
-      const auto unlike = [&](std::size_t at) {
-        if (seen[at].surface != surface) return 1e9f;
-        return surface < kFloor ? 0.0f : std::abs(seen[at].distance * nearness - 1);
+    const float surface = samples.surface[s], slope_x = samples.slope_x[s], slope_y = samples.slope_y[s];
+    // Most samples are of the same triangle as the one before.
+    if (s == 0 || surface != samples.surface[s - 1] || slope_x != samples.slope_x[s - 1] ||
+        slope_y != samples.slope_y[s - 1]) {
+      // How far a pixel lies off that plane, as a part of its distance; any other surface is farther off than the same.
+      const auto off_plane = [&](int i, int j) {
+        const Seen& there = seen[index(i, j)];
+        if (there.surface != surface) return 1e9f;
+        const float right = static_cast<float>(i - x) + 0.5f - kOffsetX[s];
+        const float up = static_cast<float>(j - y) + 0.5f - kOffsetY[s];
+        const float nearness = samples.nearness[s] + slope_x * right + slope_y * up;
+        return surface < kFloor ? 0.0f : std::abs(there.distance * nearness - 1);
       };
-      float least = unlike(here);
-      if (least > kSameDistance) {
+      chosen = index(x, y);
+      float least = off_plane(x, y);
+      if (least > kSamePlane) {
         for (int j = y0; j <= y1; ++j) {
           for (int i = x0; i <= x1; ++i) {
-            const std::size_t there = static_cast<std::size_t>(j) * width_ + i;
-            const float difference = unlike(there);
-            if (difference >= least) continue;
-            least = difference;
-            chosen = there;
+            const float off = off_plane(i, j);
+            if (off >= least) continue;
+            least = off;
+            chosen = index(i, j);
           }
         }
       }
     }
-    const std::uint32_t color = picture[chosen];
-    for (int channel = 0; channel < 3; ++channel) sums[channel] += color >> (8 * channel) & 0xFF;
+    for (int channel = 0; channel < 3; ++channel) sums[channel] += picture[chosen] >> (8 * channel) & 0xFF;
   }
   std::uint32_t mean = 0;
   for (int channel = 0; channel < 3; ++channel) mean |= (sums[channel] + kSamples / 2) / kSamples << (8 * channel);

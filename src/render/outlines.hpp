@@ -29,9 +29,10 @@ class Outlines {
 
  private:
   static constexpr int kSamples = 8;
-  /// What the samples of one pixel show: 1 / distance [1/m], 0 for nothing, and the surface.
+  /// What the samples of one pixel show: 1 / distance [1/m], 0 for nothing, how that changes over the plane of their
+  /// triangle [1/m for each pixel], and the surface.
   struct Samples {
-    float nearness[kSamples] = {}, surface[kSamples] = {};
+    float nearness[kSamples] = {}, slope_x[kSamples] = {}, slope_y[kSamples] = {}, surface[kSamples] = {};
   };
   /// A vertex in the picture: pixels from its lower left corner, and 1 / distance [1/m].
   struct Vertex {

@@ -159,6 +159,27 @@ TEST(Outlines, NearerHidesFartherInEitherOrder) {
   }
 }
 
+// Two sides of a box that meet in an upright edge, white and grey, at x = 40.25: the same surface, as far away there.
+TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
+  Scene scene;
+  const Thing box{{at(10, 10, 3), at(40.25, 10, 2), at(40.25, 50, 2), at(10, 50, 3), at(80, 10, 3), at(80, 50, 3)},
+                  {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}},
+                  kWhite};
+  scene.add(box, 2, [](double x, double y) { return x > 10 && x < 80 && y > 10 && y < 50; });
+  for (int y = 10; y < 50; ++y) {
+    for (int x = 10; x < 80; ++x) {
+      const double center = x + 0.5, share = center < 40.25 ? (center - 10) / 30.25 : (80 - center) / 39.75;
+      // 1 / distance is linear over the picture of each side.
+      scene.seen[y * kWidth + x].distance = static_cast<float>(1 / (1 / 3.0 + share * (1 / 2.0 - 1 / 3.0)));
+      if (center > 40.25) scene.picture[y * kWidth + x] = 0x404040;
+    }
+  }
+  scene.smooth();
+  EXPECT_EQ(scene.red(39, 30), 255);
+  EXPECT_NEAR(scene.red(40, 30), 64 + 191 / 4, 1);
+  EXPECT_EQ(scene.red(41, 30), 64);
+}
+
 TEST(Outlines, WhatReachesBehindTheViewerIsCutOff) {
   // A strip on the ground one metre below that begins behind the viewer: it covers the lower part of the picture.
   Scene scene;
