@@ -21,13 +21,13 @@ class Lock {
  public:
   /// Share of the limit from which threads begin to lock. Below it nothing is added, to the bit.
   static constexpr double kOnset = 0.7;
-  /// Stress at the limit [N/m]. A tenth beyond it is more than twice that: a ball at 100 m/s pulls by ρ v² / (2 √e),
-  /// 3,500 to 9,000 N/m in the fabrics of [scene] (a transverse wave along a thread of strain e; Smith, McCrackin &
-  /// Schiefer, "Stress-Strain Relationships in Yarns Subjected to Rapid Impact Loading", 1958), and is let that far.
-  /// With 2e4 and straight from the limit on Newton's method crossed the corner again and again: multi_sheet with a
-  /// limit of 0.1 2,033 iterations for 1,746 (1,503 without limit), the ball 1,500 for 1,171 and the same strain.
-  static constexpr double kTension = 2e3;
-  static constexpr double kStraight = 2;
+  /// Stress at the limit [N/m]; a tenth beyond it is 9,500. A ball at 100 m/s pulls by ρ v² / (2 √e), 3,500 to 9,000
+  /// N/m in the fabrics of [scene] (a transverse wave along a thread of strain e; Smith, McCrackin & Schiefer,
+  /// "Stress-Strain Relationships in Yarns Subjected to Rapid Impact Loading", 1958). With 2e4 and straight from the
+  /// limit on Newton's method crossed the corner again and again: multi_sheet with a limit of 0.1 took 2,033 iterations
+  /// for 1,710 (1,503 without limit), a ball at 100 m/s 1,500 for 1,269 and the same strain.
+  static constexpr double kTension = 4e3;
+  static constexpr double kStraight = 1.5;
 
   explicit Lock(double limit) : onset_(kOnset * limit), span_(limit - onset_) {}
 
