@@ -1,50 +1,62 @@
 #include "forces/air.hpp"
 
-#include <cmath>
-
-#include "mesh/geometry.hpp"
-
 namespace weft::forces {
 
 Air::Air(const mesh::Grid& grid, Index first, const AirParameters& parameters)
     : wind_(parameters.wind), coefficient_(0.5 * parameters.density * parameters.drag) {
+  std::vector<std::array<Index, 4>> cells;
   for (int j = 0; j + 1 < grid.nv; ++j)
     for (int i = 0; i + 1 < grid.nu; ++i)
-      cells_.push_back({first + grid.index(i, j), first + grid.index(i + 1, j), first + grid.index(i + 1, j + 1),
-                        first + grid.index(i, j + 1)});
+      cells.push_back({first + grid.index(i, j), first + grid.index(i + 1, j), first + grid.index(i + 1, j + 1),
+                       first + grid.index(i, j + 1)});
+  cells_ = pack(cells);
 }
 
 Air::Air(const mesh::Sheet& sheet, Index first, const AirParameters& parameters)
-    : wind_(parameters.wind), coefficient_(0.5 * parameters.density * parameters.drag), triangles_(sheet.triangles) {
-  for (mesh::Triangle& triangle : triangles_)
+    : wind_(parameters.wind), coefficient_(0.5 * parameters.density * parameters.drag) {
+  std::vector<mesh::Triangle> triangles = sheet.triangles;
+  for (mesh::Triangle& triangle : triangles)
     for (Index& corner : triangle) corner += first;
+  triangles_ = pack(triangles);
 }
 
-void Air::attach(const solver::BlockMatrix& matrix) {
-  for (Index i = 0; i < matrix.rows(); ++i) diagonal_.push_back(matrix.diagonal(i));
+template <std::size_t Corners>
+std::vector<Air::Faces<Corners>> Air::pack(const std::vector<std::array<Index, Corners>>& faces) {
+  std::vector<Faces<Corners>> packs(packs_of(faces.size()));
+  for (std::size_t p = 0; p < packs.size(); ++p)
+    for_each_lane(faces.size(), p, [&](std::size_t f, std::size_t lane, bool counts) {
+      for (std::size_t k = 0; k < Corners; ++k) packs[p].corners[k][lane] = faces[f][k];
+      packs[p].counts[lane] = counts ? 1 : 0;
+    });
+  return packs;
 }
 
 void Air::add(const Evaluation& at) const {
-  const std::span<const Vec3> x = at.x;
-  // Area vector of a quad, planar or not: half the cross product of its diagonals.
-  for (const auto& cell : cells_) push(cell, 0.5 * (x[cell[2]] - x[cell[0]]).cross(x[cell[3]] - x[cell[1]]), at);
-  for (const mesh::Triangle& triangle : triangles_) push(triangle, mesh::area_vector(triangle, x), at);
+  for (const Faces<4>& cells : cells_) push(cells, at);
+  for (const Faces<3>& triangles : triangles_) push(triangles, at);
 }
 
-// Drag on a face with this area vector.
+// Drag on faces.
 template <std::size_t Corners>
-void Air::push(const std::array<Index, Corners>& face, const Vec3& area, const Evaluation& at) const {
-  const double size = area.norm();
-  if (size == 0) return;
-  const Vec3 n = area / size;
-  Vec3 velocity = at.v[face[0]];
-  for (std::size_t k = 1; k < Corners; ++k) velocity += at.v[face[k]];
-  const double speed = n.dot(velocity / Corners - wind_);
-  const double of_speed = coefficient_ * size * std::abs(speed) / Corners;  // of one corner [kg/s]
-  for (Index p : face) at.force[p] -= of_speed * speed * n;
-  if (at.matrix == nullptr) return;
-  const Mat3 damping = 2 * at.rate * of_speed * n * n.transpose();
-  for (Index p : face) at.matrix->add(diagonal_[p], damping);
+void Air::push(const Faces<Corners>& faces, const Evaluation& at) const {
+  // Area vector of a quad, planar or not: half the cross product of its diagonals.
+  const VecLanes origin = gather(at.x, faces.corners[0]);
+  VecLanes one = gather(at.x, faces.corners[Corners == 4 ? 2 : 1]) - origin,
+           other = gather(at.x, faces.corners[Corners - 1]);
+  other = other - (Corners == 4 ? gather(at.x, faces.corners[1]) : origin);
+  const VecLanes area = lanes_of(0.5) * cross(one, other);
+  const Lanes size = sqrt(dot(area, area));
+  const VecLanes n = (size > 0 ? 1 / size : lanes_of(0.0)) * area;
+  VecLanes velocity = gather(at.v, faces.corners[0]);
+  for (std::size_t k = 1; k < Corners; ++k) velocity = velocity + gather(at.v, faces.corners[k]);
+  const Lanes speed = dot(n, lanes_of(1.0 / Corners) * velocity - lanes_of(wind_));
+  const Lanes of_speed = coefficient_ / Corners * faces.counts * size * abs(speed);  // of one corner [kg/s]
+  const VecLanes drag = of_speed * speed * n;
+  for (const Four& corner : faces.corners) subtract(at.force, corner, drag);
+  if (at.assembly == nullptr) return;
+  const auto damping = packed(outer(2 * at.rate * of_speed * n, n));
+  for (const Four& corner : faces.corners)
+    for (std::size_t l = 0; l < 4; ++l) at.assembly->add_to_own(corner[l], damping[l]);
 }
 
 }  // namespace weft::forces

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "forces/force.hpp"
+#include "forces/lanes.hpp"
 
 namespace weft::forces {
 
@@ -27,19 +28,26 @@ class Air final : public Force {
   Air(const mesh::Sheet& sheet, Index first, const AirParameters& parameters);
 
   void couple(std::vector<std::pair<Index, Index>>& /*pairs*/) const override {}
-  void attach(const solver::BlockMatrix& matrix) override;
+  void attach(const solver::Assembly& /*assembly*/) override {}
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> /*x*/) const override { return 0; }
 
  private:
+  /// Four cells or triangles; those that do not count are none.
   template <std::size_t Corners>
-  void push(const std::array<Index, Corners>& face, const Vec3& area, const Evaluation& at) const;
+  struct Faces {
+    std::array<Four, Corners> corners{};
+    Lanes counts{};
+  };
+  template <std::size_t Corners>
+  static std::vector<Faces<Corners>> pack(const std::vector<std::array<Index, Corners>>& faces);
+  template <std::size_t Corners>
+  void push(const Faces<Corners>& faces, const Evaluation& at) const;
 
   Vec3 wind_;
-  double coefficient_;                       // ½ ρ c [kg/m³]
-  std::vector<std::array<Index, 4>> cells_;  // corners in the order (0,0), (1,0), (1,1), (0,1)
-  std::vector<mesh::Triangle> triangles_;
-  std::vector<solver::Slot> diagonal_;  // of all particles
+  double coefficient_;           // ½ ρ c [kg/m³]
+  std::vector<Faces<4>> cells_;  // corners in the order (0,0), (1,0), (1,1), (0,1)
+  std::vector<Faces<3>> triangles_;
 };
 
 }  // namespace weft::forces

@@ -10,7 +10,8 @@ std::size_t at_index(Index i) {
   return static_cast<std::size_t>(i);
 }
 
-Vec3 curvature(const std::array<Index, 3>& p, const Vec3& weights, std::span<const Vec3> x) {
+template <class Point>
+Point curvature(const std::array<Index, 3>& p, const Vec3& weights, std::span<const Point> x) {
   return weights[0] * x[at_index(p[0])] + weights[1] * x[at_index(p[1])] + weights[2] * x[at_index(p[2])];
 }
 
@@ -41,51 +42,66 @@ void Bands::rest_between_start_and_pattern(double share) {
 
 void Bands::couple(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Piece& piece : pieces_) pairs.emplace_back(piece.particles[0], piece.particles[1]);
-  for (const auto& [p, weights, stiffness, slots] : bends_)
+  for (const auto& [p, weights, stiffness, scalars] : bends_)
     for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(p[k], p[(k + 1) % 3]);
 }
 
-void Bands::attach(const solver::BlockMatrix& matrix) {
-  for (Piece& piece : pieces_)
-    for (std::size_t a = 0; a < 2; ++a)
-      for (std::size_t b = 0; b < 2; ++b) piece.slots[2 * a + b] = matrix.slot(piece.particles[a], piece.particles[b]);
+void Bands::attach(const solver::Assembly& assembly) {
+  for (Piece& piece : pieces_) {
+    const auto [i, j] = std::minmax(piece.particles[0], piece.particles[1]);
+    piece.block = assembly.block(i, j);
+  }
   for (Bend& bend : bends_)
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t b = 0; b < 3; ++b) bend.slots[3 * a + b] = matrix.slot(bend.particles[a], bend.particles[b]);
+    for (std::size_t k = 0; k < 3; ++k)
+      bend.scalars[k] = assembly.scalar(bend.particles[k], bend.particles[(k + 1) % 3]);
 }
 
 void Bands::add(const Evaluation& at) const {
   for (const Piece& piece : pieces_) {
     const auto a = at_index(piece.particles[0]), b = at_index(piece.particles[1]);
-    const Vec3 along = at.x[b] - at.x[a];
+    const Vec3 along = solver::vec3_of(at.x[b] - at.x[a]);
     const double length = along.norm();
     if (length == 0) continue;  // points nowhere
-    const Vec3 n = along / length;
-    const Vec3 pull = piece.stiffness * (length / piece.rest - 1) * n;
+    const auto pull = solver::quad_of<double>(piece.stiffness * (1 / piece.rest - 1 / length) * along);
     at.force[a] += pull;
     at.force[b] -= pull;
-    if (at.matrix == nullptr) continue;
-    double lateral = 1 - piece.rest / length;
-    if (at.linearisation != Linearisation::exact) lateral = std::max(lateral, 0.0);
-    const Mat3 hessian =
-        piece.stiffness / piece.rest * ((1 - lateral) * n * n.transpose() + lateral * Mat3::Identity());
-    at.matrix->add(piece.slots[0], hessian);
-    at.matrix->add(piece.slots[1], -hessian);
-    at.matrix->add(piece.slots[2], -hessian);
-    at.matrix->add(piece.slots[3], hessian);
+    if (at.assembly != nullptr)
+      at.assembly->add(piece.block, Mat3(-stiffness(piece, along, std::max(1 - piece.rest / length, 0.0))));
   }
-  for (const auto& [p, weights, stiffness, slots] : bends_) {
-    const Vec3 moment = stiffness * curvature(p, weights, at.x);
+  for (const auto& [p, weights, stiffness, scalars] : bends_) {
+    const solver::Quad<double> moment = stiffness * curvature(p, weights, at.x);
     for (std::size_t k = 0; k < 3; ++k) at.force[at_index(p[k])] -= weights[static_cast<Eigen::Index>(k)] * moment;
   }
 }
 
-void Bands::add_constant_stiffness(solver::BlockMatrix& matrix) const {
-  for (const auto& [p, weights, stiffness, slots] : bends_)
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t b = 0; b < 3; ++b)
-        matrix.add_scalar(slots[3 * a + b],
-                          stiffness * weights[static_cast<Eigen::Index>(a)] * weights[static_cast<Eigen::Index>(b)]);
+// Between the ends of a piece that lies along a vector; `lateral`: 1 − rest / length, or what stands for it.
+Mat3 Bands::stiffness(const Piece& piece, const Vec3& along, double lateral) {
+  const Vec3 n = along.normalized();
+  return piece.stiffness / piece.rest * ((1 - lateral) * n * n.transpose() + lateral * Mat3::Identity());
+}
+
+void Bands::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double /*rate*/,
+                         solver::BlockMatrix& jacobian) const {
+  const auto add = [&](Index i, Index j, const Mat3& block) { jacobian.add(jacobian.slot(i, j), block); };
+  for (const Piece& piece : pieces_) {
+    const auto [a, b] = piece.particles;
+    const Vec3 along = x[at_index(b)] - x[at_index(a)];
+    if (along.norm() == 0) continue;
+    const Mat3 k = stiffness(piece, along, 1 - piece.rest / along.norm());
+    add(a, a, k), add(a, b, -k), add(b, a, -k), add(b, b, k);
+  }
+  for (const Bend& bend : bends_)
+    for (Eigen::Index a = 0; a < 3; ++a)
+      for (Eigen::Index b = 0; b < 3; ++b)
+        add(bend.particles[at_index(static_cast<Index>(a))], bend.particles[at_index(static_cast<Index>(b))],
+            bend.stiffness * bend.weights[a] * bend.weights[b] * Mat3::Identity());
+}
+
+void Bands::add_constant_stiffness(solver::Assembly& assembly) const {
+  for (const auto& [p, weights, stiffness, scalars] : bends_)
+    for (std::size_t k = 0; k < 3; ++k)
+      assembly.add_scalar(scalars[k], stiffness * weights[static_cast<Eigen::Index>(k)] *
+                                          weights[static_cast<Eigen::Index>((k + 1) % 3)]);
 }
 
 double Bands::energy(std::span<const Vec3> x) const {

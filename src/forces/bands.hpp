@@ -19,10 +19,12 @@ class Bands final : public Force {
   Bands(const mesh::Sheet& sheet, Index first, double stretch);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
-  void attach(const solver::BlockMatrix& matrix) override;
+  void attach(const solver::Assembly& assembly) override;
   void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
-  void add_constant_stiffness(solver::BlockMatrix& matrix) const override;
+  void add_constant_stiffness(solver::Assembly& assembly) const override;
 
   /// Of a sewn sheet: rest lengths of elastic bands between those of the start, at share 0, and their own, at 1.
   void rest_between_start_and_pattern(double share);
@@ -33,14 +35,16 @@ class Bands final : public Force {
     double stiffness;   // [N]
     double start, own;  // rest lengths [m]
     double rest;        // the one now [m]
-    std::array<solver::Slot, 4> slots{};
+    Index block = 0;
   };
   struct Bend {
     std::array<Index, 3> particles;
-    Vec3 weights;      // of s'' [1/m²]
-    double stiffness;  // E l [N·m³]
-    std::array<solver::Slot, 9> slots{};
+    Vec3 weights;                    // of s'' [1/m²]
+    double stiffness;                // E l [N·m³]
+    std::array<Index, 3> scalars{};  // of the pairs 01, 12, 20
   };
+  static Mat3 stiffness(const Piece& piece, const Vec3& along, double lateral);
+
   std::vector<Piece> pieces_;
   std::vector<Bend> bends_;
 };

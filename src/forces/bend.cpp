@@ -3,11 +3,21 @@
 namespace weft::forces {
 namespace {
 
-Vec3 weighted_sum(const std::array<Index, 4>& particles, const std::array<double, 4>& weights,
-                  std::span<const Vec3> x) {
-  Vec3 sum = Vec3::Zero();
-  for (int k = 0; k < 4; ++k) sum += weights[k] * x[particles[k]];
+template <class Differences, class Points>
+VecLanes weighted_sum(const Differences& d, Points x) {
+  VecLanes sum = d.weights[0] * gather(x, d.particles[0]);
+  for (std::size_t k = 1; k < d.particles.size(); ++k) sum = sum + d.weights[k] * gather(x, d.particles[k]);
   return sum;
+}
+
+// Adds size w_a w_b for all pairs.
+template <class Differences>
+void add_pairs(const Differences& d, const Lanes& size, solver::Assembly& assembly) {
+  for (std::size_t a = 0, pair = 0; a < d.particles.size(); ++a) {
+    const Lanes row = size * d.weights[a];
+    for (std::size_t b = a + 1; b < d.particles.size(); ++b, ++pair)
+      add_scalars(assembly, d.scalars[pair], row * d.weights[b]);
+  }
 }
 
 }  // namespace
@@ -23,7 +33,7 @@ void Bend::hold(std::span<const char> held) {
 
 // The same differences in the same order, whatever is held.
 void Bend::lay_out(std::span<const char> held) {
-  differences_.clear();
+  lines_.size = cells_.size = 0;
   const mesh::Grid& grid = grid_;
   const auto at = [&](int i, int j) { return first_ + grid.index(i, j); };
   for (int j = 0; j < grid.nv; ++j) {
@@ -36,9 +46,21 @@ void Bend::lay_out(std::span<const char> held) {
       // 2 ‖s_uv‖²: the mixed derivative counts twice.
       if (last_i || last_j) continue;
       const double cell = grid.du(i) * grid.dv(j), uv = 1 / cell;
-      differences_.push_back(
-          {{at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)}, {uv, -uv, -uv, uv}, 2 * cell, 4});
+      cells_.add({at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)}, {uv, -uv, -uv, uv}, 2 * cell);
     }
+  }
+}
+
+template <std::size_t Count>
+void Bend::List<Count>::add(const std::array<Index, Count>& particles, const std::array<double, Count>& weights,
+                            double area) {
+  const std::size_t lane = size++ % 4;
+  if (packs.size() < packs_of(size)) packs.emplace_back();
+  Differences<Count>& pack = packs[packs_of(size) - 1];
+  // Those that may be missing behind are as this one, and stand for nothing.
+  for (std::size_t l = lane; l < 4; ++l) {
+    for (std::size_t k = 0; k < Count; ++k) pack.particles[k][l] = particles[k], pack.weights[k][l] = weights[k];
+    pack.area[l] = l == lane ? area : 0;
   }
 }
 
@@ -51,77 +73,85 @@ void Bend::add_line(const std::array<Index, 3>& particles, double before, double
   double length = 0.5 * (before + after);
   if (is_held(1) && is_held(0) != is_held(2)) length = 0.5 * (is_held(0) ? after : before);
   const double first = 1 / (before * length), last = 1 / (after * length);
-  differences_.push_back(
-      {{particles[0], particles[1], particles[2], particles[1]}, {first, -(first + last), last, 0}, length * width, 3});
+  lines_.add(particles, {first, -(first + last), last}, length * width);
+}
+
+template <class Body>
+void Bend::for_all(const Body& body) const {
+  for (const auto& lines : lines_.packs) body(lines);
+  for (const auto& cells : cells_.packs) body(cells);
 }
 
 void Bend::couple(std::vector<std::pair<Index, Index>>& pairs) const {
-  for (const Difference& d : differences_)
-    for (int a = 0; a < d.count; ++a)
-      for (int b = a + 1; b < d.count; ++b) pairs.emplace_back(d.particles[a], d.particles[b]);
+  for_all([&](const auto& d) {
+    for (std::size_t a = 0; a < d.particles.size(); ++a)
+      for (std::size_t b = a + 1; b < d.particles.size(); ++b)
+        for (std::size_t l = 0; l < 4; ++l) pairs.emplace_back(d.particles[a][l], d.particles[b][l]);
+  });
 }
 
-void Bend::attach(const solver::BlockMatrix& matrix) {
-  slots_.resize(differences_.size());
-  for (std::size_t d = 0; d < differences_.size(); ++d)
-    for (int a = 0; a < differences_[d].count; ++a)
-      for (int b = 0; b < differences_[d].count; ++b)
-        slots_[d][4 * a + b] = matrix.slot(differences_[d].particles[a], differences_[d].particles[b]);
+void Bend::attach(const solver::Assembly& assembly) {
+  const auto look_up = [&](auto& packs) {
+    for (auto& d : packs)
+      for (std::size_t a = 0, pair = 0; a < d.particles.size(); ++a)
+        for (std::size_t b = a + 1; b < d.particles.size(); ++b, ++pair)
+          for (std::size_t l = 0; l < 4; ++l)
+            d.scalars[pair][l] = assembly.scalar(d.particles[a][l], d.particles[b][l]);
+  };
+  look_up(lines_.packs);
+  look_up(cells_.packs);
 }
 
 void Bend::add(const Evaluation& at) const {
-  for (std::size_t d = 0; d < differences_.size(); ++d) {
-    const Difference& difference = differences_[d];
-    const Vec3 curvature = weighted_sum(difference.particles, difference.weights, at.x);
-    Vec3 moment = rigidity_ * curvature;
-    if (damping_.any()) moment += damping(d, curvature, at);
-    for (int k = 0; k < difference.count; ++k)
-      at.force[difference.particles[k]] -= difference.area * difference.weights[k] * moment;
-  }
+  for_all([&](const auto& differences) { add(differences, at); });
 }
 
-// Moment against the rate of curvature; its Jacobian goes into the matrix, if there is one. The definite form of that
-// is a stiffness c cᵀ, here ‖c‖² I: curvature points along the normal, where that is the same, and across it the
-// membrane is much stiffer still. All of bending is numbers in place of blocks then.
-Vec3 Bend::damping(std::size_t index, const Vec3& curvature, const Evaluation& at) const {
-  const Difference& d = differences_[index];
-  const Vec3 velocity = weighted_sum(d.particles, d.weights, at.v);
-  const Vec3 c = at.rate > 0 ? Vec3(curvature - velocity / at.rate) : curvature;
-  const double rate = c.dot(velocity), c_sq = c.squaredNorm();
-  const auto [secant, tangent] = damping_.respond(c_sq, rate);
-  if (at.matrix != nullptr && at.linearisation == Linearisation::exact) {
-    add_blocks(index, at.rate * tangent * c * c.transpose(), *at.matrix);
-  } else if (at.matrix != nullptr) {
-    const double stiffness = d.area * at.rate * secant * c_sq;
-    for (int a = 0; a < d.count; ++a)
-      for (int b = 0; b < d.count; ++b)
-        at.matrix->add_scalar(slots_[index][4 * a + b], stiffness * d.weights[a] * d.weights[b]);
+// The definite form of damping is a stiffness c cᵀ, here ‖c‖² I: curvature points along the normal, where that is the
+// same, and across it the membrane is much stiffer still. All of bending is numbers in place of blocks then.
+template <std::size_t Count>
+void Bend::add(const Differences<Count>& d, const Evaluation& at) const {
+  const VecLanes curvature = weighted_sum(d, at.x);
+  VecLanes moment = lanes_of(rigidity_) * curvature;
+  if (damping_.any()) {
+    const VecLanes velocity = weighted_sum(d, at.v);
+    const VecLanes c = at.rate > 0 ? curvature - lanes_of(1 / at.rate) * velocity : curvature;
+    const Lanes c_sq = dot(c, c), rate = dot(c, velocity), secant = damping_.secant(c_sq, rate);
+    moment = moment + secant * rate * c;
+    if (at.assembly != nullptr) add_pairs(d, at.rate * d.area * secant * c_sq, *at.assembly);
   }
-  return secant * rate * c;
+  moment = d.area * moment;
+  for (std::size_t k = 0; k < Count; ++k) subtract(at.force, d.particles[k], d.weights[k] * moment);
 }
 
-void Bend::add_blocks(std::size_t index, const Mat3& stiffness, solver::BlockMatrix& matrix) const {
-  const Difference& d = differences_[index];
-  for (int a = 0; a < d.count; ++a)
-    for (int b = 0; b < d.count; ++b)
-      matrix.add(slots_[index][4 * a + b], d.area * d.weights[a] * d.weights[b], stiffness);
+void Bend::add_constant_stiffness(solver::Assembly& assembly) const {
+  for_all([&](const auto& d) { add_pairs(d, rigidity_ * d.area, assembly); });
 }
 
-void Bend::add_constant_stiffness(solver::BlockMatrix& matrix) const {
-  for (std::size_t d = 0; d < differences_.size(); ++d) {
-    const Difference& difference = differences_[d];
-    for (int a = 0; a < difference.count; ++a)
-      for (int b = 0; b < difference.count; ++b)
-        matrix.add_scalar(slots_[d][4 * a + b],
-                          rigidity_ * difference.area * difference.weights[a] * difference.weights[b]);
-  }
+void Bend::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                        solver::BlockMatrix& jacobian) const {
+  for_all([&](const auto& d) {
+    const VecLanes of_x = weighted_sum(d, x), of_v = weighted_sum(d, v);
+    for (std::size_t l = 0; l < 4; ++l) {
+      const Vec3 velocity(of_v.x[l], of_v.y[l], of_v.z[l]);
+      Vec3 c(of_x.x[l], of_x.y[l], of_x.z[l]);
+      if (rate > 0) c -= velocity / rate;
+      const double tangent = damping_.tangent(c.squaredNorm(), c.dot(velocity));
+      const Mat3 stiffness = d.area[l] * (rigidity_ * Mat3::Identity() + rate * tangent * c * c.transpose());
+      for (std::size_t a = 0; a < d.particles.size(); ++a)
+        for (std::size_t b = 0; b < d.particles.size(); ++b)
+          jacobian.add(jacobian.slot(d.particles[a][l], d.particles[b][l]), d.weights[a][l] * d.weights[b][l],
+                       stiffness);
+    }
+  });
 }
 
 double Bend::energy(std::span<const Vec3> x) const {
-  double sum = 0;
-  for (const Difference& d : differences_)
-    sum += 0.5 * rigidity_ * d.area * weighted_sum(d.particles, d.weights, x).squaredNorm();
-  return sum;
+  Lanes sum{};
+  for_all([&](const auto& d) {
+    const VecLanes curvature = weighted_sum(d, x);
+    sum += 0.5 * rigidity_ * d.area * dot(curvature, curvature);
+  });
+  return (sum[0] + sum[1]) + (sum[2] + sum[3]);
 }
 
 }  // namespace weft::forces

@@ -27,34 +27,47 @@ class Bend final : public Force {
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   bool isotropic() const override { return true; }
-  void attach(const solver::BlockMatrix& matrix) override;
+  void attach(const solver::Assembly& assembly) override;
   void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
   /// All of the elastic part.
-  void add_constant_stiffness(solver::BlockMatrix& matrix) const override;
+  void add_constant_stiffness(solver::Assembly& assembly) const override;
   void hold(std::span<const char> held) override;
 
  private:
-  /// A second difference Σ w_k x_k [1/m²·m] that stands for `area`; unused entries repeat particle 0 with weight 0.
-  struct Difference {
-    std::array<Index, 4> particles;
-    std::array<double, 4> weights;
-    double area;
-    int count;
+  /// Second differences Σ w_k x_k [1/m²·m], each standing for `area`; four of them.
+  template <std::size_t Count>
+  struct Differences {
+    std::array<Four, Count> particles{};
+    std::array<Lanes, Count> weights{};
+    Lanes area{};                                       // [m²]
+    std::array<Four, Count*(Count - 1) / 2> scalars{};  // of their pairs, 01, 02, ...
+  };
+  /// All of a kind: along lines, or across cells.
+  template <std::size_t Count>
+  struct List {
+    std::vector<Differences<Count>> packs;
+    std::size_t size = 0;
+
+    void add(const std::array<Index, Count>& particles, const std::array<double, Count>& weights, double area);
   };
   void lay_out(std::span<const char> held);
   void add_line(const std::array<Index, 3>& particles, double before, double after, double width,
                 std::span<const char> held);
-  Vec3 damping(std::size_t index, const Vec3& curvature, const Evaluation& at) const;
-  void add_blocks(std::size_t index, const Mat3& stiffness, solver::BlockMatrix& matrix) const;
+  template <std::size_t Count>
+  void add(const Differences<Count>& differences, const Evaluation& at) const;
+  template <class Body>
+  void for_all(const Body& body) const;
 
   mesh::Grid grid_;
   Index first_;
   double rigidity_;
   BendDamping damping_;
-  std::vector<Difference> differences_;
-  std::vector<std::array<solver::Slot, 16>> slots_;  // row-major over pairs of particles
+  List<3> lines_;
+  List<4> cells_;
 };
 
 }  // namespace weft::forces

@@ -28,6 +28,17 @@ double length_of(const Vec3& s, double bulge) {
   return std::max(std::sqrt(s.squaredNorm() + bulge), kCollapsed);
 }
 
+// What tension does across a thread as it is, and definite in two ways: see Stretch.
+double exact_lateral(double length) {
+  return 1 - 1 / length;
+}
+double clamped_lateral(double length) {
+  return std::max(exact_lateral(length), 0.0);
+}
+double absolute_lateral(double length) {
+  return std::min(std::abs(exact_lateral(length)), 1.0);
+}
+
 }  // namespace
 
 CrossedMembrane::CrossedMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,
@@ -53,17 +64,31 @@ void CrossedMembrane::couple(std::vector<std::pair<Index, Index>>& pairs) const 
       for (std::size_t b = a + 1; b < 5; ++b) pairs.emplace_back(cell.particles[a], cell.particles[b]);
 }
 
-void CrossedMembrane::attach(const solver::BlockMatrix& matrix) {
-  cell_slots_.resize(cells_.size());
-  for (std::size_t c = 0; c < cells_.size(); ++c)
+void CrossedMembrane::attach(const solver::Assembly& assembly) {
+  cell_blocks_.resize(cells_.size());
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    const auto& particles = cells_[c].particles;
     for (std::size_t a = 0; a < 5; ++a)
       for (std::size_t b = 0; b < 5; ++b)
-        cell_slots_[c][5 * a + b] = matrix.slot(cells_[c].particles[a], cells_[c].particles[b]);
+        if (particles[a] < particles[b]) cell_blocks_[c][5 * a + b] = assembly.block(particles[a], particles[b]);
+  }
 }
 
-CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, std::span<const Vec3> x) const {
+CrossedMembrane::Five CrossedMembrane::vectors_of(const Cell& cell, std::span<const Vec3> of) {
+  Five vectors;
+  for (std::size_t k = 0; k < 5; ++k) vectors[k] = of[cell.particles[k]];
+  return vectors;
+}
+
+CrossedMembrane::Five CrossedMembrane::vectors_of(const Cell& cell, std::span<const solver::Quad<double>> of) {
+  Five vectors;
+  for (std::size_t k = 0; k < 5; ++k) vectors[k] = solver::vec3_of(of[cell.particles[k]]);
+  return vectors;
+}
+
+CrossedMembrane::State CrossedMembrane::state_of(const Five& positions) {
   State state;
-  for (std::size_t k = 0; k < 5; ++k) state.flat[k] = x[cell.particles[k]];
+  state.flat = positions;
   const auto& [a, b, c, d, middle] = state.flat;
   state.diagonals = {c - a, d - b};
   // By differences, so that only they are rounded.
@@ -94,9 +119,7 @@ void CrossedMembrane::pull_back(const State& state, Five& force, double along_he
 }
 
 // The other way: how the flat cell and its height change with the velocities.
-void CrossedMembrane::push_forward(const Cell& cell, const State& state, std::span<const Vec3> v, Five& flat,
-                                   double& height) const {
-  for (std::size_t k = 0; k < 5; ++k) flat[k] = v[cell.particles[k]];
+void CrossedMembrane::push_forward(const State& state, Five& flat, double& height) {
   const Vec3 lean = flat[4] - 0.25 * (flat[0] + flat[1] + flat[2] + flat[3]);
   const auto& [d1, d2] = state.diagonals;
   const Vec3& n = state.normal;
@@ -110,12 +133,15 @@ void CrossedMembrane::add(const Evaluation& at) const {
   const bool viscous = stretch_.viscosity > 0 || shear_.viscosity > 0;
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const Cell& cell = cells_[c];
-    const State state = state_of(cell, at.x);
+    const State state = state_of(vectors_of(cell, at.x));
     const double w = state.height, bulge_u = w * w * cell.bulge_u, bulge_v = w * w * cell.bulge_v;
     Five rate, force;
     double w_rate = 0, along_height = 0;
     rate.fill(Vec3::Zero()), force.fill(Vec3::Zero());
-    if (viscous) push_forward(cell, state, at.v, rate, w_rate);
+    if (viscous) {
+      rate = vectors_of(cell, at.v);
+      push_forward(state, rate, w_rate);
+    }
     for (std::size_t k = 0; k < 4; ++k) {
       const Element& element = elements()[4 * c + k];
       const Gradient s = gradient_of(element, state.flat, k), s_rate = gradient_of(element, rate, k);
@@ -133,8 +159,23 @@ void CrossedMembrane::add(const Evaluation& at) const {
       along_height -= element.area * w * (weft * cell.bulge_u + warp * cell.bulge_v);
     }
     pull_back(state, force, along_height);
-    for (std::size_t i = 0; i < 5; ++i) at.force[cell.particles[i]] += force[i];
-    if (at.matrix != nullptr) add_matrix(c, state, at);
+    for (std::size_t i = 0; i < 5; ++i) at.force[cell.particles[i]] += solver::quad_of<double>(force[i]);
+    if (at.assembly == nullptr) continue;
+    const Blocks blocks = blocks_of(
+        c, state, at.rate, at.linearisation == Linearisation::definite ? clamped_lateral : absolute_lateral, true);
+    for (std::size_t a = 0; a < 5; ++a)
+      for (std::size_t b = 0; b < 5; ++b)
+        if (cell.particles[a] < cell.particles[b]) at.assembly->add(cell_blocks_[c][5 * a + b], blocks[5 * a + b]);
+  }
+}
+
+void CrossedMembrane::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double rate,
+                                   solver::BlockMatrix& jacobian) const {
+  for (std::size_t c = 0; c < cells_.size(); ++c) {
+    const auto& particles = cells_[c].particles;
+    const Blocks blocks = blocks_of(c, state_of(vectors_of(cells_[c], x)), rate, exact_lateral, false);
+    for (std::size_t a = 0; a < 5; ++a)
+      for (std::size_t b = 0; b < 5; ++b) jacobian.add(jacobian.slot(particles[a], particles[b]), blocks[5 * a + b]);
   }
 }
 
@@ -146,11 +187,12 @@ TriangleMembrane::Gradient CrossedMembrane::gradient_of(const Element& element, 
 
 // k (1 − lateral) ∂L ∂Lᵀ of each length L, and the like of the shear. Then what the stresses pull straight: across n
 // the slopes between corners and middle, along n those between corners with the middle of them, and the height.
-void CrossedMembrane::add_matrix(std::size_t c, const State& state, const Evaluation& at) const {
+CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
+                                                   bool definite) const {
   const Cell& cell = cells_[c];
   const Vec3& n = state.normal;
   const double w = state.height;
-  std::array<PackedBlock, 25> sum;
+  Blocks sum;
   sum.fill(packed_scalar(0));
   std::array<double, 25> across{}, along{};
   double of_height = 0;
@@ -160,11 +202,6 @@ void CrossedMembrane::add_matrix(std::size_t c, const State& state, const Evalua
       const Vec3 scaled = size * slope[a];
       for (std::size_t b = 0; b < 5; ++b) sum[5 * a + b] = sum[5 * a + b] + packed_outer(scaled, slope[b]);
     }
-  };
-  const auto lateral_of = [&](double length) {
-    const double lateral = 1 - 1 / length;
-    if (at.linearisation == Linearisation::exact) return lateral;
-    return at.linearisation == Linearisation::definite ? std::max(lateral, 0.0) : std::min(std::abs(lateral), 1.0);
   };
   for (std::size_t k = 0; k < 4; ++k) {
     const Element& element = elements()[4 * c + k];
@@ -185,14 +222,13 @@ void CrossedMembrane::add_matrix(std::size_t c, const State& state, const Evalua
       if (i < 2) level[p] += g;
     }
     for (std::size_t i = 0; i < 4; ++i) level[i] += 0.25 * element.gradients[2];
-    const double viscous = at.rate * stretch_.viscosity;
+    const double viscous = rate * stretch_.viscosity;
     add_outer(element.area * (stretch_.weft * (1 - lateral_u) + viscous), of_u, w * cell.bulge_u / u);
     add_outer(element.area * (stretch_.warp * (1 - lateral_v) + viscous), of_v, w * cell.bulge_v / v);
-    add_outer(element.area * 0.5 * (shear_.modulus + at.rate * shear_.viscosity), of_shear, 0);
+    add_outer(element.area * 0.5 * (shear_.modulus + rate * shear_.viscosity), of_shear, 0);
     const double weft = element.area * stretch_.weft * lateral_u, warp = element.area * stretch_.warp * lateral_v;
     const double stress = element.area * 0.5 * shear_.modulus * s.u.dot(s.v);
-    const bool exact = at.linearisation == Linearisation::exact;
-    const double shear = exact ? stress : 0.5 * stress, added = exact ? 0 : 0.5 * std::abs(stress);
+    const double shear = definite ? 0.5 * stress : stress, added = definite ? 0.5 * std::abs(stress) : 0;
     const auto stiffness = [&](const Vec2& a, const Vec2& b) {
       return (weft + added) * a.x() * b.x() + (warp + added) * a.y() * b.y() + shear * (a.x() * b.y() + a.y() * b.x());
     };
@@ -207,14 +243,14 @@ void CrossedMembrane::add_matrix(std::size_t c, const State& state, const Evalua
     for (std::size_t b = 0; b < 5; ++b) {
       const double height = (a == 4 ? 1 : -0.25) * (b == 4 ? 1 : -0.25) * of_height;
       const std::size_t i = 5 * a + b;
-      at.matrix->add(cell_slots_[c][i],
-                     sum[i] + packed_scalar(across[i]) + packed_outer((along[i] + height - across[i]) * n, n));
+      sum[i] = sum[i] + packed_scalar(across[i]) + packed_outer((along[i] + height - across[i]) * n, n);
     }
+  return sum;
 }
 
 double CrossedMembrane::strain(std::size_t triangle, std::span<const Vec3> x) const {
   const Cell& cell = cells_[triangle / 4];
-  const State state = state_of(cell, x);
+  const State state = state_of(vectors_of(cell, x));
   const Gradient s = gradient_of(elements()[triangle], state.flat, triangle % 4);
   const double w_sq = state.height * state.height;
   return std::max(std::abs(length_of(s.u, w_sq * cell.bulge_u) - 1), std::abs(length_of(s.v, w_sq * cell.bulge_v) - 1));
@@ -223,7 +259,7 @@ double CrossedMembrane::strain(std::size_t triangle, std::span<const Vec3> x) co
 double CrossedMembrane::energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (std::size_t c = 0; c < cells_.size(); ++c) {
-    const State state = state_of(cells_[c], x);
+    const State state = state_of(vectors_of(cells_[c], x));
     const double w_sq = state.height * state.height;
     for (std::size_t k = 0; k < 4; ++k) {
       const Element& element = elements()[4 * c + k];

@@ -22,9 +22,11 @@ class CrossedMembrane final : public TriangleMembrane {
                   const ShearParameters& shear);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
-  void attach(const solver::BlockMatrix& matrix) override;
-  /// The matrix is that of Gauss and Newton and of the stresses, without what they turn n by, for every linearisation.
+  void attach(const solver::Assembly& assembly) override;
+  /// Matrices are those of Gauss and Newton and of the stresses, without what they turn n by, the Jacobian too.
   void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
  private:
@@ -43,14 +45,19 @@ class CrossedMembrane final : public TriangleMembrane {
     double size = 0;  // of their cross product
   };
   double strain(std::size_t triangle, std::span<const Vec3> x) const override;
-  State state_of(const Cell& cell, std::span<const Vec3> x) const;
+  static State state_of(const Five& positions);
+  static Five vectors_of(const Cell& cell, std::span<const Vec3> of);
+  static Five vectors_of(const Cell& cell, std::span<const solver::Quad<double>> of);
+  /// What tension does across a thread, k times this, by its length.
+  using Lateral = double (*)(double length);
+  using Blocks = std::array<solver::PackedBlock, 25>;  // row-major over pairs of particles
   static Gradient gradient_of(const Element& element, const Five& flat, std::size_t k);
   static void pull_back(const State& state, Five& force, double along_height);
-  void push_forward(const Cell& cell, const State& state, std::span<const Vec3> v, Five& flat, double& height) const;
-  void add_matrix(std::size_t cell, const State& state, const Evaluation& at) const;
+  static void push_forward(const State& state, Five& flat, double& height);
+  Blocks blocks_of(std::size_t cell, const State& state, double rate, Lateral lateral_of, bool definite) const;
 
   std::vector<Cell> cells_;
-  std::vector<std::array<solver::Slot, 25>> cell_slots_;
+  std::vector<std::array<Index, 25>> cell_blocks_;  // of pairs in the order of their numbers
 };
 
 }  // namespace weft::forces

@@ -8,25 +8,26 @@
 #include "core/types.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/sheet.hpp"
+#include "solver/assembly.hpp"
 #include "solver/block_matrix.hpp"
 
 namespace weft::forces {
 
-/// Which derivative goes into the matrix.
+/// How the part of the Jacobian that is indefinite under compression is made definite.
 enum class Linearisation {
-  exact,          ///< the Jacobian itself, indefinite under compression and unsymmetric with viscosity
-  definite,       ///< made symmetric and positive semidefinite term by term: what conjugate gradients and descent need
-  abs_projected,  ///< likewise, by absolute values where edges are compressed: shorter steps, where clamped to
-                  ///< zero they overshoot
+  definite,       ///< clamped to zero term by term
+  abs_projected,  ///< by absolute values where edges are compressed: shorter steps, where clamped they overshoot
 };
 
-/// One evaluation of the forces at (x, v).
+/// One evaluation of the forces at (x, v). Quads are three numbers and zero.
 struct Evaluation {
-  std::span<const Vec3> x;                ///< positions [m]
-  std::span<const Vec3> v;                ///< velocities [m/s]
-  std::span<Vec3> force;                  ///< receives += f [N]
-  solver::BlockMatrix* matrix = nullptr;  ///< receives −(∂f/∂x + rate ∂f/∂v) [N/m]; nullptr: forces only
-  double rate = 0;                        ///< dv/dx of the integration scheme, v = rate (x − x̂) [1/s]; 0: none
+  std::span<const solver::Quad<double>> x;  ///< positions [m]
+  std::span<const solver::Quad<double>> v;  ///< velocities [m/s]
+  std::span<solver::Quad<double>> force;    ///< receives += f [N]
+  /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m], made symmetric and positive semidefinite term by term: what conjugate
+  /// gradients and descent need. nullptr: forces only.
+  solver::Assembly* assembly = nullptr;
+  double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂) [1/s]; 0: none
   Linearisation linearisation = Linearisation::definite;
 };
 
@@ -37,17 +38,22 @@ class Force {
 
   /// Pairs of particles that the Jacobian couples.
   virtual void couple(std::vector<std::pair<Index, Index>>& pairs) const = 0;
-  /// Whether the blocks of these pairs are multiples of the unit matrix, but for Linearisation::exact.
+  /// Whether what is added to an Assembly are multiples of the unit matrix.
   virtual bool isotropic() const { return false; }
   /// Looks up where the blocks are; once, after the pattern is known.
-  virtual void attach(const solver::BlockMatrix& matrix) = 0;
+  virtual void attach(const solver::Assembly& assembly) = 0;
 
   virtual void add(const Evaluation& at) const = 0;
   /// Elastic energy [J].
   virtual double energy(std::span<const Vec3> x) const = 0;
 
   /// Adds the part of −∂f/∂x that only hold() changes, if there is one; `add` leaves it out.
-  virtual void add_constant_stiffness(solver::BlockMatrix& /*matrix*/) const {}
+  virtual void add_constant_stiffness(solver::Assembly& /*assembly*/) const {}
+
+  /// Adds all of −(∂f/∂x + rate ∂f/∂v) itself, indefinite under compression and unsymmetric with viscosity. For
+  /// vibrations and for tests, element by element; not for air.
+  virtual void add_jacobian(std::span<const Vec3> /*x*/, std::span<const Vec3> /*v*/, double /*rate*/,
+                            solver::BlockMatrix& /*jacobian*/) const {}
 
   /// Which particles of all cloths are held in place or moved from now on: what they leave free may resist otherwise.
   /// The pattern of the Jacobian stays.

@@ -11,7 +11,8 @@ constexpr std::array<double, 4> kAcross{-1, -1, 1, 1};
 
 }  // namespace
 
-Shear::Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters) {
+Shear::Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters)
+    : viscous_(parameters.viscosity > 0) {
   for (int j = 0; j + 1 < grid.nv; ++j)
     for (int i = 0; i + 1 < grid.nu; ++i) {
       const double lu = grid.du(i), lv = grid.dv(j), area = lu * lv;
@@ -22,6 +23,16 @@ Shear::Shear(const mesh::Grid& grid, Index first, const ShearParameters& paramet
                         0.5 * parameters.modulus * area,
                         0.5 * parameters.viscosity * area});
     }
+  packs_.resize(packs_of(cells_.size()));
+  for (std::size_t p = 0; p < packs_.size(); ++p)
+    for_each_lane(cells_.size(), p, [&](std::size_t c, std::size_t lane, bool counts) {
+      const Cell& cell = cells_[c];
+      for (std::size_t k = 0; k < 4; ++k) packs_[p].corners[k][lane] = cell.corners[k];
+      packs_[p].half_u[lane] = 0.5 / cell.lu;
+      packs_[p].half_v[lane] = 0.5 / cell.lv;
+      packs_[p].elasticity[lane] = counts ? cell.elasticity : 0;
+      packs_[p].viscosity[lane] = counts ? cell.viscosity : 0;
+    });
 }
 
 void Shear::couple(std::vector<std::pair<Index, Index>>& pairs) const {
@@ -30,14 +41,15 @@ void Shear::couple(std::vector<std::pair<Index, Index>>& pairs) const {
       for (int b = a + 1; b < 4; ++b) pairs.emplace_back(cell.corners[a], cell.corners[b]);
 }
 
-void Shear::attach(const solver::BlockMatrix& matrix) {
-  slots_.resize(cells_.size());
-  for (std::size_t c = 0; c < cells_.size(); ++c)
-    for (int a = 0; a < 4; ++a)
-      for (int b = 0; b < 4; ++b) slots_[c][4 * a + b] = matrix.slot(cells_[c].corners[a], cells_[c].corners[b]);
+void Shear::attach(const solver::Assembly& assembly) {
+  for (Cells& cells : packs_)
+    for (std::size_t lane = 0; lane < 4; ++lane)
+      for (std::size_t a = 0, pair = 0; a < 4; ++a)
+        for (std::size_t b = a + 1; b < 4; ++b, ++pair)
+          cells.blocks[pair][lane] = assembly.block(cells.corners[a][lane], cells.corners[b][lane]);
 }
 
-Shear::Strain Shear::strain(const Cell& cell, std::span<const Vec3> x) const {
+Shear::Strain Shear::strain(const Cell& cell, std::span<const Vec3> x) {
   const Vec3& x00 = x[cell.corners[0]];
   const Vec3& x10 = x[cell.corners[1]];
   const Vec3& x01 = x[cell.corners[2]];
@@ -49,74 +61,78 @@ Shear::Strain Shear::strain(const Cell& cell, std::span<const Vec3> x) const {
   return s;
 }
 
+Shear::StrainLanes Shear::strain(const Cells& cells, std::span<const solver::Quad<double>> x) {
+  const VecLanes main = gather(x, cells.corners[3]) - gather(x, cells.corners[0]),
+                 cross = gather(x, cells.corners[1]) - gather(x, cells.corners[2]);
+  return {cells.half_u * (main + cross), cells.half_v * (main - cross)};
+}
+
 void Shear::add(const Evaluation& at) const {
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
-    const Cell& cell = cells_[c];
-    const Strain s = strain(cell, at.x);
-    const Strain rate = strain(cell, at.v);
-    const double strain_rate = rate.su.dot(s.sv) + s.su.dot(rate.sv);
-    const double stress = cell.elasticity * s.c + cell.viscosity * strain_rate;
-    // ∂c/∂x_k; opposite corners get opposite signs, so two vectors serve all four.
-    const Vec3 u_part = s.sv / (2 * cell.lu), v_part = s.su / (2 * cell.lv);
-    const Vec3 main_diagonal = stress * (u_part + v_part), cross_diagonal = stress * (u_part - v_part);
-    at.force[cell.corners[0]] += main_diagonal;
-    at.force[cell.corners[3]] -= main_diagonal;
-    at.force[cell.corners[1]] -= cross_diagonal;
-    at.force[cell.corners[2]] += cross_diagonal;
-    if (at.matrix != nullptr) add_stiffness(c, s, rate, at);
-  }
-}
-
-void Shear::add_stiffness(std::size_t index, const Strain& s, const Strain& rate, const Evaluation& at) const {
-  if (at.linearisation == Linearisation::exact)
-    add_exact_stiffness(index, s, rate, at);
-  else
-    add_definite_stiffness(index, s, at);
-}
-
-void Shear::add_exact_stiffness(std::size_t index, const Strain& s, const Strain& rate, const Evaluation& at) const {
-  const Cell& cell = cells_[index];
-  std::array<Vec3, 4> gradient;       // ∂c/∂x_k
-  std::array<Vec3, 4> rate_gradient;  // ∂ċ/∂x_k
-  for (int k = 0; k < 4; ++k) {
-    gradient[k] = kAlong[k] / (2 * cell.lu) * s.sv + kAcross[k] / (2 * cell.lv) * s.su;
-    rate_gradient[k] = kAlong[k] / (2 * cell.lu) * rate.sv + kAcross[k] / (2 * cell.lv) * rate.su;
-  }
-  const double stress = cell.elasticity * s.c + cell.viscosity * (rate.su.dot(s.sv) + s.su.dot(rate.sv));
-  const double outer = cell.elasticity + at.rate * cell.viscosity;
-  for (int a = 0; a < 4; ++a) {
-    for (int b = 0; b < 4; ++b) {
-      // Second derivative of c: δ²c = 2 ⟨δs_u, δs_v⟩.
-      const double second = (kAlong[a] * kAcross[b] + kAcross[a] * kAlong[b]) / (4 * cell.lu * cell.lv);
-      at.matrix->add(slots_[index][4 * a + b], outer * gradient[a] * gradient[b].transpose() +
-                                                   cell.viscosity * gradient[a] * rate_gradient[b].transpose() +
-                                                   stress * second * Mat3::Identity());
+  for (const Cells& cells : packs_) {
+    const StrainLanes s = strain(cells, at.x);
+    const Lanes c = dot(s.su, s.sv);
+    Lanes stress = cells.elasticity * c;
+    if (viscous_) {
+      const StrainLanes rate = strain(cells, at.v);
+      stress += cells.viscosity * (dot(rate.su, s.sv) + dot(s.su, rate.sv));
     }
+    // ∂c/∂x_k; opposite corners get opposite signs, so two vectors serve all four.
+    const VecLanes u_part = stress * cells.half_u * s.sv, v_part = stress * cells.half_v * s.su;
+    const VecLanes main = u_part + v_part, cross = u_part - v_part;
+    forces::add(at.force, cells.corners[0], main);
+    subtract(at.force, cells.corners[3], main);
+    subtract(at.force, cells.corners[1], cross);
+    forces::add(at.force, cells.corners[2], cross);
+    if (at.assembly != nullptr) add_stiffness(cells, s, c, at);
   }
 }
 
 // Of the second derivative, ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²), the definite form keeps the half whose sign agrees
-// with the stress. Opposite corners have opposite derivatives, so three blocks, with signs, serve all sixteen pairs:
-// four times as fast as one by one.
-void Shear::add_definite_stiffness(std::size_t index, const Strain& s, const Evaluation& at) const {
-  const Cell& cell = cells_[index];
-  const double sign = s.c < 0 ? -1 : 1, curvature = 0.5 * cell.elasticity * std::abs(s.c);
-  const double outer = cell.elasticity + at.rate * cell.viscosity;
+// with the stress. Opposite corners have opposite derivatives, so four blocks, with signs, serve all pairs.
+void Shear::add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at) {
+  const Lanes sign = c < 0 ? lanes_of(-1) : lanes_of(1), curvature = 0.5 * cells.elasticity * abs(c);
+  const Lanes size = cells.elasticity + at.rate * cells.viscosity;
   // ∂c/∂x of corners 3 and 1; that of 0 is minus the first, that of 2 minus the second. And so for the half kept.
-  const Vec3 main = s.sv / (2 * cell.lu) + s.su / (2 * cell.lv), cross = s.sv / (2 * cell.lu) - s.su / (2 * cell.lv);
-  const double main_half = 1 / (2 * cell.lu) + sign / (2 * cell.lv),
-               cross_half = 1 / (2 * cell.lu) - sign / (2 * cell.lv);
-  const auto block = [&](const Vec3& a, double half_a, const Vec3& b, double half_b) -> Mat3 {
-    return outer * a * b.transpose() + curvature * half_a * half_b * Mat3::Identity();
-  };
-  const Mat3 mm = block(main, main_half, main, main_half), cc = block(cross, cross_half, cross, cross_half);
-  const Mat3 mc = block(main, main_half, cross, cross_half), cm = mc.transpose();
-  const auto add = [&](int a, int b, const Mat3& k) { at.matrix->add(slots_[index][4 * a + b], k); };
-  const auto subtract = [&](int a, int b, const Mat3& k) { at.matrix->subtract(slots_[index][4 * a + b], k); };
-  add(0, 0, mm), subtract(0, 1, mc), add(0, 2, mc), subtract(0, 3, mm);
-  subtract(1, 0, cm), add(1, 1, cc), subtract(1, 2, cc), add(1, 3, cm);
-  add(2, 0, cm), subtract(2, 1, cc), add(2, 2, cc), subtract(2, 3, cm);
-  subtract(3, 0, mm), add(3, 1, mc), subtract(3, 2, mc), add(3, 3, mm);
+  const VecLanes u_part = cells.half_u * s.sv, v_part = cells.half_v * s.su;
+  const VecLanes main = u_part + v_part, cross = u_part - v_part;
+  const Lanes main_half = cells.half_u + sign * cells.half_v, cross_half = cells.half_u - sign * cells.half_v;
+  const VecLanes of_main = size * main, of_cross = size * cross;
+  const Lanes both = curvature * main_half * cross_half;
+  const auto mm = packed(outer(of_main, main, curvature * main_half * main_half));
+  const auto mc = packed(outer(of_main, cross, both)), cm = packed(outer(of_cross, main, both));
+  const auto cc = packed(outer(of_cross, cross, curvature * cross_half * cross_half));
+  for (std::size_t l = 0; l < 4; ++l) {
+    at.assembly->add(cells.blocks[0][l], -mc[l]);
+    at.assembly->add(cells.blocks[1][l], mc[l]);
+    at.assembly->add(cells.blocks[2][l], -mm[l]);
+    at.assembly->add(cells.blocks[3][l], -cc[l]);
+    at.assembly->add(cells.blocks[4][l], cm[l]);
+    at.assembly->add(cells.blocks[5][l], -cm[l]);
+  }
+}
+
+void Shear::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                         solver::BlockMatrix& jacobian) const {
+  for (const Cell& cell : cells_) {
+    const Strain s = strain(cell, x), w = strain(cell, v);
+    std::array<Vec3, 4> gradient, rate_gradient;  // ∂c/∂x_k, ∂ċ/∂x_k
+    for (std::size_t k = 0; k < 4; ++k) {
+      gradient[k] = kAlong[k] / (2 * cell.lu) * s.sv + kAcross[k] / (2 * cell.lv) * s.su;
+      rate_gradient[k] = kAlong[k] / (2 * cell.lu) * w.sv + kAcross[k] / (2 * cell.lv) * w.su;
+    }
+    const double stress = cell.elasticity * s.c + cell.viscosity * (w.su.dot(s.sv) + s.su.dot(w.sv));
+    const double outer = cell.elasticity + rate * cell.viscosity;
+    for (std::size_t a = 0; a < 4; ++a) {
+      for (std::size_t b = 0; b < 4; ++b) {
+        // Second derivative of c: δ²c = 2 ⟨δs_u, δs_v⟩.
+        const double second = (kAlong[a] * kAcross[b] + kAcross[a] * kAlong[b]) / (4 * cell.lu * cell.lv);
+        jacobian.add(jacobian.slot(cell.corners[a], cell.corners[b]),
+                     outer * gradient[a] * gradient[b].transpose() +
+                         cell.viscosity * gradient[a] * rate_gradient[b].transpose() +
+                         stress * second * Mat3::Identity());
+      }
+    }
+  }
 }
 
 double Shear::energy(std::span<const Vec3> x) const {

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "forces/force.hpp"
+#include "forces/lanes.hpp"
 
 namespace weft::forces {
 
@@ -24,8 +25,10 @@ class Shear final : public Force {
   Shear(const mesh::Grid& grid, Index first, const ShearParameters& parameters);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
-  void attach(const solver::BlockMatrix& matrix) override;
+  void attach(const solver::Assembly& assembly) override;
   void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
  private:
@@ -40,13 +43,24 @@ class Shear final : public Force {
     Vec3 su, sv;
     double c;  // ⟨s_u, s_v⟩
   };
-  Strain strain(const Cell& cell, std::span<const Vec3> x) const;
-  void add_stiffness(std::size_t index, const Strain& s, const Strain& rate, const Evaluation& at) const;
-  void add_exact_stiffness(std::size_t index, const Strain& s, const Strain& rate, const Evaluation& at) const;
-  void add_definite_stiffness(std::size_t index, const Strain& s, const Evaluation& at) const;
+  static Strain strain(const Cell& cell, std::span<const Vec3> x);
 
+  /// Four cells.
+  struct Cells {
+    std::array<Four, 4> corners{};
+    std::array<Four, 6> blocks{};  // of the pairs of corners 01, 02, 03, 12, 13, 23
+    Lanes half_u{}, half_v{};      // 1 / 2l_u, 1 / 2l_v [1/m]
+    Lanes elasticity{}, viscosity{};
+  };
+  struct StrainLanes {
+    VecLanes su, sv;
+  };
+  static StrainLanes strain(const Cells& cells, std::span<const solver::Quad<double>> x);
+  static void add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at);
+
+  bool viscous_;
   std::vector<Cell> cells_;
-  std::vector<std::array<solver::Slot, 16>> slots_;  // row-major over corner pairs
+  std::vector<Cells> packs_;  // the same
 };
 
 }  // namespace weft::forces

@@ -5,7 +5,8 @@
 
 namespace weft::forces {
 
-Stretch::Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters) : first_(first) {
+Stretch::Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters)
+    : first_(first), viscous_(parameters.viscosity > 0) {
   const auto add_edge = [&](Index i, Index j, double l, double width, double k) {
     const double per_length_sq = width * l / (l * l);  // A / l²
     edges_.push_back({first + i, first + j, l, k * per_length_sq, parameters.viscosity * per_length_sq});
@@ -18,57 +19,71 @@ Stretch::Stretch(const mesh::Grid& grid, Index first, const StretchParameters& p
         add_edge(grid.index(i, j), grid.index(i, j + 1), grid.dv(j), grid.width_u(i), parameters.warp);
     }
   }
+  packs_.resize(packs_of(edges_.size()));
+  for (std::size_t p = 0; p < packs_.size(); ++p)
+    for_each_lane(edges_.size(), p, [&](std::size_t e, std::size_t lane, bool counts) {
+      const Edge& edge = edges_[e];
+      packs_[p].i[lane] = edge.i;
+      packs_[p].j[lane] = edge.j;
+      packs_[p].rest_length[lane] = edge.rest_length;
+      packs_[p].elasticity[lane] = counts ? edge.elasticity : 0;
+      packs_[p].viscosity[lane] = counts ? edge.viscosity : 0;
+    });
 }
 
 void Stretch::couple(std::vector<std::pair<Index, Index>>& pairs) const {
   for (const Edge& edge : edges_) pairs.emplace_back(edge.i, edge.j);
 }
 
-void Stretch::attach(const solver::BlockMatrix& matrix) {
-  slots_.clear();
-  for (const Edge& e : edges_)
-    slots_.push_back({matrix.diagonal(e.i), matrix.diagonal(e.j), matrix.slot(e.i, e.j), matrix.slot(e.j, e.i)});
-}
-
-// ∂f_i/∂x_j + rate ∂f_i/∂v_j for the force on i.
-Mat3 Stretch::stiffness(const Edge& edge, const Vec3& n, double length, const Vec3& relative_velocity,
-                        const Evaluation& at) const {
-  const Mat3 along = n * n.transpose();
-  const Mat3 across = Mat3::Identity() - along;
-  // Across the edge the tension stiffens a stretched edge and, as compression, softens a short one. The absolute-
-  // value projection takes its modulus (Chen, Liu, Levin, Zheng & Jacobson, "Stabler Neo-Hookean Simulation: Absolute
-  // Eigenvalue Filtering for Projected Newton", 2024), but no more than the stiffness along the edge.
-  double lateral = 1 - edge.rest_length / length;
-  if (at.linearisation == Linearisation::definite) lateral = std::max(lateral, 0.0);
-  if (at.linearisation == Linearisation::abs_projected) lateral = std::min(std::abs(lateral), 1.0);
-  Mat3 k = (edge.elasticity + at.rate * edge.viscosity) * along + (edge.elasticity * lateral) * across;
-  if (at.linearisation == Linearisation::exact && edge.viscosity > 0) {
-    // d/dd of (n·w) n: the direction turns with the edge. Unsymmetric, and O(η‖w‖/l), so the definite form does
-    // without it: the residual stays exact, Newton then converges linearly in that small part.
-    k += edge.viscosity / length * (n * (across * relative_velocity).transpose() + n.dot(relative_velocity) * across);
-  }
-  return k;
+void Stretch::attach(const solver::Assembly& assembly) {
+  for (std::size_t p = 0; p < packs_.size(); ++p)
+    for_each_lane(edges_.size(), p, [&](std::size_t e, std::size_t lane, bool) {
+      packs_[p].block[lane] = assembly.block(edges_[e].i, edges_[e].j);
+    });
 }
 
 void Stretch::add(const Evaluation& at) const {
-  for (std::size_t e = 0; e < edges_.size(); ++e) {
-    const Edge& edge = edges_[e];
-    const auto i = static_cast<std::size_t>(edge.i), j = static_cast<std::size_t>(edge.j);
-    const Vec3 d = at.x[j] - at.x[i];
-    const Vec3 w = at.v[j] - at.v[i];
+  for (const Edges& edges : packs_) {
+    const VecLanes d = gather(at.x, edges.j) - gather(at.x, edges.i);
     // A collapsed edge has no direction: it then pulls nowhere, and a tiny length keeps the matrix finite.
+    const Lanes length = max(sqrt(dot(d, d)), 1e-12 * edges.rest_length);
+    const VecLanes n = 1 / length * d;
+    Lanes tension = edges.elasticity * (length - edges.rest_length);
+    if (viscous_) tension += edges.viscosity * dot(n, gather(at.v, edges.j) - gather(at.v, edges.i));
+    const VecLanes pull = tension * n;
+    forces::add(at.force, edges.i, pull);
+    subtract(at.force, edges.j, pull);
+    if (at.assembly == nullptr) continue;
+
+    // Across the edge the tension stiffens a stretched edge and, as compression, softens a short one. The absolute-
+    // value projection takes its modulus (Chen, Liu, Levin, Zheng & Jacobson, "Stabler Neo-Hookean Simulation: Absolute
+    // Eigenvalue Filtering for Projected Newton", 2024), but no more than the stiffness along the edge.
+    const Lanes ratio = 1 - edges.rest_length / length;
+    const Lanes lateral =
+        edges.elasticity *
+        (at.linearisation == Linearisation::definite ? max(ratio, lanes_of(0.0)) : min(abs(ratio), lanes_of(1.0)));
+    const Lanes along = edges.elasticity + at.rate * edges.viscosity;
+    forces::add(*at.assembly, edges.block, outer((lateral - along) * n, n, -lateral));
+  }
+}
+
+// With d/dd of (n·w) n, w the relative velocity: the direction turns with the edge. That is unsymmetric, and
+// O(η‖w‖/l), so the definite form does without it: the residual stays exact, Newton then converges linearly in that
+// small part.
+void Stretch::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                           solver::BlockMatrix& jacobian) const {
+  for (const Edge& edge : edges_) {
+    const Vec3 d = x[edge.j] - x[edge.i], w = v[edge.j] - v[edge.i];
     const double length = std::max(d.norm(), 1e-12 * edge.rest_length);
     const Vec3 n = d / length;
-    const Vec3 f = (edge.elasticity * (length - edge.rest_length) + edge.viscosity * n.dot(w)) * n;
-    at.force[i] += f;
-    at.force[j] -= f;
-    if (at.matrix == nullptr) continue;
-
-    const Mat3 k = stiffness(edge, n, length, w, at);
-    at.matrix->add(slots_[e].ii, k);
-    at.matrix->add(slots_[e].jj, k);
-    at.matrix->subtract(slots_[e].ij, k);
-    at.matrix->subtract(slots_[e].ji, k);
+    const Mat3 along = n * n.transpose(), across = Mat3::Identity() - along;
+    const Mat3 k = (edge.elasticity + rate * edge.viscosity) * along +
+                   (edge.elasticity * (1 - edge.rest_length / length)) * across +
+                   edge.viscosity / length * (n * (across * w).transpose() + n.dot(w) * across);
+    jacobian.add(jacobian.diagonal(edge.i), k);
+    jacobian.add(jacobian.diagonal(edge.j), k);
+    jacobian.subtract(jacobian.slot(edge.i, edge.j), k);
+    jacobian.subtract(jacobian.slot(edge.j, edge.i), k);
   }
 }
 

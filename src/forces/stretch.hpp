@@ -4,6 +4,7 @@
 #include <array>
 
 #include "forces/force.hpp"
+#include "forces/lanes.hpp"
 
 namespace weft::forces {
 
@@ -22,8 +23,10 @@ class Stretch final : public Membrane {
   Stretch(const mesh::Grid& grid, Index first, const StretchParameters& parameters);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
-  void attach(const solver::BlockMatrix& matrix) override;
+  void attach(const solver::Assembly& assembly) override;
   void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
   /// Largest |‖d‖/l − 1| of all edges.
@@ -38,15 +41,16 @@ class Stretch final : public Membrane {
     double elasticity;   // k A / l² [N/m]
     double viscosity;    // η A / l² [N·s/m]
   };
-  struct Slots {
-    solver::Slot ii, jj, ij, ji;
+  /// Four of them.
+  struct Edges {
+    Four i{}, j{}, block{};
+    Lanes rest_length{}, elasticity{}, viscosity{};
   };
-  Mat3 stiffness(const Edge& edge, const Vec3& n, double length, const Vec3& relative_velocity,
-                 const Evaluation& at) const;
 
   Index first_;
+  bool viscous_;
   std::vector<Edge> edges_;
-  std::vector<Slots> slots_;
+  std::vector<Edges> packs_;  // the same
 };
 
 }  // namespace weft::forces

@@ -22,6 +22,8 @@ StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, double stretch, 
                             first + grid.index(i + 1, j + 1)};
       crossings_.push_back({4, corners, {-u, u, -u, u}, {-v, -v, v, v}, grid.du(i) * grid.dv(j)});
     }
+  thread_blocks_.resize(threads_.size());
+  crossing_blocks_.resize(crossings_.size());
 }
 
 StretchLimit::StretchLimit(const TriangleMembrane& membrane, double stretch, double shear)
@@ -42,6 +44,8 @@ void StretchLimit::follow(const TriangleMembrane& membrane) {
     }
     if (!std::isinf(shear_)) crossings_.push_back({3, corners, weft, warp, element.area});
   }
+  thread_blocks_.resize(threads_.size());
+  crossing_blocks_.resize(crossings_.size());
 }
 
 void StretchLimit::couple(std::vector<std::pair<Index, Index>>& pairs) const {
@@ -54,16 +58,16 @@ void StretchLimit::couple(std::vector<std::pair<Index, Index>>& pairs) const {
   couple_all(crossings_);
 }
 
-void StretchLimit::attach(const solver::BlockMatrix& matrix) {
-  const auto attach_all = [&](const auto& pieces, std::vector<Slots>& slots) {
-    slots.resize(pieces.size());
+void StretchLimit::attach(const solver::Assembly& assembly) {
+  const auto attach_all = [&](const auto& pieces, std::vector<Blocks>& blocks) {
     for (std::size_t p = 0; p < pieces.size(); ++p)
       for (std::size_t a = 0; a < pieces[p].corners; ++a)
         for (std::size_t b = 0; b < pieces[p].corners; ++b)
-          slots[p][kMost * a + b] = matrix.slot(pieces[p].particles[a], pieces[p].particles[b]);
+          if (pieces[p].particles[a] < pieces[p].particles[b])
+            blocks[p][kMost * a + b] = assembly.block(pieces[p].particles[a], pieces[p].particles[b]);
   };
-  attach_all(threads_, thread_slots_);
-  attach_all(crossings_, crossing_slots_);
+  attach_all(threads_, thread_blocks_);
+  attach_all(crossings_, crossing_blocks_);
 }
 
 template <class Piece>
@@ -73,56 +77,86 @@ Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::s
   return s;
 }
 
-void StretchLimit::add(const Evaluation& at) const {
+template <class Piece>
+Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::span<const solver::Quad<double>> x) {
+  solver::Quad<double> s{};
+  for (std::size_t k = 0; k < piece.corners; ++k) s += weights[k] * x[piece.particles[k]];
+  return solver::vec3_of(s);
+}
+
+// Calls body(piece, blocks, pulls, block_of) for each that locks.
+template <class Points, class Body>
+void StretchLimit::for_each_lock(Points x, bool exact, const Body& body) const {
   // Of nearly all pieces the squared length tells that they are below the onset.
   const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
-  for (std::size_t t = 0; t < threads_.size(); ++t)
-    if (const Vec3 s = derivative(threads_[t], threads_[t].along, at.x); s.squaredNorm() > onset_sq) add_lock(t, s, at);
+  for (std::size_t t = 0; t < threads_.size(); ++t) {
+    const Vec3 s = derivative(threads_[t], threads_[t].along, x);
+    if (s.squaredNorm() <= onset_sq) continue;
+    lock(threads_[t], s,
+         [&](const Pulls& pulls, const auto& block_of) { body(threads_[t], thread_blocks_[t], pulls, block_of); });
+  }
   const double shear_onset = Lock(shear_).onset();
   for (std::size_t c = 0; c < crossings_.size(); ++c) {
     const Crossing& crossing = crossings_[c];
-    const Vec3 s_u = derivative(crossing, crossing.weft, at.x), s_v = derivative(crossing, crossing.warp, at.x);
-    if (std::abs(s_u.dot(s_v)) > shear_onset) add_lock(c, s_u, s_v, at);
+    const Vec3 s_u = derivative(crossing, crossing.weft, x), s_v = derivative(crossing, crossing.warp, x);
+    if (!(std::abs(s_u.dot(s_v)) > shear_onset)) continue;
+    lock(crossing, s_u, s_v, exact,
+         [&](const Pulls& pulls, const auto& block_of) { body(crossing, crossing_blocks_[c], pulls, block_of); });
   }
 }
 
+void StretchLimit::add(const Evaluation& at) const {
+  for_each_lock(at.x, false, [&](const auto& piece, const Blocks& blocks, const Pulls& pulls, const auto& block_of) {
+    for (std::size_t k = 0; k < piece.corners; ++k) at.force[piece.particles[k]] -= solver::quad_of<double>(pulls[k]);
+    if (at.assembly == nullptr) return;
+    for (std::size_t a = 0; a < piece.corners; ++a)
+      for (std::size_t b = 0; b < piece.corners; ++b)
+        if (piece.particles[a] < piece.particles[b]) at.assembly->add(blocks[kMost * a + b], block_of(a, b));
+  });
+}
+
+void StretchLimit::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double /*rate*/,
+                                solver::BlockMatrix& jacobian) const {
+  for_each_lock(x, true, [&](const auto& piece, const Blocks&, const Pulls&, const auto& block_of) {
+    for (std::size_t a = 0; a < piece.corners; ++a)
+      for (std::size_t b = 0; b < piece.corners; ++b)
+        jacobian.add(jacobian.slot(piece.particles[a], piece.particles[b]), block_of(a, b));
+  });
+}
+
 // A thread pulls, so that the derivative is definite as it is.
-void StretchLimit::add_lock(std::size_t thread, const Vec3& s, const Evaluation& at) const {
-  const Thread& piece = threads_[thread];
+template <class Body>
+void StretchLimit::lock(const Thread& piece, const Vec3& s, const Body& body) const {
   const Lock lock(stretch_);
   const double length = s.norm(), stress = piece.area * lock.stress(length - 1);
   const Vec3 n = s / length;
-  for (std::size_t k = 0; k < piece.corners; ++k) at.force[piece.particles[k]] -= stress * piece.along[k] * n;
-  if (at.matrix == nullptr) return;
+  Pulls pulls{};
+  for (std::size_t k = 0; k < piece.corners; ++k) pulls[k] = stress * piece.along[k] * n;
   const double lateral = stress / length, axial = piece.area * lock.stiffness(length - 1);
-  const Mat3 stiffness = (axial - lateral) * n * n.transpose() + lateral * Mat3::Identity();
-  for (std::size_t a = 0; a < piece.corners; ++a)
-    for (std::size_t b = 0; b < piece.corners; ++b)
-      at.matrix->add(thread_slots_[thread][kMost * a + b], piece.along[a] * piece.along[b], stiffness);
+  body(pulls, [&](std::size_t a, std::size_t b) -> Mat3 {
+    return piece.along[a] * piece.along[b] * ((axial - lateral) * n * n.transpose() + lateral * Mat3::Identity());
+  });
 }
 
 // As Shear: exactly, or of the second derivative the half whose sign agrees with the stress.
-void StretchLimit::add_lock(std::size_t crossing, const Vec3& s_u, const Vec3& s_v, const Evaluation& at) const {
-  const Crossing& piece = crossings_[crossing];
+template <class Body>
+void StretchLimit::lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const {
   const Lock lock(shear_);
   const double sine = s_u.dot(s_v), sign = sine < 0 ? -1 : 1;
   const double stress = piece.area * lock.stress(std::abs(sine)),
                stiffness = piece.area * lock.stiffness(std::abs(sine));
-  std::array<Vec3, kMost> gradient;  // ∂|c|/∂x_k
+  Pulls gradient{}, pulls{};  // ∂|c|/∂x_k
   for (std::size_t k = 0; k < piece.corners; ++k) {
     gradient[k] = sign * (piece.weft[k] * s_v + piece.warp[k] * s_u);
-    at.force[piece.particles[k]] -= stress * gradient[k];
+    pulls[k] = stress * gradient[k];
   }
-  if (at.matrix == nullptr) return;
   const auto second = [&](std::size_t a, std::size_t b) {
-    if (at.linearisation == Linearisation::exact)
-      return sign * (piece.weft[a] * piece.warp[b] + piece.warp[a] * piece.weft[b]);
+    if (exact) return sign * (piece.weft[a] * piece.warp[b] + piece.warp[a] * piece.weft[b]);
     return 0.5 * (piece.weft[a] + sign * piece.warp[a]) * (piece.weft[b] + sign * piece.warp[b]);
   };
-  for (std::size_t a = 0; a < piece.corners; ++a)
-    for (std::size_t b = 0; b < piece.corners; ++b)
-      at.matrix->add(crossing_slots_[crossing][kMost * a + b],
-                     stiffness * gradient[a] * gradient[b].transpose() + stress * second(a, b) * Mat3::Identity());
+  body(pulls, [&](std::size_t a, std::size_t b) -> Mat3 {
+    return stiffness * gradient[a] * gradient[b].transpose() + stress * second(a, b) * Mat3::Identity();
+  });
 }
 
 double StretchLimit::energy(std::span<const Vec3> x) const {

@@ -59,8 +59,10 @@ class StretchLimit final : public Force {
   StretchLimit(const TriangleMembrane& membrane, double stretch, double shear);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
-  void attach(const solver::BlockMatrix& matrix) override;
+  void attach(const solver::Assembly& assembly) override;
   void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
 
   /// Takes over the rest shape of the membrane that it was made for.
@@ -92,17 +94,26 @@ class StretchLimit final : public Force {
     Weights weft, warp;
     double area;  // [m²]
   };
-  using Slots = std::array<solver::Slot, kMost * kMost>;  // row-major over pairs of corners
+  /// Blocks of pairs of corners [kMost a + b], where particle a is before b.
+  using Blocks = std::array<Index, kMost * kMost>;
+  /// How one piece pulls at its corners, and block (a, b) of its Jacobian.
+  using Pulls = std::array<Vec3, kMost>;
 
   template <class Piece>
   static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const Vec3> x);
-  void add_lock(std::size_t thread, const Vec3& s, const Evaluation& at) const;
-  void add_lock(std::size_t crossing, const Vec3& s_u, const Vec3& s_v, const Evaluation& at) const;
+  template <class Piece>
+  static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const solver::Quad<double>> x);
+  template <class Points, class Body>
+  void for_each_lock(Points x, bool exact, const Body& body) const;
+  template <class Body>
+  void lock(const Thread& piece, const Vec3& s, const Body& body) const;
+  template <class Body>
+  void lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const;
 
   double stretch_, shear_;
   std::vector<Thread> threads_;
   std::vector<Crossing> crossings_;  // none without a limit to shear
-  std::vector<Slots> thread_slots_, crossing_slots_;
+  std::vector<Blocks> thread_blocks_, crossing_blocks_;
 };
 
 }  // namespace weft::forces

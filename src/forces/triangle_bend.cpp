@@ -11,16 +11,8 @@ namespace {
 
 // 2 ‖s_uv‖²: the mixed derivative counts twice.
 const Vec3 kCount(1, 1, 2);
-const Eigen::Array4d kCounts(1, 1, 2, 0);
 // Rest curvature times the size of the triangle below which it is rounding.
 constexpr double kFlatRest = 1e-9;
-
-/// s_uu, s_vv and s_uv as columns.
-Mat3 columns_of(const std::array<Eigen::Array4d, 3>& curvature) {
-  Mat3 columns;
-  for (int d = 0; d < 3; ++d) columns.row(d) = curvature[d].head<3>();
-  return columns;
-}
 
 /// The plane of a triangle: its unit normal and the gradients of the corners' weights.
 struct Plane {
@@ -28,15 +20,22 @@ struct Plane {
   std::array<Vec3, 3> gradients;  // [1/m]
 };
 
-Plane plane_of(std::span<const Index> particles, std::span<const Vec3> x) {
-  const auto corner = [&](std::size_t k) -> const Vec3& { return x[particles[k % 3]]; };
-  const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+Plane plane_of(const std::array<Vec3, 3>& corners) {
+  const Vec3 normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]);
   const double size = normal.norm();  // twice the area
   Plane plane{Vec3::Zero(), {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}};
   if (size == 0) return plane;  // a collapsed triangle faces nowhere: it bends as if it were flat at rest
   plane.normal = normal / size;
-  for (std::size_t k = 0; k < 3; ++k) plane.gradients[k] = plane.normal.cross(corner(k + 2) - corner(k + 1)) / size;
+  for (std::size_t k = 0; k < 3; ++k)
+    plane.gradients[k] = plane.normal.cross(corners[(k + 2) % 3] - corners[(k + 1) % 3]) / size;
   return plane;
+}
+
+std::array<Vec3, 3> corners_of(std::span<const Index> particles, std::span<const Vec3> x) {
+  return {x[particles[0]], x[particles[1]], x[particles[2]]};
+}
+std::array<Vec3, 3> corners_of(std::span<const Index> particles, std::span<const solver::Quad<double>> x) {
+  return {solver::vec3_of(x[particles[0]]), solver::vec3_of(x[particles[1]]), solver::vec3_of(x[particles[2]])};
 }
 
 /// Signed curvature of the rest shape of a triangle, s_uu, s_vv and s_uv; what it has in the plane is taken out of the
@@ -48,7 +47,7 @@ Vec3 take_rest(CurvatureStencil& stencil, double area, const std::array<Vec2, 3>
     curved += rest[stencil.vertices[k]] * stencil.weights[k].transpose();
   if (curved.norm() * std::sqrt(area) < kFlatRest) return Vec3::Zero();
   const std::span<const Index> corners(stencil.vertices);
-  const Vec3 normal = plane_of(corners, rest).normal;
+  const Vec3 normal = plane_of(corners_of(corners, rest)).normal;
   Eigen::Matrix2d sides;
   sides << material[1] - material[0], material[2] - material[0];
   const Eigen::Matrix2d inverse = sides.inverse();
@@ -92,23 +91,42 @@ void TriangleBend::use_held() {
     if (!sheet_.sewn) rest = take_rest(stencils[t], area, sheet_.material[t], sheet_.rest);
     const std::size_t begin = particles_.size(), count = stencils[t].vertices.size();
     for (Index vertex : stencils[t].vertices) particles_.push_back(first_ + vertex);
-    for (const Vec3& weight : stencils[t].weights) weights_.emplace_back(weight.x(), weight.y(), weight.z(), 0);
+    for (const Vec3& weight : stencils[t].weights) weights_.push_back(solver::quad_of<double>(weight));
     elements_.push_back({begin, begin + count, pairs, area, rest});
-    pairs += count * count;
+    pairs += count * (count - 1) / 2;
   }
+  weights_.resize(weights_.size() + 3);  // four load at once
 }
 
-TriangleBend::Curvature TriangleBend::curvature(const Element& element, std::span<const Vec3> x) const {
-  Lanes of_x = Lanes::Zero(), of_y = Lanes::Zero(), of_z = Lanes::Zero();
-  const Index* particle = particles_.data();
-  const Lanes* weight = weights_.data();
+TriangleBend::Curvature TriangleBend::curvature(const Element& element, std::span<const Quad> x) const {
+  Quad uu{}, vv{}, uv{};
   for (std::size_t k = element.begin; k < element.end; ++k) {
-    const Vec3& position = x[particle[k]];
-    of_x += position.x() * weight[k];
-    of_y += position.y() * weight[k];
-    of_z += position.z() * weight[k];
+    const Quad &weight = weights_[k], &position = x[particles_[k]];
+    uu += weight[0] * position;
+    vv += weight[1] * position;
+    uv += weight[2] * position;
   }
-  return {of_x, of_y, of_z};
+  return {uu, vv, uv};
+}
+
+Mat3 TriangleBend::curvature(const Element& element, std::span<const Vec3> x) const {
+  Mat3 columns = Mat3::Zero();
+  for (std::size_t k = element.begin; k < element.end; ++k)
+    columns += x[particles_[k]] * solver::vec3_of(weights_[k]).transpose();
+  return columns;
+}
+
+// Of `count` elements, four at most.
+TriangleBend::CurvatureLanes TriangleBend::curvatures(std::size_t first, std::size_t count,
+                                                      std::span<const Quad> x) const {
+  std::array<Curvature, 4> of_elements{};
+  for (std::size_t l = 0; l < count; ++l) of_elements[l] = curvature(elements_[first + l], x);
+  CurvatureLanes lanes;
+  for (std::size_t c = 0; c < 3; ++c) {
+    const auto axes = transposed(of_elements[0][c], of_elements[1][c], of_elements[2][c], of_elements[3][c]);
+    lanes[c] = {axes[0], axes[1], axes[2]};
+  }
+  return lanes;
 }
 
 void TriangleBend::couple(std::vector<std::pair<Index, Index>>& pairs) const {
@@ -122,127 +140,168 @@ bool TriangleBend::isotropic() const {
   return std::ranges::all_of(elements_, [](const Element& element) { return element.rest.isZero(0); });
 }
 
-void TriangleBend::attach(const solver::BlockMatrix& matrix) {
-  slots_.clear();
+void TriangleBend::attach(const solver::Assembly& assembly) {
+  const bool curved = !isotropic();
+  scalars_.clear(), blocks_.clear();
   for (const Element& element : elements_)
-    for (Index a : particles(element))
-      for (Index b : particles(element)) slots_.push_back(matrix.slot(a, b));
+    for (std::size_t a = element.begin; a < element.end; ++a)
+      for (std::size_t b = a + 1; b < element.end; ++b) {
+        const auto [i, j] = std::minmax(particles_[a], particles_[b]);
+        scalars_.push_back(assembly.scalar(i, j));
+        if (curved) blocks_.push_back(assembly.block(i, j));
+      }
 }
 
 void TriangleBend::add(const Evaluation& at) const {
-  for (const Element& element : elements_) {
-    const Curvature curved = curvature(element, at.x);
-    Curvature moment{rigidity_ * curved[0], rigidity_ * curved[1], rigidity_ * curved[2]};
-    if (damping_.any()) add_damping(element, curved, at, moment);
-    // Moments against s_uu, s_vv and s_uv, each as (x, y, z, 0).
-    const auto moment_of = [&](int c) -> Lanes {
-      return element.area * kCounts[c] * Lanes(moment[0][c], moment[1][c], moment[2][c], 0);
-    };
-    const Lanes of_uu = moment_of(0), of_vv = moment_of(1), of_uv = moment_of(2);
-    for (std::size_t k = element.begin; k < element.end; ++k) {
-      const Lanes& w = weights_[k];
-      const Lanes force = w[0] * of_uu + w[1] * of_vv + w[2] * of_uv;
-      at.force[particles_[k]] -= force.head<3>().matrix();
+  std::vector<double> scratch;
+  for (std::size_t first = 0; first < elements_.size(); first += 4) {
+    const std::size_t count = std::min<std::size_t>(4, elements_.size() - first);
+    const std::span<const Element> elements(elements_.data() + first, count);
+    const CurvatureLanes curved = curvatures(first, count, at.x);
+    CurvatureLanes velocity;
+    if (damping_.any()) velocity = curvatures(first, count, at.v);
+    Lanes area{};
+    for (std::size_t l = 0; l < count; ++l) area[l] = elements[l].area;
+
+    // Moments against s_uu, s_vv and s_uv, and what damping adds to the matrix: as Bend, with ‖c‖² I in place of c cᵀ;
+    // the catwalk takes no more iterations.
+    std::array<std::array<Quad, 4>, 3> moments;
+    std::array<Lanes, 3> stiffness{};
+    for (std::size_t k = 0; k < 3; ++k) {
+      VecLanes moment = lanes_of(rigidity_) * curved[k];
+      if (damping_.any()) {
+        const VecLanes c = at.rate > 0 ? curved[k] - lanes_of(1 / at.rate) * velocity[k] : curved[k];
+        const Lanes c_sq = dot(c, c), rate = dot(c, velocity[k]), secant = damping_.secant(c_sq, rate);
+        moment = moment + secant * rate * c;
+        stiffness[k] = at.rate * kCount[k] * area * secant * c_sq;
+      }
+      moment = kCount[k] * area * moment;
+      moments[k] = transposed(moment.x, moment.y, moment.z, lanes_of(0.0));
     }
-    if (!element.rest.isZero(0)) add_rest_moment(element, columns_of(curved), at);
-  }
-}
-
-// moment += viscosity and friction; their Jacobian goes into the matrix, if there is one.
-void TriangleBend::add_damping(const Element& element, const Curvature& curved, const Evaluation& at,
-                               Curvature& moment) const {
-  const Curvature velocity = curvature(element, at.v);
-  Curvature c = curved;
-  for (std::size_t d = 0; d < 3 && at.rate > 0; ++d) c[d] -= velocity[d] / at.rate;
-  const Lanes c_sq = c[0] * c[0] + c[1] * c[1] + c[2] * c[2];
-  const Lanes rate = c[0] * velocity[0] + c[1] * velocity[1] + c[2] * velocity[2];
-  const auto [secant, tangent] = damping_.respond(c_sq, rate);
-  const Lanes size = secant * rate;
-  for (std::size_t d = 0; d < 3; ++d) moment[d] += size * c[d];
-  if (at.matrix == nullptr) return;
-  if (at.linearisation == Linearisation::exact)
-    add_exact_blocks(element, columns_of(c), at.rate * tangent, *at.matrix);
-  else
-    add_stiffness(element, element.area * at.rate * kCounts * secant * c_sq, *at.matrix);
-}
-
-// As Bend, with ‖c‖² I in place of c cᵀ: the catwalk takes no more iterations.
-void TriangleBend::add_stiffness(const Element& element, const Lanes& stiffness, solver::BlockMatrix& matrix) const {
-  const std::size_t count = element.end - element.begin;
-  const solver::Slot* slots = slots_.data() + element.slots;
-  const Lanes* weights = weights_.data() + element.begin;
-  for (std::size_t a = 0; a < count; ++a) {
-    const Lanes row = stiffness * weights[a];
-    for (std::size_t b = a; b < count; ++b) {
-      const double value = (row * weights[b]).sum();
-      matrix.add_scalar(slots[a * count + b], value);
-      if (b != a) matrix.add_scalar(slots[b * count + a], value);
+    for (std::size_t l = 0; l < count; ++l) {
+      const Quad of_uu = moments[0][l], of_vv = moments[1][l], of_uv = moments[2][l];
+      for (std::size_t k = elements[l].begin; k < elements[l].end; ++k) {
+        const Quad& w = weights_[k];
+        at.force[particles_[k]] -= w[0] * of_uu + w[1] * of_vv + w[2] * of_uv;
+      }
+      if (!elements[l].rest.isZero(0)) add_rest_moment(elements[l], curvature(elements[l], at.x), at);
+      if (at.assembly != nullptr && damping_.any())
+        add_pairs(elements[l], {stiffness[0][l], stiffness[1][l], stiffness[2][l]}, scratch, *at.assembly);
     }
   }
 }
 
-void TriangleBend::add_exact_blocks(const Element& element, const Mat3& c, const Lanes& stiffness,
-                                    solver::BlockMatrix& matrix) const {
-  const std::size_t count = element.end - element.begin;
-  for (int k = 0; k < 3; ++k) {
-    const Mat3 block = element.area * kCount[k] * stiffness[k] * c.col(k) * c.col(k).transpose();
-    for (std::size_t a = 0; a < count; ++a)
-      for (std::size_t b = 0; b < count; ++b)
-        matrix.add(slots_[element.slots + a * count + b],
-                   weights_[element.begin + a][k] * weights_[element.begin + b][k], block);
+// Adds Σ_c stiffness_c w_ac w_bc for all pairs, four at a time.
+void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std::vector<double>& scratch,
+                             solver::Assembly& assembly) const {
+  const std::size_t count = element.end - element.begin, stride = 4 * packs_of(count);
+  if (scratch.size() < 4 * stride) scratch.resize(4 * stride);
+  double* const uu = scratch.data();
+  double* const vv = uu + stride;
+  double* const uv = vv + stride;
+  double* const row = uv + stride;
+  const Quad* weights = weights_.data() + element.begin;
+  for (std::size_t k = 0; k < count; k += 4) {
+    const auto columns = transposed(weights[k], weights[k + 1], weights[k + 2], weights[k + 3]);
+    solver::store_quad(uu + k, columns[0]);
+    solver::store_quad(vv + k, columns[1]);
+    solver::store_quad(uv + k, columns[2]);
+  }
+  const Index* scalar = scalars_.data() + element.pairs;
+  for (std::size_t a = 0; a + 1 < count; ++a) {
+    const double of_uu = stiffness[0] * uu[a], of_vv = stiffness[1] * vv[a], of_uv = stiffness[2] * uv[a];
+    for (std::size_t b = (a + 1) / 4 * 4; b < count; b += 4)
+      solver::store_quad(row + b, of_uu * solver::load_quad(uu + b) + of_vv * solver::load_quad(vv + b) +
+                                      of_uv * solver::load_quad(uv + b));
+    for (std::size_t b = a + 1; b < count; ++b) assembly.add_scalar(*scalar++, row[b]);
   }
 }
 
-// The energy −B A n·m, m = Σ κ_ab s_ab = Σ_k c_k x_k, and what goes with it into the matrix.
+// The energy −B A n·m, m = Σ κ_ab s_ab = Σ_k c_k x_k: push(k, force), and add_block(a, b, block) for what goes with it
+// into the matrix, for all pairs with a corner.
 //
 // With g_k the gradient of corner k's weight in the plane, δn = −Σ_k g_k (n·δx_k) and
 // δg_k = −Σ_j g_j (g_k·δx_j) + n Σ_j (g_k·g_j)(n·δx_j). The definite form is that of Gauss and Newton for
 // ‖s_ab − κ_ab n‖², definite together with the constant part.
-void TriangleBend::add_rest_moment(const Element& element, const Mat3& curved, const Evaluation& at) const {
-  const auto [n, g] = plane_of(particles(element), at.x);
+template <class Push, class AddBlock>
+void TriangleBend::rest_moment(const Element& element, const Mat3& curved, const std::array<Vec3, 3>& corners,
+                               bool exact, const Push& push, const AddBlock& add_block) const {
+  const auto [n, g] = plane_of(corners);
   const Vec3 rest = kCount.cwiseProduct(element.rest);
   const Vec3 m = curved * rest;
   const double size = rigidity_ * element.area;
   const std::size_t count = element.end - element.begin;
-  const Index* particle = particles_.data() + element.begin;
-  const solver::Slot* slots = slots_.data() + element.slots;
-  const auto turned = [&](std::size_t k) { return rest.dot(weights_[element.begin + k].head<3>().matrix()); };
-  for (std::size_t k = 0; k < count; ++k) at.force[particle[k]] += size * turned(k) * n;
-  for (std::size_t k = 0; k < 3; ++k) at.force[particle[k]] -= size * m.dot(g[k]) * n;
-  if (at.matrix == nullptr) return;
+  const auto turned = [&](std::size_t k) { return rest.dot(solver::vec3_of(weights_[element.begin + k])); };
+  for (std::size_t k = 0; k < count; ++k) push(k, Vec3(size * turned(k) * n));
+  for (std::size_t k = 0; k < 3; ++k) push(k, Vec3(-size * m.dot(g[k]) * n));
 
   for (std::size_t k = 0; k < 3; ++k) {
     const Mat3 turn = size * n * g[k].transpose();
     for (std::size_t j = 0; j < count; ++j) {
-      at.matrix->add(slots[k * count + j], turned(j), turn);
-      at.matrix->add(slots[j * count + k], turned(j), turn.transpose());
+      add_block(k, j, Mat3(turned(j) * turn));
+      add_block(j, k, Mat3(turned(j) * turn.transpose()));
     }
     for (std::size_t j = 0; j < 3; ++j) {
       Mat3 block;
-      if (at.linearisation == Linearisation::exact)
+      if (exact)
         block = m.dot(n) * g[k].dot(g[j]) * n * n.transpose() - m.dot(g[j]) * n * g[k].transpose() -
                 m.dot(g[k]) * g[j] * n.transpose();
       else
         block = rest.dot(element.rest) * g[k].dot(g[j]) * n * n.transpose();
-      at.matrix->add(slots[k * count + j], size * block);
+      add_block(k, j, Mat3(size * block));
     }
   }
 }
 
-void TriangleBend::add_constant_stiffness(solver::BlockMatrix& matrix) const {
+void TriangleBend::add_rest_moment(const Element& element, const Curvature& curved, const Evaluation& at) const {
+  Mat3 columns;
+  for (int c = 0; c < 3; ++c) columns.col(c) = solver::vec3_of(curved[c]);
+  const std::span<const Index> particle = particles(element);
+  const auto push = [&](std::size_t k, const Vec3& force) { at.force[particle[k]] += solver::quad_of<double>(force); };
+  const auto add_block = [&](std::size_t a, std::size_t b, const Mat3& block) {
+    if (at.assembly == nullptr || particle[a] >= particle[b]) return;
+    // Number of the pair: those before row a, and those before it in the row.
+    const std::size_t count = particle.size(), i = std::min(a, b), j = std::max(a, b);
+    at.assembly->add(blocks_[element.pairs + i * (2 * count - i - 1) / 2 + (j - i - 1)], block);
+  };
+  rest_moment(element, columns, corners_of(particle, at.x), false, push, add_block);
+}
+
+void TriangleBend::add_constant_stiffness(solver::Assembly& assembly) const {
+  std::vector<double> scratch;
+  for (const Element& element : elements_) add_pairs(element, rigidity_ * element.area * kCount, scratch, assembly);
+}
+
+void TriangleBend::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                                solver::BlockMatrix& jacobian) const {
   for (const Element& element : elements_) {
-    const solver::Slot* slot = slots_.data() + element.slots;
-    for (std::size_t a = element.begin; a < element.end; ++a)
-      for (std::size_t b = element.begin; b < element.end; ++b)
-        matrix.add_scalar(*slot++, rigidity_ * element.area * (kCounts * weights_[a] * weights_[b]).sum());
+    const std::span<const Index> particle = particles(element);
+    const Mat3 curved = curvature(element, x), velocity = curvature(element, v);
+    const auto add_block = [&](std::size_t a, std::size_t b, const Mat3& block) {
+      jacobian.add(jacobian.slot(particle[a], particle[b]), block);
+    };
+    for (int k = 0; k < 3; ++k) {
+      Vec3 c = curved.col(k);
+      if (rate > 0) c -= velocity.col(k) / rate;
+      const double tangent = damping_.tangent(c.squaredNorm(), c.dot(velocity.col(k)));
+      const Mat3 stiffness =
+          element.area * kCount[k] * (rigidity_ * Mat3::Identity() + rate * tangent * c * c.transpose());
+      for (std::size_t a = 0; a < particle.size(); ++a)
+        for (std::size_t b = 0; b < particle.size(); ++b)
+          add_block(a, b, weights_[element.begin + a][k] * weights_[element.begin + b][k] * stiffness);
+    }
+    if (!element.rest.isZero(0))
+      rest_moment(
+          element, curved, corners_of(particle, x), true, [](std::size_t, const Vec3&) {}, add_block);
   }
 }
 
 double TriangleBend::energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (const Element& element : elements_) {
-    Mat3 change = columns_of(curvature(element, x));
-    if (!element.rest.isZero(0)) change -= plane_of(particles(element), x).normal * element.rest.transpose();
+    Mat3 change = curvature(element, x);
+    if (!element.rest.isZero(0))
+      change -= plane_of(corners_of(particles(element), x)).normal * element.rest.transpose();
     sum += 0.5 * rigidity_ * element.area * kCount.dot(change.colwise().squaredNorm().transpose());
   }
   return sum;

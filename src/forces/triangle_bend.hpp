@@ -2,6 +2,7 @@
 #pragma once
 
 #include "forces/bend_damping.hpp"
+#include "forces/force.hpp"
 #include "forces/triangle_curvature.hpp"
 
 namespace weft::forces {
@@ -21,33 +22,38 @@ class TriangleBend final : public Force {
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   bool isotropic() const override;
-  void attach(const solver::BlockMatrix& matrix) override;
+  void attach(const solver::Assembly& assembly) override;
   void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
-  void add_constant_stiffness(solver::BlockMatrix& matrix) const override;
+  void add_constant_stiffness(solver::Assembly& assembly) const override;
   void hold(std::span<const char> held) override;
 
  private:
-  /// Of s_uu, s_vv, s_uv, and a fourth that is zero: they are worked on together.
-  using Lanes = Eigen::Array4d;
-  /// The curvature vectors by coordinate, x, y and z of all of them.
-  using Curvature = std::array<Lanes, 3>;
+  using Quad = solver::Quad<double>;
   struct Element {
     std::size_t begin, end;    // of its particles, corners first
-    std::size_t slots;         // the first of them, row-major over pairs of particles
+    std::size_t pairs;         // the first of them, 01, 02, ... 12, ...
     double area;               // [m²]
     Vec3 rest = Vec3::Zero();  // κ_uu, κ_vv, κ_uv [1/m]
   };
+  /// s_uu, s_vv and s_uv of an element, of four elements.
+  using Curvature = std::array<Quad, 3>;
+  using CurvatureLanes = std::array<VecLanes, 3>;
   std::span<const Index> particles(const Element& e) const {
     return std::span(particles_).subspan(e.begin, e.end - e.begin);
   }
-  Curvature curvature(const Element& element, std::span<const Vec3> x) const;
+  Curvature curvature(const Element& element, std::span<const Quad> x) const;
+  Mat3 curvature(const Element& element, std::span<const Vec3> x) const;  // as columns
+  CurvatureLanes curvatures(std::size_t first, std::size_t count, std::span<const Quad> x) const;
   void use_held();
-  void add_damping(const Element& element, const Curvature& curved, const Evaluation& at, Curvature& moment) const;
-  void add_stiffness(const Element& element, const Lanes& stiffness, solver::BlockMatrix& matrix) const;
-  void add_exact_blocks(const Element& element, const Mat3& c, const Lanes& stiffness,
-                        solver::BlockMatrix& matrix) const;
-  void add_rest_moment(const Element& element, const Mat3& curved, const Evaluation& at) const;
+  void add_pairs(const Element& element, const Vec3& stiffness, std::vector<double>& scratch,
+                 solver::Assembly& assembly) const;
+  template <class Push, class AddBlock>
+  void rest_moment(const Element& element, const Mat3& curved, const std::array<Vec3, 3>& corners, bool exact,
+                   const Push& push, const AddBlock& add_block) const;
+  void add_rest_moment(const Element& element, const Curvature& curved, const Evaluation& at) const;
 
   Index first_;
   double rigidity_;
@@ -57,8 +63,9 @@ class TriangleBend final : public Force {
   std::vector<Element> elements_;
   // One after the other, of all elements.
   std::vector<Index> particles_;
-  std::vector<Lanes> weights_;  // of s_uu, s_vv and s_uv [1/m²]
-  std::vector<solver::Slot> slots_;
+  std::vector<Quad> weights_;   // of s_uu, s_vv and s_uv [1/m²]
+  std::vector<Index> scalars_;  // of pairs
+  std::vector<Index> blocks_;   // likewise, where an element is curved at rest; else empty
 };
 
 }  // namespace weft::forces

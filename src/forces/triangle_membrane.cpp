@@ -6,24 +6,14 @@
 
 namespace weft::forces {
 
-using solver::packed_outer;
-using solver::packed_scalar;
-using solver::PackedBlock;
-
 namespace {
 
 // Below this stretch a thread has no direction any more: it pulls nowhere, and the matrix stays finite.
 constexpr double kCollapsed = 1e-12;
 
-double length_of(const Vec3& s) {
-  return std::max(s.norm(), kCollapsed);
-}
-
-// k (‖s‖ − 1) s/‖s‖ with viscosity: the stress along a thread [N/m].
-Vec3 tension(double k, double viscosity, const Vec3& s, const Vec3& rate) {
-  const double length = length_of(s);
-  const Vec3 n = s / length;
-  return (k * (length - 1) + viscosity * n.dot(rate)) * n;
+// ‖s‖.
+Lanes length_of(const VecLanes& s) {
+  return max(sqrt(dot(s, s)), lanes_of(kCollapsed));
 }
 
 }  // namespace
@@ -50,6 +40,23 @@ TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const 
     }
     starts_.push_back({inverse, stretch_of(s) - Eigen::Matrix2d::Identity()});
   }
+  pack();
+}
+
+void TriangleMembrane::pack() {
+  packs_.resize(packs_of(elements_.size()));
+  for (std::size_t p = 0; p < packs_.size(); ++p)
+    for_each_lane(elements_.size(), p, [&](std::size_t e, std::size_t lane, bool counts) {
+      const Element& element = elements_[e];
+      std::array<std::size_t, 3> order{0, 1, 2};
+      std::ranges::sort(order, {}, [&](std::size_t k) { return element.particles[k]; });
+      for (std::size_t k = 0; k < 3; ++k) {
+        packs_[p].corners[k][lane] = element.particles[order[k]];
+        packs_[p].along[k][lane] = element.gradients[order[k]].x();
+        packs_[p].across[k][lane] = element.gradients[order[k]].y();
+      }
+      packs_[p].area[lane] = counts ? element.area : 0;
+    });
 }
 
 // U of the polar decomposition: the square root of the metric, in closed form for 2 × 2.
@@ -73,6 +80,7 @@ void TriangleMembrane::rest_between_start_and_pattern(double share) {
     const Eigen::Matrix2d stretch = Eigen::Matrix2d::Identity() + (1 - share) * excess;
     use_rest(share == 1 ? inverse : Eigen::Matrix2d(inverse * stretch.inverse()), elements_[e]);
   }
+  if (!starts_.empty()) pack();
 }
 
 void TriangleMembrane::couple(std::vector<std::pair<Index, Index>>& pairs) const {
@@ -80,12 +88,13 @@ void TriangleMembrane::couple(std::vector<std::pair<Index, Index>>& pairs) const
     for (std::size_t k = 0; k < 3; ++k) pairs.emplace_back(e.particles[k], e.particles[(k + 1) % 3]);
 }
 
-void TriangleMembrane::attach(const solver::BlockMatrix& matrix) {
-  slots_.resize(elements_.size());
-  for (std::size_t e = 0; e < elements_.size(); ++e)
-    for (std::size_t a = 0; a < 3; ++a)
-      for (std::size_t b = 0; b < 3; ++b)
-        slots_[e][3 * a + b] = matrix.slot(elements_[e].particles[a], elements_[e].particles[b]);
+void TriangleMembrane::attach(const solver::Assembly& assembly) {
+  for (Triangles& t : packs_)
+    for (std::size_t l = 0; l < 4; ++l) {
+      t.blocks[0][l] = assembly.block(t.corners[0][l], t.corners[1][l]);
+      t.blocks[1][l] = assembly.block(t.corners[0][l], t.corners[2][l]);
+      t.blocks[2][l] = assembly.block(t.corners[1][l], t.corners[2][l]);
+    }
 }
 
 // By differences to the first corner, so that only they are rounded.
@@ -97,93 +106,89 @@ TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, st
   return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
 }
 
+TriangleMembrane::GradientLanes TriangleMembrane::gradient(const Triangles& t,
+                                                           std::span<const solver::Quad<double>> x) {
+  const VecLanes origin = gather(x, t.corners[0]);
+  const VecLanes p = gather(x, t.corners[1]) - origin, q = gather(x, t.corners[2]) - origin;
+  return {t.along[1] * p + t.along[2] * q, t.across[1] * p + t.across[2] * q};
+}
+
 void TriangleMembrane::add(const Evaluation& at) const {
-  for (std::size_t e = 0; e < elements_.size(); ++e) {
-    const Element& element = elements_[e];
-    const Gradient s = gradient(element, at.x), rate = gradient(element, at.v);
-    // ½ μ ⟨s_u, s_v⟩ with viscosity, the shear stress.
-    const double stress =
-        0.5 * (shear_.modulus * s.u.dot(s.v) + shear_.viscosity * (rate.u.dot(s.v) + s.u.dot(rate.v)));
-    const Vec3 along_u = element.area * (tension(stretch_.weft, stretch_.viscosity, s.u, rate.u) + stress * s.v);
-    const Vec3 along_v = element.area * (tension(stretch_.warp, stretch_.viscosity, s.v, rate.v) + stress * s.u);
-    for (std::size_t k = 0; k < 3; ++k)
-      at.force[element.particles[k]] -= element.gradients[k].x() * along_u + element.gradients[k].y() * along_v;
-    if (at.matrix == nullptr) continue;
-
-    add_blocks(element, slots_[e], hessian(s, rate, at), *at.matrix);
+  const bool viscous = stretch_.viscosity > 0 || shear_.viscosity > 0;
+  for (const Triangles& t : packs_) {
+    const GradientLanes s = gradient(t, at.x);
+    const Lanes length_u = length_of(s.u), length_v = length_of(s.v), shear = dot(s.u, s.v);
+    // Tensions k (‖s‖ − 1) with viscosity, over ‖s‖, and the shear stress ½ μ ⟨s_u, s_v⟩ with viscosity [N/m].
+    Lanes tension_u = stretch_.weft * (length_u - 1), tension_v = stretch_.warp * (length_v - 1);
+    Lanes stress = 0.5 * shear_.modulus * shear;
+    if (viscous) {
+      const GradientLanes rate = gradient(t, at.v);
+      tension_u += stretch_.viscosity * dot(s.u, rate.u) / length_u;
+      tension_v += stretch_.viscosity * dot(s.v, rate.v) / length_v;
+      stress += 0.5 * shear_.viscosity * (dot(rate.u, s.v) + dot(s.u, rate.v));
+    }
+    const VecLanes along = t.area * (tension_u / length_u * s.u + stress * s.v),
+                   across = t.area * (tension_v / length_v * s.v + stress * s.u);
+    for (std::size_t k = 0; k < 3; ++k) subtract(at.force, t.corners[k], t.along[k] * along + t.across[k] * across);
+    if (at.assembly != nullptr) add_stiffness(t, s, length_u, length_v, shear, at);
   }
 }
 
-TriangleMembrane::Hessian TriangleMembrane::hessian(const Gradient& s, const Gradient& rate,
-                                                    const Evaluation& at) const {
-  Hessian h;
-  h.uu = stretch_hessian(stretch_.weft, s.u, rate.u, at);
-  h.vv = stretch_hessian(stretch_.warp, s.v, rate.v, at);
-  add_shear_hessian(s, rate, at, h);
-  return h;
+// Blocks Σ gradients[a] gradients[b] ∂²/∂s∂s. Along and across a thread as in Stretch, whose edge of unit length this
+// is, and in shear as in Shear: of the second derivative 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²) the half
+// whose sign agrees with the stress.
+void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s, const Lanes& length_u,
+                                     const Lanes& length_v, const Lanes& shear, const Evaluation& at) const {
+  const auto lateral_of = [&](const Lanes& length) {
+    const Lanes lateral = 1 - 1 / length;
+    return at.linearisation == Linearisation::definite ? max(lateral, lanes_of(0.0)) : min(abs(lateral), lanes_of(1.0));
+  };
+  const Lanes lateral_u = lateral_of(length_u), lateral_v = lateral_of(length_v);
+  const double viscous = at.rate * stretch_.viscosity;
+  const Lanes elastic = 0.5 * shear_.modulus * t.area * shear;
+  // Factors of s_u s_uᵀ in ∂²/∂s_u², of s_v s_vᵀ in ∂²/∂s_v², of the others in s_v s_uᵀ and so on; of the unit matrix.
+  const Lanes axial_u = t.area * (stretch_.weft * (1 - lateral_u) + viscous) / (length_u * length_u);
+  const Lanes axial_v = t.area * (stretch_.warp * (1 - lateral_v) + viscous) / (length_v * length_v);
+  const Lanes outer_shear = 0.5 * (shear_.modulus + at.rate * shear_.viscosity) * t.area;
+  const Lanes level_u = t.area * stretch_.weft * lateral_u + 0.5 * abs(elastic);
+  const Lanes level_v = t.area * stretch_.warp * lateral_v + 0.5 * abs(elastic);
+  for (std::size_t a = 0, pair = 0; a < 3; ++a)
+    for (std::size_t b = a + 1; b < 3; ++b, ++pair) {
+      const Lanes xx = t.along[a] * t.along[b], yy = t.across[a] * t.across[b];
+      const Lanes xy = t.along[a] * t.across[b], yx = t.across[a] * t.along[b];
+      const VecLanes of_u = (xx * axial_u + yy * outer_shear) * s.u + xy * outer_shear * s.v;
+      const VecLanes of_v = (yy * axial_v + xx * outer_shear) * s.v + yx * outer_shear * s.u;
+      const Lanes level = xx * level_u + yy * level_v + 0.5 * (xy + yx) * elastic;
+      forces::add(*at.assembly, t.blocks[pair], outer(of_u, s.u, level) + outer(of_v, s.v));
+    }
 }
 
-// Σ gradients[a] gradients[b] h over the pairs of corners. Those with the first corner follow from the others: where
-// all three move alike, nothing changes.
-void TriangleMembrane::add_blocks(const Element& element, const std::array<solver::Slot, 9>& slots, const Hessian& h,
-                                  solver::BlockMatrix& matrix) {
-  const Vec2 p = element.area * element.gradients[1], q = element.area * element.gradients[2];
-  const Vec2 &gp = element.gradients[1], &gq = element.gradients[2];
-  const PackedBlock p_u = p.x() * h.uu + p.y() * h.vu, p_v = p.x() * h.uv + p.y() * h.vv;
-  const PackedBlock q_u = q.x() * h.uu + q.y() * h.vu, q_v = q.x() * h.uv + q.y() * h.vv;
-  const PackedBlock pp = gp.x() * p_u + gp.y() * p_v, pq = gq.x() * p_u + gq.y() * p_v;
-  const PackedBlock qp = gp.x() * q_u + gp.y() * q_v, qq = gq.x() * q_u + gq.y() * q_v;
-  const PackedBlock op = -(pp + qp), oq = -(pq + qq), po = -(pp + pq), qo = -(qp + qq);
-  matrix.add(slots[0], -(op + oq));
-  matrix.add(slots[1], op);
-  matrix.add(slots[2], oq);
-  matrix.add(slots[3], po);
-  matrix.add(slots[4], pp);
-  matrix.add(slots[5], pq);
-  matrix.add(slots[6], qo);
-  matrix.add(slots[7], qp);
-  matrix.add(slots[8], qq);
-}
-
-// ∂/∂s + rate ∂/∂ṡ of the tension; see Stretch::stiffness, whose edge of unit length this is.
-PackedBlock TriangleMembrane::stretch_hessian(double k, const Vec3& s, const Vec3& rate, const Evaluation& at) const {
-  const double length = length_of(s);
+// ∂/∂s + rate ∂/∂ṡ of the tension along a thread, times s/‖s‖.
+Mat3 TriangleMembrane::stretch_hessian(double k, const Vec3& s, const Vec3& speed, double rate) const {
+  const double length = std::max(s.norm(), kCollapsed), lateral = 1 - 1 / length;
   const Vec3 n = s / length;
-  double lateral = 1 - 1 / length;
-  if (at.linearisation == Linearisation::definite) lateral = std::max(lateral, 0.0);
-  if (at.linearisation == Linearisation::abs_projected) lateral = std::min(std::abs(lateral), 1.0);
-  PackedBlock hessian =
-      packed_outer((k * (1 - lateral) + at.rate * stretch_.viscosity) * n, n) + packed_scalar(k * lateral);
-  if (at.linearisation == Linearisation::exact && stretch_.viscosity > 0) {
-    const double along = n.dot(rate), size = stretch_.viscosity / length;
-    hessian = hessian + packed_outer(size * n, rate - 2 * along * n) + packed_scalar(size * along);
-  }
-  return hessian;
+  const double along = n.dot(speed), size = stretch_.viscosity / length;
+  return (k * (1 - lateral) + rate * stretch_.viscosity) * n * n.transpose() + k * lateral * Mat3::Identity() +
+         size * (n * (speed - 2 * along * n).transpose() + along * Mat3::Identity());
 }
 
-// As Shear: exactly, or of the second derivative 2 ⟨δs_u, δs_v⟩ = ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²) the half whose
-// sign agrees with the stress.
-void TriangleMembrane::add_shear_hessian(const Gradient& s, const Gradient& rate, const Evaluation& at,
-                                         Hessian& h) const {
-  const double outer = 0.5 * (shear_.modulus + at.rate * shear_.viscosity);
-  const double elastic = 0.5 * shear_.modulus * s.u.dot(s.v);
-  h.uu = h.uu + packed_outer(outer * s.v, s.v);
-  h.uv = packed_outer(outer * s.v, s.u);
-  h.vu = packed_outer(outer * s.u, s.v);
-  h.vv = h.vv + packed_outer(outer * s.u, s.u);
-  if (at.linearisation != Linearisation::exact) {
-    h.uu = h.uu + packed_scalar(0.5 * std::abs(elastic));
-    h.vv = h.vv + packed_scalar(0.5 * std::abs(elastic));
-    h.uv = h.uv + packed_scalar(0.5 * elastic);
-    h.vu = h.vu + packed_scalar(0.5 * elastic);
-    return;
+void TriangleMembrane::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                                    solver::BlockMatrix& jacobian) const {
+  for (const Element& element : elements_) {
+    const Gradient s = gradient(element, x), w = gradient(element, v);
+    const double outer = 0.5 * (shear_.modulus + rate * shear_.viscosity), viscosity = 0.5 * shear_.viscosity;
+    const double stress = 0.5 * shear_.modulus * s.u.dot(s.v) + viscosity * (w.u.dot(s.v) + s.u.dot(w.v));
+    const Mat3 uu = stretch_hessian(stretch_.weft, s.u, w.u, rate) + s.v * (outer * s.v + viscosity * w.v).transpose();
+    const Mat3 vv = stretch_hessian(stretch_.warp, s.v, w.v, rate) + s.u * (outer * s.u + viscosity * w.u).transpose();
+    const Mat3 uv = s.v * (outer * s.u + viscosity * w.u).transpose() + stress * Mat3::Identity();
+    const Mat3 vu = s.u * (outer * s.v + viscosity * w.v).transpose() + stress * Mat3::Identity();
+    for (std::size_t a = 0; a < 3; ++a)
+      for (std::size_t b = 0; b < 3; ++b) {
+        const Vec2 &g = element.gradients[a], &h = element.gradients[b];
+        jacobian.add(jacobian.slot(element.particles[a], element.particles[b]), element.area,
+                     g.x() * h.x() * uu + g.x() * h.y() * uv + g.y() * h.x() * vu + g.y() * h.y() * vv);
+      }
   }
-  const double viscosity = 0.5 * shear_.viscosity;
-  const double stress = elastic + viscosity * (rate.u.dot(s.v) + s.u.dot(rate.v));
-  h.uu = h.uu + packed_outer(viscosity * s.v, rate.v);
-  h.uv = h.uv + packed_outer(viscosity * s.v, rate.u) + packed_scalar(stress);
-  h.vu = h.vu + packed_outer(viscosity * s.u, rate.v) + packed_scalar(stress);
-  h.vv = h.vv + packed_outer(viscosity * s.u, rate.u);
 }
 
 double TriangleMembrane::energy(std::span<const Vec3> x) const {

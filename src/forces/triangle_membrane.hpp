@@ -30,8 +30,10 @@ class TriangleMembrane : public Membrane {
                    const ShearParameters& shear);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
-  void attach(const solver::BlockMatrix& matrix) override;
+  void attach(const solver::Assembly& assembly) override;
   void add(const Evaluation& at) const override;
+  void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
+                    solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
   /// Of a sewn sheet: the rest shape of each triangle, at share 0 that of its start, which then has no stress, at 1
   /// that of the pattern. Between, the stretch U of the start, in weft and warp, shrinks to (1 − share) U + share 1.
@@ -52,18 +54,24 @@ class TriangleMembrane : public Membrane {
   ShearParameters shear_;
 
  private:
-  /// Second derivatives of the energy density by s_u and s_v, and what stands for them.
-  struct Hessian {
-    solver::PackedBlock uu, uv, vu, vv;
+  /// Four of them. Corners are in the order of their numbers.
+  struct Triangles {
+    std::array<Four, 3> corners{};
+    std::array<Four, 3> blocks{};        // of the pairs 01, 02, 12
+    std::array<Lanes, 3> along, across;  // x and y of the gradients
+    Lanes area{};
+  };
+  struct GradientLanes {
+    VecLanes u, v;
   };
   static void use_rest(const Eigen::Matrix2d& inverse, Element& element);
   static Eigen::Matrix2d stretch_of(const Gradient& s);
   static Gradient gradient(const Element& element, std::span<const Vec3> x);
-  static void add_blocks(const Element& element, const std::array<solver::Slot, 9>& slots, const Hessian& hessian,
-                         solver::BlockMatrix& matrix);
-  Hessian hessian(const Gradient& s, const Gradient& rate, const Evaluation& at) const;
-  solver::PackedBlock stretch_hessian(double k, const Vec3& s, const Vec3& rate, const Evaluation& at) const;
-  void add_shear_hessian(const Gradient& s, const Gradient& rate, const Evaluation& at, Hessian& hessian) const;
+  static GradientLanes gradient(const Triangles& triangles, std::span<const solver::Quad<double>> x);
+  void pack();
+  void add_stiffness(const Triangles& triangles, const GradientLanes& s, const Lanes& length_u, const Lanes& length_v,
+                     const Lanes& shear, const Evaluation& at) const;
+  Mat3 stretch_hessian(double k, const Vec3& s, const Vec3& speed, double rate) const;
 
   Index first_;
   std::vector<Element> elements_;
@@ -72,7 +80,7 @@ class TriangleMembrane : public Membrane {
     Eigen::Matrix2d inverse, excess;
   };
   std::vector<Start> starts_;
-  std::vector<std::array<solver::Slot, 9>> slots_;  // row-major over pairs of corners
+  std::vector<Triangles> packs_;  // the elements
 };
 
 }  // namespace weft::forces

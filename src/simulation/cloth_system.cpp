@@ -135,9 +135,9 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   first_.push_back(first);
   cut_groups(environment);
 
-  const solver::BlockMatrix matrix = lay_out_matrix();
+  const solver::Assembly assembly(lay_out_matrix());
   for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->attach(matrix);
+    for (const auto& force : of_cloth) force->attach(assembly);
   for (const auto& of_cloth : forces_)
     for (const auto& force : of_cloth) force->hold(held_);
   sew(0);
@@ -283,12 +283,13 @@ void ClothSystem::add_forces(std::size_t cloth, const forces::Evaluation& at) co
   for (const auto& force : forces_[cloth]) force->add(at);
 }
 
-void ClothSystem::fill_base(double rate, solver::BlockMatrix& base) const {
-  base.set_zero();
+void ClothSystem::fill_constant(double rate, solver::Assembly& assembly) const {
+  assembly.clear();
   for (std::size_t i = 0; i < masses_.size(); ++i)
-    base.add_scalar(base.diagonal(static_cast<Index>(i)), rate * rate * masses_[i]);
+    assembly.add_constant_to_own(static_cast<Index>(i), rate * rate * masses_[i]);
   for (const auto& of_cloth : forces_)
-    for (const auto& force : of_cloth) force->add_constant_stiffness(base);
+    for (const auto& force : of_cloth) force->add_constant_stiffness(assembly);
+  assembly.keep_constant();
 }
 
 double ClothSystem::elastic_energy(std::span<const Vec3> x) const {

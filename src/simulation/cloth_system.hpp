@@ -47,7 +47,7 @@ class ClothSystem {
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
   /// rate² M and the part of the stiffness that only hold() changes.
-  void fill_base(double rate, solver::BlockMatrix& base) const;
+  void fill_constant(double rate, solver::Assembly& assembly) const;
 
   /// An empty system with the pattern of this one.
   solver::LinearSystem make_linear_system() const;

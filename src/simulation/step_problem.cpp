@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/parallel.hpp"
+
 namespace weft::simulation {
 namespace {
 
@@ -16,11 +18,14 @@ constexpr double kStaleMotion = 0.005;
 // (multi_sheet).
 constexpr int kPlainIterations = 4;
 
+// Rows of the matrix that a thread writes at once.
+constexpr std::size_t kRowsAtOnce = 512;
+
 }  // namespace
 
 StepProblem::StepProblem(ClothSystem& cloth) : cloth_(cloth) {
   memory_.system = cloth.make_linear_system();
-  memory_.base = memory_.system.matrix;
+  memory_.assembly = solver::Assembly(memory_.system.matrix);
   memory_.v.resize(masses().size());
   memory_.force.resize(masses().size());
   forget();
@@ -28,7 +33,8 @@ StepProblem::StepProblem(ClothSystem& cloth) : cloth_(cloth) {
 
 void StepProblem::forget() {
   memory_.linearised_at.clear();
-  memory_.x.assign(masses().size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));  // equals nothing
+  const double nowhere = std::numeric_limits<double>::quiet_NaN();  // equals nothing
+  memory_.x.assign(masses().size(), solver::quad_of(nowhere, nowhere, nowhere));
 }
 
 void StepProblem::begin_step(double t, std::span<const integrator::HeldParticle> pinned, std::span<const Pull> pulls) {
@@ -79,36 +85,41 @@ void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> fo
 }
 
 void StepProblem::add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
-  for (std::size_t c = 0; c < cloth_.cloths(); ++c)
-    if (!is_known(c, at)) evaluate(c, at, nullptr, forces::Linearisation::definite);
-  for (std::size_t i = 0; i < memory_.force.size(); ++i) force[i] += memory_.force[i];
+  for (std::size_t c = 0; c < cloth_.cloths(); ++c) {
+    if (!move_to(c, at)) continue;
+    forces::Evaluation evaluation{memory_.x, memory_.v, memory_.force};
+    evaluation.rate = at.rate;
+    evaluate(c, evaluation);
+  }
+  for (std::size_t i = 0; i < memory_.force.size(); ++i) force[i] += solver::vec3_of(memory_.force[i]);
 }
 
 void StepProblem::use_rate(double rate) {
   if (rate == memory_.rate) return;
-  cloth_.fill_base(rate, memory_.base);
+  cloth_.fill_constant(rate, memory_.assembly);
   memory_.linearised_at.clear();
   memory_.rate = rate;
 }
 
-// Whether the forces within a cloth are those that were evaluated last.
-bool StepProblem::is_known(std::size_t cloth, const integrator::StagePoint& at) const {
+// Whether the forces within a cloth are not those that were evaluated last.
+bool StepProblem::move_to(std::size_t cloth, const integrator::StagePoint& at) {
   const solver::Part& part = memory_.system.parts[cloth];
-  const auto same = [&](std::span<const Vec3> a, const std::vector<Vec3>& b) {
-    return std::equal(a.begin() + part.begin, a.begin() + part.end, b.begin() + part.begin);
-  };
-  return same(at.x, memory_.x) && same(at.v, memory_.v);
+  bool moved = false;
+  for (auto i = part.begin; i < part.end; ++i) {
+    const auto x = solver::quad_of<double>(at.x[i]), v = solver::quad_of<double>(at.v[i]);
+    auto &own_x = memory_.x[i], &own_v = memory_.v[i];
+    for (int k = 0; k < 3; ++k) moved |= x[k] != own_x[k] || v[k] != own_v[k];
+    own_x = x;
+    own_v = v;
+  }
+  return moved;
 }
 
-// Evaluates the forces within a cloth; their Jacobian goes into the matrix, if there is one.
-void StepProblem::evaluate(std::size_t cloth, const integrator::StagePoint& at, solver::BlockMatrix* matrix,
-                           forces::Linearisation form) {
+// Evaluates the forces within a cloth where it is now.
+void StepProblem::evaluate(std::size_t cloth, forces::Evaluation& evaluation) {
   const solver::Part& part = memory_.system.parts[cloth];
-  const Index count = part.end - part.begin;
-  std::fill_n(memory_.force.begin() + part.begin, count, Vec3::Zero());
-  cloth_.add_forces(cloth, {at.x, at.v, memory_.force, matrix, at.rate, form});
-  std::copy_n(at.x.begin() + part.begin, count, memory_.x.begin() + part.begin);
-  std::copy_n(at.v.begin() + part.begin, count, memory_.v.begin() + part.begin);
+  std::fill(memory_.force.begin() + part.begin, memory_.force.begin() + part.end, solver::Quad<double>{});
+  cloth_.add_forces(cloth, evaluation);
 }
 
 // Whether a cloth has moved too far from where its rows of the matrix were put together.
@@ -124,10 +135,16 @@ bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
 void StepProblem::put_together(std::size_t cloth, const integrator::StagePoint& at, int iteration) {
   solver::Part& part = memory_.system.parts[cloth];
   std::copy_n(at.x.begin() + part.begin, part.end - part.begin, memory_.linearised_at.begin() + part.begin);
-  memory_.system.matrix.copy_rows(memory_.base, part.begin, part.end);
+  move_to(cloth, at);
+  forces::Evaluation evaluation{memory_.x, memory_.v, memory_.force, &memory_.assembly, at.rate};
+  if (iteration >= kPlainIterations) evaluation.linearisation = forces::Linearisation::abs_projected;
+  memory_.assembly.start(part.begin, part.end);
+  evaluate(cloth, evaluation);
+  parallel_for(static_cast<std::size_t>(part.end - part.begin), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    memory_.assembly.write_rows(part.begin + static_cast<Index>(begin), part.begin + static_cast<Index>(end),
+                                memory_.system.matrix);
+  });
   ++part.version;
-  evaluate(cloth, at, &memory_.system.matrix,
-           iteration < kPlainIterations ? forces::Linearisation::definite : forces::Linearisation::abs_projected);
 }
 
 }  // namespace weft::simulation

@@ -14,15 +14,16 @@ namespace weft::simulation {
 struct SolveMemory {
   // Changed by linearisations. Cloth at rest does with the rows of the matrix that it has.
   solver::LinearSystem system;
-  double rate = 0;                  ///< of `system` and `base` [1/s]; 0: of none
+  solver::Assembly assembly;        ///< what its matrix is written from
+  double rate = 0;                  ///< of both [1/s]; 0: of none
   std::vector<Vec3> linearised_at;  ///< where each cloth's rows were put together; empty: nowhere
   collision::ContactLag contacts;
 
   // Saves time only. Of the forces within the cloths: most cloths of a scene are solved, and do not move, while one
   // goes on.
-  solver::BlockMatrix base;  ///< what all matrices of this rate begin with
-  std::vector<Vec3> x, v;    ///< where each cloth's forces were last evaluated; not a number: nowhere
-  std::vector<Vec3> force;   ///< what they were [N]
+  using Quads = std::vector<solver::Quad<double>>;
+  Quads x, v;   ///< where each cloth's forces were last evaluated; not a number: nowhere
+  Quads force;  ///< what they were [N]
 };
 
 /// What draws a particle to a place.
@@ -65,9 +66,8 @@ class StepProblem final : public integrator::System {
  private:
   void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
   void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
-  bool is_known(std::size_t cloth, const integrator::StagePoint& at) const;
-  void evaluate(std::size_t cloth, const integrator::StagePoint& at, solver::BlockMatrix* matrix,
-                forces::Linearisation form);
+  bool move_to(std::size_t cloth, const integrator::StagePoint& at);
+  void evaluate(std::size_t cloth, forces::Evaluation& evaluation);
   void use_rate(double rate);
   bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
   void put_together(std::size_t cloth, const integrator::StagePoint& at, int iteration);

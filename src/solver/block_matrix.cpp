@@ -67,16 +67,6 @@ void BlockMatrix::set_zero() {
   std::fill(scalars_.begin(), scalars_.end(), 0.0);
 }
 
-void BlockMatrix::copy_rows(const BlockMatrix& other, Index begin, Index end) {
-  assert(values_.size() == other.values_.size() && scalars_.size() == other.scalars_.size());
-  const auto copy = [&](const Pattern& pattern, int size, const std::vector<double>& from, std::vector<double>& to) {
-    const auto at = [&](Index row) { return size * static_cast<std::ptrdiff_t>(pattern.start[row]); };
-    std::copy(from.begin() + at(begin), from.begin() + at(end), to.begin() + at(begin));
-  };
-  copy(blocks_, 9, other.values_, values_);
-  copy(isotropic_, 1, other.scalars_, scalars_);
-}
-
 template <class Vector>
 void BlockMatrix::multiply(std::span<const Vector> x, std::span<Vector> y, std::size_t begin, std::size_t end) const {
   const double* value = values_.data() + 9 * static_cast<std::size_t>(blocks_.start[begin]);

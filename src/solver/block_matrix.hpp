@@ -67,8 +67,6 @@ class BlockMatrix {
   Slot diagonal(Index row) const { return diagonal_[row]; }
 
   void set_zero();
-  /// Takes over the rows [begin, end) of a matrix of the same pattern.
-  void copy_rows(const BlockMatrix& other, Index begin, Index end);
 
   void add(Slot slot, const Mat3& block) { add(slot, 1, block); }
   void subtract(Slot slot, const Mat3& block) { add(slot, -1, block); }
@@ -137,9 +135,11 @@ class BlockMatrix {
   /// that a column loads as four.
   const Pattern& full() const { return blocks_; }
   std::span<const double> values() const { return values_; }
+  std::span<double> values() { return values_; }
   /// Of multiples of the unit matrix, which are in scalars().
   const Pattern& isotropic() const { return isotropic_; }
   std::span<const double> scalars() const { return scalars_; }
+  std::span<double> scalars() { return scalars_; }
 
  private:
   Pattern blocks_, isotropic_;

@@ -14,9 +14,7 @@ using testing::Positions;
 constexpr double kRho = 1.2, kDrag = 0.8;
 
 Positions drag_on(const Positions& x, const Positions& v, const Vec3& wind = Vec3::Zero()) {
-  Positions f = testing::zeros(x);
-  Air(kGrid, 0, {kRho, wind, kDrag}).add({x, v, f});
-  return f;
+  return testing::force_of(Air(kGrid, 0, {kRho, wind, kDrag}), x, v);
 }
 
 Vec3 sum(const Positions& f) {
@@ -70,14 +68,14 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
   std::vector<std::pair<Index, Index>> pairs;
   air.couple(pairs);
   solver::BlockMatrix matrix(kGrid.size(), pairs);
-  air.attach(matrix);
-  Positions f = testing::zeros(x);
-  air.add({x, v, f, &matrix, rate});
-  const auto force_at = [&](const Positions& velocities) {
-    Positions force = testing::zeros(x);
-    air.add({x, velocities, force});
-    return force;
-  };
+  solver::Assembly assembly(matrix);
+  air.attach(assembly);
+  testing::Place place(x, v);
+  Evaluation at = place.evaluation(rate);
+  at.assembly = &assembly;
+  air.add(at);
+  assembly.write_rows(0, matrix.rows(), matrix);
+  const auto force_at = [&](const Positions& velocities) { return testing::force_of(air, x, velocities); };
   constexpr double kEpsilon = 1e-6;
   for (unsigned trial = 0; trial < 6; ++trial) {
     // Of all particles together, or of each by itself.

@@ -127,7 +127,7 @@ TEST_P(Derivatives, ForceIsMinusTheGradientOfTheEnergy) {
 }
 
 void expect_exact_jacobian(Force& force, const Positions& x, const Positions& v) {
-  const Eigen::MatrixXd jacobian = testing::stiffness_of(force, x, v, kRate, Linearisation::exact);
+  const Eigen::MatrixXd jacobian = testing::jacobian_of(force, x, v, kRate);
   const Eigen::MatrixXd differences = testing::stiffness_by_differences(force, x, v, kRate, kEpsilon);
   EXPECT_LT((jacobian - differences).cwiseAbs().maxCoeff(), kRelative * jacobian.cwiseAbs().maxCoeff());
 }
@@ -173,7 +173,7 @@ TEST_P(Derivatives, DefiniteJacobianIsTheExactOneWhereEdgesAreStretchedAndNothin
   }));
   const auto force = GetParam().make(kStiffness, 5);
   const Eigen::MatrixXd definite = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::definite);
-  const Eigen::MatrixXd exact = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::exact);
+  const Eigen::MatrixXd exact = testing::jacobian_of(*force, x, testing::zeros(x), kRate);
   if (GetParam().name.starts_with("bend")) {
     // Its damping is as stiff across the curvature as along it: it only adds.
     const Eigen::MatrixXd added = definite - exact;
@@ -191,7 +191,7 @@ TEST(DefiniteJacobian, OfTriangleBendingIsTheExactOneAlongTheNormal) {
   for (Vec3& point : x) point.z() = 3 * point.x() * point.x() - 5 * point.x() * point.y();
   TriangleBend force(sheet, 0, BendParameters{kStiffness, 5, 5000});
   const Eigen::MatrixXd definite = testing::stiffness_of(force, x, testing::zeros(x), kRate, Linearisation::definite);
-  const Eigen::MatrixXd exact = testing::stiffness_of(force, x, testing::zeros(x), kRate, Linearisation::exact);
+  const Eigen::MatrixXd exact = testing::jacobian_of(force, x, testing::zeros(x), kRate);
   double largest = 0, off = 0;
   for (Eigen::Index i = 2; i < exact.rows(); i += 3)
     for (Eigen::Index j = 2; j < exact.cols(); j += 3) {
@@ -205,9 +205,9 @@ TEST(DefiniteJacobian, OfTriangleBendingIsTheExactOneAlongTheNormal) {
 TEST_P(Derivatives, DefiniteJacobianLeavesOutNothingButNegativeParts) {
   const auto force = GetParam().make(kStiffness, 0);
   const Positions x = testing::crumpled(GetParam().grid, 0.006, 4), still = testing::zeros(x);
-  const Eigen::MatrixXd added = testing::stiffness_of(*force, x, still, kRate, Linearisation::definite) -
-                                testing::stiffness_of(*force, x, still, kRate, Linearisation::exact);
-  const double scale = testing::stiffness_of(*force, x, still, kRate, Linearisation::exact).cwiseAbs().maxCoeff();
+  const Eigen::MatrixXd exact = testing::jacobian_of(*force, x, still, kRate);
+  const Eigen::MatrixXd added = testing::stiffness_of(*force, x, still, kRate, Linearisation::definite) - exact;
+  const double scale = exact.cwiseAbs().maxCoeff();
   EXPECT_GT(added.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff(), -1e-13 * scale);
 }
 
@@ -215,7 +215,7 @@ TEST_P(Derivatives, ExactJacobianOfCompressedOrShearedClothIsIndefinite) {
   // Why there is a definite form at all; bending alone needs none.
   const auto force = GetParam().make(kStiffness, 0);
   const Positions x = testing::crumpled(GetParam().grid, 0.006, 3);
-  const Eigen::MatrixXd k = testing::stiffness_of(*force, x, testing::zeros(x), kRate, Linearisation::exact);
+  const Eigen::MatrixXd k = testing::jacobian_of(*force, x, testing::zeros(x), kRate);
   const double least = k.selfadjointView<Eigen::Lower>().eigenvalues().minCoeff() / k.cwiseAbs().maxCoeff();
   if (GetParam().name.starts_with("bend"))
     EXPECT_GT(least, -1e-13);
@@ -229,10 +229,14 @@ TEST_P(Derivatives, ForceWithoutMatrixIsTheForceWithIt) {
   std::vector<std::pair<Index, Index>> pairs;
   force->couple(pairs);
   solver::BlockMatrix matrix(GetParam().grid.size(), pairs);
-  force->attach(matrix);
-  Positions f = testing::zeros(x);
-  force->add({x, v, f, &matrix, kRate, Linearisation::definite});
-  EXPECT_EQ(f, testing::force_of(*force, x, v, kRate));
+  solver::Assembly assembly(matrix);
+  force->attach(assembly);
+  testing::Place place(x, v);
+  Evaluation at = place.evaluation(kRate);
+  at.assembly = &assembly;
+  force->add(at);
+  const Positions alone = testing::force_of(*force, x, v, kRate);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(solver::vec3_of(place.force[i]), alone[i]);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Derivatives, ::testing::ValuesIn(kCases),

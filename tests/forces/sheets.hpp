@@ -68,29 +68,61 @@ inline Positions zeros(const Positions& like) {
   return Positions(like.size(), Vec3::Zero());
 }
 
+/// Where forces are evaluated, and what they are there.
+struct Place {
+  std::vector<solver::Quad<double>> x, v, force;
+
+  Place(const Positions& positions, const Positions& velocities) : force(positions.size()) {
+    for (const Vec3& point : positions) x.push_back(solver::quad_of<double>(point));
+    for (const Vec3& velocity : velocities) v.push_back(solver::quad_of<double>(velocity));
+  }
+  Evaluation evaluation(double rate = 0) {
+    Evaluation at{x, v, force};
+    at.rate = rate;
+    return at;
+  }
+};
+
 inline Positions force_of(const Force& force, const Positions& x, const Positions& v, double rate = 0) {
-  Positions f = zeros(x);
-  force.add({.x = x, .v = v, .force = f, .rate = rate});
+  Place place(x, v);
+  force.add(place.evaluation(rate));
+  Positions f;
+  for (const auto& of_particle : place.force) f.push_back(solver::vec3_of(of_particle));
   return f;
 }
 
-/// −(∂f/∂x + rate ∂f/∂v) as the force puts it together, its constant part included.
+inline Eigen::MatrixXd dense(const solver::BlockMatrix& matrix) {
+  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * matrix.rows(), 3 * matrix.rows());
+  matrix.for_each_block(0, matrix.rows(),
+                        [&](Index i, Index j, const auto& block) { dense.block<3, 3>(3 * i, 3 * j) = block; });
+  return dense;
+}
+
+/// −(∂f/∂x + rate ∂f/∂v) as the force adds it to an assembly, its constant part included.
 inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Positions& v, double rate,
                                     Linearisation linearisation) {
   std::vector<std::pair<Index, Index>> pairs;
   force.couple(pairs);
-  const auto rows = static_cast<Index>(x.size());
-  solver::BlockMatrix matrix(rows, pairs);
-  force.attach(matrix);
-  Positions f = zeros(x);
-  force.add({x, v, f, &matrix, rate, linearisation});
-  force.add_constant_stiffness(matrix);
+  solver::BlockMatrix matrix(static_cast<Index>(x.size()), pairs);
+  solver::Assembly assembly(matrix);
+  force.attach(assembly);
+  force.add_constant_stiffness(assembly);
+  Place place(x, v);
+  Evaluation at = place.evaluation(rate);
+  at.assembly = &assembly;
+  at.linearisation = linearisation;
+  force.add(at);
+  assembly.write_rows(0, matrix.rows(), matrix);
+  return dense(matrix);
+}
 
-  for (const auto& [i, j] : std::vector(pairs)) pairs.emplace_back(j, i);
-  for (Index i = 0; i < rows; ++i) pairs.emplace_back(i, i);
-  Eigen::MatrixXd dense = Eigen::MatrixXd::Zero(3 * rows, 3 * rows);
-  for (const auto& [i, j] : pairs) dense.block<3, 3>(3 * i, 3 * j) = matrix.block(matrix.slot(i, j));
-  return dense;
+/// The same as it is, not made definite.
+inline Eigen::MatrixXd jacobian_of(const Force& force, const Positions& x, const Positions& v, double rate) {
+  std::vector<std::pair<Index, Index>> pairs;
+  force.couple(pairs);
+  solver::BlockMatrix matrix(static_cast<Index>(x.size()), pairs);
+  force.add_jacobian(x, v, rate, matrix);
+  return dense(matrix);
 }
 
 inline Eigen::Map<const Eigen::VectorXd> dense(const Positions& x) {

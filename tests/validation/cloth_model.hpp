@@ -49,7 +49,6 @@ class ClothModel {
     std::vector<std::pair<Index, Index>> pairs;
     for (const auto& force : forces_) force->couple(pairs);
     matrix_ = solver::BlockMatrix(static_cast<Index>(x.size()), pairs);
-    for (const auto& force : forces_) force->attach(matrix_);
     for (const auto& force : forces_) force->hold(held_);
   }
 
@@ -65,11 +64,8 @@ class ClothModel {
   /// −∂f/∂x of these coordinates, exact.
   Eigen::SparseMatrix<double> stiffness(const std::vector<Eigen::Index>& dofs) {
     matrix_.set_zero();
-    std::vector<Vec3> zero(x.size(), Vec3::Zero()), f = zero;
-    for (const auto& force : forces_) {
-      force->add({x, zero, f, &matrix_, 0, forces::Linearisation::exact});
-      force->add_constant_stiffness(matrix_);
-    }
+    const std::vector<Vec3> zero(x.size(), Vec3::Zero());
+    for (const auto& force : forces_) force->add_jacobian(x, zero, 0, matrix_);
     std::vector<Eigen::Index> row(3 * x.size(), -1);
     for (std::size_t k = 0; k < dofs.size(); ++k) row[dofs[k]] = static_cast<Eigen::Index>(k);
     std::vector<Eigen::Triplet<double>> entries;
@@ -175,11 +171,11 @@ class ClothModel {
     return sum;
   }
   Eigen::VectorXd force(const std::vector<Eigen::Index>& dofs) const {
+    std::vector<solver::Quad<double>> places, still(x.size()), sum(x.size());
+    for (const Vec3& place : x) places.push_back(solver::quad_of<double>(place));
+    for (const auto& force : forces_) force->add({places, still, sum});
     std::vector<Vec3> f(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) f[i] = masses[i] * gravity_;
-    const std::vector<Vec3> v(x.size(), Vec3::Zero());
-    // Without a matrix Bend and TriangleBend give all of their force.
-    for (const auto& force : forces_) force->add({x, v, f});
+    for (std::size_t i = 0; i < x.size(); ++i) f[i] = masses[i] * gravity_ + solver::vec3_of(sum[i]);
     Eigen::VectorXd of(static_cast<Eigen::Index>(dofs.size()));
     for (std::size_t d = 0; d < dofs.size(); ++d) of[static_cast<Eigen::Index>(d)] = coordinate(f, dofs[d]);
     return of;

@@ -70,12 +70,8 @@ class Statics {
     std::vector<std::pair<Index, Index>> pairs;
     for (const auto& force : sample.forces) force->couple(pairs);
     solver::BlockMatrix matrix(static_cast<Index>(sample.areas.size()), pairs);
-    std::vector<Vec3> x = sample.mesh.positions, zero(x.size(), Vec3::Zero()), f = zero;
-    for (const auto& force : sample.forces) {
-      force->attach(matrix);
-      force->add({x, zero, f, &matrix, 0, Linearisation::definite});
-      force->add_constant_stiffness(matrix);
-    }
+    const std::vector<Vec3> zero(sample.mesh.positions.size(), Vec3::Zero());
+    for (const auto& force : sample.forces) force->add_jacobian(sample.mesh.positions, zero, 0, matrix);
     matrix.for_each_block(0, matrix.rows(), [&](Index i, Index j, const auto& block) {
       for (int a = 0; a < axes_; ++a)
         for (int b = 0; b < axes_; ++b)
