@@ -20,7 +20,7 @@ class Assembly {
  public:
   Assembly() = default;
   /// For matrices of the pattern of this one.
-  explicit Assembly(const BlockMatrix& pattern);
+  explicit Assembly(const BlockMatrix& matrix);
 
   /// Where the block of rows i and columns j of a pair, i < j, is summed up. The pattern must hold it, as a full block.
   Index block(Index i, Index j) const;
