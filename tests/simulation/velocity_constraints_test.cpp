@@ -146,9 +146,7 @@ TEST(VelocityConstraintsInScenes, NothingIntersectsAndADrapeComesToRest) {
     for (const auto& frame : support::run_scene(scene)) {
       EXPECT_EQ(frame.pairs, 0u) << frame.between << " in frame " << frame.report.frame << " at " << step << " s";
       if (frame.report.frame >= 120) {
-        // At 40 ms it may still find its way down the ball, by 2 mm/s.
-        EXPECT_LT(frame.rms_speed, step > 0.03 ? 3e-3 : 1e-3)
-            << "in frame " << frame.report.frame << " at " << step << " s";
+        EXPECT_LT(frame.rms_speed, 1e-3) << "in frame " << frame.report.frame << " at " << step << " s";
         steps += frame.report.steps;
         iterations += frame.report.newton_iterations;
       }
