@@ -46,6 +46,8 @@ void serialize(Archive& archive, ReadCharacter& read) {
     archive.value(target.weight);
     serialize_plain(archive, target.displacements);
   });
+  serialize_each(archive, character.materials, [&](std::string& name) { serialize_plain(archive, name); });
+  serialize_plain(archive, character.material_of_vertex);
   serialize_each(archive, character.clips, [&](character::Clip& clip) { serialize(archive, clip); });
   archive.value(read.metres_per_unit);
   archive.value(read.up);

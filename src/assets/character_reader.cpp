@@ -77,6 +77,8 @@ class CharacterReader {
 
   ReadCharacter read() {
     read_nodes();
+    for (const aiMaterial* material : std::span(scene_.mMaterials, scene_.mNumMaterials))
+      character_.materials.emplace_back(material->GetName().C_Str());
     for (std::size_t n = 0; n < nodes_.size(); ++n)
       for (const unsigned m : std::span(nodes_[n]->mMeshes, nodes_[n]->mNumMeshes)) {
         if (m >= scene_.mNumMeshes)
@@ -126,6 +128,7 @@ class CharacterReader {
       if (!soup_.positions.back().allFinite())
         throw std::runtime_error(
             fmt::format("mesh \"{}\": expected finite coordinates, got others at vertex {}", name, v));
+      materials_.push_back(mesh.mMaterialIndex < scene_.mNumMaterials ? static_cast<Index>(mesh.mMaterialIndex) : -1);
     }
     std::move(weights.begin(), weights.end(), std::back_inserter(weights_));
     read_faces(mesh, base, placing.linear().determinant() < 0);
@@ -280,6 +283,7 @@ class CharacterReader {
     std::vector<Vec3> positions;
     for (const std::size_t old : kept) {
       positions.push_back(soup_.positions[old]);
+      character_.material_of_vertex.push_back(materials_[old]);
       character_.first_influence.push_back(static_cast<Index>(character_.influences.size()));
       character_.influences.insert(character_.influences.end(), weights_[old].begin(), weights_[old].end());
     }
@@ -351,6 +355,7 @@ class CharacterReader {
   std::vector<Affine> globals_;  // at rest, of the nodes
   Soup soup_;
   std::vector<Weights> weights_;  // of the vertices of the soup
+  std::vector<Index> materials_;  // likewise; -1 where the file has none
   std::vector<Morph> morphs_;
   std::set<const aiMesh*> skinned_;  // that have been read
   ClipTargets targets_;

@@ -72,6 +72,8 @@ struct Character {
   std::vector<Index> first_influence;  ///< per vertex, and the number of all at the end
   std::vector<Influence> influences;
   std::vector<MorphTarget> morphs;
+  std::vector<std::string> materials;     ///< names in the file
+  std::vector<Index> material_of_vertex;  ///< per vertex; empty where there are none
   std::vector<Clip> clips;
 };
 

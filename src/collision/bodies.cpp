@@ -6,13 +6,21 @@
 
 namespace weft::collision {
 
-void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits) {
+void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
+                 std::span<const Patch> patches) {
   const auto first_triangle = static_cast<Index>(triangles_.size()), first_vertex = static_cast<Index>(body_of_.size());
   for (Triangle t : triangles) {
     for (Index& corner : t) corner += first_vertex;
     triangles_.push_back(t);
   }
   body_of_.insert(body_of_.end(), vertex_count, traits_.size());
+  skin_of_.insert(skin_of_.end(), vertex_count, skins_.size());
+  skins_.push_back({traits_.size(), traits.thickness, traits.friction});
+  for (const Patch& patch : patches) {
+    for (std::size_t v = 0; v < patch.vertices.size(); ++v)
+      if (patch.vertices[v] != 0) skin_of_[static_cast<std::size_t>(first_vertex) + v] = skins_.size();
+    skins_.push_back({traits_.size(), patch.thickness, patch.friction});
+  }
   traits_.push_back(traits);
   deformable_ += traits.deformable ? 1 : 0;
   surfaces_.push_back({{}, first_triangle, first_vertex, vertex_count});

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -20,6 +21,19 @@ struct BodyTraits {
   bool rigid = false;    ///< its vertices keep their distances from each other
 };
 
+/// A part of a surface that collides in another way than the rest of it.
+struct Patch {
+  std::span<const std::uint8_t> vertices;  ///< 1 for those that belong to it; one for each of the body
+  double thickness = 0;                    ///< [m]
+  double friction = 0;                     ///< Coulomb coefficient; of a pair: the geometric mean
+};
+
+/// What a vertex is covered with: of each body its own, and then its patches.
+struct Skin {
+  std::size_t body = 0;
+  double thickness = 0, friction = 0;
+};
+
 /// The owner of the triangles, which all other parts of the engine view. Vertices of all bodies share one numbering,
 /// that of the arrays of positions: particles first, so bodies that deform are added before the obstacles.
 class Bodies {
@@ -28,8 +42,10 @@ class Bodies {
   Bodies(Bodies&&) = default;  // a copy would view the triangles of the original
   Bodies& operator=(Bodies&&) = default;
 
-  /// `triangles`: by vertex number within the body, from 0 to vertex_count − 1.
-  void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits);
+  /// `triangles`: by vertex number within the body, from 0 to vertex_count − 1. Of patches that share vertices the last
+  /// counts.
+  void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
+           std::span<const Patch> patches = {});
 
   std::size_t size() const { return traits_.size(); }
   const BodyTraits& operator[](std::size_t body) const { return traits_[body]; }
@@ -43,6 +59,10 @@ class Bodies {
   Index vertex_count() const { return static_cast<Index>(body_of_.size()); }
   const std::vector<std::size_t>& body_of_vertices() const { return body_of_; }
   std::size_t body_of(Index vertex) const { return body_of_[vertex]; }
+
+  /// What vertices are covered with; without patches one for each body, in their order.
+  const std::vector<Skin>& skins() const { return skins_; }
+  std::size_t skin_of(Index vertex) const { return skin_of_[vertex]; }
 
   /// Number within its body of a triangle with these corners, an edge's second end being named twice.
   Index triangle_of(const Triangle& corners) const;
@@ -58,6 +78,8 @@ class Bodies {
   std::vector<Triangle> triangles_;
   std::vector<Surface> surfaces_;
   std::vector<std::size_t> body_of_;  // per vertex
+  std::vector<Skin> skins_;
+  std::vector<std::size_t> skin_of_;  // per vertex
   std::size_t deformable_ = 0;
 };
 

@@ -68,14 +68,15 @@ double stiffness_share(const Proximity& proximity) {
 ContactBuilder::ContactBuilder(const Bodies& bodies, const ContactParameters& parameters,
                                std::span<const double> masses)
     : bodies_(bodies), stiffness_(parameters.stiffness), step_(parameters.step), masses_(masses) {
-  for (std::size_t a = 0; a < bodies.size(); ++a) {
-    for (std::size_t b = 0; b < bodies.size(); ++b) {
-      const double mean = std::sqrt(bodies[a].friction * bodies[b].friction);
+  for (const Skin& a : bodies.skins()) {
+    for (const Skin& b : bodies.skins()) {
+      const double mean = std::sqrt(a.friction * b.friction);
       friction_.push_back({mean, mean});
+      for (const PairFriction& pair : parameters.friction)
+        if ((pair.a == a.body && pair.b == b.body) || (pair.a == b.body && pair.b == a.body))
+          friction_.back() = pair.friction;
     }
   }
-  for (const PairFriction& pair : parameters.friction)
-    friction_[pair.a * bodies.size() + pair.b] = friction_[pair.b * bodies.size() + pair.a] = pair.friction;
 }
 
 void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
@@ -158,7 +159,7 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double sha
     const Index v = pair.vertices[k];
     const double weight = pair.weights[k];
     if (weight == 0) continue;
-    sides[weight > 0 ? 0 : 1] = bodies_.body_of(v);
+    sides[weight > 0 ? 0 : 1] = bodies_.skin_of(v);
     contact.relative_start += weight * motion.x_t0[v];
     relative += weight * motion.x_from[v];
     if (is_particle(v)) {
@@ -173,7 +174,7 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double sha
     }
   }
   if (mass_weight == 0) return std::nullopt;
-  contact.full_range = 0.5 * (bodies_[sides[0]].thickness + bodies_[sides[1]].thickness);
+  contact.full_range = 0.5 * (bodies_.skins()[sides[0]].thickness + bodies_.skins()[sides[1]].thickness);
   contact.range = std::min(range_limit, contact.full_range);
   contact.depth = contact.range - contact.normal.dot(relative);
   contact.stiffness = share * std::max(stiffness_, kInertialStiffness * mass / mass_weight / (step_ * step_));

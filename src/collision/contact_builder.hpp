@@ -69,7 +69,8 @@ class ContactBuilder {
   /// between the triangles: what slides past the features that were closest meets there.
   bool add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response);
 
-  const Friction& friction_of(std::size_t a, std::size_t b) const { return friction_[a * bodies_.size() + b]; }
+  /// Of two skins.
+  const Friction& friction_of(std::size_t a, std::size_t b) const { return friction_[a * bodies_.skins().size() + b]; }
 
  private:
   void add_walls(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,

@@ -19,7 +19,7 @@ constexpr double kCoherenceBudget = 0.125;
 // Distance below which contacts are prepared [m].
 double reach_of(const Bodies& bodies) {
   double range = 0;
-  for (std::size_t b = 0; b < bodies.size(); ++b) range = std::max(range, bodies[b].thickness);
+  for (const Skin& skin : bodies.skins()) range = std::max(range, skin.thickness);
   return kReachOfRange * range;
 }
 

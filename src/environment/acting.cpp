@@ -13,6 +13,7 @@
 #include "character/gait.hpp"
 #include "character/joints.hpp"
 #include "character/mannequin.hpp"
+#include "character/parts.hpp"
 #include "character/performance.hpp"
 #include "character/retarget.hpp"
 #include "core/error.hpp"
@@ -92,7 +93,8 @@ Index named_node(const Cast& cast, const std::string& key, const std::string& na
             fmt::format("expected the name of a node of {}, got \"{}\"{}", source, name, did_you_mean(name, names)));
 }
 
-/// The nodes of a skeleton that have the parts of joint_names(), found by their names or as the scene says.
+/// The nodes of a skeleton that have the parts of joint_names(), found by their names or as the scene says; −1 for
+/// those that are not found.
 std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
                              std::optional<std::string> scene::JointNames::*name, const character::Character& character,
                              const std::string& source) {
@@ -105,11 +107,14 @@ std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNam
                                            did_you_mean(joint.name, character::joint_names())));
     if (joint.*name) joints[number] = named_node(cast, key, *(joint.*name), character.nodes, source);
   }
+  return joints;
+}
+
+void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::string& source) {
   if (joints[character::joint_number("Hips")] < 0)
     cast.fail("joint", fmt::format("expected a node of {} that is known as the hips, got none; name it in a "
                                    "[[character.joint]] with name = \"Hips\"",
                                    source));
-  return joints;
 }
 
 /// The clip of another skeleton, on this one.
@@ -120,6 +125,8 @@ character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& b
   body.warnings.insert(body.warnings.end(), motion.warnings.begin(), motion.warnings.end());
   const auto ours = joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source);
   const auto theirs = joints_of(cast, acting.joints, &scene::JointNames::motion, motion.character, file);
+  check_hips(cast, ours, body.source);
+  check_hips(cast, theirs, file);
   std::vector<std::string> still;
   for (std::size_t j = 0; j < ours.size(); ++j)
     if (ours[j] >= 0 && theirs[j] < 0) still.push_back(character::joint_names()[j]);
@@ -165,6 +172,99 @@ Body cast_body(const Cast& cast, const Source& source) {
     cast.fail("start", fmt::format("expected a time of clip \"{}\", at most {:g} s, got {:g}", body.clip->name,
                                    body.clip->duration, cast.settings.start));
   return body;
+}
+
+/// Finds the vertices of a part of the scene, or one that is known by its name alone.
+class PartFinder {
+ public:
+  PartFinder(const Cast& cast, const scene::Acting& acting, const Body& body)
+      : cast_(cast),
+        body_(body),
+        joints_(joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source)) {}
+
+  /// `key`: what messages name.
+  character::VertexMask find(const scene::BodyPart& part, const std::string& key) const {
+    const character::VertexMask mask = vertices_of(part, key);
+    const auto holds = [&](const auto& t) { return mask[t[0]] + mask[t[1]] + mask[t[2]] >= 2; };
+    if (std::ranges::none_of(body_.character.mesh.topology.triangles, holds))
+      cast_.fail(key, fmt::format("expected a part with vertices of {}, got \"{}\", which holds none", body_.source,
+                                  part.bone.value_or(part.material.value_or(part.name))));
+    return mask;
+  }
+
+  bool has_fingers() const { return character::has_fingers(body_.character, joints_); }
+
+ private:
+  character::VertexMask vertices_of(const scene::BodyPart& part, const std::string& key) const {
+    const character::Character& body = body_.character;
+    if (part.bone)
+      return character::vertices_below(body, named_node(cast_, key + ".bone", *part.bone, body.nodes, body_.source));
+    if (part.material) {
+      const auto found = std::ranges::find(body.materials, *part.material);
+      if (found != body.materials.end())
+        return character::vertices_of_material(body, static_cast<Index>(found - body.materials.begin()));
+      cast_.fail(key + ".material", fmt::format("expected a material of {}, got \"{}\"{}", body_.source, *part.material,
+                                                did_you_mean(*part.material, body.materials)));
+    }
+    const std::vector<Index> joints = character::joints_of_part(part.name);
+    if (joints.empty())
+      cast_.fail(key, fmt::format("expected {} or a joint, or a part with bone or material, got \"{}\"{}",
+                                  "hands, feet, arms, legs, head, torso", part.name,
+                                  did_you_mean(part.name, character::part_names())));
+    return character::vertices_of(body, joints_, joints);
+  }
+
+  const Cast& cast_;
+  const Body& body_;
+  std::vector<Index> joints_;
+};
+
+/// Names of parts of this character that pins follow.
+std::vector<std::string> followed_parts(const Cast& cast) {
+  std::vector<std::string> names;
+  for (const scene::Cloth& cloth : cast.scene.cloths) {
+    for (const scene::Pin& pin : cloth.pins) {
+      const scene::Followed followed = scene::followed(pin);
+      if (followed.body == cast.settings.name && !followed.part.empty()) names.push_back(followed.part);
+    }
+  }
+  return names;
+}
+
+/// Whether the scene has its own say on a hand.
+bool says_hands(const std::vector<scene::BodyPart>& parts) {
+  const std::vector<Index> hands = character::joints_of_part("hands");
+  return std::ranges::any_of(parts, [&](const scene::BodyPart& part) {
+    const std::vector<Index> joints = character::joints_of_part(part.name);
+    return !part.bone && !part.material &&
+           std::ranges::any_of(hands, [&](Index hand) { return std::ranges::find(joints, hand) != joints.end(); });
+  });
+}
+
+scene::BodyPart part_named(const std::string& name) {
+  scene::BodyPart part;
+  part.name = name;
+  return part;
+}
+
+std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, Body& body) {
+  const PartFinder finder(cast, acting, body);
+  std::vector<scene::BodyPart> wanted = cast.settings.parts;
+  if (!says_hands(wanted) && cast.settings.collide && finder.has_fingers()) {
+    scene::BodyPart hands = part_named("hands");
+    hands.collide = false;
+    wanted.push_back(hands);
+    body.warnings.push_back(
+        fmt::format("{}: the hands have fingers, which would catch cloth: it passes through them; if it is not to, "
+                    "write [[character.part]] name = \"hands\"",
+                    cast.where));
+  }
+  for (const std::string& name : followed_parts(cast))
+    if (std::ranges::find(wanted, name, &scene::BodyPart::name) == wanted.end()) wanted.push_back(part_named(name));
+  std::vector<Part> parts;
+  for (const scene::BodyPart& part : wanted)
+    parts.push_back({part.name, finder.find(part, "part." + part.name), part.collide, part.friction, part.thickness});
+  return parts;
 }
 
 /// Which key frames a character needs, k / rate for k from first on.
@@ -234,22 +334,25 @@ Actor act(const Cast& cast, const Source& source) {
         fmt::format("{}: clip \"{}\" does not close: its end and its beginning are {:.3g} m apart; "
                     "a crossfade would join them",
                     cast.where, clip.name, gap));
+  std::vector<Part> parts = parts_of(cast, source, body);
   KeyFrames keys =
       sample(cast, key_times(cast, character::key_rate(clip)), body.character.mesh.positions.size(),
              [&](double t, std::vector<Vec3>& x) { character::skin(body.character, performance.at(t), x); });
   mesh::Mesh mesh = std::move(body.character.mesh);
   keys.at(0, mesh.positions);
-  return {std::move(mesh), std::move(keys), std::move(body.warnings)};
+  return {std::move(mesh), std::move(keys), std::move(parts), std::move(body.warnings)};
 }
 
 Actor act(const Cast& cast, const scene::MeshSequence& source) {
   assets::LoadedSequence loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
   const std::size_t vertices = loaded.mesh.positions.size();
+  if (!cast.settings.parts.empty() || !followed_parts(cast).empty())
+    cast.fail("part", "expected none of a body from a sequence of meshes, which has no bones");
   const KeyFrames files(cast.settings.interpolation, 0, 1 / source.fps, std::move(loaded.positions), false);
   KeyFrames keys = sample(cast, key_times(cast, source.fps), vertices,
                           [&](double t, std::vector<Vec3>& x) { files.at(character::clip_time(cast.timing(), t), x); });
   keys.at(0, loaded.mesh.positions);
-  return {std::move(loaded.mesh), std::move(keys), {}};
+  return {std::move(loaded.mesh), std::move(keys), {}, {}};
 }
 
 KeyFrameCount count(const Cast& cast, const KeyTimes& times, std::size_t vertices) {

@@ -1,19 +1,33 @@
 // From a character of the scene to its key frames.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "character/parts.hpp"
 #include "environment/key_frames.hpp"
 #include "mesh/mesh.hpp"
 #include "scene/scene.hpp"
 
 namespace weft::environment {
 
+/// A part of a character that pins follow, or that has a say of its own in contact.
+struct Part {
+  std::string name;
+  character::VertexMask vertices;  ///< of the body's mesh
+  bool collide = true;
+  std::optional<double> friction;  ///< none: that of the body
+  double thickness = 0;            ///< [m]
+
+  bool is_patch() const { return friction || thickness > 0; }
+};
+
 /// A body that moves by key frames of its vertices, made before the simulation starts.
 struct Actor {
   mesh::Mesh mesh;  ///< in the world at time 0
   KeyFrames keys;
+  std::vector<Part> parts;  ///< those of the scene, and those that its pins follow
   std::vector<std::string> warnings;
 };
 

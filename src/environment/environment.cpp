@@ -15,6 +15,7 @@
 #include "core/parallel.hpp"
 #include "environment/acting.hpp"
 #include "garment/garment.hpp"
+#include "mesh/caps.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/quads.hpp"
 #include "mesh/shapes.hpp"
@@ -266,15 +267,34 @@ struct Place {
   void operator()(const KeyFrames& keys) const { keys.at(t, positions); }
 };
 
+/// The triangles that collide, closed where parts are left out; none where all do.
+std::vector<mesh::Triangle> colliding_triangles(const mesh::Mesh& mesh, const std::vector<Part>& parts) {
+  if (std::ranges::all_of(parts, &Part::collide)) return {};
+  std::vector<std::uint8_t> collides(mesh.positions.size(), 1);
+  for (const Part& part : parts)
+    for (std::size_t v = 0; v < collides.size(); ++v)
+      if (part.vertices[v] != 0) collides[v] = part.collide;
+  std::vector<mesh::Triangle> kept;
+  for (const mesh::Triangle& t : mesh.topology.triangles)
+    if (collides[t[0]] + collides[t[1]] + collides[t[2]] >= 2) kept.push_back(t);
+  mesh::close_cuts(mesh.topology.triangles, mesh.positions, kept);
+  return kept;
+}
+
 BodyObject make_character(const scene::Character& character, const Actor& actor) {
-  return {.name = character.name,
-          .mesh = actor.mesh,
-          .character = true,
-          .moving = actor.keys.moving(),
-          .collide = character.collide,
-          .infinite_floor = false,
-          .friction = character.friction,
-          .look = character.look};
+  BodyObject object{.name = character.name,
+                    .mesh = actor.mesh,
+                    .character = true,
+                    .moving = actor.keys.moving(),
+                    .collide = character.collide,
+                    .infinite_floor = false,
+                    .friction = character.friction,
+                    .look = character.look,
+                    .parts = actor.parts,
+                    .colliding = colliding_triangles(actor.mesh, actor.parts)};
+  // What is left out whole does not collide.
+  if (object.colliding.empty() && !std::ranges::all_of(actor.parts, &Part::collide)) object.collide = false;
+  return object;
 }
 
 }  // namespace

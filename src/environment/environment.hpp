@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "environment/acting.hpp"
 #include "environment/key_frames.hpp"
 #include "environment/track.hpp"
 #include "mesh/mesh.hpp"
@@ -40,6 +41,11 @@ struct BodyObject {
   bool infinite_floor = false;
   double friction = 0.3;
   scene::Look look;
+  std::vector<Part> parts;                ///< of characters
+  std::vector<mesh::Triangle> colliding;  ///< where a part is left out: the others, closed; else none
+  std::span<const mesh::Triangle> colliding_triangles() const {
+    return colliding.empty() ? mesh.topology.triangles : colliding;
+  }
 };
 
 /// Rest places of the particles of a rectangle of cloth.

@@ -23,6 +23,29 @@ const Table& joint_rules() {
   return kTable;
 }
 
+const Table& part_rules() {
+  static const Table kTable =
+      TableBuilder<BodyPart>("A part of the body with a say of its own in contact.")
+          .plain(Type::name, "name", &BodyPart::name,
+                 "hands, feet, arms, legs, head, torso or a joint as in character.joint, such as LeftHand; any other "
+                 "with bone or material")
+          .need(Need::required)
+          .plain(Type::text, "bone", &BodyPart::bone, "node of the character's file that it is, with all below it")
+          .by_default("what the name says")
+          .excludes("material")
+          .plain(Type::text, "material", &BodyPart::material, "material of the character's file that it has")
+          .by_default("what the name says")
+          .excludes("bone")
+          .plain(Type::boolean, "collide", &BodyPart::collide, "false lets cloth pass through it")
+          .number("friction", &BodyPart::friction, within(0, 10), "",
+                  "Coulomb coefficient; of a pair, the geometric mean of both")
+          .by_default("that of the character")
+          .number("thickness", &BodyPart::thickness, within(0, 1), "m",
+                  "half of it is the distance that cloth keeps in addition, as of padding")
+          .build();
+  return kTable;
+}
+
 /// Access to a member of the source that a character has.
 template <class Kind, class Base, class Field>
 auto of_source(Field Base::*field) {
@@ -115,6 +138,7 @@ const Table& character_rules() {
           .number("friction", &Character::friction, within(0, 10), "",
                   "Coulomb coefficient; of a pair, the geometric mean of both")
           .plain(Type::boolean, "collide", &Character::collide, "false lets cloth pass through it")
+          .list(Type::list, "part", &Character::parts, part_rules())
           .table("look", &Character::look, obstacle_look_rules())
           .not_simulated()
           .build();

@@ -69,9 +69,13 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
 
 void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std::string& path, Findings& findings) {
   check_times(pin.motion.keys, path, findings);
+  const Followed followed = scene::followed(pin);
+  const std::vector<std::string> characters = names_of(scene.characters);
   std::vector<std::string> bodies = names_of(scene.obstacles);
-  for (const std::string& name : names_of(scene.characters)) bodies.push_back(name);
-  check_reference(pin.follow, bodies, "an obstacle or character", path + ".follow", findings);
+  bodies.insert(bodies.end(), characters.begin(), characters.end());
+  check_reference(followed.body, bodies, "an obstacle or character", path + ".follow", findings);
+  if (!followed.part.empty() && !findings.faulty(path + ".follow"))
+    check_reference(followed.body, characters, "a character before the part", path + ".follow", findings);
   check_part(cloth, pin, path, findings);
 }
 

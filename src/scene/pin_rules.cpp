@@ -45,7 +45,7 @@ const Table& pin_rules() {
           .with(part_rows<Pin>)
           .plain(Type::text, "follow", &Pin::follow,
                  "name of the obstacle whose motion the particles share, or of the character, at whose nearest places "
-                 "they stay")
+                 "they stay, or those of a part of it: \"man.torso\"")
           .by_default("none")
           .excludes("keys")
           .number("release", &Pin::release, within(-1, 1e5), "s", "time at which they are let go; negative: never")

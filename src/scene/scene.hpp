@@ -154,11 +154,20 @@ struct ClothPart {
 
 /// Particles held in place, or moved.
 struct Pin : ClothPart {
-  std::string follow;              ///< obstacle whose motion they share; empty: none
+  std::string follow;              ///< body whose motion they share, or "<character>.<part>"; empty: none
   PinTrack motion;                 ///< else of their own
   double release = -1;             ///< time at which they are let go [s]; negative: never
   std::optional<double> strength;  ///< of the springs that draw them there [N/m]; none: they are held
 };
+
+/// The body and, of a character, the part (else empty) that a pin follows.
+struct Followed {
+  std::string body, part;
+};
+inline Followed followed(const Pin& pin) {
+  const std::size_t dot = pin.follow.find('.');
+  return {pin.follow.substr(0, dot), dot == std::string::npos ? "" : pin.follow.substr(dot + 1)};
+}
 
 /// Mass that hangs on particles, in equal shares.
 struct Weight : ClothPart {
@@ -282,6 +291,16 @@ struct MeshSequence {
 
 using CharacterSource = std::variant<CharacterFile, Mannequin, MeshSequence>;
 
+/// Of a character, with a say of its own in contact. What it is: a bone, a material, else what its name says.
+struct BodyPart {
+  std::string name;
+  std::optional<std::string> bone;      ///< node of the character's file, with all below it
+  std::optional<std::string> material;  ///< of the character's file
+  bool collide = true;
+  std::optional<double> friction;  ///< absent: that of the character
+  double thickness = 0;            ///< distance that cloth keeps from it beyond its own half thickness, twice [m]
+};
+
 /// A body that moves by itself, stored as key frames of its vertices.
 struct Character {
   std::string name;
@@ -297,6 +316,7 @@ struct Character {
   Interpolation interpolation = Interpolation::cubic;
   double friction = 0.3;
   bool collide = true;
+  std::vector<BodyPart> parts;
   Look look;
   int line = 0, column = 0;  ///< where the scene names it, for errors of its file
 };

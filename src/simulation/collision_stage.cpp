@@ -82,17 +82,20 @@ collision::EngineParameters engine_parameters(const scene::Scene& scene, const e
 
 collision::Bodies make_bodies(const scene::Scene& scene, const environment::Environment& environment) {
   collision::Bodies bodies;
-  const auto add = [&](const mesh::Mesh& mesh, const collision::BodyTraits& traits) {
-    bodies.add(mesh.topology.triangles, static_cast<Index>(mesh.positions.size()), traits);
-  };
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const scene::Material& material = scene.cloths[c].material;
     const double thickness = std::min(material.thickness, kThicknessOfSpacing * environment.cloths[c].spacing);
-    add(environment.cloths[c].mesh, {.deformable = true, .thickness = thickness, .friction = material.friction});
+    const mesh::Mesh& mesh = environment.cloths[c].mesh;
+    bodies.add(mesh.topology.triangles, static_cast<Index>(mesh.positions.size()),
+               {.deformable = true, .thickness = thickness, .friction = material.friction});
   }
   for (std::size_t b : colliding_bodies(scene, environment)) {
     const environment::BodyObject& body = environment.bodies[b];
-    add(body.mesh, {.friction = body.friction, .moving = body.moving, .rigid = !body.character});
+    std::vector<collision::Patch> patches;
+    for (const environment::Part& part : body.parts)
+      if (part.is_patch()) patches.push_back({part.vertices, part.thickness, part.friction.value_or(body.friction)});
+    bodies.add(body.colliding_triangles(), static_cast<Index>(body.mesh.positions.size()),
+               {.friction = body.friction, .moving = body.moving, .rigid = !body.character}, patches);
   }
   return bodies;
 }

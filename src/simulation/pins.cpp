@@ -38,6 +38,17 @@ int body_named(const environment::Environment& environment, const std::string& n
   return found == environment.bodies.end() ? -1 : static_cast<int>(found - environment.bodies.begin());
 }
 
+/// Of a part of a body; of all of it where that has no name.
+std::vector<mesh::Triangle> triangles_of(const environment::BodyObject& body, const std::string& part) {
+  const std::vector<mesh::Triangle>& all = body.mesh.topology.triangles;
+  if (part.empty()) return all;
+  const auto& vertices = std::ranges::find(body.parts, part, &environment::Part::name)->vertices;
+  std::vector<mesh::Triangle> triangles;
+  for (const mesh::Triangle& t : all)
+    if (vertices[t[0]] + vertices[t[1]] + vertices[t[2]] >= 2) triangles.push_back(t);
+  return triangles;
+}
+
 /// Through the keys of a pin whose particles start around `middle`.
 environment::Track track_of(const scene::PinTrack& motion, const Vec3& middle) {
   scene::PoseTrack track{motion.interpolation, {}};
@@ -80,11 +91,12 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
 
       const auto start = [&](Index particle) -> const Vec3& { return cloth.start[particle - first_particle[c]]; };
       group.release = pin.release;
-      group.follow = pin.follow.empty() ? -1 : body_named(environment, pin.follow);
+      const scene::Followed followed = scene::followed(pin);
+      group.follow = pin.follow.empty() ? -1 : body_named(environment, followed.body);
       if (group.follow >= 0 && environment.bodies[group.follow].character) {
         std::vector<Vec3> places;
         for (Index particle : group.particles) places.push_back(start(particle));
-        group.anchors = anchor(environment, static_cast<std::size_t>(group.follow), start_time, places);
+        group.anchors = anchor(environment, static_cast<std::size_t>(group.follow), followed.part, start_time, places);
       } else if (group.follow >= 0) {
         const environment::PoseSample pose = environment.pose(static_cast<std::size_t>(group.follow), start_time);
         for (Index particle : group.particles)
@@ -101,8 +113,8 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
   }
 }
 
-std::vector<Pins::Anchor> Pins::anchor(const environment::Environment& environment, std::size_t character, double t,
-                                       std::span<const Vec3> places) {
+std::vector<Pins::Anchor> Pins::anchor(const environment::Environment& environment, std::size_t character,
+                                       const std::string& part, double t, std::span<const Vec3> places) {
   const mesh::Mesh& skin = environment.bodies[character].mesh;
   std::vector<Moving> vertices;
   std::vector<Vec3> x;
@@ -110,9 +122,10 @@ std::vector<Pins::Anchor> Pins::anchor(const environment::Environment& environme
     vertices.push_back({environment.vertex(character, v, t).position, Vec3::Zero()});
     x.push_back(vertices.back().x);
   }
+  const std::vector<mesh::Triangle> triangles = triangles_of(environment.bodies[character], part);
   std::vector<Anchor> anchors;
   for (const Vec3& place : places) {
-    const collision::SurfacePoint nearest = collision::nearest_point(place, skin.topology.triangles, x);
+    const collision::SurfacePoint nearest = collision::nearest_point(place, triangles, x);
     Anchor& anchor = anchors.emplace_back();
     Vec3 foot = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k) {

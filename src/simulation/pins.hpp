@@ -47,8 +47,8 @@ class Pins {
     std::array<double, 3> weights;  // of the point of the triangle that was nearest at the start
     Vec3 arm;                       // from there, along the triangle's axes [m]
   };
-  static std::vector<Anchor> anchor(const environment::Environment& environment, std::size_t character, double t,
-                                    std::span<const Vec3> places);
+  static std::vector<Anchor> anchor(const environment::Environment& environment, std::size_t character,
+                                    const std::string& part, double t, std::span<const Vec3> places);
   /// Particles that share one motion.
   struct Group {
     About about;

@@ -74,6 +74,31 @@ TEST(ContactBuilder, APairMayHaveFrictionOfItsOwnInEitherOrder) {
   EXPECT_DOUBLE_EQ(builder.friction_of(0, 1).sliding, 0.4);
 }
 
+// Vertices 1 and 2 of the obstacle are padded and rough; friction of a pair of bodies holds for all of both.
+TEST(ContactBuilder, APatchHasThicknessAndFrictionOfItsOwn) {
+  Scene scene;
+  const std::vector<Triangle> one{{0, 1, 2}};
+  const std::vector<std::uint8_t> patch{0, 1, 1};
+  scene.bodies = {};
+  scene.bodies.add(one, 3, {.deformable = true, .thickness = 0.002, .friction = 0.2});
+  scene.bodies.add(one, 3, {.deformable = true, .thickness = 0.003, .friction = 0.8});
+  scene.bodies.add(one, 3, {.friction = 0.45}, std::vector<Patch>{{patch, 0.01, 0.9}});
+  const auto at = [](Index obstacle_vertex) {
+    Proximity p = vertex_face(0, {6, 7, 8});
+    for (std::size_t k = 1; k < 4; ++k) p.weights[k] = p.vertices[k] == obstacle_vertex ? -1 : 0;
+    return p;
+  };
+  const auto contacts = scene.contacts_of({at(6), at(7)}, {});
+  ASSERT_EQ(contacts.size(), 2u);
+  EXPECT_DOUBLE_EQ(contacts[0].range, 0.001);
+  EXPECT_DOUBLE_EQ(contacts[0].friction, std::sqrt(0.2 * 0.45));
+  EXPECT_DOUBLE_EQ(contacts[1].range, 0.5 * (0.002 + 0.01));
+  EXPECT_DOUBLE_EQ(contacts[1].friction, std::sqrt(0.2 * 0.9));
+  const ContactBuilder builder(scene.bodies, {.friction = {{2, 0, {0.1, 0.3}}}}, scene.masses);
+  EXPECT_EQ(builder.friction_of(3, 0).sliding, 0.1);
+  EXPECT_EQ(builder.friction_of(2, 0).sliding, 0.1);
+}
+
 TEST(ContactBuilder, FrictionReachesTheContact) {
   Scene scene;
   const auto contacts =

@@ -4,9 +4,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 
 #include "environment/environment.hpp"
+#include "mesh/topology.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::environment {
@@ -132,6 +134,73 @@ TEST_F(Acting, StoresAsManyKeysAsThePlanSays) {
   character_.dressing = 3;
   EXPECT_EQ(count_key_frames(scene_, (make(), character_)).keys, 1u) << "it never moves";
   EXPECT_FALSE(make().keys.moving());
+}
+
+scene::BodyPart part(const std::string& name) {
+  scene::BodyPart part;
+  part.name = name;
+  return part;
+}
+
+TEST_F(Acting, KnowsPartsByJointsAndBones) {
+  character_.parts = {part("spine"), part("lower"), part("Hips")};
+  character_.parts[1].bone = "Hips";
+  character_.parts[1].collide = false;
+  scene_.cloths.emplace_back().pins.emplace_back().follow = "rod.torso";
+  const Actor actor = make();
+  ASSERT_EQ(actor.parts.size(), 4u);
+  const auto count = [&](std::size_t p) { return std::ranges::count(actor.parts[p].vertices, 1); };
+  EXPECT_EQ(count(0), 3);
+  EXPECT_EQ(count(1), 5) << "with all below it";
+  EXPECT_EQ(count(2), 2);
+  EXPECT_EQ(count(3), 5) << "the torso, which a pin follows";
+  EXPECT_FALSE(actor.parts[1].collide);
+  EXPECT_TRUE(actor.parts[3].collide);
+}
+
+TEST_F(Acting, LeavesPartsOutOfContactAndClosesWhatIsLeft) {
+  scene::Mannequin mannequin;
+  mannequin.edge_length = 0.04;
+  character_.source = mannequin;
+  character_.parts = {part("arms"), part("left_upper_arm")};
+  character_.parts[0].collide = false;
+  scene_.characters[0] = character_;
+  const Environment environment(scene_);
+  const BodyObject& body = environment.bodies[0];
+  const auto triangles = body.colliding_triangles();
+  EXPECT_TRUE(mesh::inspect(triangles, body.mesh.positions.size()).border.empty());
+  double low = 0, high = 0;
+  for (const auto& t : triangles)
+    for (const Index v : t) {
+      low = std::min(low, body.mesh.positions[v].x());
+      high = std::max(high, body.mesh.positions[v].x());
+    }
+  // Its right shoulder ends 0.25 m off the middle; of the left arm, hanging at 45 degrees, the upper part is there.
+  EXPECT_GT(low, -0.25);
+  EXPECT_GT(high, 0.3);
+  EXPECT_LT(high, 0.45);
+
+  character_.parts = {part("all")};
+  character_.parts[0].bone = "Hips";
+  character_.parts[0].collide = false;
+  scene_.characters[0] = character_;
+  EXPECT_FALSE(Environment(scene_).bodies[0].collide) << "nothing is left";
+}
+
+TEST_F(Acting, RefusesPartsThatItDoesNotHave) {
+  character_.parts = {part("tail")};
+  expect_refused(
+      ExitCode::scene_invalid,
+      "scenes/a.toml:7:1: character.rod.part.tail: expected hands, feet, arms, legs, head, torso or a joint, "
+      "or a part with bone or material, got \"tail\"");
+  character_.parts = {part("hands")};
+  expect_refused(ExitCode::scene_invalid, "part.hands: expected a part with vertices of ");
+  character_.parts = {part("a")};
+  character_.parts[0].bone = "Spin";
+  expect_refused(ExitCode::scene_invalid, "got \"Spin\"; did you mean \"Spine\"?");
+  character_.parts[0].bone.reset();
+  character_.parts[0].material = "Skin";
+  expect_refused(ExitCode::scene_invalid, "part.a.material: expected a material of ");
 }
 
 TEST_F(Acting, RefusesWhatItCannotPlayByItsName) {

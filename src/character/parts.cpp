@@ -1,0 +1,120 @@
+#include "character/parts.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+
+#include "character/joints.hpp"
+
+namespace weft::character {
+namespace {
+
+/// A part of several joints; of those that come in pairs both.
+struct Group {
+  std::string name;
+  std::vector<std::string> middle, sides;
+};
+
+const std::vector<Group> kGroups = {
+    {"hands", {}, {"Hand"}},
+    {"feet", {}, {"Foot", "Toes"}},
+    {"arms", {}, {"UpperArm", "LowerArm", "Hand"}},
+    {"legs", {}, {"UpperLeg", "LowerLeg", "Foot", "Toes"}},
+    {"head", {"Neck", "Head"}, {}},
+    {"torso", {"Hips", "Spine", "Chest"}, {"Shoulder"}},
+};
+
+std::string in_one_word(const std::string& name) {
+  std::string word;
+  for (const char c : name)
+    if (c != '_') word += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return word;
+}
+
+/// The vertices whose bones' nodes pass the test with at least half of their weight.
+VertexMask held_by(const Character& character, const std::function<bool(Index node)>& test) {
+  const std::size_t vertices = character.mesh.positions.size();
+  VertexMask mask(vertices, 0);
+  for (std::size_t v = 0; v < vertices; ++v) {
+    double share = 0;
+    for (Index i = character.first_influence[v]; i < character.first_influence[v + 1]; ++i) {
+      const Influence& influence = character.influences[i];
+      if (test(character.bones[influence.bone].node)) share += influence.weight;
+    }
+    mask[v] = share >= 0.5;
+  }
+  return mask;
+}
+
+}  // namespace
+
+const std::vector<std::string>& part_names() {
+  static const std::vector<std::string> kNames = [] {
+    std::vector<std::string> names;
+    for (const Group& group : kGroups) names.push_back(group.name);
+    names.insert(names.end(), joint_names().begin(), joint_names().end());
+    return names;
+  }();
+  return kNames;
+}
+
+std::vector<Index> joints_of_part(const std::string& name) {
+  const std::string word = in_one_word(name);
+  std::vector<Index> joints;
+  for (const Group& group : kGroups) {
+    if (group.name != word) continue;
+    for (const std::string& joint : group.middle) joints.push_back(joint_number(joint));
+    for (const char* side : {"Left", "Right"})
+      for (const std::string& joint : group.sides) joints.push_back(joint_number(side + joint));
+    return joints;  // of the head, before the joint of that name
+  }
+  for (std::size_t j = 0; j < joint_names().size(); ++j)
+    if (in_one_word(joint_names()[j]) == word) joints.push_back(static_cast<Index>(j));
+  return joints;
+}
+
+VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints) {
+  // Of each node the joint that is nearest above it or that it is itself.
+  std::vector<Index> joint_of(character.nodes.size(), -1);
+  for (std::size_t n = 0; n < joint_of.size(); ++n) {
+    const auto own = std::ranges::find(nodes, static_cast<Index>(n));
+    const Index parent = character.nodes[n].parent;
+    if (own != nodes.end()) {
+      joint_of[n] = static_cast<Index>(own - nodes.begin());
+    } else if (parent >= 0) {
+      joint_of[n] = joint_of[parent];
+    }
+  }
+  return held_by(character, [&](Index node) { return std::ranges::find(joints, joint_of[node]) != joints.end(); });
+}
+
+VertexMask vertices_below(const Character& character, Index node) {
+  std::vector<bool> below(character.nodes.size(), false);
+  for (std::size_t n = 0; n < below.size(); ++n) {
+    const Index parent = character.nodes[n].parent;
+    below[n] = static_cast<Index>(n) == node || (parent >= 0 && below[parent]);
+  }
+  return held_by(character, [&](Index n) { return below[n]; });
+}
+
+VertexMask vertices_of_material(const Character& character, Index material) {
+  VertexMask mask;
+  for (const Index m : character.material_of_vertex) mask.push_back(m == material);
+  return mask;
+}
+
+bool has_fingers(const Character& character, std::span<const Index> nodes) {
+  std::vector<bool> holds(character.nodes.size(), false);  // skin, itself or by what is below it
+  for (const Influence& influence : character.influences) holds[character.bones[influence.bone].node] = true;
+  for (std::size_t n = holds.size(); n-- > 0;)
+    if (holds[n] && character.nodes[n].parent >= 0) holds[character.nodes[n].parent] = true;
+  constexpr int kFewest = 3;
+  return std::ranges::any_of(joints_of_part("hands"), [&](Index joint) {
+    int chains = 0;
+    for (std::size_t n = 0; n < holds.size(); ++n)
+      chains += nodes[joint] >= 0 && character.nodes[n].parent == nodes[joint] && holds[n];
+    return chains >= kFewest;
+  });
+}
+
+}  // namespace weft::character

@@ -1,0 +1,36 @@
+// Parts of a body, by what people call them: its hands, one arm, all that a bone of its file holds.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "character/character.hpp"
+
+namespace weft::character {
+
+/// 1 for each vertex that belongs to a part, else 0.
+using VertexMask = std::vector<std::uint8_t>;
+
+/// hands, feet, arms, legs, head and torso, and then the names of joints.
+const std::vector<std::string>& part_names();
+
+/// The joints of part_names() that such a part consists of, as places in joint_names(); in any case, and with or
+/// without _ between words. Empty for other names.
+std::vector<Index> joints_of_part(const std::string& name);
+
+/// The vertices that are held for at least half by the nodes of these joints. The nodes of a joint are its own and all
+/// below it, up to the next joint. `nodes`: of each of joint_names(), −1 where there is none.
+VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints);
+
+/// Those that are held for at least half by a node and all below it.
+VertexMask vertices_below(const Character& character, Index node);
+
+/// Those of a material of the file.
+VertexMask vertices_of_material(const Character& character, Index material);
+
+/// Whether skin is held by three or more chains of nodes below a hand: thumb and fingers that move apart.
+bool has_fingers(const Character& character, std::span<const Index> nodes);
+
+}  // namespace weft::character

@@ -1,0 +1,70 @@
+#include "mesh/caps.hpp"
+
+#include <gtest/gtest.h>
+
+#include "mesh/geometry.hpp"
+#include "mesh/shapes.hpp"
+
+namespace weft::mesh {
+namespace {
+
+/// The triangles with a corner that passes the test.
+template <class Test>
+std::vector<Triangle> kept_of(const Mesh& mesh, Test test) {
+  std::vector<Triangle> kept;
+  for (const Triangle& t : mesh.topology.triangles)
+    if (test(mesh.positions[t[0]]) || test(mesh.positions[t[1]]) || test(mesh.positions[t[2]])) kept.push_back(t);
+  return kept;
+}
+
+double volume(const std::vector<Triangle>& triangles, const std::vector<Vec3>& x) {
+  double six = 0;
+  for (const Triangle& t : triangles) six += x[t[0]].dot(x[t[1]].cross(x[t[2]]));
+  return six / 6;
+}
+
+TEST(Caps, CloseASphereThatWasCutTwice) {
+  const Mesh sphere = make_sphere(1, 48);
+  std::vector<Triangle> kept = kept_of(sphere, [](const Vec3& x) { return std::abs(x.z()) < 0.5; });
+  ASSERT_FALSE(inspect(kept, sphere.positions.size()).border.empty());
+  close_cuts(sphere.topology.triangles, sphere.positions, kept);
+  const TopologyReport report = inspect(kept, sphere.positions.size());
+  EXPECT_TRUE(report.border.empty());
+  EXPECT_TRUE(report.manifold());
+  // Of the sphere between -h and h: 2 π (h - h³/3); h is between 0.5 and a row (7.5 degrees) more, 0.61, and 48 corners
+  // cut off 1 %.
+  EXPECT_GT(volume(kept, sphere.positions), 0.98 * 2 * 3.1416 * (0.5 - 0.125 / 3));
+  EXPECT_LT(volume(kept, sphere.positions), 2 * 3.1416 * (0.61 - 0.61 * 0.61 * 0.61 / 3));
+}
+
+TEST(Caps, LeaveBordersOfTheWholeOpen) {
+  const Mesh plane = make_plane({2, 2});
+  std::vector<Triangle> kept{plane.topology.triangles.front()};
+  close_cuts(plane.topology.triangles, plane.positions, kept);
+  EXPECT_EQ(kept.size(), 1u) << "a cut from border to border encloses nothing";
+}
+
+TEST(Caps, AddNothingWhereNothingWasCut) {
+  const Mesh sphere = make_sphere(1, 12);
+  std::vector<Triangle> kept = sphere.topology.triangles;
+  close_cuts(sphere.topology.triangles, sphere.positions, kept);
+  EXPECT_EQ(kept, sphere.topology.triangles);
+  kept.clear();
+  close_cuts(sphere.topology.triangles, sphere.positions, kept);
+  EXPECT_TRUE(kept.empty());
+}
+
+// Two corners cut off a tetrahedron of smaller ones touch in a vertex: rings of a figure eight are closed apart.
+TEST(Caps, CloseRingsThatMeetInAVertex) {
+  const std::vector<Vec3> x{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0, 0}, {0, -1, 0}, {0, 0, 1}};
+  // A double pyramid without a face on either side of vertex 5.
+  const std::vector<Triangle> whole{{1, 2, 5}, {2, 3, 5}, {3, 4, 5}, {4, 1, 5},
+                                    {2, 1, 0}, {3, 2, 0}, {4, 3, 0}, {1, 4, 0}};
+  std::vector<Triangle> kept{whole[1], whole[3], whole[4], whole[5], whole[6], whole[7]};
+  close_cuts(whole, x, kept);
+  EXPECT_EQ(kept.size(), 8u);
+  EXPECT_TRUE(inspect(kept, x.size()).border.empty());
+}
+
+}  // namespace
+}  // namespace weft::mesh
