@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cctype>
 #include <functional>
+#include <limits>
 
 #include "character/joints.hpp"
 
@@ -101,6 +102,43 @@ VertexMask vertices_of_material(const Character& character, Index material) {
   VertexMask mask;
   for (const Index m : character.material_of_vertex) mask.push_back(m == material);
   return mask;
+}
+
+void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places) {
+  // Radii of the mean, of the distance from the skin and of the size of the body: 3 cm for a person. Narrower, and
+  // places beside each other turn apart with single faces; wider, and a shoulder moves a neck.
+  constexpr double kOfDistance = 2, kOfSize = 0.015;
+  std::vector<Vec3> skinned(character.mesh.positions.size());
+  skin(character, pose, skinned);
+  const std::vector<Affine> globals = global_transforms(character, pose);
+  Box3 box;
+  for (const Vec3& x : skinned) box.extend(x);
+  for (const Vec3& place : places) {
+    double nearest_sq = std::numeric_limits<double>::infinity();
+    for (std::size_t v = 0; v < part.size(); ++v)
+      if (part[v] != 0) nearest_sq = std::min(nearest_sq, (skinned[v] - place).squaredNorm());
+    const double radius = kOfDistance * std::sqrt(nearest_sq) + kOfSize * box.diagonal().norm();
+    std::vector<double> weights(character.bones.size(), 0);
+    double total = 0;
+    for (std::size_t v = 0; v < part.size(); ++v) {
+      const double near = 1 - (skinned[v] - place).squaredNorm() / (radius * radius);
+      if (part[v] == 0 || near <= 0) continue;
+      total += near * near;
+      for (Index i = character.first_influence[v]; i < character.first_influence[v + 1]; ++i)
+        weights[character.influences[i].bone] += near * near * character.influences[i].weight;
+    }
+    Affine map;
+    map.matrix().setZero();
+    for (std::size_t b = 0; b < weights.size(); ++b) {
+      if (weights[b] == 0) continue;
+      character.influences.push_back({static_cast<Index>(b), weights[b] / total});
+      const Bone& bone = character.bones[b];
+      map.matrix() += weights[b] / total * (globals[bone.node] * bone.offset).matrix();
+    }
+    character.first_influence.push_back(static_cast<Index>(character.influences.size()));
+    character.mesh.positions.push_back(map.inverse() * place);
+    for (MorphTarget& morph : character.morphs) morph.displacements.push_back(Vec3::Zero());
+  }
 }
 
 bool has_fingers(const Character& character, std::span<const Index> nodes) {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "character/character.hpp"
+#include "character/pose.hpp"
 
 namespace weft::character {
 
@@ -29,6 +30,11 @@ VertexMask vertices_below(const Character& character, Index node);
 
 /// Those of a material of the file.
 VertexMask vertices_of_material(const Character& character, Index material);
+
+/// Appends to the character vertices that are in no face and, as the character is posed now, are at these places: they
+/// go where the skin of the part around them goes, by the mean of its weights. The farther a place is from the skin,
+/// the wider the mean. [m]
+void add_followers(Character& character, const Pose& pose, const VertexMask& part, std::span<const Vec3> places);
 
 /// Whether skin is held by three or more chains of nodes below a hand: thumb and fingers that move apart.
 bool has_fingers(const Character& character, std::span<const Index> nodes);

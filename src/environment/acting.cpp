@@ -219,18 +219,6 @@ class PartFinder {
   std::vector<Index> joints_;
 };
 
-/// Names of parts of this character that pins follow.
-std::vector<std::string> followed_parts(const Cast& cast) {
-  std::vector<std::string> names;
-  for (const scene::Cloth& cloth : cast.scene.cloths) {
-    for (const scene::Pin& pin : cloth.pins) {
-      const scene::Followed followed = scene::followed(pin);
-      if (followed.body == cast.settings.name && !followed.part.empty()) names.push_back(followed.part);
-    }
-  }
-  return names;
-}
-
 /// Whether the scene has its own say on a hand.
 bool says_hands(const std::vector<scene::BodyPart>& parts) {
   const std::vector<Index> hands = character::joints_of_part("hands");
@@ -247,7 +235,8 @@ scene::BodyPart part_named(const std::string& name) {
   return part;
 }
 
-std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, Body& body) {
+std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::span<const FollowingPin> following,
+                           Body& body) {
   const PartFinder finder(cast, acting, body);
   std::vector<scene::BodyPart> wanted = cast.settings.parts;
   if (!says_hands(wanted) && cast.settings.collide && finder.has_fingers()) {
@@ -259,12 +248,24 @@ std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, Body& 
                     "write [[character.part]] name = \"hands\"",
                     cast.where));
   }
-  for (const std::string& name : followed_parts(cast))
-    if (std::ranges::find(wanted, name, &scene::BodyPart::name) == wanted.end()) wanted.push_back(part_named(name));
+  for (const FollowingPin& pin : following)
+    if (!pin.part.empty() && std::ranges::find(wanted, pin.part, &scene::BodyPart::name) == wanted.end())
+      wanted.push_back(part_named(pin.part));
   std::vector<Part> parts;
   for (const scene::BodyPart& part : wanted)
     parts.push_back({part.name, finder.find(part, "part." + part.name), part.collide, part.friction, part.thickness});
   return parts;
+}
+
+/// Adds what goes with a pin to the vertices of the body, of which it has `vertices` itself.
+void follow(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& parts, const character::Pose& start,
+            std::size_t vertices, character::Character& body) {
+  character::VertexMask mask(vertices, 1);
+  if (!pin.part.empty()) mask = std::ranges::find(parts, pin.part, &Part::name)->vertices;
+  const scene::Pose& pose = cast.settings.pose;
+  std::vector<Vec3> places;
+  for (const Vec3& place : pin.places) places.push_back(pose.rotation.conjugate() * (place - pose.position));
+  character::add_followers(body, start, mask, places);
 }
 
 /// Which key frames a character needs, k / rate for k from first on.
@@ -322,7 +323,7 @@ KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
 }
 
 template <class Source>
-Actor act(const Cast& cast, const Source& source) {
+Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> following) {
   Body body = cast_body(cast, source);
   const character::Clip still;
   const character::Clip& clip = body.clip ? *body.clip : still;
@@ -334,19 +335,23 @@ Actor act(const Cast& cast, const Source& source) {
         fmt::format("{}: clip \"{}\" does not close: its end and its beginning are {:.3g} m apart; "
                     "a crossfade would join them",
                     cast.where, clip.name, gap));
-  std::vector<Part> parts = parts_of(cast, source, body);
+  std::vector<Part> parts = parts_of(cast, source, following, body);
+  const std::size_t vertices = body.character.mesh.positions.size();
+  const character::Pose start = performance.at(-cast.scene.preroll_frames() / cast.scene.time.fps);
+  for (const FollowingPin& pin : following) follow(cast, pin, parts, start, vertices, body.character);
   KeyFrames keys =
       sample(cast, key_times(cast, character::key_rate(clip)), body.character.mesh.positions.size(),
              [&](double t, std::vector<Vec3>& x) { character::skin(body.character, performance.at(t), x); });
   mesh::Mesh mesh = std::move(body.character.mesh);
+  mesh.positions.resize(vertices);
   keys.at(0, mesh.positions);
   return {std::move(mesh), std::move(keys), std::move(parts), std::move(body.warnings)};
 }
 
-Actor act(const Cast& cast, const scene::MeshSequence& source) {
+Actor act(const Cast& cast, const scene::MeshSequence& source, std::span<const FollowingPin> following) {
   assets::LoadedSequence loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
   const std::size_t vertices = loaded.mesh.positions.size();
-  if (!cast.settings.parts.empty() || !followed_parts(cast).empty())
+  if (!cast.settings.parts.empty() || !std::ranges::all_of(following, [](const auto& pin) { return pin.part.empty(); }))
     cast.fail("part", "expected none of a body from a sequence of meshes, which has no bones");
   const KeyFrames files(cast.settings.interpolation, 0, 1 / source.fps, std::move(loaded.positions), false);
   KeyFrames keys = sample(cast, key_times(cast, source.fps), vertices,
@@ -374,9 +379,10 @@ KeyFrameCount count(const Cast& cast, const scene::MeshSequence& source) {
 
 }  // namespace
 
-Actor make_actor(const scene::Scene& scene, const scene::Character& character) {
+Actor make_actor(const scene::Scene& scene, const scene::Character& character,
+                 std::span<const FollowingPin> following) {
   const Cast cast = make_cast(scene, character);
-  return std::visit([&](const auto& source) { return act(cast, source); }, character.source);
+  return std::visit([&](const auto& source) { return act(cast, source, following); }, character.source);
 }
 
 KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character& character) {

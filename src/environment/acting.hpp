@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,17 +24,24 @@ struct Part {
   bool is_patch() const { return friction || thickness > 0; }
 };
 
+/// Particles of a pin that follows a character, at the start. [m]
+struct FollowingPin {
+  std::string part;  ///< of the character; empty: all of it
+  std::vector<Vec3> places;
+};
+
 /// A body that moves by key frames of its vertices, made before the simulation starts.
 struct Actor {
-  mesh::Mesh mesh;  ///< in the world at time 0
-  KeyFrames keys;
+  mesh::Mesh mesh;          ///< in the world at time 0
+  KeyFrames keys;           ///< of its vertices and then, of what has bones, of the places of all following pins
   std::vector<Part> parts;  ///< those of the scene, and those that its pins follow
   std::vector<std::string> warnings;
 };
 
 /// Reads the files of a character and stores its key frames from time 0 to the end of the scene. Throws
 /// Error(asset_unreadable, scene_invalid) with scene line, file and part.
-Actor make_actor(const scene::Scene& scene, const scene::Character& character);
+Actor make_actor(const scene::Scene& scene, const scene::Character& character,
+                 std::span<const FollowingPin> following = {});
 
 /// What make_actor would store, without making it, for the plan.
 struct KeyFrameCount {

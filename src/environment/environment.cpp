@@ -281,23 +281,50 @@ std::vector<mesh::Triangle> colliding_triangles(const mesh::Mesh& mesh, const st
   return kept;
 }
 
+/// The pins that follow a character; writes where the body finds them, behind so many vertices.
+std::vector<FollowingPin> following_pins(const scene::Scene& scene, const std::vector<ClothObject>& cloths,
+                                         const std::string& name, std::vector<BodyObject::Follower>& followers) {
+  std::vector<FollowingPin> following;
+  std::size_t first = 0;
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    for (std::size_t p = 0; p < scene.cloths[c].pins.size(); ++p) {
+      const scene::Pin& pin = scene.cloths[c].pins[p];
+      const scene::Followed followed = scene::followed(pin);
+      if (followed.body != name) continue;
+      FollowingPin& places = following.emplace_back();
+      places.part = followed.part;
+      for (const Index particle : particles_of(pin, cloths[c])) places.places.push_back(cloths[c].start[particle]);
+      followers.push_back({c, p, first});
+      first += places.places.size();
+    }
+  }
+  return following;
+}
+
 BodyObject make_character(const scene::Character& character, const Actor& actor) {
-  BodyObject object{.name = character.name,
-                    .mesh = actor.mesh,
-                    .character = true,
-                    .moving = actor.keys.moving(),
-                    .collide = character.collide,
-                    .infinite_floor = false,
-                    .friction = character.friction,
-                    .look = character.look,
-                    .parts = actor.parts,
-                    .colliding = colliding_triangles(actor.mesh, actor.parts)};
+  BodyObject object;
+  object.name = character.name;
+  object.mesh = actor.mesh;
+  object.character = true;
+  object.moving = actor.keys.moving();
+  object.collide = character.collide;
+  object.friction = character.friction;
+  object.look = character.look;
+  object.parts = actor.parts;
+  object.colliding = colliding_triangles(actor.mesh, actor.parts);
   // What is left out whole does not collide.
   if (object.colliding.empty() && !std::ranges::all_of(actor.parts, &Part::collide)) object.collide = false;
   return object;
 }
 
 }  // namespace
+
+std::vector<Index> particles_of(const scene::ClothPart& part, const ClothObject& cloth) {
+  std::vector<Index> particles;
+  for (std::size_t i = 0; i < cloth.fractions.size(); ++i)
+    if (part.holds(cloth.fractions[i].x(), cloth.fractions[i].y())) particles.push_back(static_cast<Index>(i));
+  return particles;
+}
 
 mesh::Grid grid_of(const scene::Cloth& cloth) {
   return {.nu = cloth.particles_weft,
@@ -315,9 +342,13 @@ Environment::Environment(const scene::Scene& scene) {
     movers_.emplace_back(Track(obstacle.motion, obstacle.pose));
   }
   for (const scene::Character& character : scene.characters) {
-    Actor actor = make_actor(scene, character);
+    std::vector<BodyObject::Follower> followers;
+    Actor actor = make_actor(scene, character, following_pins(scene, cloths, character.name, followers));
     for (const std::string& warning : actor.warnings) log::warn(warning);
     bodies.push_back(make_character(character, actor));
+    const bool has_bones = scene::acting_of(character) != nullptr;
+    for (BodyObject::Follower& follower : followers) follower.first_vertex += actor.mesh.positions.size();
+    if (has_bones) bodies.back().followers = std::move(followers);
     movers_.emplace_back(std::move(actor.keys));
   }
 }

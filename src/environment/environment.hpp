@@ -41,7 +41,13 @@ struct BodyObject {
   bool infinite_floor = false;
   double friction = 0.3;
   scene::Look look;
-  std::vector<Part> parts;                ///< of characters
+  std::vector<Part> parts;  ///< of characters
+  /// Of what has bones: a cloth and a pin of it that follows, and the first vertex that Environment::vertex() has for
+  /// the particles of the pin, behind those of the mesh.
+  struct Follower {
+    std::size_t cloth = 0, pin = 0, first_vertex = 0;
+  };
+  std::vector<Follower> followers;
   std::vector<mesh::Triangle> colliding;  ///< where a part is left out: the others, closed; else none
   std::span<const mesh::Triangle> colliding_triangles() const {
     return colliding.empty() ? mesh.topology.triangles : colliding;
@@ -59,6 +65,9 @@ void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
 /// line.
 ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth);
 
+/// The particles of a part of a cloth, numbered within it.
+std::vector<Index> particles_of(const scene::ClothPart& part, const ClothObject& cloth);
+
 /// Does not change: who steps through time keeps what it asks for.
 class Environment {
  public:
@@ -72,7 +81,7 @@ class Environment {
   /// Pose of an obstacle at any time [s], and how it changes.
   PoseSample pose(std::size_t obstacle, double t) const { return std::get<Track>(movers_[obstacle]).at(t); }
 
-  /// The same of one vertex of a character.
+  /// The same of one vertex of a character, or of what follows it.
   VertexMotion vertex(std::size_t character, std::size_t vertex, double t) const {
     return std::get<KeyFrames>(movers_[character]).at(t, vertex);
   }

@@ -119,12 +119,12 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
                                                       : forces::lumped_masses(cloth.sheet, material.density);
     masses_.insert(masses_.end(), masses.begin(), masses.end());
     for (const scene::Weight& weight : scene.cloths[c].weights) {
-      const std::vector<Index> carriers = particles_of(weight, cloth, first);
-      for (Index particle : carriers) masses_[particle] += weight.mass / static_cast<double>(carriers.size());
+      const std::vector<Index> carriers = environment::particles_of(weight, cloth);
+      for (Index particle : carriers) masses_[first + particle] += weight.mass / static_cast<double>(carriers.size());
     }
     held_.resize(masses_.size());
     for (const scene::Pin& pin : scene.cloths[c].pins)
-      for (Index particle : particles_of(pin, cloth, first)) held_[particle] = 1;
+      for (Index particle : environment::particles_of(pin, cloth)) held_[first + particle] = 1;
     if (cloth.sheet.triangles.empty())
       add_quad_forces(c, cloth.grid, material, scene.physics);
     else

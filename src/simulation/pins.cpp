@@ -38,17 +38,6 @@ int body_named(const environment::Environment& environment, const std::string& n
   return found == environment.bodies.end() ? -1 : static_cast<int>(found - environment.bodies.begin());
 }
 
-/// Of a part of a body; of all of it where that has no name.
-std::vector<mesh::Triangle> triangles_of(const environment::BodyObject& body, const std::string& part) {
-  const std::vector<mesh::Triangle>& all = body.mesh.topology.triangles;
-  if (part.empty()) return all;
-  const auto& vertices = std::ranges::find(body.parts, part, &environment::Part::name)->vertices;
-  std::vector<mesh::Triangle> triangles;
-  for (const mesh::Triangle& t : all)
-    if (vertices[t[0]] + vertices[t[1]] + vertices[t[2]] >= 2) triangles.push_back(t);
-  return triangles;
-}
-
 /// Through the keys of a pin whose particles start around `middle`.
 environment::Track track_of(const scene::PinTrack& motion, const Vec3& middle) {
   scene::PoseTrack track{motion.interpolation, {}};
@@ -61,13 +50,6 @@ environment::Track track_of(const scene::PinTrack& motion, const Vec3& middle) {
 
 }  // namespace
 
-std::vector<Index> particles_of(const scene::ClothPart& part, const environment::ClothObject& cloth, Index first) {
-  std::vector<Index> particles;
-  for (std::size_t i = 0; i < cloth.fractions.size(); ++i)
-    if (part.holds(cloth.fractions[i].x(), cloth.fractions[i].y())) particles.push_back(first + static_cast<Index>(i));
-  return particles;
-}
-
 Pins::Pins(const scene::Scene& scene, const environment::Environment& environment,
            const std::vector<Index>& first_particle) {
   const double start_time = -scene.preroll_frames() / scene.time.fps;
@@ -77,9 +59,13 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
     for (std::size_t number = 0; number < scene.cloths[c].pins.size(); ++number) {
       const scene::Pin& pin = scene.cloths[c].pins[number];
       Group group;
-      for (Index particle : particles_of(pin, cloth, first_particle[c])) {
+      const std::vector<Index> all = environment::particles_of(pin, cloth);
+      std::vector<std::size_t> places;  // of the group's particles among all of the pin
+      for (std::size_t k = 0; k < all.size(); ++k) {
+        const Index particle = first_particle[c] + all[k];
         if (std::find(taken.begin(), taken.end(), particle) != taken.end()) continue;
         group.particles.push_back(particle);
+        places.push_back(k);
         taken.push_back(particle);
       }
       if (group.particles.empty()) continue;
@@ -93,10 +79,15 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
       group.release = pin.release;
       const scene::Followed followed = scene::followed(pin);
       group.follow = pin.follow.empty() ? -1 : body_named(environment, followed.body);
-      if (group.follow >= 0 && environment.bodies[group.follow].character) {
-        std::vector<Vec3> places;
-        for (Index particle : group.particles) places.push_back(start(particle));
-        group.anchors = anchor(environment, static_cast<std::size_t>(group.follow), followed.part, start_time, places);
+      const environment::BodyObject* body = group.follow < 0 ? nullptr : &environment.bodies[group.follow];
+      if (body != nullptr && !body->followers.empty()) {
+        const auto follower = std::ranges::find_if(
+            body->followers, [&](const auto& candidate) { return candidate.cloth == c && candidate.pin == number; });
+        for (const std::size_t place : places) group.skinned.push_back(follower->first_vertex + place);
+      } else if (body != nullptr && body->character) {
+        std::vector<Vec3> starts;
+        for (Index particle : group.particles) starts.push_back(start(particle));
+        group.anchors = anchor(environment, static_cast<std::size_t>(group.follow), start_time, starts);
       } else if (group.follow >= 0) {
         const environment::PoseSample pose = environment.pose(static_cast<std::size_t>(group.follow), start_time);
         for (Index particle : group.particles)
@@ -113,8 +104,8 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
   }
 }
 
-std::vector<Pins::Anchor> Pins::anchor(const environment::Environment& environment, std::size_t character,
-                                       const std::string& part, double t, std::span<const Vec3> places) {
+std::vector<Pins::Anchor> Pins::anchor(const environment::Environment& environment, std::size_t character, double t,
+                                       std::span<const Vec3> places) {
   const mesh::Mesh& skin = environment.bodies[character].mesh;
   std::vector<Moving> vertices;
   std::vector<Vec3> x;
@@ -122,10 +113,9 @@ std::vector<Pins::Anchor> Pins::anchor(const environment::Environment& environme
     vertices.push_back({environment.vertex(character, v, t).position, Vec3::Zero()});
     x.push_back(vertices.back().x);
   }
-  const std::vector<mesh::Triangle> triangles = triangles_of(environment.bodies[character], part);
   std::vector<Anchor> anchors;
   for (const Vec3& place : places) {
-    const collision::SurfacePoint nearest = collision::nearest_point(place, triangles, x);
+    const collision::SurfacePoint nearest = collision::nearest_point(place, skin.topology.triangles, x);
     Anchor& anchor = anchors.emplace_back();
     Vec3 foot = Vec3::Zero();
     for (std::size_t k = 0; k < 3; ++k) {
@@ -159,7 +149,11 @@ void Pins::held_at(double t, const environment::Environment& environment,
                       place.x + triangle.axes * anchor.arm,
                       place.v + triangle.rates * anchor.arm});
     }
-    if (!group.anchors.empty()) continue;
+    for (std::size_t p = 0; p < group.skinned.size(); ++p) {
+      const auto place = environment.vertex(static_cast<std::size_t>(group.follow), group.skinned[p], t);
+      held.push_back({{group.particles[p], Mat3::Zero()}, place.position, place.velocity});
+    }
+    if (!group.anchors.empty() || !group.skinned.empty()) continue;
     environment::PoseSample pose;
     if (group.follow >= 0) {
       pose = environment.pose(static_cast<std::size_t>(group.follow), t);

@@ -12,9 +12,6 @@
 
 namespace weft::simulation {
 
-/// The particles of a part of a cloth whose first particle is `first`.
-std::vector<Index> particles_of(const scene::ClothPart& part, const environment::ClothObject& cloth, Index first);
-
 /// All pins of a scene, evaluated at the end of each step.
 class Pins {
  public:
@@ -41,14 +38,14 @@ class Pins {
                std::vector<integrator::HeldParticle>& held) const;
 
  private:
-  /// A place beside a triangle of a character's skin, that moves with it as if it were rigid.
+  /// A place beside a triangle of a body without bones, that moves with it as if it were rigid.
   struct Anchor {
     std::array<std::size_t, 3> corners;
     std::array<double, 3> weights;  // of the point of the triangle that was nearest at the start
     Vec3 arm;                       // from there, along the triangle's axes [m]
   };
-  static std::vector<Anchor> anchor(const environment::Environment& environment, std::size_t character,
-                                    const std::string& part, double t, std::span<const Vec3> places);
+  static std::vector<Anchor> anchor(const environment::Environment& environment, std::size_t character, double t,
+                                    std::span<const Vec3> places);
   /// Particles that share one motion.
   struct Group {
     About about;
@@ -56,7 +53,8 @@ class Pins {
     std::vector<Vec3> arms;                   // from the motion's origin at the start, in its own directions [m]
     double release = -1;                      // [s]; negative: never
     int follow = -1;                          // obstacle or character, or −1 for `track`
-    std::vector<Anchor> anchors;              // on a character, instead of arms
+    std::vector<Anchor> anchors;              // on a body without bones, instead of arms
+    std::vector<std::size_t> skinned;         // vertices of a character that has them, instead of arms
     std::optional<environment::Track> track;  // of the middle of the particles
   };
 

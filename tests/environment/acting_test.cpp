@@ -52,10 +52,10 @@ class Acting : public support::TestFolder {
     file_.path = folder_ / "rod.x";
   }
 
-  Actor make() {
+  Actor make(std::span<const FollowingPin> following = {}) {
     character_.source = file_;
     scene_.characters[0] = character_;
-    return make_actor(scene_, character_);
+    return make_actor(scene_, character_, following);
   }
   static std::vector<Vec3> at(const Actor& actor, double t) {
     std::vector<Vec3> positions(actor.mesh.positions.size());
@@ -146,8 +146,7 @@ TEST_F(Acting, KnowsPartsByJointsAndBones) {
   character_.parts = {part("spine"), part("lower"), part("Hips")};
   character_.parts[1].bone = "Hips";
   character_.parts[1].collide = false;
-  scene_.cloths.emplace_back().pins.emplace_back().follow = "rod.torso";
-  const Actor actor = make();
+  const Actor actor = make(std::vector<FollowingPin>{{"torso", {}}});
   ASSERT_EQ(actor.parts.size(), 4u);
   const auto count = [&](std::size_t p) { return std::ranges::count(actor.parts[p].vertices, 1); };
   EXPECT_EQ(count(0), 3);
@@ -156,6 +155,26 @@ TEST_F(Acting, KnowsPartsByJointsAndBones) {
   EXPECT_EQ(count(3), 5) << "the torso, which a pin follows";
   EXPECT_FALSE(actor.parts[1].collide);
   EXPECT_TRUE(actor.parts[3].collide);
+}
+
+// "Wave" moves Spine by 1 m within the first second and Hips not at all.
+TEST_F(Acting, CarriesWhatFollowsAPart) {
+  file_.clip = "Wave";
+  character_.pose.position = {10, 0, 0};
+  const Vec3 place(9.8, 0.3, 1.9);
+  const std::vector<FollowingPin> following{{"Spine", {place}}, {"", {place, Vec3(10.1, 0, 0)}}, {"Hips", {place}}};
+  const Actor actor = make(following);
+  ASSERT_EQ(actor.mesh.positions.size(), 5u) << "followers are not drawn";
+  const auto moved = [&](std::size_t follower, double t) {
+    return Vec3(actor.keys.at(t, 5 + follower).position - actor.keys.at(0, 5 + follower).position);
+  };
+  EXPECT_LT((actor.keys.at(0, 5).position - place).norm(), kSingle);
+  const Vec3 spine = at(actor, 1)[kHigh] - at(actor, 0)[kHigh];
+  EXPECT_NEAR(spine.norm(), 1, 1e-5);
+  EXPECT_LT((moved(0, 1) - spine).norm(), kSingle);
+  EXPECT_LT((moved(1, 1) - spine).norm(), kSingle) << "the nearest skin is of Spine";
+  EXPECT_LT(moved(2, 1).norm(), 0.5) << "of all of it, by the floor";
+  EXPECT_LT(moved(3, 1).norm(), kSingle) << "Hips stay";
 }
 
 TEST_F(Acting, LeavesPartsOutOfContactAndClosesWhatIsLeft) {

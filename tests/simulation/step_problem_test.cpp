@@ -206,7 +206,7 @@ TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {
     const std::vector<Vec3>& x = environment.cloths[0].start;
     const std::vector<Vec3> still(x.size(), Vec3::Zero());
     std::vector<integrator::HeldParticle> pinned;
-    for (Index i : particles_of(scene.cloths[0].pins[0], environment.cloths[0], 0))
+    for (Index i : environment::particles_of(scene.cloths[0].pins[0], environment.cloths[0]))
       pinned.push_back({{i, Mat3::Zero()}, x[i], Vec3::Zero()});
     ClothSystem cloth(scene, environment);
     StepProblem problem(cloth);

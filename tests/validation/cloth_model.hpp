@@ -33,7 +33,7 @@ class ClothModel {
     const forces::StretchParameters stretch{m.stretch_weft, m.stretch_warp, 0};
     held_.resize(x.size());
     for (const scene::Pin& pin : scene.cloths[0].pins)
-      for (Index i : particles_of(pin, cloth, 0)) held_[i] = 1;
+      for (Index i : environment::particles_of(pin, cloth)) held_[i] = 1;
     if (cloth.sheet.triangles.empty()) {
       masses = forces::lumped_masses(cloth.grid, m.density);
       forces_.push_back(std::make_unique<forces::Stretch>(cloth.grid, 0, stretch));
