@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "core/grading.hpp"
 #include "core/log.hpp"
+#include "core/nearest.hpp"
 #include "core/parallel.hpp"
 #include "environment/acting.hpp"
 #include "garment/garment.hpp"
@@ -84,8 +85,16 @@ mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
 
 /// A part that holds no particle would hold nothing, silently; of rectangles the scene's check has told already.
 void check_parts(const scene::Cloth& cloth, const ClothObject& object, const std::string& where) {
+  std::vector<std::string> edges;
+  for (const auto& [name, particles] : object.edges) edges.push_back(name);
   const auto check = [&](const scene::ClothPart& part, const char* kind) {
-    if (std::ranges::none_of(object.fractions, [&](const Vec2& at) { return part.holds(at.x(), at.y()); }))
+    if (!part.edge.empty() && !object.edges.contains(part.edge)) {
+      const std::string nearest = nearest_name(part.edge, edges);
+      throw Error(ExitCode::scene_invalid, "{}: expected a {} at an edge of its pattern, such as {}, got \"{}\"{}",
+                  where, kind, edges.front(), part.edge,
+                  nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+    }
+    if (particles_of(part, object).empty())
       throw Error(ExitCode::scene_invalid,
                   "{}: expected a {} that holds at least one particle, got one that holds none", where, kind);
   };
@@ -104,6 +113,7 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   object.mesh.topology.triangles = garment.sheet.triangles;
   object.mesh.positions = garment.sheet.rest;
   object.mesh.uv = std::move(garment.uv);
+  object.edges = std::move(garment.edges);
   object.mesh = turned_up(std::move(object.mesh), scene.up);
   object.sheet = std::move(garment.sheet);
   object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
@@ -320,9 +330,13 @@ BodyObject make_character(const scene::Character& character, const Actor& actor)
 }  // namespace
 
 std::vector<Index> particles_of(const scene::ClothPart& part, const ClothObject& cloth) {
+  std::vector<std::uint8_t> on_edge(part.edge.empty() ? 0 : cloth.fractions.size(), 0);
+  if (!part.edge.empty())
+    for (const Index i : cloth.edges.at(part.edge)) on_edge[i] = 1;
   std::vector<Index> particles;
   for (std::size_t i = 0; i < cloth.fractions.size(); ++i)
-    if (part.holds(cloth.fractions[i].x(), cloth.fractions[i].y())) particles.push_back(static_cast<Index>(i));
+    if ((on_edge.empty() || on_edge[i] != 0) && part.holds(cloth.fractions[i].x(), cloth.fractions[i].y()))
+      particles.push_back(static_cast<Index>(i));
   return particles;
 }
 

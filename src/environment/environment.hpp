@@ -1,6 +1,7 @@
 // All objects of a scene (seed, Fig. 1): topology, geometry, how cloth starts, and where its bodies are at any time.
 #pragma once
 
+#include <map>
 #include <span>
 #include <string>
 #include <variant>
@@ -23,6 +24,7 @@ struct ClothObject {
   mesh::Sheet sheet;            ///< of triangles, in the cloth's own coordinates; empty for quads
   mesh::Mesh mesh;              ///< rest shape in the world pose of the start; uv: weft and warp from its corner
   std::vector<Vec2> fractions;  ///< place of each particle in fractions of the rest size along weft and warp
+  std::map<std::string, std::vector<Index>> edges;  ///< of a pattern, by "panel.edge": particles
   /// Least distance between particles of a grid [m]; of triangles √2 times the least height, which is the same for the
   /// two halves of a square.
   double spacing = 0;

@@ -145,6 +145,14 @@ class Sewing {
     }
     for (SewnSeam& seam : garment_.seams)
       for (Index& v : seam.vertices) v = number_[at(v)];
+    for (std::size_t p = 0; p < pattern_.panels.size(); ++p) {
+      const Panel& panel = pattern_.panels[p];
+      for (std::size_t e = 0; e < panel.edges.size(); ++e) {
+        std::vector<Index> vertices = chain(p, e);
+        for (Index& v : vertices) v = number_[at(v)];
+        garment_.edges.emplace(panel.name + "." + panel.edges[e].name, std::move(vertices));
+      }
+    }
   }
 
   void place() {

@@ -1,6 +1,7 @@
 // From a sewing pattern to one mesh around the wearer.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -26,6 +27,7 @@ struct Garment {
   std::vector<Vec2> uv;         ///< per vertex: the panels laid together in one plane, for drawing the weave [m]
   std::vector<Index> panel_of;  ///< per triangle
   std::vector<SewnSeam> seams;  ///< as in the pattern
+  std::map<std::string, std::vector<Index>> edges;  ///< by "panel.edge": its vertices, from its start
 };
 
 /// `spacing` [m]: length of the edges of the mesh. `where` names what asks for it. Throws Error(scene_invalid) where

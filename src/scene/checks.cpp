@@ -51,12 +51,19 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
                     fmt::format("expected >= {}, the low end, got {}", part.low[axis], part.high[axis]));
     return;
   }
+  if (!part.edge.empty() && cloth.shape != ClothShape::pattern) {
+    findings.report(path + ".edge",
+                    "expected none of a cloth that is sewn from no pattern, got " + in_quotes(part.edge));
+    return;
+  }
   if (rectangle_particles(cloth) == 0) return;  // what it holds shows when the file is read
   // A part between two rows of particles would hold nothing, silently.
   const auto holds_some = [](double low, double high, int count, double grading) {
     for (int i = 0; i < count; ++i) {
       const double at = graded_fraction(i, count, grading);
-      const ClothPart along{.low = {low, 0}, .high = {high, 1}};
+      ClothPart along;
+      along.low.x() = low;
+      along.high.x() = high;
       if (along.holds(at, 0)) return true;
     }
     return false;

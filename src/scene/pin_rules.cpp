@@ -13,6 +13,8 @@ void part_rows(TableBuilder<S>& rows) {
       .single_fills_all();
   rows.vector("high", &S::high, kWeftWarp, within(0, 1), "", "upper end of the part, in fractions of the size")
       .single_fills_all();
+  rows.plain(Type::text, "edge", &S::edge, "edge of a sewing pattern, as panel.edge, of which the part consists")
+      .by_default("all between low and high");
 }
 
 const Table& pin_key_rules() {

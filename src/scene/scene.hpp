@@ -143,6 +143,7 @@ struct PinTrack {
 /// Particles of a cloth, in fractions of its rest size along weft and warp: those inside [low, high].
 struct ClothPart {
   Vec2 low{0, 0}, high{1, 1};
+  std::string edge;  ///< of a pattern, as "panel.edge": only those on it; empty: all
 
   /// Whether the particle at fractions (u, v) of the rest size is inside; the slack keeps i / (n - 1) inside a bound
   /// that was written with fewer digits.

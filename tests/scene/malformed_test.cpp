@@ -155,6 +155,11 @@ const std::vector<Malformed> kMalformed = {
     {"PinBetweenGradedParticles",
      "[[cloth]]\nname = 'band'\nparticles = 3\ngrading = 4\npin = [{ low = [0.4, 0], high = [0.6, 1] }]\n",
      "s.toml:5:8: cloth.band.pin.0: expected a part that holds at least one particle, got one between two rows\n"},
+    {"PinAtAnEdgeOfASheet", "[[cloth]]\nname = 'band'\npin = [{ edge = 'front.top' }]\n",
+     "s.toml:3:17: cloth.band.pin.0.edge: expected none of a cloth that is sewn from no pattern, got \"front.top\"\n"},
+    {"PinFollowsAPartOfAnObstacle",
+     "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n[[cloth]]\nname = 'band'\npin = [{ follow = 'ball.top' }]\n",
+     "s.toml:6:19: cloth.band.pin.0.follow: expected the name of a character before the part, got \"ball\"\n"},
     {"CameraLooksAtItself", kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [1, 2, 3]\n",
      "s.toml:5:10: camera.c.target: expected a point away from position, got the same\n"},
 
