@@ -21,7 +21,7 @@ constexpr int kPlainIterations = 4;
 // Rows of the matrix that a thread writes at once.
 constexpr std::size_t kRowsAtOnce = 512;
 // Particles that a thread copies or compares at once.
-constexpr std::size_t kParticlesAtOnce = 4096;
+constexpr std::size_t kParticlesAtOnce = 8192;
 
 std::size_t size_of(const solver::Part& part) {
   return static_cast<std::size_t>(part.end - part.begin);

@@ -17,7 +17,7 @@ constexpr double kSingleStiffness = 1e7;
 // of that stiffness, and a factor of five.
 constexpr double kSingleGoal = 1e-3;
 // Rows that a thread looks at at once.
-constexpr std::size_t kRowsAtOnce = 4096;
+constexpr std::size_t kRowsAtOnce = 8192;
 
 // Whether no particle is held more stiffly than that.
 bool suits_single(const LinearSystem& system) {

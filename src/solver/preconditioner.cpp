@@ -12,7 +12,7 @@ namespace weft::solver {
 namespace {
 
 // Rows that a thread takes at once: those whose blocks are inverted; those that are averaged.
-constexpr std::size_t kBlocksAtOnce = 512, kRowsAtOnce = 4096;
+constexpr std::size_t kBlocksAtOnce = 512, kRowsAtOnce = 8192;
 // Levels of groups at most, patches included.
 constexpr std::size_t kMaxLevels = 16;
 // Where constraints leave a group no motion its block has no inverse, and its residual is zero: a shift by this share

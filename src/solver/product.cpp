@@ -11,8 +11,9 @@ namespace {
 
 // Rows per chunk of a sum: whatever threads there are, sums are made of these.
 constexpr std::size_t kChunk = 4096;
-// Rows that a thread does at once.
-constexpr std::size_t kTask = 4096;
+// Rows that a thread multiplies at once, some 80 µs: with half as many two threads took 10 % more CPU time in all over
+// eight cloths of 961 particles.
+constexpr std::size_t kTask = 8192;
 // Rows that a thread reads the matrix of at once.
 constexpr std::size_t kRowsToRead = 512;
 // Rows whose products are summed up while they are in the cache.

@@ -39,6 +39,7 @@ class Fans {
 
  private:
   void add_fan(Index vertex, std::span<const Triangle> triangles);
+  float slack_of(std::size_t fan, std::span<const Vec3> x) const;
   bool turns_once(std::size_t fan, const Vec3& axis, std::span<const Vec3> x) const;
   bool keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const;
   std::span<const Index> ring(std::size_t fan) const {
