@@ -32,6 +32,9 @@ class CandidateCache {
   /// that covers_start() and covers_end() speak of. Who asked may thin them out.
   CandidatePairs& collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
+  /// Where collect() lists them.
+  CandidatePairs& pairs() { return pairs_; }
+
   /// Distance at the start of the collection below which features are that can be within the reach at an x_t0 that is
   /// covered [m].
   double radius() const { return 2 * margin_; }

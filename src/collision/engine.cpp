@@ -57,8 +57,11 @@ void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
     separation_.watch(coherence_->candidates().apart.view(), x_t0);
     return;
   }
+  // The long list of all pairs lives in one place, that of closer ones in another.
+  separation_.exchange(candidates_.pairs().apart);
   CandidatePairs& pairs = candidates_.collect(x_t0, x_t1);
-  separation_.watch(pairs.apart.view(), x_t0);
+  separation_.exchange(pairs.apart);
+  separation_.watch(x_t0);
   pairs.apart.clear();
   separation_.append_closer(candidates_.radius(), pairs.apart);
   finder_.gather(pairs, bodies_.deformable(), x_t0, candidates_.radius(), kFlattest);

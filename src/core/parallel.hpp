@@ -3,6 +3,7 @@
 #pragma once
 
 #include <tbb/parallel_for.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cstddef>
@@ -24,6 +25,17 @@ void parallel_for(std::size_t count, std::size_t chunk, const Body& body) {
     for (std::size_t c = 0; c < chunks; ++c) run(c);
   } else {
     tbb::parallel_for(std::size_t{0}, chunks, run);
+  }
+}
+
+/// Does both, at the same time where there are threads; they must not depend on each other.
+template <class One, class Other>
+void parallel_invoke(const One& one, const Other& other) {
+  if (thread_count() == 1) {
+    one();
+    other();
+  } else {
+    tbb::parallel_invoke(one, other);
   }
 }
 

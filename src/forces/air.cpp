@@ -31,9 +31,16 @@ std::vector<Air::Faces<Corners>> Air::pack(const std::vector<std::array<Index, C
   return packs;
 }
 
+void Air::cut(std::span<const Index> bounds) {
+  cut_packs(
+      bounds, cells_, [](const Faces<4>& cells) { return std::span(cells.corners); }, ranges_of_cells_);
+  cut_packs(
+      bounds, triangles_, [](const Faces<3>& triangles) { return std::span(triangles.corners); }, ranges_of_triangles_);
+}
+
 void Air::add(const Evaluation& at) const {
-  for (const Faces<4>& cells : cells_) push(cells, at);
-  for (const Faces<3>& triangles : triangles_) push(triangles, at);
+  ranges_of_cells_.for_each(at.range, cells_.size(), [&](std::size_t p) { push(cells_[p], at); });
+  ranges_of_triangles_.for_each(at.range, triangles_.size(), [&](std::size_t p) { push(triangles_[p], at); });
 }
 
 // Drag on faces.
@@ -53,10 +60,10 @@ void Air::push(const Faces<Corners>& faces, const Evaluation& at) const {
   const Lanes of_speed = coefficient_ / Corners * faces.counts * size * abs(speed);  // of one corner [kg/s]
   const VecLanes drag = of_speed * speed * n;
   for (const Four& corner : faces.corners) subtract(at.force, corner, drag);
-  if (at.assembly == nullptr) return;
+  if (!at.assembly) return;
   const auto damping = packed(outer(2 * at.rate * of_speed * n, n));
   for (const Four& corner : faces.corners)
-    for (std::size_t l = 0; l < 4; ++l) at.assembly->add_to_own(corner[l], damping[l]);
+    for (std::size_t l = 0; l < 4; ++l) at.assembly.add_to_own(corner[l], damping[l]);
 }
 
 }  // namespace weft::forces

@@ -6,6 +6,7 @@
 
 #include "forces/force.hpp"
 #include "forces/lanes.hpp"
+#include "forces/ranges.hpp"
 
 namespace weft::forces {
 
@@ -29,6 +30,7 @@ class Air final : public Force {
 
   void couple(std::vector<std::pair<Index, Index>>& /*pairs*/) const override {}
   void attach(const solver::Assembly& /*assembly*/) override {}
+  void cut(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   double energy(std::span<const Vec3> /*x*/) const override { return 0; }
 
@@ -48,6 +50,7 @@ class Air final : public Force {
   double coefficient_;           // ½ ρ c [kg/m³]
   std::vector<Faces<4>> cells_;  // corners in the order (0,0), (1,0), (1,1), (0,1)
   std::vector<Faces<3>> triangles_;
+  Ranges ranges_of_cells_, ranges_of_triangles_;
 };
 
 }  // namespace weft::forces

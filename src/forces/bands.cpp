@@ -63,14 +63,14 @@ void Bands::add(const Evaluation& at) const {
     const double length = along.norm();
     if (length == 0) continue;  // points nowhere
     const auto pull = solver::quad_of<double>(piece.stiffness * (1 / piece.rest - 1 / length) * along);
-    at.force[a] += pull;
-    at.force[b] -= pull;
-    if (at.assembly != nullptr)
-      at.assembly->add(piece.block, Mat3(-stiffness(piece, along, std::max(1 - piece.rest / length, 0.0))));
+    at.force.add(piece.particles[0], pull);
+    at.force.subtract(piece.particles[1], pull);
+    if (at.assembly)
+      at.assembly.add(piece.block, Mat3(-stiffness(piece, along, std::max(1 - piece.rest / length, 0.0))));
   }
   for (const auto& [p, weights, stiffness, scalars] : bends_) {
     const solver::Quad<double> moment = stiffness * curvature(p, weights, at.x);
-    for (std::size_t k = 0; k < 3; ++k) at.force[at_index(p[k])] -= weights[static_cast<Eigen::Index>(k)] * moment;
+    for (std::size_t k = 0; k < 3; ++k) at.force.subtract(p[k], weights[static_cast<Eigen::Index>(k)] * moment);
   }
 }
 

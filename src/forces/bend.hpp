@@ -5,6 +5,7 @@
 
 #include "forces/bend_damping.hpp"
 #include "forces/force.hpp"
+#include "forces/ranges.hpp"
 
 namespace weft::forces {
 
@@ -28,6 +29,7 @@ class Bend final : public Force {
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   bool isotropic() const override { return true; }
   void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -51,6 +53,7 @@ class Bend final : public Force {
   struct List {
     std::vector<Differences<Count>> packs;
     std::size_t size = 0;
+    Ranges ranges;
 
     void add(const std::array<Index, Count>& particles, const std::array<double, Count>& weights, double area);
   };

@@ -129,9 +129,15 @@ void CrossedMembrane::push_forward(const State& state, Five& flat, double& heigh
   flat[4] -= height * n + state.height * turn;
 }
 
+void CrossedMembrane::cut(std::span<const Index> bounds) {
+  ranges_.cut(bounds, cells_.size(), [&](std::size_t c, const auto& visit) {
+    for (Index particle : cells_[c].particles) visit(particle);
+  });
+}
+
 void CrossedMembrane::add(const Evaluation& at) const {
   const bool viscous = stretch_.viscosity > 0 || shear_.viscosity > 0;
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
+  ranges_.for_each(at.range, cells_.size(), [&](std::size_t c) {
     const Cell& cell = cells_[c];
     const State state = state_of(vectors_of(cell, at.x));
     const double w = state.height, bulge_u = w * w * cell.bulge_u, bulge_v = w * w * cell.bulge_v;
@@ -159,14 +165,14 @@ void CrossedMembrane::add(const Evaluation& at) const {
       along_height -= element.area * w * (weft * cell.bulge_u + warp * cell.bulge_v);
     }
     pull_back(state, force, along_height);
-    for (std::size_t i = 0; i < 5; ++i) at.force[cell.particles[i]] += solver::quad_of<double>(force[i]);
-    if (at.assembly == nullptr) continue;
+    for (std::size_t i = 0; i < 5; ++i) at.force.add(cell.particles[i], solver::quad_of<double>(force[i]));
+    if (!at.assembly) return;
     const Blocks blocks = blocks_of(
         c, state, at.rate, at.linearisation == Linearisation::definite ? clamped_lateral : absolute_lateral, true);
     for (std::size_t a = 0; a < 5; ++a)
       for (std::size_t b = 0; b < 5; ++b)
-        if (cell.particles[a] < cell.particles[b]) at.assembly->add(cell_blocks_[c][5 * a + b], blocks[5 * a + b]);
-  }
+        if (cell.particles[a] < cell.particles[b]) at.assembly.add(cell_blocks_[c][5 * a + b], blocks[5 * a + b]);
+  });
 }
 
 void CrossedMembrane::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double rate,

@@ -23,6 +23,7 @@ class CrossedMembrane final : public TriangleMembrane {
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> bounds) override;
   /// Matrices are those of Gauss and Newton and of the stresses, without what they turn n by, the Jacobian too.
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
@@ -58,6 +59,7 @@ class CrossedMembrane final : public TriangleMembrane {
 
   std::vector<Cell> cells_;
   std::vector<std::array<Index, 25>> cell_blocks_;  // of pairs in the order of their numbers
+  Ranges ranges_;                                   // of cells
 };
 
 }  // namespace weft::forces

@@ -1,6 +1,7 @@
 // What every force of the cloth shares.
 #pragma once
 
+#include <limits>
 #include <span>
 #include <utility>
 #include <vector>
@@ -19,16 +20,39 @@ enum class Linearisation {
   abs_projected,  ///< by absolute values where edges are compressed: shorter steps, where clamped they overshoot
 };
 
+/// The forces on particles [begin, end); what is added to others is left out.
+class ForceRows {
+ public:
+  ForceRows(std::span<solver::Quad<double>> all) : ForceRows(all, 0, static_cast<Index>(all.size())) {}
+  ForceRows(std::vector<solver::Quad<double>>& all) : ForceRows(std::span(all)) {}
+  /// `all`: of all particles.
+  ForceRows(std::span<solver::Quad<double>> all, Index begin, Index end) : all_(all), begin_(begin), end_(end) {}
+
+  void add(Index particle, const solver::Quad<double>& force) const {
+    if (particle >= begin_ && particle < end_) all_[static_cast<std::size_t>(particle)] += force;
+  }
+  void subtract(Index particle, const solver::Quad<double>& force) const {
+    if (particle >= begin_ && particle < end_) all_[static_cast<std::size_t>(particle)] -= force;
+  }
+
+ private:
+  std::span<solver::Quad<double>> all_;
+  Index begin_, end_;
+};
+
 /// One evaluation of the forces at (x, v). Quads are three numbers and zero.
 struct Evaluation {
   std::span<const solver::Quad<double>> x;  ///< positions [m]
   std::span<const solver::Quad<double>> v;  ///< velocities [m/s]
-  std::span<solver::Quad<double>> force;    ///< receives += f [N]
+  ForceRows force;                          ///< receives += f [N]
   /// Receives −(∂f/∂x + rate ∂f/∂v) [N/m], made symmetric and positive semidefinite term by term: what conjugate
-  /// gradients and descent need. nullptr: forces only.
-  solver::Assembly* assembly = nullptr;
+  /// gradients and descent need. Of none: forces only.
+  solver::AssemblyRows assembly = {};
   double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂) [1/s]; 0: none
   Linearisation linearisation = Linearisation::definite;
+  /// Which of the ranges that the force was cut into this is for; kAll: all in one go.
+  static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
+  std::size_t range = kAll;
 };
 
 /// A force on the particles of one cloth. `first` is the cloth's first particle in the global numbering.
@@ -42,6 +66,9 @@ class Force {
   virtual bool isotropic() const { return false; }
   /// Looks up where the blocks are; once, after the pattern is known.
   virtual void attach(const solver::Assembly& assembly) = 0;
+
+  /// Cuts the particles into ranges between these bounds, which may be added to at the same time. After attach().
+  virtual void cut(std::span<const Index> bounds) = 0;
 
   virtual void add(const Evaluation& at) const = 0;
   /// Elastic energy [J].

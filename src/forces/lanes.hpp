@@ -7,6 +7,8 @@
 #include <span>
 
 #include "core/types.hpp"
+#include "forces/force.hpp"
+#include "forces/ranges.hpp"
 #include "solver/assembly.hpp"
 #include "solver/quads.hpp"
 
@@ -75,13 +77,13 @@ inline std::array<Lanes, 4> transposed(const Lanes& a, const Lanes& b, const Lan
 }
 
 /// Adds a vector of each element to the entry of a particle, one element after the other.
-inline void add(std::span<solver::Quad<double>> to, const Four& i, const VecLanes& value) {
+inline void add(const ForceRows& to, const Four& i, const VecLanes& value) {
   const auto of = transposed(value.x, value.y, value.z, Lanes{0, 0, 0, 0});
-  for (std::size_t l = 0; l < 4; ++l) to[i[l]] += of[l];
+  for (std::size_t l = 0; l < 4; ++l) to.add(i[l], of[l]);
 }
-inline void subtract(std::span<solver::Quad<double>> from, const Four& i, const VecLanes& value) {
+inline void subtract(const ForceRows& from, const Four& i, const VecLanes& value) {
   const auto of = transposed(value.x, value.y, value.z, Lanes{0, 0, 0, 0});
-  for (std::size_t l = 0; l < 4; ++l) from[i[l]] -= of[l];
+  for (std::size_t l = 0; l < 4; ++l) from.subtract(i[l], of[l]);
 }
 
 /// A 3×3 block of each element, its entries column by column.
@@ -109,11 +111,11 @@ inline std::array<solver::PackedBlock, 4> packed(const BlockLanes& m) {
   for (std::size_t l = 0; l < 4; ++l) blocks[l] = {low[l], high[l], Lanes{m[8][l], 0, 0, 0}};
   return blocks;
 }
-inline void add(solver::Assembly& assembly, const Four& block, const BlockLanes& value) {
+inline void add(const solver::AssemblyRows& assembly, const Four& block, const BlockLanes& value) {
   const auto blocks = packed(value);
   for (std::size_t l = 0; l < 4; ++l) assembly.add(block[l], blocks[l]);
 }
-inline void add_scalars(solver::Assembly& assembly, const Four& scalar, const Lanes& value) {
+inline void add_scalars(const solver::AssemblyRows& assembly, const Four& scalar, const Lanes& value) {
   for (std::size_t l = 0; l < 4; ++l) assembly.add_scalar(scalar[l], value[l]);
 }
 
@@ -126,6 +128,15 @@ void for_each_lane(std::size_t count, std::size_t pack, const Body& body) {
 /// Packs of four that `count` elements make.
 inline std::size_t packs_of(std::size_t count) {
   return (count + 3) / 4;
+}
+
+/// As Ranges::cut(), for packs whose particles are all_of(pack), several times four.
+template <class Pack, class AllOf>
+void cut_packs(std::span<const Index> bounds, const std::vector<Pack>& packs, const AllOf& all_of, Ranges& ranges) {
+  ranges.cut(bounds, packs.size(), [&](std::size_t p, const auto& visit) {
+    for (const Four& four : all_of(packs[p]))
+      for (Index particle : four) visit(particle);
+  });
 }
 
 }  // namespace weft::forces

@@ -67,8 +67,14 @@ Shear::StrainLanes Shear::strain(const Cells& cells, std::span<const solver::Qua
   return {cells.half_u * (main + cross), cells.half_v * (main - cross)};
 }
 
+void Shear::cut(std::span<const Index> bounds) {
+  cut_packs(
+      bounds, packs_, [](const Cells& cells) { return std::span(cells.corners); }, ranges_);
+}
+
 void Shear::add(const Evaluation& at) const {
-  for (const Cells& cells : packs_) {
+  ranges_.for_each(at.range, packs_.size(), [&](std::size_t p) {
+    const Cells& cells = packs_[p];
     const StrainLanes s = strain(cells, at.x);
     const Lanes c = dot(s.su, s.sv);
     Lanes stress = cells.elasticity * c;
@@ -83,8 +89,8 @@ void Shear::add(const Evaluation& at) const {
     subtract(at.force, cells.corners[3], main);
     subtract(at.force, cells.corners[1], cross);
     forces::add(at.force, cells.corners[2], cross);
-    if (at.assembly != nullptr) add_stiffness(cells, s, c, at);
-  }
+    if (at.assembly) add_stiffness(cells, s, c, at);
+  });
 }
 
 // Of the second derivative, ½ (‖δs_u + δs_v‖² − ‖δs_u − δs_v‖²), the definite form keeps the half whose sign agrees
@@ -102,12 +108,12 @@ void Shear::add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes&
   const auto mc = packed(outer(of_main, cross, both)), cm = packed(outer(of_cross, main, both));
   const auto cc = packed(outer(of_cross, cross, curvature * cross_half * cross_half));
   for (std::size_t l = 0; l < 4; ++l) {
-    at.assembly->add(cells.blocks[0][l], -mc[l]);
-    at.assembly->add(cells.blocks[1][l], mc[l]);
-    at.assembly->add(cells.blocks[2][l], -mm[l]);
-    at.assembly->add(cells.blocks[3][l], -cc[l]);
-    at.assembly->add(cells.blocks[4][l], cm[l]);
-    at.assembly->add(cells.blocks[5][l], -cm[l]);
+    at.assembly.add(cells.blocks[0][l], -mc[l]);
+    at.assembly.add(cells.blocks[1][l], mc[l]);
+    at.assembly.add(cells.blocks[2][l], -mm[l]);
+    at.assembly.add(cells.blocks[3][l], -cc[l]);
+    at.assembly.add(cells.blocks[4][l], cm[l]);
+    at.assembly.add(cells.blocks[5][l], -cm[l]);
   }
 }
 

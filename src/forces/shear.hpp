@@ -26,6 +26,7 @@ class Shear final : public Force {
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -61,6 +62,7 @@ class Shear final : public Force {
   bool viscous_;
   std::vector<Cell> cells_;
   std::vector<Cells> packs_;  // the same
+  Ranges ranges_;             // of packs
 };
 
 }  // namespace weft::forces

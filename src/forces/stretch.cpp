@@ -42,8 +42,18 @@ void Stretch::attach(const solver::Assembly& assembly) {
     });
 }
 
+void Stretch::cut(std::span<const Index> bounds) {
+  cut_packs(
+      bounds, packs_,
+      [](const Edges& edges) {
+        return std::array{edges.i, edges.j};
+      },
+      ranges_);
+}
+
 void Stretch::add(const Evaluation& at) const {
-  for (const Edges& edges : packs_) {
+  ranges_.for_each(at.range, packs_.size(), [&](std::size_t p) {
+    const Edges& edges = packs_[p];
     const VecLanes d = gather(at.x, edges.j) - gather(at.x, edges.i);
     // A collapsed edge has no direction: it then pulls nowhere, and a tiny length keeps the matrix finite.
     const Lanes length = max(sqrt(dot(d, d)), 1e-12 * edges.rest_length);
@@ -53,7 +63,7 @@ void Stretch::add(const Evaluation& at) const {
     const VecLanes pull = tension * n;
     forces::add(at.force, edges.i, pull);
     subtract(at.force, edges.j, pull);
-    if (at.assembly == nullptr) continue;
+    if (!at.assembly) return;
 
     // Across the edge the tension stiffens a stretched edge and, as compression, softens a short one. The absolute-
     // value projection takes its modulus (Chen, Liu, Levin, Zheng & Jacobson, "Stabler Neo-Hookean Simulation: Absolute
@@ -63,8 +73,8 @@ void Stretch::add(const Evaluation& at) const {
         edges.elasticity *
         (at.linearisation == Linearisation::definite ? max(ratio, lanes_of(0.0)) : min(abs(ratio), lanes_of(1.0)));
     const Lanes along = edges.elasticity + at.rate * edges.viscosity;
-    forces::add(*at.assembly, edges.block, outer((lateral - along) * n, n, -lateral));
-  }
+    forces::add(at.assembly, edges.block, outer((lateral - along) * n, n, -lateral));
+  });
 }
 
 // With d/dd of (n·w) n, w the relative velocity: the direction turns with the edge. That is unsymmetric, and

@@ -5,6 +5,7 @@
 
 #include "forces/force.hpp"
 #include "forces/lanes.hpp"
+#include "forces/ranges.hpp"
 
 namespace weft::forces {
 
@@ -24,6 +25,7 @@ class Stretch final : public Membrane {
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -51,6 +53,7 @@ class Stretch final : public Membrane {
   bool viscous_;
   std::vector<Edge> edges_;
   std::vector<Edges> packs_;  // the same
+  Ranges ranges_;             // of packs
 };
 
 }  // namespace weft::forces

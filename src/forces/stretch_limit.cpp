@@ -86,38 +86,51 @@ Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::s
 
 // Calls body(piece, blocks, pulls, block_of) for each that locks.
 template <class Points, class Body>
-void StretchLimit::for_each_lock(Points x, bool exact, const Body& body) const {
+void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const Body& body) const {
   // Of nearly all pieces the squared length tells that they are below the onset.
   const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
-  for (std::size_t t = 0; t < threads_.size(); ++t) {
+  ranges_of_threads_.for_each(range, threads_.size(), [&](std::size_t t) {
     const Vec3 s = derivative(threads_[t], threads_[t].along, x);
-    if (s.squaredNorm() <= onset_sq) continue;
+    if (s.squaredNorm() <= onset_sq) return;
     lock(threads_[t], s,
          [&](const Pulls& pulls, const auto& block_of) { body(threads_[t], thread_blocks_[t], pulls, block_of); });
-  }
+  });
   const double shear_onset = Lock(shear_).onset();
-  for (std::size_t c = 0; c < crossings_.size(); ++c) {
+  ranges_of_crossings_.for_each(range, crossings_.size(), [&](std::size_t c) {
     const Crossing& crossing = crossings_[c];
     const Vec3 s_u = derivative(crossing, crossing.weft, x), s_v = derivative(crossing, crossing.warp, x);
-    if (!(std::abs(s_u.dot(s_v)) > shear_onset)) continue;
+    if (!(std::abs(s_u.dot(s_v)) > shear_onset)) return;
     lock(crossing, s_u, s_v, exact,
          [&](const Pulls& pulls, const auto& block_of) { body(crossing, crossing_blocks_[c], pulls, block_of); });
-  }
+  });
+}
+
+void StretchLimit::cut(std::span<const Index> bounds) {
+  const auto cut_pieces = [&](const auto& pieces, Ranges& ranges) {
+    ranges.cut(bounds, pieces.size(), [&](std::size_t p, const auto& visit) {
+      for (std::size_t k = 0; k < pieces[p].corners; ++k) visit(pieces[p].particles[k]);
+    });
+  };
+  cut_pieces(threads_, ranges_of_threads_);
+  cut_pieces(crossings_, ranges_of_crossings_);
 }
 
 void StretchLimit::add(const Evaluation& at) const {
-  for_each_lock(at.x, false, [&](const auto& piece, const Blocks& blocks, const Pulls& pulls, const auto& block_of) {
-    for (std::size_t k = 0; k < piece.corners; ++k) at.force[piece.particles[k]] -= solver::quad_of<double>(pulls[k]);
-    if (at.assembly == nullptr) return;
-    for (std::size_t a = 0; a < piece.corners; ++a)
-      for (std::size_t b = 0; b < piece.corners; ++b)
-        if (piece.particles[a] < piece.particles[b]) at.assembly->add(blocks[kMost * a + b], block_of(a, b));
-  });
+  for_each_lock(at.x, at.range, false,
+                [&](const auto& piece, const Blocks& blocks, const Pulls& pulls, const auto& block_of) {
+                  for (std::size_t k = 0; k < piece.corners; ++k)
+                    at.force.subtract(piece.particles[k], solver::quad_of<double>(pulls[k]));
+                  if (!at.assembly) return;
+                  for (std::size_t a = 0; a < piece.corners; ++a)
+                    for (std::size_t b = 0; b < piece.corners; ++b)
+                      if (piece.particles[a] < piece.particles[b])
+                        at.assembly.add(blocks[kMost * a + b], block_of(a, b));
+                });
 }
 
 void StretchLimit::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double /*rate*/,
                                 solver::BlockMatrix& jacobian) const {
-  for_each_lock(x, true, [&](const auto& piece, const Blocks&, const Pulls&, const auto& block_of) {
+  for_each_lock(x, Evaluation::kAll, true, [&](const auto& piece, const Blocks&, const Pulls&, const auto& block_of) {
     for (std::size_t a = 0; a < piece.corners; ++a)
       for (std::size_t b = 0; b < piece.corners; ++b)
         jacobian.add(jacobian.slot(piece.particles[a], piece.particles[b]), block_of(a, b));

@@ -60,6 +60,7 @@ class StretchLimit final : public Force {
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -104,7 +105,7 @@ class StretchLimit final : public Force {
   template <class Piece>
   static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const solver::Quad<double>> x);
   template <class Points, class Body>
-  void for_each_lock(Points x, bool exact, const Body& body) const;
+  void for_each_lock(Points x, std::size_t range, bool exact, const Body& body) const;
   template <class Body>
   void lock(const Thread& piece, const Vec3& s, const Body& body) const;
   template <class Body>
@@ -114,6 +115,7 @@ class StretchLimit final : public Force {
   std::vector<Thread> threads_;
   std::vector<Crossing> crossings_;  // none without a limit to shear
   std::vector<Blocks> thread_blocks_, crossing_blocks_;
+  Ranges ranges_of_threads_, ranges_of_crossings_;
 };
 
 }  // namespace weft::forces

@@ -152,10 +152,17 @@ void TriangleBend::attach(const solver::Assembly& assembly) {
       }
 }
 
+void TriangleBend::cut(std::span<const Index> bounds) {
+  ranges_.cut(bounds, packs_of(elements_.size()), [&](std::size_t pack, const auto& visit) {
+    for (std::size_t e = 4 * pack; e < std::min(4 * pack + 4, elements_.size()); ++e)
+      for (Index particle : particles(elements_[e])) visit(particle);
+  });
+}
+
 void TriangleBend::add(const Evaluation& at) const {
   std::vector<double> scratch;
-  for (std::size_t first = 0; first < elements_.size(); first += 4) {
-    const std::size_t count = std::min<std::size_t>(4, elements_.size() - first);
+  ranges_.for_each(at.range, packs_of(elements_.size()), [&](std::size_t pack) {
+    const std::size_t first = 4 * pack, count = std::min<std::size_t>(4, elements_.size() - first);
     const std::span<const Element> elements(elements_.data() + first, count);
     const CurvatureLanes curved = curvatures(first, count, at.x);
     CurvatureLanes velocity;
@@ -182,18 +189,18 @@ void TriangleBend::add(const Evaluation& at) const {
       const Quad of_uu = moments[0][l], of_vv = moments[1][l], of_uv = moments[2][l];
       for (std::size_t k = elements[l].begin; k < elements[l].end; ++k) {
         const Quad& w = weights_[k];
-        at.force[particles_[k]] -= w[0] * of_uu + w[1] * of_vv + w[2] * of_uv;
+        at.force.subtract(particles_[k], w[0] * of_uu + w[1] * of_vv + w[2] * of_uv);
       }
       if (!elements[l].rest.isZero(0)) add_rest_moment(elements[l], curvature(elements[l], at.x), at);
-      if (at.assembly != nullptr && damping_.any())
-        add_pairs(elements[l], {stiffness[0][l], stiffness[1][l], stiffness[2][l]}, scratch, *at.assembly);
+      if (at.assembly && damping_.any())
+        add_pairs(elements[l], {stiffness[0][l], stiffness[1][l], stiffness[2][l]}, scratch, at.assembly);
     }
-  }
+  });
 }
 
 // Adds Σ_c stiffness_c w_ac w_bc for all pairs, four at a time.
 void TriangleBend::add_pairs(const Element& element, const Vec3& stiffness, std::vector<double>& scratch,
-                             solver::Assembly& assembly) const {
+                             const solver::AssemblyRows& assembly) const {
   const std::size_t count = element.end - element.begin, stride = 4 * packs_of(count);
   if (scratch.size() < 4 * stride) scratch.resize(4 * stride);
   double* const uu = scratch.data();
@@ -257,12 +264,14 @@ void TriangleBend::add_rest_moment(const Element& element, const Curvature& curv
   Mat3 columns;
   for (int c = 0; c < 3; ++c) columns.col(c) = solver::vec3_of(curved[c]);
   const std::span<const Index> particle = particles(element);
-  const auto push = [&](std::size_t k, const Vec3& force) { at.force[particle[k]] += solver::quad_of<double>(force); };
+  const auto push = [&](std::size_t k, const Vec3& force) {
+    at.force.add(particle[k], solver::quad_of<double>(force));
+  };
   const auto add_block = [&](std::size_t a, std::size_t b, const Mat3& block) {
-    if (at.assembly == nullptr || particle[a] >= particle[b]) return;
+    if (!at.assembly || particle[a] >= particle[b]) return;
     // Number of the pair: those before row a, and those before it in the row.
     const std::size_t count = particle.size(), i = std::min(a, b), j = std::max(a, b);
-    at.assembly->add(blocks_[element.pairs + i * (2 * count - i - 1) / 2 + (j - i - 1)], block);
+    at.assembly.add(blocks_[element.pairs + i * (2 * count - i - 1) / 2 + (j - i - 1)], block);
   };
   rest_moment(element, columns, corners_of(particle, at.x), false, push, add_block);
 }

@@ -23,6 +23,7 @@ class TriangleBend final : public Force {
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   bool isotropic() const override;
   void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -49,7 +50,7 @@ class TriangleBend final : public Force {
   CurvatureLanes curvatures(std::size_t first, std::size_t count, std::span<const Quad> x) const;
   void use_held();
   void add_pairs(const Element& element, const Vec3& stiffness, std::vector<double>& scratch,
-                 solver::Assembly& assembly) const;
+                 const solver::AssemblyRows& assembly) const;
   template <class Push, class AddBlock>
   void rest_moment(const Element& element, const Mat3& curved, const std::array<Vec3, 3>& corners, bool exact,
                    const Push& push, const AddBlock& add_block) const;
@@ -66,6 +67,7 @@ class TriangleBend final : public Force {
   std::vector<Quad> weights_;   // of s_uu, s_vv and s_uv [1/m²]
   std::vector<Index> scalars_;  // of pairs
   std::vector<Index> blocks_;   // likewise, where an element is curved at rest; else empty
+  Ranges ranges_;               // of four elements
 };
 
 }  // namespace weft::forces

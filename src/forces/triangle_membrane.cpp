@@ -113,9 +113,15 @@ TriangleMembrane::GradientLanes TriangleMembrane::gradient(const Triangles& t,
   return {t.along[1] * p + t.along[2] * q, t.across[1] * p + t.across[2] * q};
 }
 
+void TriangleMembrane::cut(std::span<const Index> bounds) {
+  cut_packs(
+      bounds, packs_, [](const Triangles& t) { return std::span(t.corners); }, ranges_);
+}
+
 void TriangleMembrane::add(const Evaluation& at) const {
   const bool viscous = stretch_.viscosity > 0 || shear_.viscosity > 0;
-  for (const Triangles& t : packs_) {
+  ranges_.for_each(at.range, packs_.size(), [&](std::size_t p) {
+    const Triangles& t = packs_[p];
     const GradientLanes s = gradient(t, at.x);
     const Lanes length_u = length_of(s.u), length_v = length_of(s.v), shear = dot(s.u, s.v);
     // Tensions k (‖s‖ − 1) with viscosity, over ‖s‖, and the shear stress ½ μ ⟨s_u, s_v⟩ with viscosity [N/m].
@@ -130,8 +136,8 @@ void TriangleMembrane::add(const Evaluation& at) const {
     const VecLanes along = t.area * (tension_u / length_u * s.u + stress * s.v),
                    across = t.area * (tension_v / length_v * s.v + stress * s.u);
     for (std::size_t k = 0; k < 3; ++k) subtract(at.force, t.corners[k], t.along[k] * along + t.across[k] * across);
-    if (at.assembly != nullptr) add_stiffness(t, s, length_u, length_v, shear, at);
-  }
+    if (at.assembly) add_stiffness(t, s, length_u, length_v, shear, at);
+  });
 }
 
 // Blocks Σ gradients[a] gradients[b] ∂²/∂s∂s. Along and across a thread as in Stretch, whose edge of unit length this
@@ -159,7 +165,7 @@ void TriangleMembrane::add_stiffness(const Triangles& t, const GradientLanes& s,
       const VecLanes of_u = (xx * axial_u + yy * outer_shear) * s.u + xy * outer_shear * s.v;
       const VecLanes of_v = (yy * axial_v + xx * outer_shear) * s.v + yx * outer_shear * s.u;
       const Lanes level = xx * level_u + yy * level_v + 0.5 * (xy + yx) * elastic;
-      forces::add(*at.assembly, t.blocks[pair], outer(of_u, s.u, level) + outer(of_v, s.v));
+      forces::add(at.assembly, t.blocks[pair], outer(of_u, s.u, level) + outer(of_v, s.v));
     }
 }
 

@@ -31,6 +31,7 @@ class TriangleMembrane : public Membrane {
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
+  void cut(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
@@ -81,6 +82,7 @@ class TriangleMembrane : public Membrane {
   };
   std::vector<Start> starts_;
   std::vector<Triangles> packs_;  // the elements
+  Ranges ranges_;                 // of packs
 };
 
 }  // namespace weft::forces

@@ -43,6 +43,15 @@ class ClothSystem {
   /// Takes the weight off what is being sewn: it would fall before it fits.
   void take_weight_off(std::span<Vec3> force) const;
 
+  /// The particles of a cloth, or some of them, whose forces may be evaluated beside those of others.
+  struct Range {
+    std::size_t cloth;
+    Index begin, end;
+    std::size_t number;  ///< as forces::Evaluation has it
+  };
+  /// Some for each thread, or a whole cloth; forces are the same to the bit, however they are cut.
+  std::span<const Range> ranges() const { return ranges_; }
+
   /// The forces on one cloth but its weight; positions, velocities and forces are those of all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
@@ -87,10 +96,12 @@ class ClothSystem {
   void add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit);
   solver::BlockMatrix lay_out_matrix() const;
   void cut_groups(const environment::Environment& environment);
+  void cut_ranges();
 
   std::vector<Index> first_;  // per cloth, and the total at the end
   std::vector<double> masses_;
   std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;          // per cloth
+  std::vector<Range> ranges_;                                                // in the order of particles
   std::vector<const forces::Membrane*> membranes_;                           // of them, one per cloth
   std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // likewise, of cloths that have one
   /// A cloth while it is sewn.

@@ -20,6 +20,12 @@ constexpr int kPlainIterations = 4;
 
 // Rows of the matrix that a thread writes at once.
 constexpr std::size_t kRowsAtOnce = 512;
+// Particles that a thread copies or compares at once.
+constexpr std::size_t kParticlesAtOnce = 8192;
+
+std::size_t size_of(const solver::Part& part) {
+  return static_cast<std::size_t>(part.end - part.begin);
+}
 
 }  // namespace
 
@@ -28,6 +34,7 @@ StepProblem::StepProblem(ClothSystem& cloth) : cloth_(cloth) {
   memory_.assembly = solver::Assembly(memory_.system.matrix);
   memory_.v.resize(masses().size());
   memory_.force.resize(masses().size());
+  chosen_.resize(cloth.cloths());
   forget();
 }
 
@@ -64,8 +71,8 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   use_rate(at.rate);
   const bool all = memory_.linearised_at.empty();
   if (all) memory_.linearised_at.assign(at.x.begin(), at.x.end());
-  for (std::size_t c = 0; c < cloth_.cloths(); ++c)
-    if (all || is_stale(c, at.x)) put_together(c, at, iteration);
+  for (std::size_t c = 0; c < cloth_.cloths(); ++c) chosen_[c] = all || is_stale(c, at.x);
+  put_together(at, iteration);
   add_cloth_forces(at, force);
   add_pulls(at, force);
   system.terms.clear();
@@ -85,13 +92,11 @@ void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> fo
 }
 
 void StepProblem::add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
-  for (std::size_t c = 0; c < cloth_.cloths(); ++c) {
-    if (!move_to(c, at)) continue;
-    forces::Evaluation evaluation{memory_.x, memory_.v, memory_.force};
-    evaluation.rate = at.rate;
-    evaluate(c, evaluation);
-  }
-  for (std::size_t i = 0; i < memory_.force.size(); ++i) force[i] += solver::vec3_of(memory_.force[i]);
+  for (std::size_t c = 0; c < cloth_.cloths(); ++c) chosen_[c] = move_to(c, at);
+  evaluate(at, false);
+  parallel_for(force.size(), kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) force[i] += solver::vec3_of(memory_.force[i]);
+  });
 }
 
 void StepProblem::use_rate(double rate) {
@@ -104,22 +109,37 @@ void StepProblem::use_rate(double rate) {
 // Whether the forces within a cloth are not those that were evaluated last.
 bool StepProblem::move_to(std::size_t cloth, const integrator::StagePoint& at) {
   const solver::Part& part = memory_.system.parts[cloth];
-  bool moved = false;
-  for (auto i = part.begin; i < part.end; ++i) {
-    const auto x = solver::quad_of<double>(at.x[i]), v = solver::quad_of<double>(at.v[i]);
-    auto &own_x = memory_.x[i], &own_v = memory_.v[i];
-    for (int k = 0; k < 3; ++k) moved |= x[k] != own_x[k] || v[k] != own_v[k];
-    own_x = x;
-    own_v = v;
-  }
-  return moved;
+  return parallel_sum(size_of(part), kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
+           bool moved = false;
+           for (std::size_t k = begin; k < end; ++k) {
+             const auto i = static_cast<std::size_t>(part.begin) + k;
+             const auto x = solver::quad_of<double>(at.x[i]), v = solver::quad_of<double>(at.v[i]);
+             auto &own_x = memory_.x[i], &own_v = memory_.v[i];
+             for (int axis = 0; axis < 3; ++axis) moved |= x[axis] != own_x[axis] || v[axis] != own_v[axis];
+             own_x = x;
+             own_v = v;
+           }
+           return static_cast<int>(moved);
+         }) > 0;
 }
 
-// Evaluates the forces within a cloth where it is now.
-void StepProblem::evaluate(std::size_t cloth, forces::Evaluation& evaluation) {
-  const solver::Part& part = memory_.system.parts[cloth];
-  std::fill(memory_.force.begin() + part.begin, memory_.force.begin() + part.end, solver::Quad<double>{});
-  cloth_.add_forces(cloth, evaluation);
+// Evaluates the forces within the chosen cloths where they are now; with what the matrix is written from, or without.
+void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int iteration) {
+  const auto ranges = cloth_.ranges();
+  parallel_for(ranges.size(), 1, [&](std::size_t r, std::size_t) {
+    const auto& [cloth, begin, end, number] = ranges[r];
+    if (!chosen_[cloth]) return;
+    forces::Evaluation evaluation{memory_.x, memory_.v, forces::ForceRows(memory_.force, begin, end)};
+    evaluation.rate = at.rate;
+    evaluation.range = number;
+    if (assemble) {
+      evaluation.assembly = solver::AssemblyRows(memory_.assembly, begin, end);
+      if (iteration >= kPlainIterations) evaluation.linearisation = forces::Linearisation::abs_projected;
+      memory_.assembly.start(begin, end);
+    }
+    std::fill(memory_.force.begin() + begin, memory_.force.begin() + end, solver::Quad<double>{});
+    cloth_.add_forces(cloth, evaluation);
+  });
 }
 
 // Whether a cloth has moved too far from where its rows of the matrix were put together.
@@ -131,20 +151,24 @@ bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
   return false;
 }
 
-// Puts the rows of a cloth together anew.
-void StepProblem::put_together(std::size_t cloth, const integrator::StagePoint& at, int iteration) {
-  solver::Part& part = memory_.system.parts[cloth];
-  std::copy_n(at.x.begin() + part.begin, part.end - part.begin, memory_.linearised_at.begin() + part.begin);
-  move_to(cloth, at);
-  forces::Evaluation evaluation{memory_.x, memory_.v, memory_.force, &memory_.assembly, at.rate};
-  if (iteration >= kPlainIterations) evaluation.linearisation = forces::Linearisation::abs_projected;
-  memory_.assembly.start(part.begin, part.end);
-  evaluate(cloth, evaluation);
-  parallel_for(static_cast<std::size_t>(part.end - part.begin), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    memory_.assembly.write_rows(part.begin + static_cast<Index>(begin), part.begin + static_cast<Index>(end),
-                                memory_.system.matrix);
-  });
-  ++part.version;
+// Puts the rows of the chosen cloths together anew.
+void StepProblem::put_together(const integrator::StagePoint& at, int iteration) {
+  for (std::size_t c = 0; c < cloth_.cloths(); ++c) {
+    if (!chosen_[c]) continue;
+    solver::Part& part = memory_.system.parts[c];
+    std::copy_n(at.x.begin() + part.begin, part.end - part.begin, memory_.linearised_at.begin() + part.begin);
+    move_to(c, at);
+    ++part.version;
+  }
+  evaluate(at, true, iteration);
+  for (std::size_t c = 0; c < cloth_.cloths(); ++c) {
+    if (!chosen_[c]) continue;
+    const solver::Part& part = memory_.system.parts[c];
+    parallel_for(size_of(part), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+      memory_.assembly.write_rows(part.begin + static_cast<Index>(begin), part.begin + static_cast<Index>(end),
+                                  memory_.system.matrix);
+    });
+  }
 }
 
 }  // namespace weft::simulation

@@ -67,15 +67,16 @@ class StepProblem final : public integrator::System {
   void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
   void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
   bool move_to(std::size_t cloth, const integrator::StagePoint& at);
-  void evaluate(std::size_t cloth, forces::Evaluation& evaluation);
+  void evaluate(const integrator::StagePoint& at, bool assemble, int iteration = 0);
   void use_rate(double rate);
   bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
-  void put_together(std::size_t cloth, const integrator::StagePoint& at, int iteration);
+  void put_together(const integrator::StagePoint& at, int iteration);
 
   ClothSystem& cloth_;
   const collision::ContactResponse* contacts_ = nullptr;
   std::span<const Pull> pulls_;
   SolveMemory memory_;
+  std::vector<char> chosen_;  // per cloth: is to be evaluated; scratch
 };
 
 }  // namespace weft::simulation

@@ -45,6 +45,7 @@ class Assembly {
   void write_rows(Index begin, Index end, BlockMatrix& matrix) const;
 
  private:
+  friend class AssemblyRows;
   static PackedBlock packed(const Mat3& m) {
     return {load_lanes(m.data()), load_lanes(m.data() + 4), Lanes{m(2, 2), 0, 0, 0}};
   }
@@ -64,6 +65,43 @@ class Assembly {
   std::vector<double> constant_own_;  // per row, of the unit matrix
   // Where the matrix has it from: per full block (−1 on the diagonal), and per multiple of the unit matrix.
   std::vector<Index> block_of_, scalar_of_full_, scalar_of_isotropic_;
+};
+
+/// The rows [begin, end) of an assembly, with the pairs whose smaller row is there, or none: what is added to others is
+/// left out. Who adds all elements in their order to each of several such ranges, in threads, gets the same sums as in
+/// one go.
+class AssemblyRows {
+ public:
+  AssemblyRows() = default;
+  AssemblyRows(Assembly& assembly) : AssemblyRows(assembly, 0, static_cast<Index>(assembly.constant_own_.size())) {}
+  AssemblyRows(Assembly& assembly, Index begin, Index end)
+      : assembly_(&assembly),
+        rows_{begin, end},
+        blocks_{assembly.full_.start[static_cast<std::size_t>(begin)],
+                assembly.full_.start[static_cast<std::size_t>(end)]},
+        scalars_{assembly.pairs_.start[static_cast<std::size_t>(begin)],
+                 assembly.pairs_.start[static_cast<std::size_t>(end)]} {}
+
+  explicit operator bool() const { return assembly_ != nullptr; }
+
+  void add_scalar(Index scalar, double value) const {
+    if (scalars_.has(scalar)) assembly_->add_scalar(scalar, value);
+  }
+  template <class Block>
+  void add(Index block, const Block& value) const {
+    if (blocks_.has(block)) assembly_->add(block, value);
+  }
+  void add_to_own(Index row, const PackedBlock& value) const {
+    if (rows_.has(row)) assembly_->add_to_own(row, value);
+  }
+
+ private:
+  struct Range {
+    Index begin = 0, end = 0;
+    bool has(Index i) const { return i >= begin && i < end; }
+  };
+  Assembly* assembly_ = nullptr;
+  Range rows_, blocks_, scalars_;
 };
 
 }  // namespace weft::solver

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/parallel.hpp"
+
 namespace weft::solver {
 namespace {
 
@@ -14,6 +16,8 @@ constexpr double kSingleStiffness = 1e7;
 // Share of the solution that it leaves without being told apart from roundings: in the energy norm 6e-8 times the root
 // of that stiffness, and a factor of five.
 constexpr double kSingleGoal = 1e-3;
+// Rows that a thread looks at at once.
+constexpr std::size_t kRowsAtOnce = 8192;
 
 // Whether no particle is held more stiffly than that.
 bool suits_single(const LinearSystem& system) {
@@ -21,10 +25,18 @@ bool suits_single(const LinearSystem& system) {
   const auto fits = [&](Index particle, double stiffness) {
     return stiffness <= kSingleStiffness * system.metric[static_cast<std::size_t>(particle)];
   };
-  for (Index i = 0; i < system.matrix.rows(); ++i) {
+  const auto particle_fits = [&](Index i) {
     const double* block = system.matrix.values().data() + 9 * static_cast<std::size_t>(system.matrix.diagonal(i));
-    if (!fits(i, block[0] + block[4] + block[8])) return false;
-  }
+    return fits(i, block[0] + block[4] + block[8]);
+  };
+  const int misfits = parallel_sum(static_cast<std::size_t>(system.matrix.rows()), kRowsAtOnce,
+                                   [&](std::size_t begin, std::size_t end) {
+                                     int any = 0;
+                                     for (std::size_t i = begin; i < end; ++i)
+                                       any |= particle_fits(static_cast<Index>(i)) ? 0 : 1;
+                                     return any;
+                                   });
+  if (misfits > 0) return false;
   for (const DiagonalTerm& term : system.diagonal_terms)
     if (!fits(term.particle, term.stiffness.trace())) return false;
   for (const StencilTerm& term : system.terms)
@@ -36,7 +48,9 @@ bool suits_single(const LinearSystem& system) {
 template <class Quad>
 void copy_into(std::span<const Quad> from, std::vector<Vec3>& to) {
   to.resize(from.size());
-  for (std::size_t i = 0; i < from.size(); ++i) to[i] = vec3_of(from[i]);
+  parallel_for(from.size(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) to[i] = vec3_of(from[i]);
+  });
 }
 
 }  // namespace

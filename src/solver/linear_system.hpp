@@ -3,10 +3,12 @@
 
 #include <array>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "core/types.hpp"
 #include "solver/block_matrix.hpp"
+#include "solver/row_chunks.hpp"
 
 namespace weft::solver {
 
@@ -60,6 +62,14 @@ struct LinearSystem {
 
 inline std::vector<Part> parts_of(const LinearSystem& system) {
   return system.parts.empty() ? std::vector<Part>{{0, system.matrix.rows()}} : system.parts;
+}
+
+/// The rows of some of these parts, by their numbers.
+inline std::vector<RowRange> ranges_of(std::span<const Part> parts, std::span<const std::size_t> numbers) {
+  std::vector<RowRange> ranges;
+  for (std::size_t p : numbers)
+    ranges.push_back({static_cast<std::size_t>(parts[p].begin), static_cast<std::size_t>(parts[p].end)});
+  return ranges;
 }
 
 }  // namespace weft::solver

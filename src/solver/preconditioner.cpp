@@ -11,9 +11,8 @@
 namespace weft::solver {
 namespace {
 
-// Rows per chunk: some 100 µs of work. With 1024, handing chunks to a second thread cost a tenth of the run on systems
-// of 3,000 particles.
-constexpr std::size_t kChunk = 4096;
+// Rows that a thread takes at once: those whose blocks are inverted; those that are averaged.
+constexpr std::size_t kBlocksAtOnce = 512, kRowsAtOnce = 8192;
 // Levels of groups at most, patches included.
 constexpr std::size_t kMaxLevels = 16;
 // Where constraints leave a group no motion its block has no inverse, and its residual is zero: a shift by this share
@@ -85,12 +84,27 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, Sums sums) {
     if (sums_changed_[p]) summed_[p] = parts_[p].version;
   }
   mark_touched();
-  invert_particles();
-  if (levels_.empty()) return;
+  if (levels_.empty()) return invert_particles();
   for (std::size_t p = 0; p < parts_.size(); ++p)
     if (sums_changed_[p]) sum_blocks(p);
-  invert_groups();
-  factorise_patches();
+  parallel_invoke([&] { factorise_patches(); },
+                  [&] {
+                    invert_particles();
+                    invert_groups();
+                  });
+}
+
+template <class Real>
+void Preconditioner<Real>::select(std::span<const std::size_t> parts) {
+  if (std::ranges::equal(parts, selected_)) return;
+  selected_.assign(parts.begin(), parts.end());
+  rows_ = RowChunks(ranges_of(parts_, selected_), kRowsAtOnce, kRowsAtOnce);
+  for (Level& level : levels_) {
+    std::vector<RowRange> ranges;
+    for (std::size_t p : selected_) ranges.push_back(level.of_part[p]);
+    // A group has some twelve members, or so many that it is interpolated from.
+    level.groups = RowChunks(ranges, kRowsAtOnce / 4, kRowsAtOnce / 4);
+  }
 }
 
 template <class Real>
@@ -99,11 +113,16 @@ bool Preconditioner<Real>::is_stiff() const {
   return std::ranges::any_of(parts_of(*system_), [&](const Part& part) {
     double metric = 0;
     for (Index i = part.begin; i < part.end; ++i) metric += system_->metric[index(i)];
-    for (Index i = part.begin; i < part.end; ++i) {
-      const double* block = system_->matrix.values().data() + 9 * index(system_->matrix.diagonal(i));
-      if (block[0] + block[4] + block[8] > kStiff * metric) return true;
-    }
-    return false;
+    const auto stiff = [&](std::size_t i) {
+      const double* block =
+          system_->matrix.values().data() + 9 * index(system_->matrix.diagonal(static_cast<Index>(i)));
+      return block[0] + block[4] + block[8] > kStiff * metric;
+    };
+    return parallel_sum(index(part.end - part.begin), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+             int any = 0;
+             for (std::size_t k = begin; k < end; ++k) any |= stiff(index(part.begin) + k) ? 1 : 0;
+             return any;
+           }) > 0;
   });
 }
 
@@ -131,12 +150,16 @@ void Preconditioner<Real>::prepare_levels() {
     for (const Part& part : parts_) {
       const auto [least, most] =
           std::minmax_element(level.group_of.begin() + part.begin, level.group_of.begin() + part.end);
-      level.of_part.push_back(part.begin == part.end ? Range{} : Range{index(*least), index(*most) + 1});
+      level.of_part.push_back(part.begin == part.end ? RowRange{} : RowRange{index(*least), index(*most) + 1});
     }
   }
+  selected_.clear();
   if (levels_.empty()) return;
   const Index size = 3 * system_->groupings.back().count;
   patches_of_matrix_.setZero(size, size);
+  members_of_patch_.assign(index(system_->groupings.back().count), {});
+  for (std::size_t i = 0; i < rows; ++i)
+    members_of_patch_[index(levels_.back().group_of[i])].push_back(static_cast<Index>(i));
   find_weights();
   find_shared_levels();
 }
@@ -235,21 +258,23 @@ void Preconditioner<Real>::mark_touched() {
 template <class Real>
 void Preconditioner<Real>::invert_particles() {
   std::vector<Index> anew;
-  std::vector<Mat3> blocks;
   std::vector<Index> place(inverse_.size(), -1);
   for (std::size_t p = 0; p < parts_.size(); ++p)
     for (auto i = index(parts_[p].begin); i < index(parts_[p].end); ++i)
       if (changed_[p] || touched_[i] || touched_before_[i]) {
         place[i] = static_cast<Index>(anew.size());
         anew.push_back(static_cast<Index>(i));
-        blocks.push_back(system_->matrix.block(system_->matrix.diagonal(static_cast<Index>(i))));
       }
+  std::vector<Mat3> blocks(anew.size());
+  parallel_for(anew.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) blocks[k] = system_->matrix.block(system_->matrix.diagonal(anew[k]));
+  });
   for (const DiagonalTerm& term : system_->diagonal_terms) blocks[index(place[index(term.particle)])] += term.stiffness;
   for (const StencilTerm& term : system_->terms)
     for (int a = 0; a < 4; ++a)
       if (term.weights[a] != 0)
         blocks[index(place[index(term.particles[a])])] += term.weights[a] * term.weights[a] * term.stiffness;
-  parallel_for(anew.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+  parallel_for(anew.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const Index c = constraint_of_[index(anew[k])];
       Mat3 inverse;
@@ -278,15 +303,16 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
   const std::vector<Index>& patch_of = levels_.back().group_of;
   const BlockMatrix& matrix = system_->matrix;
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
-  std::array<Mat3, kMaxLevels> own;
-  std::array<double, kMaxLevels> own_scalars{};
   const double share = smooth_ ? std::pow(kSpread, static_cast<double>(depth)) : 1;
   const auto add_to_patches = [&](Index i, Index j, const auto& block) {
     // The factorisation reads the lower triangle only.
     const Index patch_i = patch_of[index(i)], patch_j = patch_of[index(j)];
     if (patch_i > patch_j) patches_of_matrix_.block<3, 3>(3 * patch_i, 3 * patch_j) += share * block;
   };
-  for (Index i = parts_[part].begin; i < parts_[part].end; ++i) {
+  // Groups are nested, so that what one patch sums up no other does.
+  const auto sum_row = [&](Index i) {
+    std::array<Mat3, kMaxLevels> own;
+    std::array<double, kMaxLevels> own_scalars{};
     std::fill_n(own.begin(), depth, Mat3::Zero());
     std::fill_n(own_scalars.begin(), depth, 0.0);
     if (!system_->metric.empty()) own[0] -= filtered(i, system_->metric[i] * Mat3::Identity(), i);
@@ -315,7 +341,10 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
       of_group += own[l];
       of_group.diagonal().array() += own_scalars[l];
     }
-  }
+  };
+  parallel_for(index(last - first) / 3, 1, [&](std::size_t patch, std::size_t) {
+    for (Index i : members_of_patch_[levels_.back().of_part[part].begin + patch]) sum_row(i);
+  });
   for (std::size_t l = 1; l < depth; ++l)
     for (std::size_t g = levels_[l - 1].of_part[part].begin; g < levels_[l - 1].of_part[part].end; ++g)
       levels_[l].of_matrix[index(levels_[l - 1].parent[g])] += levels_[l - 1].of_matrix[g];
@@ -339,7 +368,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     if (smooth_) share *= kSpread;
-    const Range groups = level.of_part[part];
+    const RowRange groups = level.of_part[part];
     std::vector<Mat3> sums(groups.end - groups.begin, Mat3::Zero());
     for (std::size_t m = 0; m < lasting.size(); ++m)
       sums[index(system_->groupings[l].of[first + m]) - groups.begin] += lasting[m];
@@ -349,7 +378,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
     first = groups.begin;
   }
   const Level& patches = levels_.back();
-  const Range groups = patches.of_part[part];
+  const RowRange groups = patches.of_part[part];
   for (std::size_t g = groups.begin; g < groups.end; ++g)
     patches_of_matrix_.block<3, 3>(static_cast<Eigen::Index>(3 * g), static_cast<Eigen::Index>(3 * g)) +=
         patches.of_matrix[g];
@@ -398,7 +427,7 @@ void Preconditioner<Real>::invert_groups() {
     }
   });
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l)
-    parallel_for(anew[l].size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    parallel_for(anew[l].size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
       for (std::size_t g = begin; g < end; ++g)
         if (anew[l][g]) levels_[l].inverse[g] = QuadBlock<Real>((blocks[l][g] + shift_of(blocks[l][g])).inverse());
     });
@@ -420,22 +449,22 @@ void Preconditioner<Real>::factorise_patches() {
 
 // From particles to groups to larger groups.
 template <class Real>
-void Preconditioner<Real>::restrict_residual(std::span<const Quad<Real>> r, std::span<const std::size_t> parts) {
+void Preconditioner<Real>::restrict_residual(std::span<const Quad<Real>> r) {
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     const std::span<const Quad<Real>> members = l == 0 ? r : std::span<const Quad<Real>>(levels_[l - 1].residual);
-    for (std::size_t p : parts)
-      for (std::size_t g = level.of_part[p].begin; g < level.of_part[p].end; ++g)
-        level.residual[g] = level.of_members.sum(g, members);
+    level.groups.for_each([&](std::size_t begin, std::size_t end) {
+      for (std::size_t g = begin; g < end; ++g) level.residual[g] = level.of_members.sum(g, members);
+    });
   }
 }
 
 // From the largest groups down: each adds what the corrections of larger ones make of it.
 template <class Real>
-void Preconditioner<Real>::correct_groups(std::span<const std::size_t> parts) {
+void Preconditioner<Real>::correct_groups() {
   Level& patches = levels_.back();
   patch_vector_.setZero(patch_factor_.rows());
-  for (std::size_t p : parts)
+  for (std::size_t p : selected_)
     for (std::size_t g = patches.of_part[p].begin; g < patches.of_part[p].end; ++g)
       for (int k = 0; k < 3; ++k) patch_vector_[static_cast<Eigen::Index>(3 * g) + k] = patches.residual[g][k];
   patch_factor_.template triangularView<Eigen::Lower>().solveInPlace(patch_vector_);
@@ -446,33 +475,32 @@ void Preconditioner<Real>::correct_groups(std::span<const std::size_t> parts) {
   }
   for (std::size_t l = levels_.size() - 1; l-- > 0;) {
     Level& level = levels_[l];
-    for (std::size_t p : parts)
-      for (std::size_t g = level.of_part[p].begin; g < level.of_part[p].end; ++g)
-        level.correction[g] =
-            level.inverse[g] * level.residual[g] + levels_[l + 1].of_groups.sum(g, levels_[l + 1].correction);
+    const Level& larger = levels_[l + 1];
+    level.groups.for_each([&](std::size_t begin, std::size_t end) {
+      for (std::size_t g = begin; g < end; ++g)
+        level.correction[g] = level.inverse[g] * level.residual[g] + larger.of_groups.sum(g, larger.correction);
+    });
   }
 }
 
 template <class Real>
 void Preconditioner<Real>::apply(std::span<const Quad<Real>> r, std::span<Quad<Real>> z,
                                  std::span<const std::size_t> parts) {
+  select(parts);
   if (!levels_.empty()) {
-    restrict_residual(r, parts);
-    correct_groups(parts);
+    restrict_residual(r);
+    correct_groups();
   }
-  for (std::size_t p : parts) {
-    const std::size_t first = index(parts_[p].begin);
-    parallel_for(index(parts_[p].end) - first, kChunk, [&](std::size_t begin, std::size_t end) {
-      if (levels_.empty()) {
-        for (std::size_t i = first + begin; i < first + end; ++i) z[i] = inverse_[i] * r[i];
-        return;
-      }
-      const Level& level = levels_.front();
-      for (std::size_t i = first + begin; i < first + end; ++i)
-        z[i] = inverse_[i] * r[i] + level.of_groups.sum(i, level.correction);
-    });
+  rows_.for_each([&](std::size_t begin, std::size_t end) {
+    if (levels_.empty()) {
+      for (std::size_t i = begin; i < end; ++i) z[i] = inverse_[i] * r[i];
+      return;
+    }
+    const Level& level = levels_.front();
+    for (std::size_t i = begin; i < end; ++i) z[i] = inverse_[i] * r[i] + level.of_groups.sum(i, level.correction);
+  });
+  for (std::size_t p : parts)
     for (const Filter& filter : filters_[p]) z[filter.particle] = filter.free * z[filter.particle];
-  }
 }
 
 template class Preconditioner<float>;

@@ -41,9 +41,6 @@ class Preconditioner {
   void apply(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, std::span<const std::size_t> parts);
 
  private:
-  struct Range {
-    std::size_t begin = 0, end = 0;
-  };
   /// Rows of weights.
   struct Weights {
     std::vector<Index> start;  // rows + 1 entries into columns
@@ -63,7 +60,8 @@ class Preconditioner {
     std::vector<Index> parent;             // per group, on the next level
     Weights of_groups;                     // per member (a particle, a group of the level before)
     Weights of_members;                    // per group
-    std::vector<Range> of_part;            // groups of each part
+    std::vector<RowRange> of_part;         // groups of each part
+    RowChunks groups;                      // of the selected parts
     std::vector<Mat3> of_matrix;           // per group, without terms
     std::vector<char> touched;             // per group: by terms, when `inverse` was made
     std::vector<QuadBlock<Real>> inverse;  // with them
@@ -81,8 +79,9 @@ class Preconditioner {
   void factorise_patches();
   template <class Body>
   void for_each_term(const Body& body) const;
-  void restrict_residual(std::span<const Quad<Real>> r, std::span<const std::size_t> parts);
-  void correct_groups(std::span<const std::size_t> parts);
+  void select(std::span<const std::size_t> parts);
+  void restrict_residual(std::span<const Quad<Real>> r);
+  void correct_groups();
   bool is_free(Index i) const { return constraint_of_[i] < 0; }
   Mat3 filtered(Index i, const Mat3& block, Index j) const;
 
@@ -103,6 +102,9 @@ class Preconditioner {
   std::vector<Level> levels_;                   // the last one is that of the patches
   // Per block of the matrix the first level on which row and column are in the same group, or the number of levels.
   std::vector<std::uint8_t> shared_full_, shared_isotropic_;
+  std::vector<std::vector<Index>> members_of_patch_;  // particles
+  std::vector<std::size_t> selected_;                 // parts that were applied to last
+  RowChunks rows_;                                    // of them
   Eigen::MatrixXd patches_of_matrix_, patch_matrix_;
   Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic> patch_factor_;
   Eigen::Vector<Real, Eigen::Dynamic> patch_vector_;

@@ -64,6 +64,7 @@ class Product {
   DifferenceMatrix matrix_;  // in single precision
   std::vector<Real> metric_;
   std::vector<std::size_t> selected_;
+  RowChunks rows_;                           // of the selected parts
   std::vector<Stencil> stencils_;            // of the selected parts
   std::vector<OfParticle> terms_, filters_;  // likewise
 };

@@ -8,6 +8,7 @@
 #include "solver/linear_system.hpp"
 #include "solver/preconditioner.hpp"
 #include "solver/product.hpp"
+#include "solver/row_chunks.hpp"
 
 namespace weft::solver {
 
@@ -72,12 +73,11 @@ class Recurrence {
   void advance(double alpha, Progress& progress);
   double apply_preconditioner(std::span<Quad<Real>> z, bool with_factor);
   bool make_factor();
-  template <class Body>
-  void for_rows(const Body& body) const;
 
   const LinearSystem* system_ = nullptr;
   std::vector<Part> parts_;
   std::vector<std::size_t> all_parts_, selected_;
+  RowChunks rows_;  // of those selected
   Product<Real> product_;
   Preconditioner<Real> preconditioner_;
   IncompleteCholesky factor_;                                                   // in double only

@@ -61,6 +61,12 @@ TEST(Air, OnlyTheMotionAgainstTheAirCounts) {
   EXPECT_GT(sum(still).dot(wind), 0);
 }
 
+TEST(Air, RangesOfParticlesAddUpToTheSameBits) {
+  const Positions x = testing::moved_rigidly(testing::flat(kGrid)), v = testing::random_vectors(x.size(), 2, 1);
+  Air air(kGrid, 0, {kRho, Vec3(1, 2, 0), kDrag});
+  testing::expect_same_bits_in_ranges(air, x, v, 50);
+}
+
 TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
   const Positions x = testing::moved_rigidly(testing::flat(kGrid)), v = testing::random_vectors(x.size(), 2, 1);
   const double rate = 50;
@@ -72,7 +78,7 @@ TEST(Air, MatrixIsThatOfAMotionOfAllCornersTogetherAndNoLessOfAnyOther) {
   air.attach(assembly);
   testing::Place place(x, v);
   Evaluation at = place.evaluation(rate);
-  at.assembly = &assembly;
+  at.assembly = assembly;
   air.add(at);
   assembly.write_rows(0, matrix.rows(), matrix);
   const auto force_at = [&](const Positions& velocities) { return testing::force_of(air, x, velocities); };

@@ -233,10 +233,16 @@ TEST_P(Derivatives, ForceWithoutMatrixIsTheForceWithIt) {
   force->attach(assembly);
   testing::Place place(x, v);
   Evaluation at = place.evaluation(kRate);
-  at.assembly = &assembly;
+  at.assembly = assembly;
   force->add(at);
   const Positions alone = testing::force_of(*force, x, v, kRate);
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(solver::vec3_of(place.force[i]), alone[i]);
+}
+
+TEST_P(Derivatives, RangesOfParticlesAddUpToTheSameBits) {
+  const auto force = GetParam().make(kStiffness, 5);
+  const Positions x = testing::crumpled(GetParam().grid, 0.006, 1), v = testing::random_vectors(x.size(), 1, 2);
+  testing::expect_same_bits_in_ranges(*force, x, v, kRate);
 }
 
 INSTANTIATE_TEST_SUITE_P(Of, Derivatives, ::testing::ValuesIn(kCases),

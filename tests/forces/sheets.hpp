@@ -109,11 +109,45 @@ inline Eigen::MatrixXd stiffness_of(Force& force, const Positions& x, const Posi
   force.add_constant_stiffness(assembly);
   Place place(x, v);
   Evaluation at = place.evaluation(rate);
-  at.assembly = &assembly;
+  at.assembly = assembly;
   at.linearisation = linearisation;
   force.add(at);
   assembly.write_rows(0, matrix.rows(), matrix);
   return dense(matrix);
+}
+
+/// That ranges of particles, one after the other from the last, get the forces and blocks that all get in one go, each
+/// range its own and no others.
+inline void expect_same_bits_in_ranges(Force& force, const Positions& x, const Positions& v, double rate) {
+  std::vector<std::pair<Index, Index>> pairs;
+  force.couple(pairs);
+  const auto count = static_cast<Index>(x.size());
+  solver::BlockMatrix at_once(count, pairs), in_ranges = at_once;
+  solver::Assembly assembly(at_once);
+  force.attach(assembly);
+  const std::vector<Index> bounds{0, 1, count / 3, count / 2 + 1, count};
+  force.cut(bounds);
+  Place all(x, v), parts(x, v);
+  Evaluation at = all.evaluation(rate);
+  at.assembly = assembly;
+  force.add(at);
+  assembly.write_rows(0, count, at_once);
+  assembly.clear();
+  for (std::size_t range = bounds.size() - 1; range-- > 0;) {
+    const auto before = parts.force;
+    Evaluation of_range{parts.x, parts.v, ForceRows(parts.force, bounds[range], bounds[range + 1])};
+    of_range.assembly = solver::AssemblyRows(assembly, bounds[range], bounds[range + 1]);
+    of_range.rate = rate;
+    of_range.range = range;
+    force.add(of_range);
+    for (Index i = 0; i < count; ++i) {
+      if (i >= bounds[range] && i < bounds[range + 1]) continue;
+      EXPECT_EQ(solver::vec3_of(parts.force[i]), solver::vec3_of(before[i]));
+    }
+  }
+  assembly.write_rows(0, count, in_ranges);
+  for (Index i = 0; i < count; ++i) EXPECT_EQ(solver::vec3_of(parts.force[i]), solver::vec3_of(all.force[i])) << i;
+  EXPECT_EQ(dense(in_ranges), dense(at_once));
 }
 
 /// The same as it is, not made definite.

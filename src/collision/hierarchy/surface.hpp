@@ -1,6 +1,7 @@
 // What the hierarchy and the proximity search are given: surfaces in one global numbering of vertices and triangles.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <span>
@@ -39,8 +40,11 @@ class PairList {
 
   /// Room for `count` more pairs; write them from the returned place on, then call grow().
   TrianglePair* reserve_more(std::size_t count) {
-    if (size_ + count > storage_.size()) storage_.resize(2 * (size_ + count));
+    if (size_ + count > storage_.size()) storage_.resize(size_ + count + (size_ + count) / 2);
     return storage_.data() + size_;
+  }
+  void append(std::span<const TrianglePair> more) {
+    grow(std::copy(more.begin(), more.end(), reserve_more(more.size())));
   }
   void grow(const TrianglePair* end) { size_ = static_cast<std::size_t>(end - storage_.data()); }
 
@@ -57,6 +61,10 @@ struct CandidatePairs {
   void clear() {
     apart.clear();
     one_shared.clear();
+  }
+  friend void append(CandidatePairs& to, const CandidatePairs& more) {
+    to.apart.append(more.apart.view());
+    to.one_shared.append(more.one_shared.view());
   }
 };
 

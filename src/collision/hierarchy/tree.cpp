@@ -6,6 +6,7 @@
 
 #include "collision/hierarchy/split.hpp"
 #include "core/error.hpp"
+#include "core/parallel.hpp"
 
 namespace weft::collision {
 
@@ -13,6 +14,9 @@ namespace {
 
 /// Past this depth sets are halved by number: centre splits of a badly graded surface may peel off one triangle each.
 constexpr int kMaxCentreSplits = 64;
+
+/// Vertices, and leaves, whose bounds a thread makes at once.
+constexpr std::size_t kVerticesAtOnce = 4096, kLeavesAtOnce = 256;
 
 void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {
   const Index first = surface.first_vertex, last = first + surface.vertex_count;
@@ -130,9 +134,13 @@ Tree<K>::Tree(const Surface& surface, std::span<const Vec3> positions, const Tre
 template <int K>
 void Tree<K>::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
   const auto first = static_cast<std::size_t>(surface_.first_vertex);
-  for (std::size_t v = 0; v < vertex_bounds_.size(); ++v)
-    vertex_bounds_[v] = swept_point<K>(x_t0[first + v], x_t1[first + v], margin);
-  for (std::size_t n = 0; n < leaves_.size(); ++n) fit(n);
+  parallel_for(vertex_bounds_.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      vertex_bounds_[v] = swept_point<K>(x_t0[first + v], x_t1[first + v], margin);
+  });
+  parallel_for(leaves_.size(), kLeavesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t n = begin; n < end; ++n) fit(n);
+  });
   // Children have larger numbers than their parent.
   for (std::size_t n = nodes_.size(); n-- > 0;) fit_node(n);
   resting_margin_ = -1;

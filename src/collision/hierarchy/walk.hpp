@@ -5,8 +5,12 @@
 #include <utility>
 
 #include "collision/hierarchy/traversal.hpp"
+#include "core/parallel_append.hpp"
 
 namespace weft::collision {
+
+// Leaves of both trees from which threads are worth their while; and calls that these are cut into at least.
+constexpr std::size_t kLeavesForThreads = 512, kStopsForThreads = 64;
 
 /// One walk over the trees of both sides, which may be the same one. kLonger: of two nodes only the one with the longer
 /// side is opened. kListed: stops are noted in a separation list. Both are fixed at compile time so that the plain walk
@@ -34,12 +38,37 @@ class Walk {
       }
       list.walked();
     } else {
-      from_roots();
+      from_roots_in_threads();
     }
   }
 
  private:
   static std::size_t index(Ref ref) { return static_cast<std::size_t>(ref); }
+
+  /// What from_roots() lists, in the same order: trees are opened until there is enough for threads to go on from.
+  void from_roots_in_threads() {
+    if (thread_count() == 1 || a_.leaves().size() + b_.leaves().size() < kLeavesForThreads) return from_roots();
+    std::vector<Stop> stops, opened;
+    stops_ = &stops;
+    from_roots();
+    for (std::size_t before = 0; stops.size() < kStopsForThreads && stops.size() != before;) {
+      before = stops.size();
+      opened.clear();
+      stops_ = &opened;
+      for (const Stop& stop : stops)
+        if (stop.a < 0 && stop.b < 0)
+          opened.push_back(stop);
+        else
+          go_on_from(stop);
+      std::swap(stops, opened);
+    }
+    stops_ = nullptr;
+    parallel_append(stops.size(), 1 + stops.size() / kStopsForThreads, out_,
+                    [&](std::size_t begin, std::size_t end, CandidatePairs& list) {
+                      Walk walk(a_, b_, how_, list);
+                      for (std::size_t s = begin; s < end; ++s) walk.go_on_from(stops[s]);
+                    });
+  }
 
   void from_roots() {
     if (same_) return self(a_.root());
@@ -87,8 +116,19 @@ class Walk {
     append(before.closed, list.closed);
   }
 
+  /// A call that is put off.
+  struct Stop {
+    Ref a, b;
+    bool self;
+  };
+  void go_on_from(const Stop& stop) { stop.self ? open(stop.a) : open(stop.a, stop.b); }
+
   /// All pairs below one node of a single tree.
   void self(Ref ref) {
+    if (stops_ != nullptr) return stops_->push_back({ref, ref, true});
+    open(ref);
+  }
+  void open(Ref ref) {
     if (how_.regions != nullptr && how_.regions->nothing_near(ref)) {
       if constexpr (kListed) how_.list->closed.push_back(ref);
       return;
@@ -111,6 +151,10 @@ class Walk {
   /// opened together, unless kLonger asks for the seed's order: one test against all children costs as much as one
   /// against a single child.
   void both(Ref ref_a, Ref ref_b) {
+    if (stops_ != nullptr) return stops_->push_back({ref_a, ref_b, false});
+    open(ref_a, ref_b);
+  }
+  void open(Ref ref_a, Ref ref_b) {
     if (ref_a < 0 && ref_b < 0) {
       if constexpr (kListed) how_.list->leaf_pairs.push_back({ref_a, ref_b});
       return leaves(a_.leaves()[index(~ref_a)], b_.leaves()[index(~ref_b)], b_.bound(ref_b));
@@ -173,6 +217,7 @@ class Walk {
   const bool same_;
   const Traversal how_;
   CandidatePairs& out_;
+  std::vector<Stop>* stops_ = nullptr;  // where calls are put off to, while they are
 };
 
 }  // namespace weft::collision

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "collision/proximity/closest_points.hpp"
+#include "core/parallel_append.hpp"
 
 namespace weft::collision {
 
@@ -12,6 +13,9 @@ namespace {
 /// Distances that differ by less than this part count as equal when duplicates are dropped: far above rounding, far
 /// below any difference that matters.
 constexpr double kTie = 1e-9;
+
+// What a thread looks at at once: pairs of triangles, a multiple of eight; pairs of features; triangles and vertices.
+constexpr std::size_t kPairsAtOnce = 4096, kFeaturesAtOnce = 1024, kTrianglesAtOnce = 2048;
 
 /// Unit vector along v, or along a fallback where the two features touch and v has no direction.
 Vec3 direction(const Vec3& v, const Vec3& fallback) {
@@ -28,8 +32,10 @@ Vec3 direction(const Vec3& v, const Vec3& fallback) {
 /// From pairs of triangles to pairs of features within a radius.
 class ProximityFinder::Gathering {
  public:
-  Gathering(ProximityFinder& finder, std::span<const Vec3> x, double radius, float radius_rounded, double flattest)
+  Gathering(const ProximityFinder& finder, std::span<const Vec3> x, double radius, float radius_rounded,
+            double flattest, FeaturePairs& found)
       : finder_(finder),
+        found_(found),
         features_(finder.features_),
         rounded_(finder.rounded_),
         x_(x),
@@ -133,17 +139,18 @@ class ProximityFinder::Gathering {
   void keep_vertex_face(Index vertex, Index face) {
     const Triangle& corners = features_.triangle(face);
     if (!surely_farther(at(vertex), at(corners[0]), at(corners[1]), at(corners[2]), radius_sq_))
-      finder_.vertex_faces_.push_back({vertex, face});
+      found_.vertex_faces.push_back({vertex, face});
   }
 
   void keep_edges(const EdgeEdge& edges, const std::array<Index, 4>& v) {
     if (flattest_ > 0 && fold(edges.face_a, edges.edge_a) + fold(edges.face_b, edges.edge_b) < flattest_) return;
-    if (!surely_farther_edges(at(v[0]), at(v[1]), at(v[2]), at(v[3]), radius_sq_)) finder_.edge_edges_.push_back(edges);
+    if (!surely_farther_edges(at(v[0]), at(v[1]), at(v[2]), at(v[3]), radius_sq_)) found_.edge_edges.push_back(edges);
   }
 
   float fold(Index face, std::size_t edge) const { return finder_.folds_[face][edge]; }
 
-  ProximityFinder& finder_;
+  const ProximityFinder& finder_;
+  FeaturePairs& found_;
   const Features& features_;
   const std::vector<Rounded>& rounded_;
   std::span<const Vec3> x_;
@@ -243,48 +250,64 @@ void ProximityFinder::measure_folds(std::span<const Vec3> x) {
   const auto at = [&](Index vertex) -> const Vec3& { return x[vertex]; };
   face_normals_.resize(triangles.size());
   folds_.resize(triangles.size());
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    face_normals_[t] =
-        (at(triangles[t][1]) - at(triangles[t][0])).cross(at(triangles[t][2]) - at(triangles[t][0])).normalized();
-  for (std::size_t t = 0; t < triangles.size(); ++t) {
-    for (std::size_t c = 0; c < 3; ++c) {
-      const Index other = features_.across(static_cast<Index>(t), c);
-      // 1 − cos θ = 2 sin² (θ / 2)
-      folds_[t][c] =
-          other < 0
-              ? 1.0F
-              : static_cast<float>(std::sqrt(std::max(0.0, 0.5 - 0.5 * face_normals_[t].dot(face_normals_[other]))));
-    }
-  }
+  parallel_for(triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      face_normals_[t] =
+          (at(triangles[t][1]) - at(triangles[t][0])).cross(at(triangles[t][2]) - at(triangles[t][0])).normalized();
+  });
+  // 1 − cos θ = 2 sin² (θ / 2)
+  const auto fold = [&](std::size_t t, Index other) {
+    return static_cast<float>(std::sqrt(std::max(0.0, 0.5 - 0.5 * face_normals_[t].dot(face_normals_[other]))));
+  };
+  parallel_for(triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      for (std::size_t c = 0; c < 3; ++c) {
+        const Index other = features_.across(static_cast<Index>(t), c);
+        folds_[t][c] = other < 0 ? 1.0F : fold(t, other);
+      }
+  });
 }
 
 void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const Surface> deformable,
                              std::span<const Vec3> x, double radius, double flattest) {
   if (flattest > 0) measure_folds(x);
   // First look in float. Rounding moves a coordinate by 2^-24 of itself, so a gap of two by four times that at most.
-  double largest = 0;
   rounded_.resize(x.size());
-  for (std::size_t v = 0; v < x.size(); ++v) {
-    largest = std::max(largest, x[v].cwiseAbs().maxCoeff());
-    rounded_[v].xyz =
-        Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
-  }
+  const double largest = parallel_max(x.size(), kTrianglesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
+    double most = 0;
+    for (std::size_t v = begin; v < end; ++v) {
+      most = std::max(most, x[v].cwiseAbs().maxCoeff());
+      rounded_[v].xyz =
+          Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
+    }
+    return most;
+  });
   const auto radius_rounded = static_cast<float>(radius * (1 + 1e-6) + largest * 0x1p-21 + 1e-37);
 
-  vertex_faces_.clear();
-  edge_edges_.clear();
-  Gathering gathering(*this, x, radius, radius_rounded, flattest);
-  gathering.look_at(candidates.apart.view());
-  gathering.look_at(candidates.one_shared.view());
+  pairs_.vertex_faces.clear();
+  pairs_.edge_edges.clear();
+  const auto look_at = [&](std::span<const TrianglePair> pairs) {
+    parallel_append(pairs.size(), kPairsAtOnce, pairs_, [&](std::size_t begin, std::size_t end, FeaturePairs& found) {
+      Gathering(*this, x, radius, radius_rounded, flattest, found).look_at(pairs.subspan(begin, end - begin));
+    });
+  };
+  look_at(candidates.apart.view());
+  look_at(candidates.one_shared.view());
   for (const Surface& surface : deformable)
-    gathering.look_at(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())));
+    look_at(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())));
 }
 
 void ProximityFinder::find(std::span<const Vec3> x, double reach, std::vector<Proximity>& out) const {
   out.clear();
-  Search search(features_, x, reach, out);
-  for (const VertexFace& pair : vertex_faces_) search.vertex_face(pair.vertex, pair.face);
-  for (const EdgeEdge& pair : edge_edges_) search.edges(pair);
+  const auto& [vertex_faces, edge_edges] = pairs_;
+  parallel_append(vertex_faces.size(), kFeaturesAtOnce, out, [&](std::size_t begin, std::size_t end, auto& list) {
+    Search search(features_, x, reach, list);
+    for (std::size_t p = begin; p < end; ++p) search.vertex_face(vertex_faces[p].vertex, vertex_faces[p].face);
+  });
+  parallel_append(edge_edges.size(), kFeaturesAtOnce, out, [&](std::size_t begin, std::size_t end, auto& list) {
+    Search search(features_, x, reach, list);
+    for (std::size_t p = begin; p < end; ++p) search.edges(edge_edges[p]);
+  });
 }
 
 }  // namespace weft::collision

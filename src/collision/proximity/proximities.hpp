@@ -76,6 +76,15 @@ class ProximityFinder {
     Index face_a, face_b;
     std::uint8_t edge_a, edge_b;
   };
+  struct FeaturePairs {
+    std::vector<VertexFace> vertex_faces;
+    std::vector<EdgeEdge> edge_edges;
+
+    friend void append(FeaturePairs& to, const FeaturePairs& more) {
+      to.vertex_faces.insert(to.vertex_faces.end(), more.vertex_faces.begin(), more.vertex_faces.end());
+      to.edge_edges.insert(to.edge_edges.end(), more.edge_edges.begin(), more.edge_edges.end());
+    }
+  };
 
   void measure_folds(std::span<const Vec3> x);
 
@@ -83,8 +92,7 @@ class ProximityFinder {
   std::vector<std::array<float, 3>> folds_;  ///< per triangle and edge it owns: sine of half the fold; 1 at borders
   std::vector<Vec3> face_normals_;
   std::vector<Rounded> rounded_;  ///< positions in float, for the first look
-  std::vector<VertexFace> vertex_faces_;
-  std::vector<EdgeEdge> edge_edges_;
+  FeaturePairs pairs_;
 };
 
 }  // namespace weft::collision

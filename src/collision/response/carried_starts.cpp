@@ -14,6 +14,11 @@ void CarriedStarts::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3>
   for (std::vector<Vec3>& starts : starts_) starts.clear();
 }
 
+void CarriedStarts::make() const {
+  for (std::size_t body = 0; any_turns_ && body < motions_.size(); ++body)
+    if (motions_[body].turns()) by(body);
+}
+
 std::span<const Vec3> CarriedStarts::by(std::size_t body) const {
   std::vector<Vec3>& starts = starts_[body];
   if (!starts.empty()) return starts;

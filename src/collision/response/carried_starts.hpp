@@ -37,6 +37,8 @@ class CarriedStarts {
   bool carries(std::size_t body) const { return body < motions_.size() && motions_[body].moves(); }
   /// Starts carried along by such a body, with its own vertices where they end [m].
   std::span<const Vec3> by(std::size_t body) const;
+  /// Makes all that of() can ask for, so that threads may ask at the same time.
+  void make() const;
 
   /// The starts to look at a pair from: those that its obstacle has carried where that turns, else `x_t0`, which tells
   /// the same.

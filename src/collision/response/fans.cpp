@@ -4,12 +4,22 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel_append.hpp"
+
 namespace weft::collision {
 namespace {
+
+// Fans that a thread looks at at once: some 50 µs.
+constexpr std::size_t kFansAtOnce = 512;
 
 /// The triangle with its corners turned so that `first` comes first.
 Triangle turned(const Triangle& t, Index first) {
   return t[0] == first ? t : t[1] == first ? Triangle{t[1], t[2], t[0]} : Triangle{t[2], t[0], t[1]};
+}
+
+/// Whether two edges have an end in common.
+bool touch(const std::array<Index, 2>& s, const std::array<Index, 2>& t) {
+  return s[0] == t[0] || s[0] == t[1] || s[1] == t[0] || s[1] == t[1];
 }
 
 /// The largest distance d that all three corners of a triangle at a vertex may move so that its oriented area, `area`
@@ -22,7 +32,6 @@ double room(double area, double lengths) {
 }  // namespace
 
 Fans::Fans(std::span<const Surface> surfaces) {
-  std::vector<CornerPair> open;
   for (const Surface& surface : surfaces) {
     std::vector<std::vector<Triangle>> around(static_cast<std::size_t>(surface.vertex_count));
     for (const Triangle& t : surface.triangles)
@@ -33,14 +42,6 @@ Fans::Fans(std::span<const Surface> surfaces) {
 }
 
 void Fans::add_fan(Index vertex, std::span<const Triangle> triangles) {
-  // Pairs of an edge opposite to the vertex and another triangle of the fan.
-  const auto touch = [](const Triangle& s, const Triangle& t) {
-    return s[1] == t[1] || s[1] == t[2] || s[2] == t[1] || s[2] == t[2];
-  };
-  for (const Triangle& s : triangles)
-    for (const Triangle& t : triangles)
-      if (!touch(s, t)) pairs_.push_back({{s[1], s[2], s[2]}, t});
-
   // From triangle to triangle over the edges they share: a closed fan comes back after all of them. Any other set of
   // triangles is kept as a fan without a ring, which is always taken pair by pair.
   std::vector<Index> ring{triangles.empty() ? vertex : triangles.front()[1]};
@@ -52,11 +53,24 @@ void Fans::add_fan(Index vertex, std::span<const Triangle> triangles) {
     if (ring.back() == ring.front()) break;
   }
   const bool closed = ring.size() == triangles.size() + 1 && ring.size() > 3 && ring.back() == ring.front();
-  if (!closed && pairs_.size() == pairs_begin_.back()) return;
+  const auto touches_all = [&](const Triangle& s) {
+    return std::ranges::all_of(triangles, [&](const Triangle& t) { return touch({s[1], s[2]}, {t[1], t[2]}); });
+  };
+  if (!closed && std::ranges::all_of(triangles, touches_all)) return;
+  for (const Triangle& t : triangles) edges_.push_back({t[1], t[2]});
+  edges_begin_.push_back(edges_.size());
   middle_.push_back(vertex);
   if (closed) ring_.insert(ring_.end(), ring.begin(), ring.end());
   ring_begin_.push_back(ring_.size());
-  pairs_begin_.push_back(pairs_.size());
+}
+
+// Calls body(pair) for all pairs of an edge opposite to the vertex and another triangle of the fan.
+template <class Body>
+void Fans::for_each_pair(std::size_t fan, const Body& body) const {
+  const auto edges = std::span(edges_).subspan(edges_begin_[fan], edges_begin_[fan + 1] - edges_begin_[fan]);
+  for (const Edge& s : edges)
+    for (const Edge& t : edges)
+      if (!touch(s, t)) body(CornerPair{{s[0], s[1], s[1]}, {middle_[fan], t[0], t[1]}});
 }
 
 // Whether the fan, all of whose triangles are positively oriented along the axis, goes around once: of the directions
@@ -76,29 +90,32 @@ bool Fans::turns_once(std::size_t fan, const Vec3& axis, std::span<const Vec3> x
 }
 
 void Fans::set_reference(std::span<const Vec3> x) {
-  for (std::size_t fan = 0; fan < middle_.size(); ++fan) {
-    slack_[fan] = -1;
-    const auto vertices = ring(fan);
-    if (vertices.empty()) continue;
-    const Vec3& middle = x[middle_[fan]];
-    Vec3 axis = Vec3::Zero(), e = x[vertices.front()] - middle;
-    for (std::size_t k = 1; k < vertices.size(); ++k) {
-      const Vec3 f = x[vertices[k]] - middle;
-      axis += e.cross(f);
-      e = f;
-    }
-    axis.normalize();
-    double slack = std::numeric_limits<double>::infinity(), e_length = e.norm();
-    for (std::size_t k = 1; k < vertices.size(); ++k) {
-      const Vec3 f = x[vertices[k]] - middle;
-      const double f_length = f.norm();
-      slack = std::min(slack, room(axis.dot(e.cross(f)), e_length + f_length));
-      e = f;
-      e_length = f_length;
-    }
-    // A thousandth less than it is covers all rounding.
-    if (slack > 0 && turns_once(fan, axis, x)) slack_[fan] = static_cast<float>(0.999 * slack);
+  parallel_for(middle_.size(), kFansAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t fan = begin; fan < end; ++fan) slack_[fan] = slack_of(fan, x);
+  });
+}
+
+float Fans::slack_of(std::size_t fan, std::span<const Vec3> x) const {
+  const auto vertices = ring(fan);
+  if (vertices.empty()) return -1;
+  const Vec3& middle = x[middle_[fan]];
+  Vec3 axis = Vec3::Zero(), e = x[vertices.front()] - middle;
+  for (std::size_t k = 1; k < vertices.size(); ++k) {
+    const Vec3 f = x[vertices[k]] - middle;
+    axis += e.cross(f);
+    e = f;
   }
+  axis.normalize();
+  double slack = std::numeric_limits<double>::infinity(), e_length = e.norm();
+  for (std::size_t k = 1; k < vertices.size(); ++k) {
+    const Vec3 f = x[vertices[k]] - middle;
+    const double f_length = f.norm();
+    slack = std::min(slack, room(axis.dot(e.cross(f)), e_length + f_length));
+    e = f;
+    e_length = f_length;
+  }
+  // A thousandth less than it is covers all rounding.
+  return slack > 0 && turns_once(fan, axis, x) ? static_cast<float>(0.999 * slack) : -1;
 }
 
 bool Fans::keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const {
@@ -133,11 +150,14 @@ void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
     for (Index v : ring(fan)) most = std::max(most, moved[v]);
     return most < slack_[fan];
   };
-  for (std::size_t fan = 0; fan < middle_.size(); ++fan) {
-    if (stays(fan) || keeps_orientation(fan, x_t0, x_t1)) continue;
-    for (std::size_t p = pairs_begin_[fan]; p < pairs_begin_[fan + 1]; ++p)
-      if (!find_certificate(pairs_[p], x_t0, x_t1)) failing.push_back(pairs_[p]);
-  }
+  parallel_append(middle_.size(), kFansAtOnce, failing, [&](std::size_t begin, std::size_t end, auto& list) {
+    for (std::size_t fan = begin; fan < end; ++fan) {
+      if (stays(fan) || keeps_orientation(fan, x_t0, x_t1)) continue;
+      for_each_pair(fan, [&](const CornerPair& pair) {
+        if (!find_certificate(pair, x_t0, x_t1)) list.push_back(pair);
+      });
+    }
+  });
 }
 
 }  // namespace weft::collision

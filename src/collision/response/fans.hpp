@@ -1,6 +1,7 @@
 // Triangles that share exactly one vertex, kept apart fan by fan.
 #pragma once
 
+#include <array>
 #include <span>
 #include <vector>
 
@@ -39,6 +40,9 @@ class Fans {
 
  private:
   void add_fan(Index vertex, std::span<const Triangle> triangles);
+  float slack_of(std::size_t fan, std::span<const Vec3> x) const;
+  template <class Body>
+  void for_each_pair(std::size_t fan, const Body& body) const;
   bool turns_once(std::size_t fan, const Vec3& axis, std::span<const Vec3> x) const;
   bool keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const;
   std::span<const Index> ring(std::size_t fan) const {
@@ -50,9 +54,10 @@ class Fans {
   std::vector<std::size_t> ring_begin_{0};
   std::vector<Index> ring_;
   std::vector<float> slack_;  // per fan [m]; negative: not certified as a whole at the reference
-  // All edge-triangle pairs of the fans, and after them those of vertices without a closed fan.
-  std::vector<CornerPair> pairs_;
-  std::vector<std::size_t> pairs_begin_{0};  // by fan
+  // Of the triangles of each fan, closed or not: the edges opposite to the vertex.
+  using Edge = std::array<Index, 2>;
+  std::vector<Edge> edges_;
+  std::vector<std::size_t> edges_begin_{0};  // by fan
 };
 
 }  // namespace weft::collision

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/archive.hpp"
+#include "core/parallel_append.hpp"
 
 namespace weft::collision {
 namespace {
@@ -21,6 +22,9 @@ Points8 cross(const Points8& a, const Points8& b) {
            a.axis[0] * b.axis[1] - a.axis[1] * b.axis[0]}};
 }
 
+// What a thread looks at at once: new pairs, a multiple of eight; pairs with planes; vertices and triangles.
+constexpr std::size_t kNewPairsAtOnce = 8192, kPairsAtOnce = 16384, kVerticesAtOnce = 8192;
+
 /// One triangle in each lane.
 struct Triangles8 {
   Points8 corner[3];
@@ -36,7 +40,7 @@ void Planes::look_at_eight(std::size_t first, std::size_t count, float rounding)
     for (int c = 0; c < 3; ++c) {
       const Lanes4* row[8];
       for (std::size_t l = 0; l < 8; ++l) {
-        const TrianglePair& pair = pairs_[first + std::min(l, count - 1)];
+        const TrianglePair& pair = pairs_.view()[first + std::min(l, count - 1)];
         const Triangle& t = triangles_[side_b ? pair.b : pair.a];
         row[l] = &rounded_[t[c]];
       }
@@ -81,25 +85,34 @@ void Planes::look_at_eight(std::size_t first, std::size_t count, float rounding)
 }
 
 void Planes::watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x) {
-  pairs_.assign(pairs.begin(), pairs.end());
-  planes_.resize(pairs.size());
-  double largest = 0;
+  pairs_.clear();
+  pairs_.append(pairs);
+  watch(x);
+}
+
+void Planes::watch(std::span<const Vec3> x) {
+  planes_.resize(pairs_.size());
   rounded_.resize(x.size());
-  for (std::size_t v = 0; v < x.size(); ++v) {
-    largest = std::max(largest, x[v].cwiseAbs().maxCoeff());
-    rounded_[v] = Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
-  }
+  const double largest = parallel_max(x.size(), kVerticesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
+    double most = 0;
+    for (std::size_t v = begin; v < end; ++v) {
+      most = std::max(most, x[v].cwiseAbs().maxCoeff());
+      rounded_[v] = Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
+    }
+    return most;
+  });
   // A coordinate is rounded by 2^-24 of itself, twice, and a dot product of triangles no farther apart than the
   // coordinates are large by as much a few times over; half of the floor is for the length of n.
   const auto rounding = static_cast<float>(1.5 * kFloor + largest * 0x1p-19);
-  for (std::size_t p = 0; p < pairs_.size(); p += 8)
-    look_at_eight(p, std::min<std::size_t>(8, pairs_.size() - p), rounding);
+  parallel_for(pairs_.size(), kNewPairsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; p += 8) look_at_eight(p, std::min<std::size_t>(8, end - p), rounding);
+  });
 }
 
 void Planes::append_closer(double radius, PairList& out) const {
   TrianglePair* end = out.reserve_more(pairs_.size());
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    *end = pairs_[p];
+    *end = pairs_.view()[p];
     end += planes_[p].gap < static_cast<float>(radius) ? 1 : 0;
   }
   out.grow(end);
@@ -109,12 +122,23 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
                           std::span<const float> moved, std::vector<CornerPair>& failing,
                           const CarriedStarts* carried) {
   moved_.resize(triangles_.size());
-  for (std::size_t t = 0; t < triangles_.size(); ++t) {
-    const auto of = [&](std::size_t c) { return moved[triangles_[t][c]]; };
-    moved_[t] = std::max({of(0), of(1), of(2)});
-  }
-  for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    const auto a = static_cast<std::size_t>(pairs_[p].a), b = static_cast<std::size_t>(pairs_[p].b);
+  parallel_for(triangles_.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const auto of = [&](std::size_t c) { return moved[triangles_[t][c]]; };
+      moved_[t] = std::max({of(0), of(1), of(2)});
+    }
+  });
+  if (carried != nullptr) carried->make();
+  parallel_append(pairs_.size(), kPairsAtOnce, failing, [&](std::size_t begin, std::size_t end, auto& list) {
+    find_failing(begin, end, {reference, x_t0, x_t1, carried}, list);
+  });
+}
+
+void Planes::find_failing(std::size_t begin, std::size_t end, const Way& way, std::vector<CornerPair>& failing) {
+  const auto& [reference, x_t0, x_t1, carried] = way;
+  for (std::size_t p = begin; p < end; ++p) {
+    const TrianglePair& numbers = pairs_.view()[p];
+    const auto a = static_cast<std::size_t>(numbers.a), b = static_cast<std::size_t>(numbers.b);
     Plane& plane = planes_[p];
     const CornerPair pair{triangles_[a], triangles_[b]};
     const std::span<const Vec3> start = carried != nullptr ? carried->of(pair, x_t0) : x_t0;
@@ -138,7 +162,7 @@ void Planes::serialize(Archive& archive, std::span<const Vec3> reference) {
   std::vector<std::uint32_t> changed;
   if constexpr (!Archive::kReads) {
     Planes fresh(triangles_);
-    fresh.watch(pairs_, reference);
+    fresh.watch(pairs_.view(), reference);
     for (std::size_t p = 0; p < planes_.size(); ++p)
       if (planes_[p] != fresh.planes_[p]) changed.push_back(static_cast<std::uint32_t>(p));
   }

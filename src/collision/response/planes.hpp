@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "collision/hierarchy/lanes.hpp"
@@ -24,6 +25,10 @@ class Planes {
 
   /// Takes over the pairs, with directions found at x [m].
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
+  /// The same with those that exchange() has brought.
+  void watch(std::span<const Vec3> x);
+  /// Exchanges the list of watched pairs for another one, so that it is kept in one place only; watch() must follow.
+  void exchange(PairList& pairs) { std::swap(pairs_, pairs); }
 
   /// Appends the watched pairs that may be closer than `radius` [m] at the reference: the gap along any direction is no
   /// more than the distance.
@@ -49,9 +54,15 @@ class Planes {
     bool operator==(const Plane&) const = default;
   };
   void look_at_eight(std::size_t first, std::size_t count, float rounding);
+  /// As find_failing() is given it.
+  struct Way {
+    std::span<const Vec3> reference, x_t0, x_t1;
+    const CarriedStarts* carried;
+  };
+  void find_failing(std::size_t begin, std::size_t end, const Way& way, std::vector<CornerPair>& failing);
 
   std::span<const Triangle> triangles_;
-  std::vector<TrianglePair> pairs_;
+  PairList pairs_;
   std::vector<Plane> planes_;
   std::vector<Lanes4> rounded_;  // positions in float, for the first look
   std::vector<float> moved_;     // per triangle

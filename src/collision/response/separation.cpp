@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "core/parallel.hpp"
+
 namespace weft::collision {
 namespace {
 
@@ -15,6 +17,8 @@ constexpr double kKeep = 2e-4;
 constexpr int kPushRounds = 24;
 constexpr int kHalfRounds = 36;
 constexpr int kRounds = 60;
+// Vertices that a thread looks at at once.
+constexpr std::size_t kVerticesAtOnce = 8192;
 
 }  // namespace
 
@@ -27,14 +31,22 @@ void Separation::watch(std::span<const TrianglePair> pairs, std::span<const Vec3
   fans_.set_reference(x);
 }
 
+void Separation::watch(std::span<const Vec3> x) {
+  reference_.assign(x.begin(), x.end());
+  planes_.watch(x);
+  fans_.set_reference(x);
+}
+
 std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                                      const PinchedPairs* pinched, const CarriedStarts* carried) {
   failing_.clear();
   moved_.resize(x_t0.size());
-  for (std::size_t v = 0; v < x_t0.size(); ++v) {
-    const double most_sq = std::max((x_t0[v] - reference_[v]).squaredNorm(), (x_t1[v] - reference_[v]).squaredNorm());
-    moved_[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>(most_sq));
-  }
+  parallel_for(x_t0.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      const double most_sq = std::max((x_t0[v] - reference_[v]).squaredNorm(), (x_t1[v] - reference_[v]).squaredNorm());
+      moved_[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>(most_sq));
+    }
+  });
   planes_.find_failing(reference_, x_t0, x_t1, moved_, failing_, carried);
   fans_.find_failing(x_t0, x_t1, moved_, failing_);
   if (pinched != nullptr && !pinched->empty())

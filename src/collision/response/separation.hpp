@@ -55,6 +55,10 @@ class Separation {
   /// motion is measured from. The pairs must hold all that can meet; where motion or a correction carries a vertex out
   /// of the bounds they were collected with, collect and watch again.
   void watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x);
+  /// The same with those that exchange() has brought.
+  void watch(std::span<const Vec3> x);
+  /// As Planes::exchange().
+  void exchange(PairList& pairs) { planes_.exchange(pairs); }
 
   /// Appends the watched pairs that may have been closer than `radius` [m] then.
   void append_closer(double radius, PairList& out) const { planes_.append_closer(radius, out); }

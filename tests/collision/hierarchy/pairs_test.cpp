@@ -7,6 +7,7 @@
 #include "collision/hierarchy/test_meshes.hpp"
 #include "collision/hierarchy/traversal.hpp"
 #include "core/error.hpp"
+#include "core/parallel.hpp"
 
 namespace weft::collision {
 namespace {
@@ -233,6 +234,26 @@ TEST(Hierarchy, HoldsEveryTriangleOnceInNodesAndLeavesOfItsShapeAndParentsBefore
     }
     EXPECT_EQ(tree.nodes()[0].count, shape.children) << "the root has triangles enough for all";
   }
+}
+
+TEST(Hierarchy, ListsPairsInTheSameOrderOnAnyNumberOfThreads) {
+  // Leaves enough for threads, in a sheet that lies over itself.
+  const TestMesh sheet = folded_sheet(64, 3, 0.01);
+  Tree<6> tree(sheet.surface(), sheet.x), other = tree;
+  tree.refit(sheet.x, sheet.x, 0.004);
+  const auto listed = [&](int threads) {
+    set_thread_count(threads);
+    CandidatePairs pairs;
+    self_pairs(tree, pairs);
+    collision::pairs(tree, other, pairs);
+    std::vector<TrianglePair> list(pairs.apart.begin(), pairs.apart.end());
+    list.insert(list.end(), pairs.one_shared.begin(), pairs.one_shared.end());
+    return list;
+  };
+  const std::vector<TrianglePair> alone = listed(1);
+  EXPECT_GT(alone.size(), 10'000U);
+  for (int threads : {2, 4, 8}) EXPECT_TRUE(listed(threads) == alone) << threads;
+  set_thread_count(0);
 }
 
 TEST(Hierarchy, OfNothingHasNoPairs) {

@@ -1,0 +1,67 @@
+// Rows of several ranges, cut for threads.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "core/parallel.hpp"
+#include "solver/quads.hpp"
+
+namespace weft::solver {
+
+struct RowRange {
+  std::size_t begin = 0, end = 0;
+};
+
+/// Ranges of rows in chunks of fixed size, each within its range, so that sums come out the same on any number of
+/// threads; small ones, of many small cloths, are handed out several at a time.
+class RowChunks {
+ public:
+  RowChunks() = default;
+  /// `at_once`: rows that are worth a thread's while.
+  RowChunks(std::span<const RowRange> ranges, std::size_t chunk, std::size_t at_once) : ranges_(ranges.size()) {
+    std::size_t rows = 0;  // of the last task
+    for (std::size_t r = 0; r < ranges.size(); ++r)
+      for (std::size_t begin = ranges[r].begin; begin < ranges[r].end; begin += chunk) {
+        if (chunks_.empty() || rows >= at_once) tasks_.push_back(chunks_.size()), rows = 0;
+        chunks_.push_back({begin, std::min(begin + chunk, ranges[r].end), r});
+        rows += chunks_.back().end - begin;
+      }
+    tasks_.push_back(chunks_.size());
+  }
+
+  /// Calls body(begin, end) for all chunks.
+  template <class Body>
+  void for_each(const Body& body) const {
+    for_each_chunk([&](std::size_t c) { body(chunks_[c].begin, chunks_[c].end); });
+  }
+
+  /// Σ body(begin, end) of each range, chunk after chunk.
+  template <class Body>
+  std::vector<Quad<double>> sums(const Body& body) const {
+    std::vector<Quad<double>> of_chunks(chunks_.size()), of_ranges(ranges_);
+    for_each_chunk([&](std::size_t c) { of_chunks[c] = body(chunks_[c].begin, chunks_[c].end); });
+    for (std::size_t c = 0; c < chunks_.size(); ++c) of_ranges[chunks_[c].range] += of_chunks[c];
+    return of_ranges;
+  }
+
+ private:
+  struct Chunk {
+    std::size_t begin, end, range;
+  };
+  template <class Body>
+  void for_each_chunk(const Body& body) const {
+    if (chunks_.empty()) return;
+    parallel_for(tasks_.size() - 1, 1, [&](std::size_t t, std::size_t) {
+      for (std::size_t c = tasks_[t]; c < tasks_[t + 1]; ++c) body(c);
+    });
+  }
+
+  std::size_t ranges_ = 0;
+  std::vector<Chunk> chunks_;
+  std::vector<std::size_t> tasks_;  // first chunk of each, and the end
+};
+
+}  // namespace weft::solver
