@@ -24,6 +24,9 @@ struct Moment : integrator::State {
   std::span<const Vec3> particles() const { return {x.data(), v.size()}; }
 };
 
+/// Whether a cloth of the scene may be moved at the start for what it touches or crosses.
+bool untangles(const scene::Scene& scene);
+
 class CollisionStage {
  public:
   /// Whether anything in the scene can collide; else no stage is made.
@@ -36,6 +39,10 @@ class CollisionStage {
   /// Where surfaces touch or cross at the start. A run begins only where none do: what begins apart is kept apart, and
   /// nothing else can be promised.
   std::vector<MeetingPlace> find_meetings(const Moment& start);
+
+  /// Takes apart what touches or crosses at the start, as far as the scene has cloth that may be moved for it; `held`
+  /// is not. Throws Error(scene_invalid) where there is no way, with what is where.
+  void untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held, Moment& start);
 
   /// Before the solve: bodies go from where they are at t in `now` to where they are at t + h in `next`; contacts are
   /// found for the particles as they are now and would be, in `next`, with unchanged velocity.

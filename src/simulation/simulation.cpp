@@ -41,7 +41,7 @@ void check_start(const scene::Scene& scene, StepLoop& steps) {
   if (places.empty()) return;
   throw Error(ExitCode::scene_invalid,
               "{}: expected surfaces that are apart at the start, got {}; 'weft thumbnail --start' draws it; move one "
-              "of them, or leave it out of contact",
+              "of them, leave it out of contact, or give a cloth start = \"untangle\"",
               scene.file.string(), describe(places));
 }
 
@@ -75,6 +75,7 @@ Simulation::Impl::Impl(const scene::Scene& s)
       frame(-scene.preroll_frames()),
       steps(scene, environment, time()),
       snapshots(scene, environment) {
+  if (untangles(scene)) steps.untangle();
   check_start(scene, steps);
   current = make_snapshot();
   measure_energies(start_report);

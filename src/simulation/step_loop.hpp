@@ -27,6 +27,8 @@ class StepLoop {
   StepLoop(const StepLoop&) = delete;  // its parts know each other
   StepLoop& operator=(const StepLoop&) = delete;
 
+  /// Takes apart what touches or crosses at the start and may be moved for it; before the first advance().
+  void untangle();
   /// Where surfaces touch or cross at the start; before the first advance().
   std::vector<MeetingPlace> find_meetings() {
     return collisions_ ? collisions_->find_meetings(progress_.now) : std::vector<MeetingPlace>{};
