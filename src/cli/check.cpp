@@ -75,6 +75,7 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
     log::info(mistakes.lines);
     return mistakes.code;
   }
+  const simulation::Simulation begun(loaded.scene);  // all that a run does before its first step
   fmt::print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
   for (const std::string& doubt : simulation::doubts(loaded.scene)) fmt::print("{}: note: {}\n", file.string(), doubt);
   if (options.plan) fmt::print("{}", plan_table(loaded.scene));

@@ -219,8 +219,13 @@ struct Parser {
               [this](const std::string& text) { thumbnail.output = text; });
     add_value(command, "--frame", "N", "Which frame, counted from 0 [the one that tells most]",
               [this](const std::string& text) { thumbnail.frame = parse_integer("--frame", text, 0, 1'000'000'000); });
+    command.add_flag("--start", thumbnail.start,
+                     "Instead of a frame: how the scene is given, with all that touches or crosses marked in red");
     add_common(command, thumbnail.common, kSceneOrCache);
-    command.footer("\nExample:\n  weft thumbnail scenes/falling_band.toml -o band.png --frame 60 --quality draft");
+    command.footer(
+        "\nExamples:\n"
+        "  weft thumbnail scenes/falling_band.toml -o band.png --frame 60 --quality draft\n"
+        "  weft thumbnail dress.toml --start -o start.png");
   }
 
   void add_sheet() {

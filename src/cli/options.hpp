@@ -61,6 +61,7 @@ struct ThumbnailOptions {
   SceneOptions common;
   std::filesystem::path output;  ///< empty: output/<scene>.png
   std::optional<int> frame;      ///< else the one that tells most
+  bool start = false;            ///< instead of a frame: the start, also one that is refused
 };
 
 struct SheetOptions {

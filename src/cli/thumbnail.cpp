@@ -3,12 +3,16 @@
 #include <algorithm>
 
 #include "cli/commands.hpp"
+#include "cli/scene_input.hpp"
 #include "cli/stages.hpp"
+#include "cli/start_picture.hpp"
 #include "cli/stills.hpp"
 #include "core/log.hpp"
 #include "core/parallel.hpp"
+#include "image/contact_sheet.hpp"
 #include "image/png.hpp"
 #include "render/saliency.hpp"
+#include "simulation/simulation.hpp"
 
 namespace weft::cli {
 namespace {
@@ -47,10 +51,36 @@ std::string describe_choice(const render::Saliency& saliency, std::size_t count)
                      count, 100 * saliency.coverage, saliency.folding, saliency.motion);
 }
 
+// The start as it is given, which a run may refuse: nothing is simulated.
+ExitCode thumbnail_of_start(const ThumbnailOptions& options) {
+  if (options.frame || std::filesystem::is_directory(options.common.scene))
+    throw Error(ExitCode::usage, "--start: expected a scene and no --frame, got {}",
+                options.frame ? "both" : "the cache " + options.common.scene.string());
+  const std::unique_ptr<Stills> stills = open_stills(options.common);
+  const std::filesystem::path file =
+      still_file(*stills, options.output, stills->scene().scene + ".start.png", options.common.overwrite);
+  const simulation::StartView start = simulation::view_start(load_scene(options.common));
+  render::Settings settings = stills->settings();
+  if (!start.places.empty() && !options.common.size) settings.height /= 2, settings.width /= 2;
+  settings.camera.clear();  // each picture has a camera of its own
+  const std::unique_ptr<FramePainter> painter = make_gl_painter(settings);
+  settings.camera = stills->settings().camera;
+  const std::vector<image::SheetPicture> pictures = draw_start(start, settings, *painter);
+  const std::string said = start.places.empty() ? "nothing touches or crosses" : start.description;
+  const image::Image image = start.places.empty()
+                                 ? pictures.front().image
+                                 : image::contact_sheet(pictures, 2, said.substr(0, said.find(':')) + ", in red");
+  const Metadata about = describe_pictures(stills->scene(), settings, painter->description());
+  image::write_png(file, image, describe_still(about, start.snapshot->frame, start.snapshot->time));
+  log::info(fmt::format("{}: the start: {}", file.string(), said));
+  return ExitCode::ok;
+}
+
 }  // namespace
 
 ExitCode thumbnail(const ThumbnailOptions& options) {
   set_thread_count(options.common.threads);
+  if (options.start) return thumbnail_of_start(options);
   const std::unique_ptr<Stills> stills = open_stills(options.common);
   const std::vector<int>& frames = stills->frames();
   if (options.frame) check_frame(*options.frame, frames);

@@ -122,10 +122,10 @@ int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1
   return fresh;
 }
 
-std::optional<CornerPair> Engine::find_meeting(std::span<const Vec3> x) {
+std::span<const CornerPair> Engine::find_meetings(std::span<const Vec3> x) {
   collect(x, x);
-  if (apart(x, x)) return std::nullopt;
-  return failing_.front();
+  apart(x, x);
+  return failing_;
 }
 
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,

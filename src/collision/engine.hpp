@@ -89,8 +89,8 @@ class Engine {
   /// Their smallest distance [m]; infinite if there are none.
   double min_distance() const;
 
-  /// A pair of triangles that touches or crosses at x [m], if there is one.
-  std::optional<CornerPair> find_meeting(std::span<const Vec3> x);
+  /// All pairs that touch or cross at x [m]. Valid until the next call of this, apart() or begin_step().
+  std::span<const CornerPair> find_meetings(std::span<const Vec3> x);
 
   const Bodies& bodies() const { return bodies_; }
   /// Distance below which features are near [m].

@@ -159,6 +159,9 @@ const Table& cloth_rules() {
                 "the mesh or pattern");
           })
           .vector("velocity", &Cloth::velocity, kXyz, within(-1e4, 1e4), "m/s", "at the start")
+          .choice("start", &Cloth::start, {"as_given", "untangle"},
+                  "where it touches or crosses itself, other cloth or an obstacle, which a run cannot begin with: "
+                  "refused as it is given, or taken apart before the first step")
           .vector("start_scale", &Cloth::start_scale, kWeftWarp, above(0, 1000), "",
                   "lengths along weft and warp at the start, times those at rest")
           .single_fills_all()

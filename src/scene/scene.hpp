@@ -175,6 +175,7 @@ struct Weight : ClothPart {
   double mass = 0.1;  ///< [kg]
 };
 
+enum class ClothStart { as_given, untangle };
 enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern };
 
 struct Cloth {
@@ -191,7 +192,8 @@ struct Cloth {
   Pose pose;                 ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
   Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
   Vec2 start_scale{1, 1};    ///< lengths along weft and warp at the start, times those at rest
-  double start_noise = 0;    ///< most that a particle is off its place at the start, along each axis [m]
+  ClothStart start = ClothStart::as_given;  ///< where it touches or crosses something
+  double start_noise = 0;                   ///< most that a particle is off its place at the start, along each axis [m]
   Material material;
   Look look;
   std::vector<Pin> pins;

@@ -9,6 +9,7 @@
 #include "core/archive.hpp"
 #include "core/error.hpp"
 #include "mesh/geometry.hpp"
+#include "simulation/meetings.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -132,11 +133,6 @@ CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Env
     radii_.push_back(radius_of(environment.bodies[b]));
     boxes_.push_back(mesh::bounding_box(environment.bodies[b].mesh.positions));
   }
-  if (const auto meeting = engine_.find_meeting(start.x))
-    throw Error(
-        ExitCode::scene_invalid,
-        "{}: expected surfaces that are apart at the start, got {}; move one of them, or leave it out of contact",
-        scene.file.string(), describe(*meeting, start));
 }
 
 const std::vector<Vec3>& CollisionStage::append_bodies(Moment& start) const {
@@ -146,6 +142,10 @@ const std::vector<Vec3>& CollisionStage::append_bodies(Moment& start) const {
     environment_.place(b, start.placed_for, std::span(start.x).subspan(first));
   }
   return start.x;
+}
+
+std::vector<MeetingPlace> CollisionStage::find_meetings(const Moment& start) {
+  return meeting_places(engine_.find_meetings(start.x), engine_.bodies(), names_, start.x);
 }
 
 // Still bodies are where append_bodies() has put them.

@@ -13,6 +13,7 @@
 #include "integrator/system.hpp"
 #include "scene/scene.hpp"
 #include "simulation/cloth_system.hpp"
+#include "simulation/simulation.hpp"
 
 namespace weft::simulation {
 
@@ -23,16 +24,25 @@ struct Moment : integrator::State {
   std::span<const Vec3> particles() const { return {x.data(), v.size()}; }
 };
 
+/// Whether a cloth of the scene may be moved at the start for what it touches or crosses.
+bool untangles(const scene::Scene& scene);
+
 class CollisionStage {
  public:
   /// Whether anything in the scene can collide; else no stage is made.
   static bool needed(const scene::Scene& scene);
 
-  /// Appends the bodies to the moment `start`, for its time. Throws Error(scene_invalid) where surfaces touch or cross
-  /// from the start: what begins apart is kept apart, and nothing else can be promised. The environment must outlive
-  /// it.
+  /// Appends the bodies to the moment `start`, for its time. The environment must outlive it.
   CollisionStage(const scene::Scene& scene, const environment::Environment& environment, std::span<const double> masses,
                  Moment& start);
+
+  /// Where surfaces touch or cross at the start. A run begins only where none do: what begins apart is kept apart, and
+  /// nothing else can be promised.
+  std::vector<MeetingPlace> find_meetings(const Moment& start);
+
+  /// Takes apart what touches or crosses at the start, as far as the scene has cloth that may be moved for it; `held`
+  /// is not. Throws Error(scene_invalid) where there is no way, with what is where.
+  void untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held, Moment& start);
 
   /// Before the solve: bodies go from where they are at t in `now` to where they are at t + h in `next`; contacts are
   /// found for the particles as they are now and would be, in `next`, with unchanged velocity.

@@ -111,6 +111,9 @@ void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
   items.push_back(of_cloths(
       "preparation: sewing", scene, [](const Cloth& c) { return c.shape == scene::ClothShape::pattern; },
       "no cloth is sewn from a pattern"));
+  items.push_back(of_cloths(
+      "preparation: untangling", scene, [](const Cloth& c) { return c.start == scene::ClothStart::untangle; },
+      "every cloth starts as given"));
   const int frames = scene.preroll_frames();
   items.push_back(when("preparation: preroll", frames > 0,
                        fmt::format("{} frame{} before the first", frames, frames == 1 ? "" : "s"),

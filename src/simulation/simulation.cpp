@@ -13,6 +13,7 @@
 #include "core/timer.hpp"
 #include "environment/environment.hpp"
 #include "simulation/energy_bound.hpp"
+#include "simulation/meetings.hpp"
 #include "simulation/pin_doubts.hpp"
 #include "simulation/snapshots.hpp"
 #include "simulation/step_loop.hpp"
@@ -32,6 +33,16 @@ void serialize(Archive& archive, FrameReport& report) {
                    report.kinetic_energy, report.potential_energy, report.elastic_energy, report.pinched_pairs,
                    report.lagging_particles);
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
+}
+
+// Throws Error(scene_invalid) where a run cannot begin so.
+void check_start(const scene::Scene& scene, StepLoop& steps) {
+  const std::vector<MeetingPlace> places = steps.find_meetings();
+  if (places.empty()) return;
+  throw Error(ExitCode::scene_invalid,
+              "{}: expected surfaces that are apart at the start, got {}; 'weft thumbnail --start' draws it; move one "
+              "of them, leave it out of contact, or give a cloth start = \"untangle\"",
+              scene.file.string(), describe(places));
 }
 
 }  // namespace
@@ -64,6 +75,8 @@ Simulation::Impl::Impl(const scene::Scene& s)
       frame(-scene.preroll_frames()),
       steps(scene, environment, time()),
       snapshots(scene, environment) {
+  if (untangles(scene)) steps.untangle();
+  check_start(scene, steps);
   current = make_snapshot();
   measure_energies(start_report);
   start_report.max_strain = steps.cloth().max_strain(steps.progress().now.particles());
@@ -148,6 +161,19 @@ void Simulation::Impl::serialize(Archive& archive) {
   energy_bound->serialize(archive);
   simulation::serialize(archive, start_report);
   steps.serialize_contacts(archive, time());
+}
+
+StartView view_start(const scene::Scene& scene) {
+  const environment::Environment environment(scene);
+  const int frame = -scene.preroll_frames();
+  const double time = frame / scene.time.fps;
+  StepLoop steps(scene, environment, time);
+  StartView view;
+  view.snapshot =
+      SnapshotMaker(scene, environment).make(frame, time, environment, steps.progress().now.particles(), {});
+  view.places = steps.find_meetings();
+  if (!view.places.empty()) view.description = describe(view.places);
+  return view;
 }
 
 Simulation::Simulation(const scene::Scene& scene) : impl_(std::make_unique<Impl>(scene)) {}

@@ -1,6 +1,7 @@
 // A scene from frame to frame: snapshots, reports, and states to go on from.
 #pragma once
 
+#include <array>
 #include <functional>
 #include <memory>
 #include <span>
@@ -37,6 +38,25 @@ std::vector<PlanItem> plan(const scene::Scene& scene);
 /// What may well end a run of this scene or is hardly meant, a sentence each: `weft check` says it beforehand. Throws
 /// as Simulation's constructor does, for scenes with pins that move by keys.
 std::vector<std::string> doubts(const scene::Scene& scene);
+
+/// Where two objects, or one and itself, touch or cross at the start.
+struct MeetingPlace {
+  std::string a, b;                            ///< the objects
+  std::size_t pairs = 0;                       ///< of triangles
+  Vec3 centre = Vec3::Zero();                  ///< [m]
+  double size = 0;                             ///< longest side of the box around it [m]
+  std::vector<std::array<Vec3, 3>> triangles;  ///< that meet there [m]
+};
+
+/// How a scene starts, before its preroll, also where that would be refused.
+struct StartView {
+  frame::SnapshotPtr snapshot;
+  std::vector<MeetingPlace> places;  ///< of most pairs first; empty where a run may begin
+  std::string description;           ///< of the places, for a message; empty likewise
+};
+
+/// The start as the scene gives it: nothing is untangled. Throws Error(asset_unreadable, scene_invalid).
+StartView view_start(const scene::Scene& scene);
 
 /// What the matrix of one iteration of Newton's method holds, contacts not counted.
 struct MatrixSize {

@@ -103,6 +103,12 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
   next_ = now;
 }
 
+void StepLoop::untangle() {
+  if (!collisions_) return;
+  collisions_->untangle(scene_, held_, progress_.now);
+  next_ = progress_.now;
+}
+
 void StepLoop::advance(double t_t0, double t_t1, FrameReport& report) {
   problem_.forget();
   if (collisions_) collisions_->forget();

@@ -27,6 +27,13 @@ class StepLoop {
   StepLoop(const StepLoop&) = delete;  // its parts know each other
   StepLoop& operator=(const StepLoop&) = delete;
 
+  /// Takes apart what touches or crosses at the start and may be moved for it; before the first advance().
+  void untangle();
+  /// Where surfaces touch or cross at the start; before the first advance().
+  std::vector<MeetingPlace> find_meetings() {
+    return collisions_ ? collisions_->find_meetings(progress_.now) : std::vector<MeetingPlace>{};
+  }
+
   /// Goes on from the time t_t0 of a frame to that of the next one [s], which is report.frame, and counts in the
   /// report. Throws Error(simulation_failed) where no step is short enough.
   void advance(double t_t0, double t_t1, FrameReport& report);

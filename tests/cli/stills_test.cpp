@@ -76,6 +76,38 @@ TEST_F(Stills, SceneWhoseClothIsNeverSeenIsDrawnWithAWarning) {
   EXPECT_NE(outcome.err.find("no frame shows any cloth"), std::string::npos) << outcome.err;
 }
 
+// The sheet goes through the ball: no run begins so, `check` says what `run` says, and the picture shows where.
+TEST_F(Stills, OfAStartThatIsRefusedShowInRedWhatMeets) {
+  const Arguments low{"--set", "cloth.cloth.position=[0,0,0.02]"};
+  const auto with = [&](Arguments arguments) {
+    arguments.insert(arguments.end(), low.begin(), low.end());
+    return weft(arguments);
+  };
+  const Outcome refused = with({"run", "s.toml", "-o", "r.mp4"}),
+                checked = run_weft({"check", "s.toml", low[0], low[1]}, folder_);
+  EXPECT_EQ(refused.exit_code, 3);
+  EXPECT_EQ(checked.exit_code, 3);
+  EXPECT_NE(refused.err.find("in 1 place: 'cloth' and 'ball' ("), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("'weft thumbnail --start' draws it"), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find(checked.err.substr(0, checked.err.find('\n'))), std::string::npos) << checked.err;
+
+  const Outcome drawn = with({"thumbnail", "s.toml", "--start", "-o", "refused.png"});
+  EXPECT_EQ(drawn.exit_code, 0) << drawn.err;
+  EXPECT_NE(drawn.err.find("in 1 place: 'cloth' and 'ball' ("), std::string::npos) << drawn.err;
+  expect_well({"thumbnail", "s.toml", "--start", "-o", "good.png"});
+  const auto red_share = [&](const char* picture) {
+    const image::Image image = image::read_png(folder_ / picture);
+    std::size_t red = 0;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        red += image.pixel(x, y)[0] == 225 && image.pixel(x, y)[1] == 20 && image.pixel(x, y)[2] == 40;
+    return static_cast<double>(red) / (image.width * image.height);
+  };
+  EXPECT_GT(red_share("refused.png"), 0.005);
+  EXPECT_EQ(red_share("good.png"), 0);
+  EXPECT_EQ(weft({"thumbnail", "s.toml", "--start", "--frame", "3", "-o", "x.png"}).exit_code, 2);
+}
+
 TEST_F(Stills, WhatCannotBeIsRefusedBeforeSimulating) {
   EXPECT_EQ(weft({"sheet", "s.toml", "-o", "a.jpg"}).exit_code, 2);
   EXPECT_EQ(weft({"sheet", "s.toml", "--count", "0"}).exit_code, 2);

@@ -1,0 +1,149 @@
+#include "cli/start_picture.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <span>
+
+#include "render/framing.hpp"
+#include "render/saliency.hpp"
+#include "render/view.hpp"
+
+namespace weft::cli {
+namespace {
+
+using simulation::MeetingPlace;
+
+// Places that get a picture of their own.
+constexpr std::size_t kCloseUps = 5;
+constexpr double kCloseUpAngle = 30;  // vertical field of view [degrees]
+// Of a close-up: least height of what it shows [m], and that height in sizes of the place.
+constexpr double kLeastHeight = 0.1, kHeightOfSize = 1.6;
+// What another side must show more to be taken instead of one nearer to the front.
+constexpr double kWorthATurn = 1.25;
+constexpr double kMarkWidth = 1.5 / 360;  // of an outline, in heights of the picture
+constexpr std::array<std::uint8_t, 3> kMark{225, 20, 40};
+
+double aspect_of(const render::Settings& settings) {
+  return static_cast<double>(settings.width) / settings.height;
+}
+
+Vec3 up_of(const frame::FrameSnapshot& snapshot) {
+  return snapshot.stage ? snapshot.stage->up : Vec3::UnitZ();
+}
+
+// Share of the picture in which the triangles of a place are seen: as if they alone were of cloth. First in the list
+// they are in front of themselves.
+double share_seen(const frame::FrameSnapshot& snapshot, const MeetingPlace& place, const frame::Camera& camera,
+                  double aspect) {
+  auto marks = std::make_shared<frame::Surface>();
+  std::vector<Vec3> corners;
+  for (const auto& triangle : place.triangles) {
+    const auto first = static_cast<Index>(corners.size());
+    marks->triangles.push_back({first, first + 1, first + 2});
+    corners.insert(corners.end(), triangle.begin(), triangle.end());
+  }
+  frame::FrameSnapshot marked = snapshot;
+  marked.cameras = {camera};
+  for (auto& surface : marked.surfaces) {
+    auto copy = std::make_shared<frame::Surface>(*surface);
+    copy->kind = frame::ObjectKind::obstacle;
+    copy->infinite_floor = false;  // hides what is below it
+    surface = copy;
+  }
+  marked.surfaces.insert(marked.surfaces.begin(), std::move(marks));
+  marked.states.insert(marked.states.begin(), frame::SurfaceState{std::move(corners), {}});
+  return render::saliency_of(marked, nullptr, 0, "", aspect).coverage;
+}
+
+// From the one of 26 sides that shows most of a place; of equals from the front and from above.
+frame::Camera look_at(const frame::FrameSnapshot& snapshot, const MeetingPlace& place, double aspect) {
+  const Vec3 up = up_of(snapshot), right = Vec3::UnitX(), front = right.cross(up);
+  const double height = std::max(kLeastHeight, kHeightOfSize * place.size);
+  const double distance = 0.5 * height / std::tan(kCloseUpAngle * std::numbers::pi / 360) + 0.5 * place.size;
+  frame::Camera best;
+  double most = -1;
+  for (const double rise : {0.5, 1.0, 0.0, -0.5}) {
+    for (int turn = 0; turn < 8; ++turn) {
+      const double angle = turn * std::numbers::pi / 4;
+      const Vec3 level = std::cos(angle) * front + std::sin(angle) * right;
+      frame::Camera camera;
+      camera.position = place.centre + distance * (std::cos(rise) * level + std::sin(rise) * up);
+      camera.target = place.centre;
+      camera.field_of_view = kCloseUpAngle;
+      const double seen = share_seen(snapshot, place, camera, aspect);
+      if (seen > kWorthATurn * most) {
+        most = seen;
+        best = camera;
+      }
+    }
+  }
+  return best;
+}
+
+void draw_line(image::Image& image, const Vec2& from, const Vec2& to, int width) {
+  // No mark is longer than the picture, unless it leaves it.
+  const double length = (to - from).norm();
+  if (!(length < 4.0 * (image.width + image.height))) return;
+  const int steps = std::max(1, static_cast<int>(std::ceil(length)));
+  for (int s = 0; s <= steps; ++s) {
+    const Vec2 at = from + (to - from) * s / steps;
+    for (int dy = 0; dy < width; ++dy) {
+      for (int dx = 0; dx < width; ++dx) {
+        const int x = static_cast<int>(at.x()) + dx, y = static_cast<int>(at.y()) + dy;
+        if (x >= 0 && y >= 0 && x < image.width && y < image.height) std::ranges::copy(kMark, image.pixel(x, y));
+      }
+    }
+  }
+}
+
+void outline(image::Image& image, const frame::FrameSnapshot& snapshot, const frame::Camera& camera,
+             std::span<const MeetingPlace> places) {
+  const Vec3 up = up_of(snapshot);
+  const double aspect = static_cast<double>(image.width) / image.height;
+  const render::View view =
+      render::make_view(camera, up, aspect, render::subject_bounds(snapshot), render::find_floor(snapshot, up));
+  const int width = std::max(1, static_cast<int>(std::lround(kMarkWidth * image.height)));
+  for (const MeetingPlace& place : places) {
+    for (const auto& triangle : place.triangles) {
+      std::array<Eigen::Vector4d, 3> clip;
+      for (std::size_t c = 0; c < 3; ++c) clip[c] = view.clip_from_world * triangle[c].homogeneous();
+      const auto behind = [&](const Eigen::Vector4d& corner) { return corner.w() < view.near; };
+      if (std::ranges::any_of(clip, behind)) continue;
+      const auto pixel = [&](const Eigen::Vector4d& corner) {
+        return Vec2((0.5 + 0.5 * corner.x() / corner.w()) * image.width,
+                    (0.5 - 0.5 * corner.y() / corner.w()) * image.height);
+      };
+      for (std::size_t c = 0; c < 3; ++c) draw_line(image, pixel(clip[c]), pixel(clip[(c + 1) % 3]), width);
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, const render::Settings& settings,
+                                            FramePainter& painter) {
+  const frame::FrameSnapshot& snapshot = *start.snapshot;
+  const double aspect = aspect_of(settings);
+  std::vector<image::SheetPicture> pictures;
+  const auto add = [&](const frame::Camera& camera, std::string left, std::string right) {
+    frame::FrameSnapshot copy = snapshot;
+    copy.cameras = {camera};
+    pictures.push_back({painter.draw(copy), std::move(left), std::move(right)});
+    outline(pictures.back().image, snapshot, camera, start.places);
+  };
+  const frame::Camera* named = render::find_camera(snapshot, settings.camera);
+  add(named ? *named : render::frame_subjects(snapshot, up_of(snapshot), aspect), "the start", "");
+  for (std::size_t p = 0; p < std::min(start.places.size(), kCloseUps); ++p) {
+    const MeetingPlace& place = start.places[p];
+    add(look_at(snapshot, place, aspect), place.a == place.b ? place.a + " itself" : place.a + " and " + place.b,
+        fmt::format("{} pair{}, {:.3g} m across", place.pairs, place.pairs == 1 ? "" : "s", place.size));
+  }
+  return pictures;
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,92 @@
+#include "simulation/meetings.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <array>
+#include <map>
+#include <numeric>
+#include <set>
+#include <tuple>
+
+namespace weft::simulation {
+namespace {
+
+// Places that a message names; a crumpled cloth can have hundreds.
+constexpr std::size_t kNamedPlaces = 6;
+
+/// Vertices that are joined to each other.
+class Joined {
+ public:
+  explicit Joined(Index vertices) : parent_(static_cast<std::size_t>(vertices)) {
+    std::iota(parent_.begin(), parent_.end(), Index{0});
+  }
+  Index root(Index v) {
+    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
+    return v;
+  }
+  void join(Index a, Index b) { parent_[std::max(root(a), root(b))] = std::min(root(a), root(b)); }
+
+ private:
+  std::vector<Index> parent_;
+};
+
+}  // namespace
+
+std::vector<MeetingPlace> meeting_places(std::span<const collision::CornerPair> pairs, const collision::Bodies& bodies,
+                                         std::span<const std::string> names, std::span<const Vec3> x) {
+  // Pairs of different objects join vertices that others join too: each pair of objects by itself.
+  std::map<std::pair<std::size_t, std::size_t>, std::vector<collision::CornerPair>> by_bodies;
+  for (const collision::CornerPair& pair : pairs)
+    by_bodies[{bodies.body_of(pair.a[0]), bodies.body_of(pair.b[0])}].push_back(pair);
+  std::vector<MeetingPlace> places;
+  for (const auto& [objects, of_objects] : by_bodies) {
+    Joined joined(bodies.vertex_count());
+    for (const auto& [a, b] : of_objects)
+      for (const Index v : {a[0], a[1], a[2], b[0], b[1], b[2]}) joined.join(a[0], v);
+    std::map<Index, std::set<collision::CornerPair>> groups;
+    for (const collision::CornerPair& pair : of_objects) groups[joined.root(pair.a[0])].insert(pair);
+    for (const auto& [root, group] : groups) {
+      MeetingPlace place;
+      place.a = names[objects.first];
+      place.b = names[objects.second];
+      place.pairs = group.size();
+      std::set<collision::Triangle> triangles;
+      Box3 box;
+      for (const auto& [a, b] : group) {
+        triangles.insert({a, b});
+        // A large triangle of a floor does not make a place large: the smaller one tells where it is.
+        const auto box_of = [&](const collision::Triangle& t) { return Box3(x[t[0]]).extend(x[t[1]]).extend(x[t[2]]); };
+        const Box3 box_a = box_of(a), box_b = box_of(b);
+        box.extend(box_a.diagonal().norm() < box_b.diagonal().norm() ? box_a : box_b);
+      }
+      place.centre = box.center();
+      place.size = box.sizes().maxCoeff();
+      for (const collision::Triangle& t : triangles) place.triangles.push_back({x[t[0]], x[t[1]], x[t[2]]});
+      places.push_back(std::move(place));
+    }
+  }
+  std::ranges::stable_sort(places, std::ranges::greater{}, &MeetingPlace::pairs);
+  return places;
+}
+
+std::string describe(std::span<const MeetingPlace> places) {
+  const auto counted = [](std::size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  std::size_t pairs = 0;
+  for (const MeetingPlace& place : places) pairs += place.pairs;
+  std::string text = fmt::format("{} of triangles that touch or cross in {}: ", counted(pairs, "pair"),
+                                 counted(places.size(), "place"));
+  for (std::size_t p = 0; p < std::min(places.size(), kNamedPlaces); ++p) {
+    const MeetingPlace& place = places[p];
+    const std::string objects =
+        place.a == place.b ? fmt::format("'{}' itself", place.a) : fmt::format("'{}' and '{}'", place.a, place.b);
+    text += fmt::format("{}{} ({}) around ({:.3g}, {:.3g}, {:.3g}) m, {:.3g} m across", p > 0 ? "; " : "", objects,
+                        counted(place.pairs, "pair"), place.centre.x(), place.centre.y(), place.centre.z(), place.size);
+  }
+  if (places.size() > kNamedPlaces) text += fmt::format("; and {} more", places.size() - kNamedPlaces);
+  return text;
+}
+
+}  // namespace weft::simulation

@@ -1,0 +1,100 @@
+#include "untangle/crossings.hpp"
+
+#include <algorithm>
+#include <optional>
+#include <tuple>
+
+namespace weft::untangle {
+namespace {
+
+struct Pierced {
+  double share;
+  std::array<double, 3> weights;
+};
+
+// Where the segment from p to q goes through a triangle; empty also where it lies in its plane.
+std::optional<Pierced> pierce(const Vec3& p, const Vec3& q, const collision::Triangle& t, std::span<const Vec3> x) {
+  const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
+  const Vec3 n = (b - a).cross(c - a);
+  const double from = n.dot(p - a), to = n.dot(q - a);
+  if (from * to > 0 || from == to) return std::nullopt;
+  const Vec3 way = q - p;
+  const double u = way.dot((b - p).cross(c - p)), v = way.dot((c - p).cross(a - p)), w = way.dot((a - p).cross(b - p));
+  const double sum = u + v + w;
+  if (sum == 0 || std::min({u / sum, v / sum, w / sum}) < 0) return std::nullopt;
+  return Pierced{from / (from - to), {u / sum, v / sum, w / sum}};
+}
+
+}  // namespace
+
+namespace {
+
+bool of_solid(const Fabric& fabric, Index vertex) {
+  const Kind kind = fabric.kinds[fabric.bodies.body_of(vertex)];
+  return kind == Kind::solid || kind == Kind::floor;
+}
+
+}  // namespace
+
+bool with_solid(const Fabric& fabric, const Crossing& crossing) {
+  return of_solid(fabric, fabric.edges.edges[crossing.edge].vertices[0]) ||
+         of_solid(fabric, fabric.bodies.triangles()[crossing.triangle][0]);
+}
+
+CrossingFinder::CrossingFinder(const Fabric& fabric, std::span<const Vec3> x, bool self, bool obstacles)
+    : fabric_(fabric), broad_phase_(fabric.bodies.surfaces(), x) {
+  const collision::Bodies& bodies = fabric.bodies;
+  for (std::size_t a = 0; a < bodies.size() && bodies[a].deformable; ++a)
+    for (std::size_t b = a; b < bodies.size(); ++b)
+      if (bodies[b].deformable ? self : obstacles) wanted_.push_back({a, b});
+}
+
+void CrossingFinder::collect(std::span<const Vec3> x, double margin) {
+  for (std::size_t b = 0; b < fabric_.bodies.size(); ++b) broad_phase_.refit(b, x, x, margin);
+  candidates_.clear();
+  for (const auto& [a, b] : wanted_)
+    a == b ? broad_phase_.self_pairs(a, candidates_) : broad_phase_.pairs(a, b, candidates_);
+}
+
+std::span<const collision::TrianglePair> CrossingFinder::near(std::span<const Vec3> x, double distance) {
+  collect(x, 0.5 * distance);
+  return candidates_.apart.view();
+}
+
+// The edges of one triangle against another, but those that end in the vertex `without`, which both have.
+bool CrossingFinder::test(Index of_edge, Index triangle, Index without, std::span<const Vec3> x) {
+  bool any = false;
+  for (const Index e : fabric_.edges.of_triangle[of_edge]) {
+    const auto [i, j] = fabric_.edges.edges[e].vertices;
+    if (i == without || j == without) continue;
+    const auto pierced = pierce(x[i], x[j], fabric_.bodies.triangles()[triangle], x);
+    if (!pierced) continue;
+    any = true;
+    crossings_.push_back({e, triangle, pierced->share, pierced->weights});
+  }
+  return any;
+}
+
+std::span<const Crossing> CrossingFinder::find(std::span<const Vec3> x) {
+  collect(x, 0);
+  crossings_.clear();
+  pairs_ = 0;
+  const auto both = [&](Index a, Index b, Index shared) {
+    const bool first = test(a, b, shared, x), second = test(b, a, shared, x);
+    pairs_ += first || second;
+  };
+  for (const auto& [a, b] : candidates_.apart) both(a, b, -1);
+  for (const auto& [a, b] : candidates_.one_shared) {
+    const auto& corners = fabric_.bodies.triangles()[b];
+    for (const Index v : fabric_.bodies.triangles()[a])
+      if (std::ranges::find(corners, v) != corners.end()) both(a, b, v);
+  }
+  const auto key = [](const Crossing& c) { return std::tie(c.edge, c.triangle); };
+  std::ranges::stable_sort(crossings_, {}, key);
+  crossings_.erase(std::unique(crossings_.begin(), crossings_.end(),
+                               [&](const Crossing& a, const Crossing& b) { return key(a) == key(b); }),
+                   crossings_.end());
+  return crossings_;
+}
+
+}  // namespace weft::untangle

@@ -1,0 +1,118 @@
+#include "untangle/solid.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "collision/proximity/closest_points.hpp"
+#include "collision/proximity/surface_point.hpp"
+
+namespace weft::untangle {
+namespace {
+
+// Above a face by this part of the body's size is what that face has outside: less than any detail, more than rounding.
+constexpr double kAbove = 1e-6;
+// Rays look this way: nearly along an axis, so that boxes around them are thin, and along no edge that a modeller
+// draws.
+const Vec3 kRay(1, 0.00137, 0.00211);
+
+}  // namespace
+
+Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kind, std::span<const Vec3> x)
+    : surfaces_(surfaces), number_(number), kind_(kind), x_(x) {
+  const collision::Surface& surface = surfaces.surface(number);
+  for (const collision::Triangle& t : surface.triangles)
+    for (const Index v : t) box_.extend(x[v]);
+  if (kind == Kind::floor) {
+    normal_ = collision::face_normal(surface.triangles.front(), x);
+    place_ = x[surface.triangles.front()[0]];
+    return;
+  }
+  const double above = kAbove * box_.diagonal().norm();
+  for (const collision::Triangle& t : surface.triangles)
+    buried_.push_back(inside((x[t[0]] + x[t[1]] + x[t[2]]) / 3 + above * collision::face_normal(t, x)));
+}
+
+bool Solid::reaches(const Vec3& p, double distance) const {
+  if (kind_ == Kind::floor) return normal_.dot(p - place_) < distance;
+  return box_.squaredExteriorDistance(p) <= distance * distance;
+}
+
+// Where the way from p goes through faces, in order.
+std::vector<Solid::Hit> Solid::hits(const Vec3& p, const Vec3& way) const {
+  const collision::Surface& surface = surfaces_.surface(number_);
+  std::vector<Index> numbers;
+  surfaces_.triangles_in_box(number_, p.cwiseMin(p + way), p.cwiseMax(p + way), numbers);
+  std::vector<Hit> found;
+  for (const Index number : numbers) {
+    const collision::Triangle& t = surface.triangles[number - surface.first_triangle];
+    const Vec3 &a = x_[t[0]], &b = x_[t[1]], &c = x_[t[2]];
+    const double u = way.dot((b - p).cross(c - p)), v = way.dot((c - p).cross(a - p)),
+                 w = way.dot((a - p).cross(b - p));
+    const bool one_side = (u >= 0 && v >= 0 && w >= 0) || (u <= 0 && v <= 0 && w <= 0);
+    if (!one_side || u + v + w == 0) continue;
+    const Vec3 n = (b - a).cross(c - a);
+    const double along = n.dot(way);
+    if (along == 0) continue;
+    const double at = n.dot(a - p) / along;
+    if (at > 0 && at <= 1) found.push_back({at, along > 0 ? -1 : 1});
+  }
+  std::ranges::stable_sort(found, {}, &Hit::at);
+  return found;
+}
+
+bool Solid::inside(const Vec3& p) const {
+  if (kind_ == Kind::floor) return normal_.dot(p - place_) < 0;
+  if (!box_.contains(p)) return false;
+  int turns = 0;
+  for (const Hit& hit : hits(p, 1.01 * box_.diagonal().norm() * kRay)) turns += hit.turn;
+  return turns < 0;
+}
+
+Solid::Exit Solid::exit(const Vec3& p) const {
+  if (kind_ == Kind::floor) {
+    const double height = normal_.dot(p - place_);
+    return {p - height * normal_, normal_, height};
+  }
+  const collision::Surface& surface = surfaces_.surface(number_);
+  std::vector<Index> numbers;
+  surfaces_.nearest_triangles(
+      number_, p,
+      [&](Index number) {
+        if (buried_[number - surface.first_triangle]) return std::numeric_limits<double>::infinity();
+        const collision::Triangle& t = surface.triangles[number - surface.first_triangle];
+        return collision::closest_vertex_face(p, x_[t[0]], x_[t[1]], x_[t[2]]).distance_sq;
+      },
+      numbers);
+  std::vector<collision::Triangle> nearest;
+  for (const Index number : numbers) nearest.push_back(surface.triangles[number - surface.first_triangle]);
+  collision::SurfacePoint point = collision::nearest_point(p, nearest, x_);
+  const Vec3 place = p - point.height * point.normal;
+  // The nearest point's own sign is wrong where shells cross.
+  const double side = inside(p) ? -1 : 1;
+  if (side * point.height < 0) point.normal = -point.normal;
+  return {place, point.normal, side * std::abs(point.height)};
+}
+
+double Solid::way_out(const Vec3& p, const Vec3& d) const {
+  if (kind_ == Kind::floor) {
+    const double rise = normal_.dot(d);
+    return rise > 0 ? -normal_.dot(p - place_) / rise : std::numeric_limits<double>::infinity();
+  }
+  const double length = 1.01 * box_.diagonal().norm();
+  int depth = 0, least = 0;
+  const std::vector<Hit> found = hits(p, length * d);
+  for (const Hit& hit : found) least -= hit.turn;
+  depth = least;  // shells around p: all that the ray leaves more often than it enters
+  for (const Hit& hit : found) {
+    depth += hit.turn;
+    if (depth <= 0) return length * hit.at;
+  }
+  return 0;
+}
+
+double Solid::depth_between(const Vec3& p, const Vec3& q) const {
+  const Vec3 middle = 0.5 * (p + q);
+  return reaches(middle, 0) && inside(middle) ? -exit(middle).height / (p - q).norm() : 0;
+}
+
+}  // namespace weft::untangle

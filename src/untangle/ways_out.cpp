@@ -1,0 +1,173 @@
+#include "untangle/ways_out.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+
+namespace weft::untangle {
+namespace {
+
+// What a thread that would still go through the body costs, in squares of a stretch.
+constexpr double kBlockedCost = 25;
+// Depth of the middle of a thread in the body, in its lengths, from which on it goes through and does not only cut a
+// corner; up to which it does so for certain.
+constexpr double kBlockedDepth = 0.25, kFreeDepth = 0.1;
+// Of ways that stretch cloth alike the shorter: cost of a way as long as the region.
+constexpr double kWayCost = 0.05;
+// What moving all of a cloth costs, so that it stays where it is if the region can do without, and the farthest that it
+// goes, in sizes of the region.
+constexpr double kShiftCost = 0.3, kLongestShift = 1.1;
+// Share of its particles that may go through the body on that way: more, and cloth around the body would be taken off.
+constexpr double kMostThrough = 0.1;
+
+// Steps to all neighbours on a cube, the nearest first, and so the same for each run.
+std::vector<Vec3> directions() {
+  std::vector<Vec3> all;
+  for (const int steps : {1, 2, 3})
+    for (int x = -1; x <= 1; ++x)
+      for (int y = -1; y <= 1; ++y)
+        for (int z = -1; z <= 1; ++z)
+          if (std::abs(x) + std::abs(y) + std::abs(z) == steps) all.push_back(Vec3(x, y, z).normalized());
+  return all;
+}
+
+/// Of the threads of the particles that move.
+struct Threads {
+  double blocked = 0;  // share that the body would block
+  bool free = true;    // none would go through it
+};
+Threads threads_after(const Fabric& fabric, const Solid& solid, std::span<const Move> moves,
+                      const std::vector<Index>& move_of, std::span<const Vec3> x) {
+  std::size_t blocked = 0, all = 0;
+  Threads threads;
+  for (const Move& move : moves) {
+    for (const Index j : fabric.neighbours[move.particle]) {
+      if (move_of[j] >= 0 && j < move.particle) continue;
+      const double depth = solid.depth_between(move.target, move_of[j] >= 0 ? moves[move_of[j]].target : x[j]);
+      ++all;
+      blocked += depth > kBlockedDepth;
+      threads.free = threads.free && depth < kFreeDepth;
+    }
+  }
+  if (all > 0) threads.blocked = static_cast<double>(blocked) / static_cast<double>(all);
+  return threads;
+}
+
+// Mean normal of the cloth around these particles; by the triangles that have one of them as their first corner in it.
+Vec3 mean_normal(const collision::Surface& cloth, const std::vector<Index>& move_of, std::span<const Vec3> x) {
+  Vec3 sum = Vec3::Zero();
+  for (const collision::Triangle& t : cloth.triangles)
+    if (move_of[t[0]] >= 0 || move_of[t[1]] >= 0 || move_of[t[2]] >= 0)
+      sum += (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+  return sum.stableNormalized();
+}
+
+// All particles of the mesh that this one is in.
+std::vector<Index> piece_of(const Fabric& fabric, Index first) {
+  std::vector<Index> piece{first};
+  std::vector<std::uint8_t> in(static_cast<std::size_t>(fabric.particles()), 0);
+  in[first] = 1;
+  for (std::size_t m = 0; m < piece.size(); ++m)
+    for (const Index j : fabric.neighbours[piece[m]])
+      if (!in[j]) {
+        in[j] = 1;
+        piece.push_back(j);
+      }
+  return piece;
+}
+
+}  // namespace
+
+std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, std::span<const double> above,
+                                      std::span<const Vec3> x) {
+  const Index particles = fabric.particles();
+  std::vector<std::uint8_t> inside(particles, 0);
+  for (Index i = 0; i < particles; ++i) inside[i] = solid.reaches(x[i], 0) && solid.inside(x[i]);
+  std::vector<Index> move_of(x.size(), -1);  // per vertex: its place among the moves of the region at hand
+  std::vector<InsideRegion> regions;
+  for (Index first = 0; first < particles; ++first) {
+    if (!inside[first]) continue;
+    // All that hangs together with the first.
+    std::vector<Index> members{first};
+    inside[first] = 0;
+    for (std::size_t m = 0; m < members.size(); ++m)
+      for (const Index j : fabric.neighbours[members[m]])
+        if (inside[j]) {
+          inside[j] = 0;
+          members.push_back(j);
+        }
+    InsideRegion region;
+    region.cloth = fabric.bodies.body_of(first);
+    region.body = solid.number();
+    Box3 box;
+    for (std::size_t m = 0; m < members.size(); ++m) {
+      box.extend(x[members[m]]);
+      move_of[members[m]] = static_cast<Index>(m);
+    }
+    region.centre = box.center();
+    region.size = box.sizes().maxCoeff();
+
+    const double height = above[region.cloth];
+    double best = std::numeric_limits<double>::infinity();
+    const auto consider = [&](const std::function<Vec3(const Vec3&)>& out_of) {
+      std::vector<Move> moves;
+      double farthest = 0;
+      for (const Index i : members) {
+        moves.push_back({i, out_of(x[i])});
+        if (!moves.back().target.allFinite()) return;
+        farthest = std::max(farthest, (moves.back().target - x[i]).norm());
+      }
+      const double cost = stretch_cost(fabric, moves, x);
+      const Threads threads = threads_after(fabric, solid, moves, move_of, x);
+      const double whole = cost + kBlockedCost * threads.blocked + kWayCost * farthest / std::max(region.size, height);
+      if (threads.free) region.shortest = std::min(region.shortest, farthest);
+      if (whole >= best) return;
+      best = whole;
+      region.cost = cost;
+      region.blocked = threads.blocked;
+      region.farthest = farthest;
+      region.moves = std::move(moves);
+    };
+    consider([&](const Vec3& p) -> Vec3 {
+      const Solid::Exit exit = solid.exit(p);
+      return exit.place + height * exit.normal;
+    });
+    // All that hangs together with the region goes along, where that takes it out of the body and nothing else into it.
+    const auto shift_whole = [&](const Vec3& d) {
+      double way = 0;
+      for (const Index i : members) way = std::max(way, solid.way_out(x[i], d) + height);
+      const double whole = kShiftCost + kWayCost * way / std::max(region.size, height);
+      if (!(way <= kLongestShift * region.size) || whole >= best) return;
+      std::vector<Move> moves;
+      std::size_t through = 0;
+      for (const Index i : piece_of(fabric, members.front())) {
+        const Vec3 target = x[i] + way * d;
+        if (!fabric.movable[i] || (solid.reaches(target, 0) && solid.inside(target))) return;
+        through += move_of[i] < 0 && solid.meets(x[i], target);
+        moves.push_back({i, target});
+      }
+      if (static_cast<double>(through) > kMostThrough * static_cast<double>(moves.size())) return;
+      for (const Move& move : moves)
+        for (const Index j : fabric.neighbours[move.particle])
+          if (solid.depth_between(move.target, x[j] + way * d) > kBlockedDepth) return;
+      best = whole;
+      region.cost = region.blocked = 0;
+      region.farthest = way;
+      region.shortest = std::min(region.shortest, way);
+      region.moves = std::move(moves);
+    };
+    std::vector<Vec3> ways = directions();
+    const Vec3 normal = mean_normal(fabric.bodies.surfaces()[region.cloth], move_of, x);
+    if (!normal.isZero()) ways.insert(ways.begin(), {normal, -normal});
+    for (const Vec3& d : ways) consider([&](const Vec3& p) -> Vec3 { return p + (solid.way_out(p, d) + height) * d; });
+    if (best > kShiftCost) {
+      for (const Vec3& d : ways) shift_whole(d);
+    }
+    for (const Index i : members) move_of[i] = -1;
+    regions.push_back(std::move(region));
+  }
+  return regions;
+}
+
+}  // namespace weft::untangle

@@ -1,0 +1,155 @@
+// Starts that cross: which are taken apart, to where, and which are refused.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <functional>
+
+#include "core/error.hpp"
+#include "simulation/simulation.hpp"
+#include "support/intersections.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::untangle {
+namespace {
+
+using simulation::Simulation;
+
+scene::Scene empty_scene() {
+  scene::Scene scene;
+  scene.name = "test";
+  scene.time = {.duration = 0.2, .fps = 25};
+  return scene;
+}
+
+scene::Cloth sheet(const char* name, const Vec3& position, double size = 0.8, int particles = 25) {
+  scene::Cloth cloth;
+  cloth.name = name;
+  cloth.size = {size, size};
+  cloth.particles_weft = cloth.particles_warp = particles;
+  cloth.pose.position = position;
+  cloth.start = scene::ClothStart::untangle;
+  return cloth;
+}
+
+Quat turned(double degrees, const Vec3& axis) {
+  return Quat(Eigen::AngleAxisd(degrees * EIGEN_PI / 180, axis.normalized()));
+}
+
+void add_obstacle(scene::Scene& scene, const char* name, scene::Shape shape, const Vec3& position = Vec3::Zero()) {
+  scene::Obstacle obstacle;
+  obstacle.name = name;
+  obstacle.shape = std::move(shape);
+  obstacle.pose.position = position;
+  scene.obstacles.push_back(obstacle);
+}
+
+std::size_t judged_pairs(const frame::FrameSnapshot& snapshot) {
+  return support::judge(support::objects_of(snapshot)).pairs.size();
+}
+
+std::string refusal(const scene::Scene& scene) {
+  try {
+    const Simulation simulation(scene);
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::scene_invalid);
+    return error.what();
+  }
+  return "";
+}
+
+double longest_way(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) {
+  double most = 0;
+  for (std::size_t s = 0; s < a.states.size(); ++s)
+    for (std::size_t i = 0; i < a.states[s].positions.size(); ++i)
+      most = std::max(most, (a.states[s].positions[i] - b.states[s].positions[i]).norm());
+  return most;
+}
+
+/// Crosses at first, by the exact judge, and no longer when the run begins, nor in the frames that follow; the same
+/// without `start` is refused.
+frame::SnapshotPtr expect_untangled(const scene::Scene& scene, std::size_t least_before = 1) {
+  const frame::SnapshotPtr given = simulation::view_start(scene).snapshot;
+  EXPECT_GE(judged_pairs(*given), least_before);
+  scene::Scene as_given = scene;
+  for (scene::Cloth& cloth : as_given.cloths) cloth.start = scene::ClothStart::as_given;
+  EXPECT_NE(refusal(as_given).find("start = \"untangle\""), std::string::npos);
+  Simulation simulation(scene);
+  const frame::SnapshotPtr first = simulation.snapshot();
+  EXPECT_EQ(judged_pairs(*first), 0U);
+  for (int frame = 0; frame < 3; ++frame) {
+    simulation.advance();
+    EXPECT_EQ(judged_pairs(*simulation.snapshot()), 0U) << "frame " << frame + 1;
+  }
+  return first;
+}
+
+double lowest(const std::vector<Vec3>& x) {
+  return std::ranges::min_element(x, {}, [](const Vec3& p) { return p.z(); })->z();
+}
+
+TEST(UntangledStart, ASheetThroughABallGoesOverToTheSmallerSide) {
+  for (const double height : {0.06, -0.06}) {
+    scene::Scene scene = empty_scene();
+    scene.cloths.push_back(sheet("sheet", {0, 0, height}));
+    add_obstacle(scene, "ball", scene::Sphere{0.2});
+    const frame::SnapshotPtr first = expect_untangled(scene, 50);
+    // The particle in the middle is on that pole, no farther off than cloth is thick.
+    const Vec3& middle = first->states[0].positions[12 + 25 * 12];
+    EXPECT_NEAR(middle.z(), std::copysign(0.2, height), 0.004);
+    EXPECT_LT(longest_way(*first, *simulation::view_start(scene).snapshot), 0.2);
+  }
+}
+
+TEST(UntangledStart, ClothBelowTheFloorIsInsideOfIt) {
+  scene::Scene scene = empty_scene();
+  scene.cloths.push_back(sheet("sheet", {0, 0, 0.01}));
+  scene.cloths[0].pose.rotation = turned(20, Vec3::UnitX());
+  add_obstacle(scene, "floor", scene::Plane{});
+  EXPECT_GT(lowest(expect_untangled(scene)->states[0].positions), 0);
+}
+
+TEST(UntangledStart, CrossedSheetsAreOnOneSideOfEachOther) {
+  scene::Scene scene = empty_scene();
+  scene.cloths = {sheet("a", {0, 0, 0}), sheet("b", {0, 0, 0.2}, 0.6)};
+  scene.cloths[1].pose.rotation = turned(80, Vec3(1, 0.2, 0));
+  const frame::SnapshotPtr first = expect_untangled(scene);
+  EXPECT_LT(longest_way(*first, *simulation::view_start(scene).snapshot), 0.25);
+}
+
+TEST(UntangledStart, ACrumpledSheetThatCrossesItselfIsSmoothedWhereItDoes) {
+  scene::Scene scene = empty_scene();
+  scene.cloths.push_back(sheet("sheet", Vec3::Zero(), 0.3));
+  scene.cloths[0].start_noise = 0.011;
+  expect_untangled(scene, 100);
+}
+
+TEST(UntangledStart, WhatMayNotBeMovedIsNot) {
+  scene::Scene scene = empty_scene();
+  scene.cloths = {sheet("a", {0, 0, 0}), sheet("b", {0, 0, 0.2}, 0.6)};
+  scene.cloths[1].pose.rotation = turned(80, Vec3(1, 0.2, 0));
+  scene.cloths[0].start = scene::ClothStart::as_given;
+  const frame::SnapshotPtr given = simulation::view_start(scene).snapshot, first = Simulation(scene).snapshot();
+  EXPECT_EQ(judged_pairs(*first), 0U);
+  EXPECT_EQ(first->states[0].positions, given->states[0].positions);
+  EXPECT_NE(first->states[1].positions, given->states[1].positions);
+}
+
+TEST(UntangledStart, ASheetThatAPoleGoesThroughIsRefusedWithWhereAndHowFar) {
+  scene::Scene scene = empty_scene();
+  scene.cloths.push_back(sheet("sheet", Vec3::Zero()));
+  add_obstacle(scene, "pole", scene::Cylinder{0.05, 1.2});
+  const std::string text = refusal(scene);
+  EXPECT_NE(text.find("'sheet' in 'pole' around (0, 0, 0) m"), std::string::npos) << text;
+  EXPECT_NE(text.find("by 0.60"), std::string::npos) << text;
+}
+
+TEST(UntangledStart, OfASceneThatIsApartNothingMoves) {
+  scene::Scene scene = empty_scene();
+  scene.cloths.push_back(sheet("sheet", {0, 0, 0.21}));
+  add_obstacle(scene, "ball", scene::Sphere{0.2});
+  EXPECT_EQ(longest_way(*Simulation(scene).snapshot(), *simulation::view_start(scene).snapshot), 0);
+}
+
+}  // namespace
+}  // namespace weft::untangle
