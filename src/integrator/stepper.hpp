@@ -156,7 +156,7 @@ class Stepper {
   std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void measure(std::span<const Vec3> displacements, std::span<const double> masses, std::vector<double>& speeds) const;
   void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);
-  void select_unsolved();
+  void select_unsolved(int iterations);
   bool is_solved() const;
   void report_worst(double h, StepReport& report) const;
   void finish(const State& now, const Stage& stage, std::span<const HeldParticle> held, State& next) const;

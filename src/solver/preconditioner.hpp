@@ -8,6 +8,7 @@
 
 #include "solver/linear_system.hpp"
 #include "solver/quads.hpp"
+#include "solver/weights.hpp"
 
 namespace weft::solver {
 
@@ -25,7 +26,9 @@ enum class Sums { anew, kept };
 /// A_l should be the diagonal of P_lᵀ A P_l, and on the last level all of it. That is dear, and known well enough from
 /// sums over groups, R_l A R_lᵀ: where groups move as wholes all strain is in the seams between them, and where it is
 /// spread over the width of a group there is half as much of it, each time that the width doubles. Of the matrix but
-/// its metric a share of 1/2^l is taken; of the metric, and of terms, which know no neighbours, all.
+/// its metric a share of 1/2^l is taken, of the metric all. Terms know no neighbours: what they hold particles with is
+/// taken to groups by the weights of interpolation, which is no less than P_lᵀ A P_l has on its diagonal, and for
+/// patches that itself is made.
 ///
 /// Threads far stiffer than mass stay constant on groups, P_l = R_lᵀ with all of the sums: interpolation bends folds,
 /// and then sums over seams say nothing of threads that run elsewhere within groups.
@@ -41,25 +44,12 @@ class Preconditioner {
   void apply(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, std::span<const std::size_t> parts);
 
  private:
-  /// Rows of weights.
-  struct Weights {
-    std::vector<Index> start;  // rows + 1 entries into columns
-    std::vector<Index> columns;
-    std::vector<Real> values;
-
-    Quad<Real> sum(std::size_t row, std::span<const Quad<Real>> of) const {
-      Quad<Real> result{};
-      for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
-      return result;
-    }
-    Weights transposed(std::size_t rows) const;
-  };
   /// Groups between single particles and patches.
   struct Level {
     std::vector<Index> group_of;           // per particle
     std::vector<Index> parent;             // per group, on the next level
-    Weights of_groups;                     // per member (a particle, a group of the level before)
-    Weights of_members;                    // per group
+    Weights<Real> of_groups;               // per member (a particle, a group of the level before)
+    Weights<Real> of_members;              // per group
     std::vector<RowRange> of_part;         // groups of each part
     RowChunks groups;                      // of the selected parts
     std::vector<Mat3> of_matrix;           // per group, without terms
@@ -75,10 +65,9 @@ class Preconditioner {
   void scale_sums(std::size_t part);
   void mark_touched();
   void invert_particles();
+  std::vector<Mat3> lumped_terms() const;
   void invert_groups();
   void factorise_patches();
-  template <class Body>
-  void for_each_term(const Body& body) const;
   void select(std::span<const std::size_t> parts);
   void restrict_residual(std::span<const Quad<Real>> r);
   void correct_groups();
@@ -100,6 +89,7 @@ class Preconditioner {
   std::vector<char> touched_, touched_before_;  // per particle: by terms
   std::vector<QuadBlock<Real>> inverse_;        // per particle, already filtered: S P⁻¹ S
   std::vector<Level> levels_;                   // the last one is that of the patches
+  Weights<Real> of_patches_;                    // per particle
   // Per block of the matrix the first level on which row and column are in the same group, or the number of levels.
   std::vector<std::uint8_t> shared_full_, shared_isotropic_;
   std::vector<std::vector<Index>> members_of_patch_;  // particles

@@ -119,6 +119,36 @@ TEST(Stepper, WhatNobodySeesIsLeftAtRestButNotBesideATolerance) {
   EXPECT_LT(strict.step(spring, now, 0.01, Vec3::Zero(), {}, next).allowed, 1e-8);
 }
 
+// Two springs that nothing couples, and where Newton's method looked at them.
+class TwoParts : public testing::Particles {
+ public:
+  TwoParts() : Particles({1, 1}) { linear_system().parts = {{0, 1}, {1, 2}}; }
+  void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) override {
+    looked_at.emplace_back(at.x.begin(), at.x.end());
+    for (solver::Part& part : linear_system().parts) ++part.version;
+    Particles::linearise(at, iteration, force);
+  }
+  std::vector<std::vector<Vec3>> looked_at;
+
+ protected:
+  Vec3 force_on(const Vec3& x) const override { return testing::HardeningSpring::force_at(x); }
+  Mat3 stiffness_of(const Vec3& x) const override {
+    return (1 + x.squaredNorm()) * Mat3::Identity() + 2 * x * x.transpose();
+  }
+};
+
+TEST(Stepper, PartThatIsSolvedStandsStillWhileAnotherGoesOn) {
+  TwoParts system;
+  const State now{{Vec3(0.1, 0, 0), Vec3(3, 0, 0)}, {Vec3(0, 0.1, 0), Vec3(0, 2, 0)}};
+  State next;
+  Stepper stepper(Method::implicit_euler, {1e-3, 40, 1e-6, 1000});
+  ASSERT_EQ(stepper.step(system, now, 0.5, Vec3::Zero(), {}, next).verdict, Verdict::solved);
+  ASSERT_GE(system.looked_at.size(), 4U);
+  const std::vector<Vec3>& before_last = *(system.looked_at.end() - 2);
+  EXPECT_EQ(next.x[0], before_last[0]);
+  EXPECT_NE(next.x[1], before_last[1]);
+}
+
 // A force without a value.
 class Broken : public testing::HardeningSpring {
  protected:

@@ -47,6 +47,20 @@ Eigen::MatrixXd threefold(const Eigen::MatrixXd& a) {
   return result;
 }
 
+// Of each particle what the terms hold it with where all that is on its side of them moves with it.
+Eigen::MatrixXd lumped_terms(const LinearSystem& system) {
+  const Eigen::Index rows = system.matrix.rows();
+  Eigen::MatrixXd lumped = Eigen::MatrixXd::Zero(3 * rows, 3 * rows);
+  for (const DiagonalTerm& term : system.diagonal_terms)
+    lumped.block<3, 3>(3 * term.particle, 3 * term.particle) += term.stiffness;
+  for (const StencilTerm& term : system.terms)
+    for (int a = 0; a < 4; ++a)
+      for (int b = 0; b < 4; ++b)
+        if (const double weight = term.weights[a] * term.weights[b]; weight > 0)
+          lumped.block<3, 3>(3 * term.particles[a], 3 * term.particles[a]) += weight * term.stiffness;
+  return lumped;
+}
+
 // The sum of the header; blocks of A_l but on the last level.
 Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
   const Eigen::Index rows = system.matrix.rows();
@@ -54,7 +68,8 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
   const Eigen::MatrixXd matrix = testing::dense(system.matrix), all = testing::dense_with_terms(system);
   const Eigen::VectorXd weights = Eigen::Map<const Eigen::VectorXd>(system.metric.data(), rows);
   const Eigen::MatrixXd metric = threefold(weights.asDiagonal()), held = identity - s;
-  const Eigen::MatrixXd lasting = s * metric * s + held * diagonal_blocks(matrix) * held + s * (all - matrix) * s;
+  const Eigen::MatrixXd lasting = s * metric * s + held * diagonal_blocks(matrix) * held;
+  const Eigen::MatrixXd lumped = s * lumped_terms(system) * s;
   Eigen::MatrixXd sum = diagonal_blocks(s * all * s + held).inverse();
 
   Eigen::MatrixXd neighbours = Eigen::MatrixXd::Zero(rows, rows);
@@ -72,8 +87,14 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
     const Eigen::MatrixXd r = restriction(group_of, grouping.count);
     const Eigen::MatrixXd coarse = r * (share * s * (matrix - metric) * s + lasting) * r.transpose();
     const Eigen::MatrixXd p = threefold(from_groups);
-    const bool last = &grouping == &system.groupings.back();
-    sum += p * (last ? coarse : diagonal_blocks(coarse)).inverse() * p.transpose();
+    Eigen::MatrixXd block = coarse + p.transpose() * s * (all - matrix) * s * p;
+    if (&grouping != &system.groupings.back()) {
+      block = diagonal_blocks(coarse);
+      for (Eigen::Index g = 0; g < grouping.count; ++g)
+        for (Eigen::Index i = 0; i < rows; ++i)
+          block.block<3, 3>(3 * g, 3 * g) += 2 * from_groups(i, g) * lumped.block<3, 3>(3 * i, 3 * i);
+    }
+    sum += p * block.inverse() * p.transpose();
 
     // Groups are neighbours where members are.
     Eigen::MatrixXd next = Eigen::MatrixXd::Zero(grouping.count, grouping.count);
