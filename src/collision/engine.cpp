@@ -33,6 +33,7 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       finder_(bodies_.triangles(), bodies_.vertex_count()),
       builder_(bodies_, parameters.contact, masses),
       response_(parameters.response, {masses.begin(), masses.end()}),
+      failures_(masses.size()),
       pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()),
       carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
   const double reach = candidates_.reach();
@@ -72,26 +73,33 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   step_ = h;
   x_t0_ = x_t0;
   pushed_.clear();
+  pinched_pushes_.clear();
+  std::ranges::fill(failures_, 0);
   carried_.begin_step(x_t0, x_t1, motions);
   find_near(x_t0, x_t1, proximities_);
   if (!pinched_.empty()) {
     pinched_.release(candidates_.hierarchies(), x_t0);
-    for (const FeaturePair& push : pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.reach()))
-      builder_.add_pinched(push, {x_t0, x_t0, x_t1, h}, response_);
+    pinched_pushes_ = pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.reach());
   }
-  builder_.add(proximities_, pinched_, {x_t0, x_t0, x_t1, h}, response_);
+  add_contacts(proximities_, {x_t0, x_t0, x_t1, h});
   if (!apart(x_t0, x_t1)) adopt_failing(x_t0, x_t1);
   if (response_.lean(x_t1, 0.5 * candidates_.reach(), leaning_) && !apart(x_t0, leaning_))
     adopt_failing(x_t0, leaning_);
   response_.prepare(x_t0, x_t1);
 }
 
+void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& motion) {
+  const StepMotion from_start{x_t0_, x_t0_, motion.x_t1, motion.h};
+  for (const FeaturePair& push : pinched_pushes_) builder_.add_pinched(push, from_start, response_);
+  builder_.add(near, pinched_, motion, response_);
+}
+
 void Engine::go_on_from(std::span<const Vec3> x) {
-  const StepMotion motion{x_t0_, x, x, step_};
+  const StepMotion motion{x_t0_, x, x, step_, failures_};
   carried_.begin_step(x, x, {});
   if (coherence_) candidates_.drop();  // what is kept was closest where the step began
   find_near(x, x, near_bend_);
-  builder_.add(near_bend_, pinched_, motion, response_);
+  add_contacts(near_bend_, motion);
   for (const CornerPair& pair : pushed_) builder_.add_failing(pair, motion, response_);
 }
 
@@ -128,12 +136,23 @@ std::span<const CornerPair> Engine::find_meetings(std::span<const Vec3> x) {
   return failing_;
 }
 
+// Of the particles of pairs that are to be pushed apart.
+void Engine::count_failures() {
+  std::vector<std::uint8_t> fails(failures_.size());
+  for (const CornerPair& pair : failing_)
+    for (const Triangle& corners : {pair.a, pair.b})
+      for (Index v : corners)
+        if (static_cast<std::size_t>(v) < fails.size()) fails[v] = 1;
+  for (std::size_t i = 0; i < fails.size(); ++i) failures_[i] += fails[i];
+  pushed_.insert(pushed_.end(), failing_.begin(), failing_.end());
+}
+
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                     std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_give_way) {
   // Corrections can carry vertices out of the bounds that the candidates stand for; then these are collected anew.
   constexpr int kCollections = 8;
   SeparationReport report;
-  pushed_.insert(pushed_.end(), failing_.begin(), failing_.end());
+  count_failures();
   PinchedPairs pinched = pinched_;
   std::vector<std::uint8_t> movable(movable_in_step.begin(), movable_in_step.end());
   for (int c = 0; c < kCollections; ++c) {

@@ -98,6 +98,8 @@ class Engine {
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  void count_failures();
+  void add_contacts(std::span<const Proximity> near, const StepMotion& motion);
   void find_near(std::span<const Vec3> x_from, std::span<const Vec3> x_t1, std::vector<Proximity>& near);
   template <class Archive>
   void serialize_candidates(Archive& archive);
@@ -110,15 +112,17 @@ class Engine {
   ContactBuilder builder_;
   ContactResponse response_;
   std::vector<Vec3> leaning_;
+  std::vector<std::uint8_t> failures_;  // of each particle, in the step
   PinchedPairs pinched_;
   CarriedStarts carried_;
 
-  double step_ = 0;                      // h [s]
-  std::span<const Vec3> x_t0_;           // where the step began
-  std::vector<CornerPair> pushed_;       // pairs that were pushed apart in it
-  std::vector<Proximity> proximities_;   // at the start of the step
-  std::vector<Proximity> near_bend_;     // where its way last bent
-  std::span<const CornerPair> failing_;  // of the last call of apart()
+  double step_ = 0;                          // h [s]
+  std::span<const Vec3> x_t0_;               // where the step began
+  std::vector<FeaturePair> pinched_pushes_;  // back out of obstacles, of the step
+  std::vector<CornerPair> pushed_;           // pairs that were pushed apart in it
+  std::vector<Proximity> proximities_;       // at the start of the step
+  std::vector<Proximity> near_bend_;         // where its way last bent
+  std::span<const CornerPair> failing_;      // of the last call of apart()
 };
 
 }  // namespace weft::collision

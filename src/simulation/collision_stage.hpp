@@ -76,10 +76,8 @@ class CollisionStage {
   /// From `next`, where push_apart() has led to, the way of the step goes on, in another direction: contacts are found
   /// there.
   void go_on_from(const Moment& next);
-  /// Whether the way may do so: with springs, and where nothing is pinched.
-  bool may_bend() const {
-    return response().form() == collision::ResponseForm::springs && engine_.pinched_pairs() == 0;
-  }
+  /// Whether the way may do so: with springs.
+  bool may_bend() const { return response().form() == collision::ResponseForm::springs; }
   /// The pinned particles that the last push_apart() told of.
   std::span<const collision::GivenWay> gave_way() const { return gave_way_; }
   /// What such a particle would have met, and where: "'a' near (0, 0, 0) m".

@@ -83,7 +83,7 @@ class StepLoop {
   using Rejection = std::optional<std::string>;
 
   void advance_equally(double t_t0, double t_t1, FrameReport& report);
-  void advance_over(double t, double h, int halvings, FrameReport& report);
+  void advance_over(double t, double h, int retries, int halvings, FrameReport& report);
   void advance_controlled(double t_t0, double t_t1, FrameReport& report);
   bool turns_too_far(double t, double h) const {
     return collisions_ && collisions_->turns_too_far(t, h, progress_.now);

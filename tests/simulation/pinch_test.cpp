@@ -6,8 +6,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <ostream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "mesh/shapes.hpp"
@@ -199,6 +201,12 @@ keys = [
 ]
 )";
 
+/// The same with threads that lock.
+std::string locking(std::string scene) {
+  const std::string_view before = "pin = ";
+  return scene.insert(scene.find(before), "material = { max_stretch = 0.15 }\n");
+}
+
 struct Pinch {
   const char* name;
   std::string scene;
@@ -222,10 +230,12 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
   scene::Scene scene = support::scene_of_text(GetParam().scene);
   scene.time.step = GetParam().step;
   Simulation simulation(scene);
-  int pinched = 0;
+  int pinched = 0, steps = 0;
   std::vector<std::string> pinches;
+  const auto is_of_pinch = [](const std::string& text) { return text.find("max_stretch") == std::string::npos; };
   for (int k = 1; k < scene.frame_count(); ++k) {
     const FrameReport report = simulation.advance();  // throws where it gives up
+    steps += report.steps;
     const auto snapshot = simulation.snapshot();
     const auto objects = support::objects_of(*snapshot);
     const support::Judgement judgement = support::judge(objects);
@@ -235,9 +245,13 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
       EXPECT_EQ(judgement.pairs.size(), 0u) << "frame " << k;
     }
     pinched += report.pinched_pairs > 0 ? 1 : 0;
-    pinches.insert(pinches.end(), report.warnings.begin(), report.warnings.end());
+    std::ranges::copy_if(report.warnings, std::back_inserter(pinches), is_of_pinch);
   }
   EXPECT_GT(pinched, 0);
+  // Once no shorter step finds room they are as long as ever: 1.0 to 1.7 times as many as without a pinch, with threads
+  // that lock too. Counted anew below steps that are short already the halvings made them 6 and 470 times as many.
+  const double without = (scene.frame_count() - 1) * std::ceil(1 / scene.time.fps / scene.time.step - 1e-9);
+  EXPECT_LT(steps, 2 * without);
   ASSERT_FALSE(pinches.empty());
   for (const std::string& text : pinches) {
     EXPECT_EQ(text.rfind("frame ", 0), 0u) << text;
@@ -245,19 +259,18 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(By, PinchedCloth,
-                         ::testing::Values(Pinch{"jaws", kJaws, 0.01}, Pinch{"jaws", kJaws, 0.04},
-                                           Pinch{"one_jaw_stays", kOneJawStays, 0.01},
-                                           Pinch{"one_jaw_stays", kOneJawStays, 0.04}, Pinch{"stamp", kStamp, 0.01},
-                                           Pinch{"stamp", kStamp, 0.04}, Pinch{"turning_jaw", kTurningJaw, 0.01},
-                                           Pinch{"turning_jaw", kTurningJaw, 0.04},
-                                           Pinch{"slide", std::string(kPress) + kSlidingKeys, 0.01},
-                                           Pinch{"slide", std::string(kPress) + kSlidingKeys, 0.04},
-                                           Pinch{"fast", std::string(kPress) + kFastKeys, 0.01},
-                                           Pinch{"fast", std::string(kPress) + kFastKeys, 0.04}),
-                         [](const auto& pinch) {
-                           return std::string(pinch.param.name) + (pinch.param.step > 0.02 ? "_x4" : "_x1");
-                         });
+INSTANTIATE_TEST_SUITE_P(
+    By, PinchedCloth,
+    ::testing::Values(Pinch{"jaws", kJaws, 0.01}, Pinch{"jaws", kJaws, 0.04},
+                      Pinch{"one_jaw_stays", kOneJawStays, 0.01}, Pinch{"one_jaw_stays", kOneJawStays, 0.04},
+                      Pinch{"stamp", kStamp, 0.01}, Pinch{"stamp", kStamp, 0.04},
+                      Pinch{"turning_jaw", kTurningJaw, 0.01}, Pinch{"turning_jaw", kTurningJaw, 0.04},
+                      Pinch{"locking", locking(kTurningJaw), 0.01}, Pinch{"locking", locking(kTurningJaw), 0.04},
+                      Pinch{"slide", std::string(kPress) + kSlidingKeys, 0.01},
+                      Pinch{"slide", std::string(kPress) + kSlidingKeys, 0.04},
+                      Pinch{"fast", std::string(kPress) + kFastKeys, 0.01},
+                      Pinch{"fast", std::string(kPress) + kFastKeys, 0.04}),
+    [](const auto& pinch) { return std::string(pinch.param.name) + (pinch.param.step > 0.02 ? "_x4" : "_x1"); });
 
 /// A blade of 0.6 m about the axis `turn`, quarter by quarter, under or before a sheet that falls.
 std::string turning_blade(double turns_a_second, const char* turn, const char* size, double height) {
