@@ -39,10 +39,12 @@ void serialize(Archive& archive, FrameReport& report) {
 void check_start(const scene::Scene& scene, StepLoop& steps) {
   const std::vector<MeetingPlace> places = steps.find_meetings();
   if (places.empty()) return;
-  throw Error(ExitCode::scene_invalid,
-              "{}: expected surfaces that are apart at the start, got {}; 'weft thumbnail --start' draws it; move one "
-              "of them, leave it out of contact, or give a cloth start = \"untangle\"",
-              scene.file.string(), describe(places));
+  throw Error(ExitCode::scene_invalid, "{}: expected surfaces that are apart at the start{}, got {}; {}",
+              scene.file.string(), untangles(scene) ? ", or can be untangled" : "", describe(places),
+              untangles(scene)
+                  ? "'weft thumbnail --start' draws it as it was; move one of them"
+                  : "'weft thumbnail --start' draws it; move one of them, leave it out of contact, or give "
+                    "a cloth start = \"untangle\"");
 }
 
 }  // namespace

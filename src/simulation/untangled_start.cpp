@@ -18,7 +18,7 @@ constexpr double kClosedBorder = 0.02;
 
 untangle::Kind kind_of(const environment::BodyObject& body) {
   if (body.infinite_floor) return untangle::Kind::floor;
-  const mesh::EdgeSet edges = mesh::collect_edges(body.mesh.topology.triangles);
+  const mesh::EdgeSet edges = mesh::collect_edges(body.colliding_triangles());
   const auto border = std::ranges::count_if(edges.edges, [](const mesh::Edge& e) { return e.triangles[1] < 0; });
   const bool closed = static_cast<double>(border) <= kClosedBorder * static_cast<double>(edges.edges.size());
   return closed && !edges.edges.empty() ? untangle::Kind::solid : untangle::Kind::open;

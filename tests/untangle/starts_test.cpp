@@ -1,14 +1,14 @@
 // Starts that cross: which are taken apart, to where, and which are refused.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <functional>
+#include <string>
 
 #include "core/error.hpp"
+#include "core/parallel.hpp"
 #include "simulation/simulation.hpp"
 #include "support/intersections.hpp"
-#include "support/test_folder.hpp"
 
 namespace weft::untangle {
 namespace {
@@ -142,6 +142,20 @@ TEST(UntangledStart, ASheetThatAPoleGoesThroughIsRefusedWithWhereAndHowFar) {
   const std::string text = refusal(scene);
   EXPECT_NE(text.find("'sheet' in 'pole' around (0, 0, 0) m"), std::string::npos) << text;
   EXPECT_NE(text.find("by 0.60"), std::string::npos) << text;
+}
+
+TEST(UntangledStart, HasTheSameBitsForAnyNumberOfThreads) {
+  scene::Scene scene = empty_scene();
+  scene.cloths = {sheet("a", {0, 0, 0.05}), sheet("b", {0, 0, 0.2}, 0.6)};
+  scene.cloths[1].pose.rotation = turned(80, Vec3(1, 0.2, 0));
+  add_obstacle(scene, "ball", scene::Sphere{0.2});
+  set_thread_count(1);
+  const frame::SnapshotPtr one = Simulation(scene).snapshot();
+  set_thread_count(4);
+  const frame::SnapshotPtr four = Simulation(scene).snapshot();
+  set_thread_count(0);
+  EXPECT_EQ(judged_pairs(*one), 0U);
+  for (std::size_t s = 0; s < 2; ++s) EXPECT_EQ(one->states[s].positions, four->states[s].positions);
 }
 
 TEST(UntangledStart, OfASceneThatIsApartNothingMoves) {
