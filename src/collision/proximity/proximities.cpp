@@ -299,7 +299,8 @@ void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const S
 
 void ProximityFinder::find(std::span<const Vec3> x, double reach, std::vector<Proximity>& out) const {
   out.clear();
-  const auto& [vertex_faces, edge_edges] = pairs_;
+  const std::vector<VertexFace>& vertex_faces = pairs_.vertex_faces;
+  const std::vector<EdgeEdge>& edge_edges = pairs_.edge_edges;
   parallel_append(vertex_faces.size(), kFeaturesAtOnce, out, [&](std::size_t begin, std::size_t end, auto& list) {
     Search search(features_, x, reach, list);
     for (std::size_t p = begin; p < end; ++p) search.vertex_face(vertex_faces[p].vertex, vertex_faces[p].face);
