@@ -179,39 +179,10 @@ void Preconditioner<Real>::find_weights() {
       if (full.columns[s] != static_cast<Index>(i)) neighbours[i].push_back(full.columns[s]);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     const Grouping& grouping = system_->groupings[l];
-    std::vector<std::vector<Index>> next(index(grouping.count));
-    Weights<Real> weights;
-    weights.start.assign(1, 0);
-    for (std::size_t m = 0; m < neighbours.size(); ++m) {
-      const Index own = grouping.of[m];
-      std::vector<Index> groups;
-      for (Index n : neighbours[m]) groups.push_back(grouping.of[index(n)]);
-      const double share = groups.empty() ? 0 : smoothing / static_cast<double>(groups.size());
-      groups.push_back(own);
-      std::ranges::sort(groups);
-      for (auto first = groups.begin(); first != groups.end();) {
-        const auto last = std::upper_bound(first, groups.end(), *first);
-        const auto count = static_cast<double>(last - first);
-        const double weight = *first != own        ? share * count
-                              : groups.size() == 1 ? 1
-                                                   : 1 - smoothing + share * (count - 1);
-        if (weight > 0) {
-          weights.columns.push_back(*first);
-          weights.values.push_back(static_cast<Real>(weight));
-        }
-        if (*first != own) next[index(own)].push_back(*first);
-        first = last;
-      }
-      weights.start.push_back(static_cast<Index>(weights.columns.size()));
-    }
-    for (std::vector<Index>& of_group : next) {
-      std::ranges::sort(of_group);
-      of_group.erase(std::unique(of_group.begin(), of_group.end()), of_group.end());
-    }
+    Weights<Real> weights = Weights<Real>::interpolating(grouping, smoothing, neighbours);
     of_patches_ = l == 0 ? weights : of_patches_.times(weights);
     levels_[l].of_members = weights.transposed(index(grouping.count));
     levels_[l].of_groups = std::move(weights);
-    neighbours = std::move(next);
   }
 }
 

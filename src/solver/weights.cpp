@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <numeric>
+#include <utility>
 
 namespace weft::solver {
 
@@ -42,6 +43,42 @@ Weights<Real> Weights<Real>::times(const Weights& next) const {
     result.start.push_back(static_cast<Index>(result.columns.size()));
   }
   return result;
+}
+
+template <class Real>
+Weights<Real> Weights<Real>::interpolating(const Grouping& grouping, double smoothing,
+                                           std::vector<std::vector<Index>>& neighbours) {
+  std::vector<std::vector<Index>> next(static_cast<std::size_t>(grouping.count));
+  Weights weights;
+  weights.start.assign(1, 0);
+  for (std::size_t m = 0; m < neighbours.size(); ++m) {
+    const Index own = grouping.of[m];
+    std::vector<Index> groups;
+    for (Index n : neighbours[m]) groups.push_back(grouping.of[n]);
+    const double share = groups.empty() ? 0 : smoothing / static_cast<double>(groups.size());
+    groups.push_back(own);
+    std::ranges::sort(groups);
+    for (auto first = groups.begin(); first != groups.end();) {
+      const auto last = std::upper_bound(first, groups.end(), *first);
+      const auto count = static_cast<double>(last - first);
+      const double weight = *first != own        ? share * count
+                            : groups.size() == 1 ? 1
+                                                 : 1 - smoothing + share * (count - 1);
+      if (weight > 0) {
+        weights.columns.push_back(*first);
+        weights.values.push_back(static_cast<Real>(weight));
+      }
+      if (*first != own) next[own].push_back(*first);
+      first = last;
+    }
+    weights.start.push_back(static_cast<Index>(weights.columns.size()));
+  }
+  for (std::vector<Index>& of_group : next) {
+    std::ranges::sort(of_group);
+    of_group.erase(std::unique(of_group.begin(), of_group.end()), of_group.end());
+  }
+  neighbours = std::move(next);
+  return weights;
 }
 
 template struct Weights<float>;

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/types.hpp"
+#include "solver/linear_system.hpp"
 #include "solver/quads.hpp"
 
 namespace weft::solver {
@@ -21,6 +22,9 @@ struct Weights {
     for (Index s = start[row]; s < start[row + 1]; ++s) result += values[s] * of[columns[s]];
     return result;
   }
+  /// From groups to their members. A member follows its own group, and by a share `smoothing` those of its neighbours.
+  /// `neighbours`: of each member; becomes those of the groups.
+  static Weights interpolating(const Grouping& grouping, double smoothing, std::vector<std::vector<Index>>& neighbours);
   /// With `rows` rows.
   Weights transposed(std::size_t rows) const;
   /// Of members in the groups of `next`, where these are of members in groups that are the members of `next`.
