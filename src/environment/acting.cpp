@@ -184,7 +184,7 @@ class PartFinder {
 
   /// `key`: what messages name.
   character::VertexMask find(const scene::BodyPart& part, const std::string& key) const {
-    const character::VertexMask mask = vertices_of(part, key);
+    character::VertexMask mask = vertices_of(part, key);
     const auto holds = [&](const auto& t) { return mask[t[0]] + mask[t[1]] + mask[t[2]] >= 2; };
     if (std::ranges::none_of(body_.character.mesh.topology.triangles, holds))
       cast_.fail(key, fmt::format("expected a part with vertices of {}, got \"{}\", which holds none", body_.source,
