@@ -7,6 +7,7 @@
 
 #include "untangle/crossings.hpp"
 #include "untangle/problem.hpp"
+#include "untangle/solid.hpp"
 
 namespace weft::untangle {
 
@@ -35,7 +36,7 @@ std::vector<std::vector<Move>> move_cut_off_parts(const Fabric& fabric, std::spa
 void shorten_contours(const Fabric& fabric, std::span<const Crossing> crossings, double length, std::span<Vec3> x);
 
 /// Pushes edges and triangles of cloth that go through a solid, with their particles outside of it, outward.
-void push_off(const Fabric& fabric, std::span<const Crossing> crossings, std::span<const class Solid> solids,
+void push_off(const Fabric& fabric, std::span<const Crossing> crossings, std::span<const Solid> solids,
               std::span<const double> above, std::span<Vec3> x);
 
 }  // namespace weft::untangle

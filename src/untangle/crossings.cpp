@@ -25,10 +25,6 @@ std::optional<Pierced> pierce(const Vec3& p, const Vec3& q, const collision::Tri
   return Pierced{from / (from - to), {u / sum, v / sum, w / sum}};
 }
 
-}  // namespace
-
-namespace {
-
 bool of_solid(const Fabric& fabric, Index vertex) {
   const Kind kind = fabric.kinds[fabric.bodies.body_of(vertex)];
   return kind == Kind::solid || kind == Kind::floor;
