@@ -7,6 +7,7 @@
 #include <numbers>
 #include <numeric>
 
+#include "core/disjoint_sets.hpp"
 #include "core/error.hpp"
 #include "garment/start_shape.hpp"
 
@@ -19,23 +20,6 @@ constexpr double kMaxParticles = 1e6;
 std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
-
-/// Sets of vertices that become one; the least index stands for each set.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
-  Index root(Index v) {
-    while (parents_[at(v)] != v) v = parents_[at(v)] = parents_[at(parents_[at(v)])];
-    return v;
-  }
-  void join(Index a, Index b) {
-    const Index p = root(a), q = root(b);
-    parents_[at(std::max(p, q))] = std::min(p, q);
-  }
-
- private:
-  std::vector<Index> parents_;
-};
 
 class Sewing {
  public:

@@ -5,31 +5,16 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <numeric>
 #include <set>
 #include <tuple>
+
+#include "core/disjoint_sets.hpp"
 
 namespace weft::simulation {
 namespace {
 
 // Places that a message names; a crumpled cloth can have hundreds.
 constexpr std::size_t kNamedPlaces = 6;
-
-/// Vertices that are joined to each other.
-class Joined {
- public:
-  explicit Joined(Index vertices) : parent_(static_cast<std::size_t>(vertices)) {
-    std::iota(parent_.begin(), parent_.end(), Index{0});
-  }
-  Index root(Index v) {
-    while (parent_[v] != v) v = parent_[v] = parent_[parent_[v]];
-    return v;
-  }
-  void join(Index a, Index b) { parent_[std::max(root(a), root(b))] = std::min(root(a), root(b)); }
-
- private:
-  std::vector<Index> parent_;
-};
 
 }  // namespace
 
@@ -41,7 +26,7 @@ std::vector<MeetingPlace> meeting_places(std::span<const collision::CornerPair> 
     by_bodies[{bodies.body_of(pair.a[0]), bodies.body_of(pair.b[0])}].push_back(pair);
   std::vector<MeetingPlace> places;
   for (const auto& [objects, of_objects] : by_bodies) {
-    Joined joined(bodies.vertex_count());
+    DisjointSets joined(static_cast<std::size_t>(bodies.vertex_count()));
     for (const auto& [a, b] : of_objects)
       for (const Index v : {a[0], a[1], a[2], b[0], b[1], b[2]}) joined.join(a[0], v);
     std::map<Index, std::set<collision::CornerPair>> groups;

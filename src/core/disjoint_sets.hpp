@@ -1,0 +1,31 @@
+// Which of many things hang together (union-find).
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <numeric>
+#include <vector>
+
+#include "core/types.hpp"
+
+namespace weft {
+
+/// Sets of 0 to count − 1, each alone at first; the least member stands for each set.
+class DisjointSets {
+ public:
+  explicit DisjointSets(std::size_t count) : parents_(count) { std::iota(parents_.begin(), parents_.end(), Index{0}); }
+
+  Index root(Index i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
+  }
+  void join(Index a, Index b) {
+    const Index p = root(a), q = root(b);
+    parents_[std::max(p, q)] = std::min(p, q);
+  }
+
+ private:
+  std::vector<Index> parents_;
+};
+
+}  // namespace weft
