@@ -157,6 +157,49 @@ TEST_F(Acting, KnowsPartsByJointsAndBones) {
   EXPECT_TRUE(actor.parts[3].collide);
 }
 
+/// The rod with its upper end as a hand of three fingers.
+std::string hand_file() {
+  std::string text = rod_file();
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    ASSERT_NE(text.find(from), std::string::npos) << from;
+    text.replace(text.find(from), from.size(), to);
+  };
+  const std::string still =
+      "{ FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; } }";
+  replace("Frame Spine {", "Frame LeftHand {");
+  replace("0.0,1.0,0.0,1.0;; } } }",
+          "0.0,1.0,0.0,1.0;; }\n Frame a " + still + " Frame b " + still + " Frame c " + still + " } }");
+  replace("XSkinMeshHeader { 1; 1; 2; }", "XSkinMeshHeader { 1; 1; 4; }");
+  const std::string offset = "1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,-1.0,0.0,1.0;; }";
+  const std::size_t skin = text.find("SkinWeights { \"Spine\"");
+  text.replace(skin, text.find('}', skin) + 1 - skin,
+               "SkinWeights { \"a\"; 1; 2; 1.0; " + offset + " SkinWeights { \"b\"; 1; 3; 1.0; " + offset +
+                   " SkinWeights { \"c\"; 1; 4; 1.0; " + offset);
+  const std::size_t wave = text.find("AnimationSet Wave");
+  return text.substr(0, wave);
+}
+
+TEST_F(Acting, LeavesHandsWithFingersOutUnlessTheSceneHasItsOwnSay) {
+  support::write_bytes(folder_ / "rod.x", hand_file());
+  const Actor by_itself = make();
+  ASSERT_EQ(by_itself.parts.size(), 1u);
+  EXPECT_EQ(by_itself.parts[0].name, "hands");
+  EXPECT_FALSE(by_itself.parts[0].collide);
+  EXPECT_EQ(std::ranges::count(by_itself.parts[0].vertices, 1), 3);
+  ASSERT_EQ(by_itself.warnings.size(), 1u);
+  EXPECT_NE(by_itself.warnings[0].find("the hands have fingers, which would catch cloth"), std::string::npos);
+
+  character_.parts = {part("left_hand")};
+  const Actor as_said = make();
+  ASSERT_EQ(as_said.parts.size(), 1u);
+  EXPECT_TRUE(as_said.parts[0].collide);
+  EXPECT_TRUE(as_said.warnings.empty());
+
+  character_.parts.clear();
+  character_.collide = false;
+  EXPECT_TRUE(make().parts.empty()) << "nothing of it meets cloth";
+}
+
 // "Wave" moves Spine by 1 m within the first second and Hips not at all.
 TEST_F(Acting, CarriesWhatFollowsAPart) {
   file_.clip = "Wave";

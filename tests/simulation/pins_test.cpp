@@ -121,6 +121,31 @@ TEST_F(PinsOnACharacter, CarryCloth) {
   }
 }
 
+// The mannequin walks off; of two pins that share a corner the first has it.
+TEST_F(PinsOnACharacter, FollowThePartsOfABodyWithBones) {
+  const Pinned pinned(support::scene_of_text(
+      "[time]\nduration = 2\n[[character]]\nname = 'body'\nsource = 'mannequin'\nedge_length = 0.05\nwalk = 1\n"
+      "[[cloth]]\nname = 'cape'\nsize = [0.3, 0.3]\nparticles = 5\nposition = [0, 0.3, 1.4]\n"
+      "pin = [{ low = [0, 1], high = [1, 1], follow = 'body.torso' },\n"
+      "       { low = [1, 0], high = [1, 1], follow = 'body.left_hand' }]\n"));
+  const auto begin = pinned.at(0), end = pinned.at(1.6);
+  ASSERT_EQ(begin.size(), 9u);
+  Vec3 torso = Vec3::Zero(), hand = Vec3::Zero();
+  for (std::size_t p = 0; p < begin.size(); ++p) {
+    // At the start what follows is where it is given, but for rounding and the inverse of a map.
+    EXPECT_LT((begin[p].x_end - pinned.start(begin[p])).norm(), 1e-12) << p;
+    const bool first_pin = p < 5;
+    EXPECT_EQ(begin[p].constraint.particle >= 20, first_pin) << "the upper row is of the first";
+    (first_pin ? torso : hand) += (end[p].x_end - begin[p].x_end) / (first_pin ? 5 : 4);
+  }
+  EXPECT_LT(torso.y(), -0.05) << "it walks to where it looks";
+  EXPECT_GT((hand - torso).norm(), 0.02) << "arms swing";
+  const double t = 0.7137, d = 1e-5;
+  const auto before = pinned.at(t - d), now = pinned.at(t), after = pinned.at(t + d);
+  for (std::size_t p = 0; p < now.size(); ++p)
+    EXPECT_LT(((after[p].x_end - before[p].x_end) / (2 * d) - now[p].v_end).norm(), 1e-6);
+}
+
 TEST_F(PinsOnACharacter, AreRefusedForWhatIsNoObjectOfTheScene) {
   try {
     support::scene_of_text(
