@@ -1,11 +1,23 @@
 // A plain weave drawn in rest coordinates: threads alternate over and under, each a little different in tone. Every
 // feature fades to its mean before it gets smaller than two pixels, so that nothing shimmers.
+const float kUneven = 0.1;  // share of its tone by which a yarn differs at most, at each size
+
 float thread_noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
 
-// Tone of yarns that vary along the sheet, smooth over `scale` threads.
-float yarn_tone(float at) {
-  float i = floor(at), f = at - i;
-  return mix(thread_noise(i), thread_noise(i + 1.0), f * f * (3.0 - 2.0 * f)) - 0.5;
+// From -0.5 to 0.5, another one in each cell.
+float speck(ivec2 cell) {
+  uint mixed = uint(cell.x) * 0x9E3779B1u ^ uint(cell.y) * 0x85EBCA77u;
+  mixed = (mixed ^ (mixed >> 15)) * 0x2C1B3C6Du;
+  return float((mixed ^ (mixed >> 13)) & 0xFFFFu) / 65535.0 - 0.5;
+}
+
+// Smooth over one unit of `at`.
+float unevenness(vec2 at) {
+  vec2 whole = floor(at), f = at - whole;
+  f = f * f * (3.0 - 2.0 * f);
+  ivec2 cell = ivec2(whole);
+  return mix(mix(speck(cell), speck(cell + ivec2(1, 0)), f.x),
+             mix(speck(cell + ivec2(0, 1)), speck(cell + ivec2(1, 1)), f.x), f.y);
 }
 
 struct Weave {
@@ -24,16 +36,14 @@ Weave weave(vec2 rest_uv, float spacing, vec3 n_world, vec3 p_world) {
   float footprint = max(length(across), length(down));
   Weave result = Weave(n_world, 1.0, 1.0);
 
-  // A grid of heavier threads, 32 apart, seen from afar: the scale of the cloth and how it is stretched and sheared.
-  vec2 ruled = abs(fract(thread / 32.0 + 0.5) - 0.5) * 32.0;
-  vec2 width = vec2(length(vec2(across.x, down.x)), length(vec2(across.y, down.y)));
-  vec2 line = clamp((1.0 + 0.5 * width - ruled) / max(width, 1e-6), 0.0, 1.0) * min(2.0 / max(width, 1e-6), 1.0);
-  line = mix(vec2(0.0625), line, visible_feature(footprint, 32.0));
-  result.tone *= 1.0 - 0.16 * (line.x + line.y);
-
-  // Uneven yarn, a few threads wide.
-  float slub = visible_feature(footprint, 5.0);
-  if (slub > 0.0) result.tone *= 1.0 + 0.09 * slub * (yarn_tone(thread.x / 2.5) + yarn_tone(thread.y / 2.5 + 71.0));
+  // Yarns are uneven along their way, some threads wide and eight times as long: weft and warp, at three sizes, of
+  // which those show that the picture can.
+  for (float size = 2.5; size < 64.0; size *= 4.0) {
+    float seen = visible_feature(footprint, size);
+    if (seen == 0.0) continue;
+    vec2 at = thread / size;
+    result.tone *= 1.0 + kUneven * seen * (unevenness(at * vec2(0.125, 1.0)) + unevenness(at.yx * vec2(0.125, 1.0) + 71.0));
+  }
 
   float fine = visible_feature(footprint, 1.0);
   if (fine > 0.0) {

@@ -25,7 +25,6 @@ material = { fabric = "cotton", friction = 0.3 }
 [cloth.look]
 color = [0.20, 0.42, 0.52]
 back_color = [0.86, 0.80, 0.68]
-thread_spacing = 0.005
 
 [[obstacle]]
 name = "sphere"

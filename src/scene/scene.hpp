@@ -107,7 +107,7 @@ struct Look {
   Vec3 color{0.8, 0.8, 0.8};       ///< sRGB
   std::optional<Vec3> back_color;  ///< cloth: the other side; a paler `color` where absent
   double roughness = 0.6;
-  double thread_spacing = 0.004;  ///< of the drawn weave [m]; cloth only; 0 draws none
+  double thread_spacing = 0.0006;  ///< of the drawn weave [m]; cloth only; 0 draws none
   bool checker = false;           ///< floors only
   bool visible = true;
 };

@@ -170,32 +170,6 @@ TEST(Picture, ClothShowsItsTwoColorsOnItsTwoSides) {
   EXPECT_EQ(count(back, reddish), 0);
 }
 
-TEST(Picture, WeaveKeepsTheMeanColorNearAndFar) {
-  for (const double spacing : {0.0001, 0.002, 0.03}) {
-    frame::FrameSnapshot snapshot = facing_square(frame::ObjectKind::cloth, 0.3, Vec3(0.6, 0.4, 0.3));
-    auto cloth = std::make_shared<frame::Surface>(*snapshot.surfaces[0]);
-    cloth->uv = {{0, 0}, {0.6, 0}, {0.6, 0.6}, {0, 0.6}};
-    cloth->appearance.thread_spacing = spacing;
-    snapshot.surfaces[0] = cloth;
-    const image::Image image = Renderer(settings()).draw(snapshot);
-    double mean = 0, deviation = 0;
-    for (int y = 70; y < 130; ++y) {
-      for (int x = 130; x < 190; ++x) mean += image.pixel(x, y)[0] / 3600.0;
-    }
-    for (int y = 70; y < 130; ++y) {
-      for (int x = 130; x < 190; ++x) deviation += std::abs(image.pixel(x, y)[0] - mean) / 3600.0;
-    }
-    // The heavier threads of the grid take 2 percent of the light on average; the rest averages out to 6 levels.
-    EXPECT_NEAR(mean, 0.6 * 255, 8) << spacing;
-    // Threads far below a pixel leave a flat tone; threads of eight pixels show.
-    if (spacing < 0.001) {
-      EXPECT_LT(deviation, 1);
-    } else if (spacing > 0.01) {
-      EXPECT_GT(deviation, 5);
-    }
-  }
-}
-
 /// Floor seen from straight above at 4 m, field of view 40 degrees: 100 pixels are 4 tan 20 = 1.456 m.
 frame::FrameSnapshot box_over_floor(const frame::Light& light) {
   frame::FrameSnapshot snapshot;

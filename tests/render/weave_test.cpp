@@ -1,0 +1,72 @@
+// Yarns of cloth, from near and far.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "render/renderer.hpp"
+#include "render/snapshots.hpp"
+
+namespace weft::render {
+namespace {
+
+constexpr int kWidth = 160, kHeight = 100;
+
+/// Cloth that fills the picture, leant back by 50 degrees, seen from a distance [m].
+frame::FrameSnapshot leaning_cloth(double distance, double thread_spacing) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  const double angle = 50 * std::numbers::pi / 180;
+  const double half = 10;
+  frame::Surface& cloth = add_square(snapshot, frame::ObjectKind::cloth, Vec3::Zero(),
+                                     Vec3(0, -std::cos(angle), std::sin(angle)), Vec3::UnitX(), half);
+  cloth.appearance.color = Vec3(0.6, 0.4, 0.3);
+  cloth.appearance.thread_spacing = thread_spacing;
+  cloth.uv = {{0, 0}, {2 * half, 0}, {2 * half, 2 * half}, {0, 2 * half}};
+  snapshot.cameras = {camera_at(Vec3(0, -distance, 0), Vec3::Zero(), 30)};
+  snapshot.lights = {sun(Vec3::UnitY())};
+  return snapshot;
+}
+
+image::Image drawn(const frame::FrameSnapshot& snapshot, int scale) {
+  Settings settings;
+  settings.width = scale * kWidth;
+  settings.height = scale * kHeight;
+  settings.quality = Quality::final;
+  return Renderer(settings).draw(snapshot);
+}
+
+/// Of the picture's green, mean over a block of pixels.
+double mean(const image::Image& image, int x0, int y0, int size) {
+  double sum = 0;
+  for (int y = y0; y < y0 + size; ++y)
+    for (int x = x0; x < x0 + size; ++x) sum += image.pixel(x, y)[1];
+  return sum / (size * size);
+}
+
+TEST(Weave, KeepsTheMeanColorNearAndFar) {
+  for (const double spacing : {0.0001, 0.0006, 0.03}) {
+    const image::Image woven = drawn(leaning_cloth(1, spacing), 1), plain = drawn(leaning_cloth(1, 0), 1);
+    // A picture of few threads shows some yarns more than others.
+    EXPECT_NEAR(mean(woven, 30, 0, 100), mean(plain, 30, 0, 100), 4) << spacing;
+  }
+}
+
+// Where threads are below a pixel the picture is that of their mean, as one six times as fine says: no beats. Seen are
+// 0.4 to 1.3 levels, of which dither and the rounding to bytes make 0.4; without the fading 14 to 16.
+TEST(Weave, HasNoBeats) {
+  constexpr int kFiner = 6;
+  constexpr double kSpacing = 0.0006;
+  for (double distance = 0.26; distance < 21; distance *= 1.62) {
+    const frame::FrameSnapshot snapshot = leaning_cloth(distance, kSpacing);
+    const image::Image image = drawn(snapshot, 1), finer = drawn(snapshot, kFiner);
+    double squares = 0;
+    for (int y = 10; y < 90; ++y)
+      for (int x = 30; x < 130; ++x)
+        squares += std::pow(image.pixel(x, y)[1] - mean(finer, kFiner * x, kFiner * y, kFiner), 2) / 8000;
+    EXPECT_LT(std::sqrt(squares), 2) << distance;
+  }
+}
+
+}  // namespace
+}  // namespace weft::render
