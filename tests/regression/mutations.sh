@@ -3,9 +3,21 @@
 # commit, builds it, draws the stills and compares them. Takes about a minute of processor time each, so not a test.
 #
 #     tests/regression/mutations.sh FOLDER [STILL...]     table in FOLDER/mutations.md; without names, all stills
+#     tests/regression/mutations.sh --check               that each line still changes its file: a test
 set -uf
 here=$(cd "$(dirname -- "$0")" && pwd)
-root=$(git -C "$here" rev-parse --show-toplevel)
+root=$here/../..
+if [ "${1:-}" = --check ]; then
+  grep -v '^#' "$here/mutations.txt" | {
+    status=0
+    while IFS='|' read -r name file change; do
+      file=$root/$(echo "$file" | tr -d ' ')
+      sed "$change" "$file" | cmp -s - "$file" && status=1 && echo "$name: changes nothing in $file"
+    done
+    exit $status
+  }
+  exit
+fi
 mkdir -p "$1/source"
 folder=$(cd "$1" && pwd)
 source=$folder/source
