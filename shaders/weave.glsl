@@ -1,6 +1,6 @@
 // A plain weave drawn in rest coordinates: threads alternate over and under, each a little different in tone. Every
 // feature fades to its mean before it gets smaller than two pixels, so that nothing shimmers.
-const float kUneven = 0.1;  // share of its tone by which a yarn differs at most, at each size
+const float kUneven = 0.08;  // share of its tone by which a yarn differs at most, at each size
 
 float thread_noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
 
