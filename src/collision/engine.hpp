@@ -98,6 +98,7 @@ class Engine {
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  void gather();
   void count_failures();
   void add_contacts(std::span<const Proximity> near, const StepMotion& motion);
   void find_near(std::span<const Vec3> x_from, std::span<const Vec3> x_t1, std::vector<Proximity>& near);
@@ -108,6 +109,7 @@ class Engine {
   CandidateCache candidates_;
   Separation separation_;
   ProximityFinder finder_;
+  bool gathered_ = false;                       // whether the finder has those of the candidates collected last
   std::optional<CoherentDetection> coherence_;  // keeps pairs and closest points in place of the cache, where wanted
   ContactBuilder builder_;
   ContactResponse response_;

@@ -39,6 +39,7 @@ Fans::Fans(std::span<const Surface> surfaces) {
     for (Index v = 0; v < surface.vertex_count; ++v) add_fan(surface.first_vertex + v, around[v]);
   }
   slack_.assign(middle_.size(), -1.0F);
+  has_certificate_.assign(middle_.size(), 0);
 }
 
 void Fans::add_fan(Index vertex, std::span<const Triangle> triangles) {
@@ -67,9 +68,8 @@ void Fans::add_fan(Index vertex, std::span<const Triangle> triangles) {
 // Calls body(pair) for all pairs of an edge opposite to the vertex and another triangle of the fan.
 template <class Body>
 void Fans::for_each_pair(std::size_t fan, const Body& body) const {
-  const auto edges = std::span(edges_).subspan(edges_begin_[fan], edges_begin_[fan + 1] - edges_begin_[fan]);
-  for (const Edge& s : edges)
-    for (const Edge& t : edges)
+  for (const Edge& s : edges(fan))
+    for (const Edge& t : edges(fan))
       if (!touch(s, t)) body(CornerPair{{s[0], s[1], s[1]}, {middle_[fan], t[0], t[1]}});
 }
 
@@ -90,6 +90,7 @@ bool Fans::turns_once(std::size_t fan, const Vec3& axis, std::span<const Vec3> x
 }
 
 void Fans::set_reference(std::span<const Vec3> x) {
+  has_certificate_.assign(middle_.size(), 0);
   parallel_for(middle_.size(), kFansAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t fan = begin; fan < end; ++fan) slack_[fan] = slack_of(fan, x);
   });
@@ -143,7 +144,11 @@ bool Fans::keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::s
 }
 
 void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
-                        std::vector<CornerPair>& failing) {
+                        std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing) {
+  const auto any_changed = [&](std::size_t fan) {
+    const auto has = [&](const Edge& edge) { return changed[edge[0]] || changed[edge[1]]; };
+    return changed[middle_[fan]] || std::ranges::any_of(edges(fan), has);
+  };
   const auto stays = [&](std::size_t fan) {
     if (!(slack_[fan] > 0)) return false;
     float most = moved[middle_[fan]];
@@ -152,9 +157,13 @@ void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   };
   parallel_append(middle_.size(), kFansAtOnce, failing, [&](std::size_t begin, std::size_t end, auto& list) {
     for (std::size_t fan = begin; fan < end; ++fan) {
+      if (has_certificate_[fan] && !any_changed(fan)) continue;
+      has_certificate_[fan] = 1;
       if (stays(fan) || keeps_orientation(fan, x_t0, x_t1)) continue;
       for_each_pair(fan, [&](const CornerPair& pair) {
-        if (!find_certificate(pair, x_t0, x_t1)) list.push_back(pair);
+        if (find_certificate(pair, x_t0, x_t1)) return;
+        has_certificate_[fan] = 0;
+        list.push_back(pair);
       });
     }
   });

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -34,11 +35,13 @@ class Fans {
   void set_reference(std::span<const Vec3> x);
 
   /// Appends the edge-triangle pairs without certificate for the way from x_t0 to x_t1. `moved`: per vertex, a bound of
-  /// its distance at either time from where it was at the reference [m].
+  /// its distance at either time from where it was at the reference [m]; `changed`: per vertex, whether x_t0 or x_t1 is
+  /// another than in the last call.
   void find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
-                    std::vector<CornerPair>& failing);
+                    std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing);
 
  private:
+  using Edge = std::array<Index, 2>;
   void add_fan(Index vertex, std::span<const Triangle> triangles);
   float slack_of(std::size_t fan, std::span<const Vec3> x) const;
   template <class Body>
@@ -48,14 +51,17 @@ class Fans {
   std::span<const Index> ring(std::size_t fan) const {
     return std::span(ring_).subspan(ring_begin_[fan], ring_begin_[fan + 1] - ring_begin_[fan]);
   }
+  std::span<const Edge> edges(std::size_t fan) const {
+    return std::span(edges_).subspan(edges_begin_[fan], edges_begin_[fan + 1] - edges_begin_[fan]);
+  }
 
   // Closed fans: the vertex in the middle, and the others in their order around it.
   std::vector<Index> middle_;
   std::vector<std::size_t> ring_begin_{0};
   std::vector<Index> ring_;
-  std::vector<float> slack_;  // per fan [m]; negative: not certified as a whole at the reference
+  std::vector<float> slack_;                   // per fan [m]; negative: not certified as a whole at the reference
+  std::vector<std::uint8_t> has_certificate_;  // per fan: as a whole or pair by pair, when it was last looked at
   // Of the triangles of each fan, closed or not: the edges opposite to the vertex.
-  using Edge = std::array<Index, 2>;
   std::vector<Edge> edges_;
   std::vector<std::size_t> edges_begin_{0};  // by fan
 };

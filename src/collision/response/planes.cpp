@@ -92,6 +92,7 @@ void Planes::watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x)
 
 void Planes::watch(std::span<const Vec3> x) {
   planes_.resize(pairs_.size());
+  has_certificate_.assign(pairs_.size(), 0);
   rounded_.resize(x.size());
   const double largest = parallel_max(x.size(), kVerticesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
     double most = 0;
@@ -119,13 +120,15 @@ void Planes::append_closer(double radius, PairList& out) const {
 }
 
 void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                          std::span<const float> moved, std::vector<CornerPair>& failing,
-                          const CarriedStarts* carried) {
+                          std::span<const float> moved, std::span<const std::uint8_t> changed,
+                          std::vector<CornerPair>& failing, const CarriedStarts* carried) {
   moved_.resize(triangles_.size());
+  changed_.resize(triangles_.size());
   parallel_for(triangles_.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
-      const auto of = [&](std::size_t c) { return moved[triangles_[t][c]]; };
-      moved_[t] = std::max({of(0), of(1), of(2)});
+      const Triangle& corners = triangles_[t];
+      moved_[t] = std::max({moved[corners[0]], moved[corners[1]], moved[corners[2]]});
+      changed_[t] = changed[corners[0]] | changed[corners[1]] | changed[corners[2]];
     }
   });
   if (carried != nullptr) carried->make();
@@ -139,15 +142,19 @@ void Planes::find_failing(std::size_t begin, std::size_t end, const Way& way, st
   for (std::size_t p = begin; p < end; ++p) {
     const TrianglePair& numbers = pairs_.view()[p];
     const auto a = static_cast<std::size_t>(numbers.a), b = static_cast<std::size_t>(numbers.b);
+    if (has_certificate_[p] && !changed_[a] && !changed_[b]) continue;
     Plane& plane = planes_[p];
     const CornerPair pair{triangles_[a], triangles_[b]};
     const std::span<const Vec3> start = carried != nullptr ? carried->of(pair, x_t0) : x_t0;
-    if (start.data() == x_t0.data() && plane.gap > moved_[a] + moved_[b]) continue;
+    const bool stands = start.data() == x_t0.data();
+    has_certificate_[p] = stands;
+    if (stands && plane.gap > moved_[a] + moved_[b]) continue;
 
     const Vec3 n(plane.n[0], plane.n[1], plane.n[2]);
     if (plane.is_known() && separates(n, pair, start, x_t1)) continue;
     const std::optional<Vec3> found = find_certificate(pair, start, x_t1);
     if (!found) {
+      has_certificate_[p] = 0;
       failing.push_back(pair);
       continue;
     }

@@ -17,7 +17,8 @@ namespace weft::collision {
 
 /// For each watched pair a direction and the gap along it at the reference positions. A gap shrinks by no more than the
 /// two triangles move, so a pair whose triangles have moved less than that since has its certificate without being
-/// looked at: cloth that lies on cloth costs one comparison a pair and step.
+/// looked at: cloth that lies on cloth costs one comparison a pair and step. Nor is a pair whose corners are all where
+/// they were when it was last found to have one: pushing cloth apart looks again and again, after moving a few.
 class Planes {
  public:
   Planes() = default;
@@ -35,11 +36,12 @@ class Planes {
   void append_closer(double radius, PairList& out) const;
 
   /// Appends the pairs without certificate for the way from x_t0 to x_t1. `moved`: per vertex, a bound of its distance
-  /// at either time from where it was when the pairs were taken over [m]; `reference`: those positions.
+  /// at either time from where it was when the pairs were taken over [m]; `reference`: those positions; `changed`: per
+  /// vertex, whether x_t0 or x_t1 is another than in the last call.
   /// `carried`: starts of pairs with obstacles that turn, which are looked at without regard to that.
   void find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                    std::span<const float> moved, std::vector<CornerPair>& failing,
-                    const CarriedStarts* carried = nullptr);
+                    std::span<const float> moved, std::span<const std::uint8_t> changed,
+                    std::vector<CornerPair>& failing, const CarriedStarts* carried = nullptr);
 
   /// The planes that are others than watch() has found for these pairs at the reference: all else that a new object
   /// needs, once it watches the same pairs.
@@ -64,8 +66,10 @@ class Planes {
   std::span<const Triangle> triangles_;
   PairList pairs_;
   std::vector<Plane> planes_;
-  std::vector<Lanes4> rounded_;  // positions in float, for the first look
-  std::vector<float> moved_;     // per triangle
+  std::vector<Lanes4> rounded_;                // positions in float, for the first look
+  std::vector<float> moved_;                   // per triangle
+  std::vector<std::uint8_t> changed_;          // per triangle
+  std::vector<std::uint8_t> has_certificate_;  // per pair: when it was last looked at, from x_t0 itself
 };
 
 }  // namespace weft::collision

@@ -2,10 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
+#include <cstdlib>
 #include <limits>
 
 #include "core/parallel.hpp"
-
 namespace weft::collision {
 namespace {
 
@@ -41,14 +42,22 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
                                                      const PinchedPairs* pinched, const CarriedStarts* carried) {
   failing_.clear();
   moved_.resize(x_t0.size());
+  changed_.resize(x_t0.size());
+  if (looked_t0_.size() != x_t0.size()) {
+    looked_t0_.assign(x_t0.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
+    looked_t1_ = looked_t0_;
+  }
   parallel_for(x_t0.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const double most_sq = std::max((x_t0[v] - reference_[v]).squaredNorm(), (x_t1[v] - reference_[v]).squaredNorm());
       moved_[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>(most_sq));
+      changed_[v] = looked_t0_[v] != x_t0[v] || looked_t1_[v] != x_t1[v];
+      looked_t0_[v] = x_t0[v];
+      looked_t1_[v] = x_t1[v];
     }
   });
-  planes_.find_failing(reference_, x_t0, x_t1, moved_, failing_, carried);
-  fans_.find_failing(x_t0, x_t1, moved_, failing_);
+  planes_.find_failing(reference_, x_t0, x_t1, moved_, changed_, failing_, carried);
+  fans_.find_failing(x_t0, x_t1, moved_, changed_, failing_);
   if (pinched != nullptr && !pinched->empty())
     std::erase_if(failing_, [&](const CornerPair& pair) { return pinched->holds(pair); });
   return failing_;
@@ -226,6 +235,9 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
     if (!changed) round_ = kHalfRounds;
     look_again(step);
   }
+  if (getenv("TR"))
+    fprintf(stderr, "ENF first %d rounds %d goes_on %d pairs %d\n", step.report.corrected_pairs, round_, (int)goes_on,
+            0);
   step.report.separated = true;
   return step.report;
 }

@@ -108,9 +108,11 @@ class Separation {
   std::vector<Vec3> reference_;
   Planes planes_;
   Fans fans_;
-  std::vector<float> moved_;         // per vertex: bound of its distance from the reference at both ends [m]
-  std::vector<int> backtracked_in_;  // per vertex: round in which it was last backtracked, 0 never
-  std::vector<int> rides_;           // per vertex: the obstacle that carries it when backtracked, or one of these
+  std::vector<float> moved_;                 // per vertex: bound of its distance from the reference at both ends [m]
+  std::vector<Vec3> looked_t0_, looked_t1_;  // per vertex: where it was when last looked at [m]
+  std::vector<std::uint8_t> changed_;        // per vertex: whether it is somewhere else now
+  std::vector<int> backtracked_in_;          // per vertex: round in which it was last backtracked, 0 never
+  std::vector<int> rides_;  // per vertex: the obstacle that carries it when backtracked, or one of these
   static constexpr int kAtStart = -1, kAtStartForGood = -2;
   int round_ = 0;
   std::vector<CornerPair> failing_;

@@ -104,6 +104,42 @@ TEST(Separation, PairsInSlowMotionAreNearlyAllCertified) {
   EXPECT_LT(failing(pairs).size(), 2 * meeting(pairs).size() + 20);
 }
 
+// Fans, whose verdict hangs on positions alone: what it remembers of them must be what another finds.
+TEST(Separation, WhatIsRememberedOfALookIsWhatANewOneFinds) {
+  constexpr Index kSide = 6;
+  std::vector<Triangle> triangles;
+  std::vector<Vec3> start;
+  for (Index v = 0; v < kSide * kSide; ++v) start.emplace_back(v % kSide, v / kSide, 0);
+  for (Index y = 0; y + 1 < kSide; ++y) {
+    for (Index v = y * kSide; v + 1 < (y + 1) * kSide; ++v) {
+      triangles.push_back({v, v + 1, v + kSide});
+      triangles.push_back({v + 1, v + kSide + 1, v + kSide});
+    }
+  }
+  const std::array<Surface, 1> sheet{Surface{.triangles = triangles, .vertex_count = kSide * kSide}};
+  const auto separation = [&] {
+    Separation made(triangles, sheet);
+    made.watch(std::vector<TrianglePair>{}, start);
+    return made;
+  };
+  Separation remembers = separation();
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> number(-1, 1);
+  std::vector<Vec3> x_t0 = start, x_t1 = start;
+  std::size_t most = 0, least = 1000;
+  for (int look = 0; look < 60; ++look) {
+    const auto v = static_cast<std::size_t>(engine() % start.size());
+    (look % 3 == 0 ? x_t0 : x_t1)[v] = start[v] + Vec3(number(engine), number(engine), number(engine));
+    if (look % 5 == 0) x_t0[v] = x_t1[v] = start[v];
+    const std::span<const CornerPair> found = remembers.find_failing(x_t0, x_t1);
+    Separation another = separation();
+    EXPECT_TRUE(std::ranges::equal(found, another.find_failing(x_t0, x_t1))) << "look " << look;
+    most = std::max(most, found.size());
+    least = std::min(least, found.size());
+  }
+  EXPECT_GT(most, least);
+}
+
 TEST(Separation, PairsThatWouldMeetArePushedApart) {
   for (double motion : {0.01, 0.05, 0.2}) {
     Pairs pairs = random_pairs(200, motion, 3);
