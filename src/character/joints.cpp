@@ -13,23 +13,34 @@ struct Part {
   std::vector<std::string> aliases;
 };
 
+// Mixamo, Rokoko and MotionBuilder; Rigify; Character Creator; Unreal; Unity, VRM and Bandai; SMPL; CMU as BVH and as
+// Acclaim; 100STYLE and Xsens; Biped, Truebones and Source; Poser and DAZ; MakeHuman; our mannequin.
 const std::vector<Part> kMiddle = {
     {"Hips", {"hips", "pelvis", "hip"}},
-    {"Spine", {"spine", "abdomen", "lowerback", "spine01", "waist", "ab", "spine1"}},
-    {"Chest", {"chest", "spine03", "spine3", "spine2", "spine1", "thorax"}},
-    {"Neck", {"neck", "neck01", "neck1"}},
-    {"Head", {"head"}},
+    {"Spine",
+     {"spine", "abdomen", "lowerback", "spine01", "spine001", "waist", "ab", "abdomenlower", "spine1", "torso"}},
+    {"Chest",
+     {"upperchest", "chest", "spine03", "spine003", "spine3", "spine2", "spine02", "spine1", "thorax", "chestupper"}},
+    {"Neck", {"neck", "neck01", "neck1", "necktwist01", "lowerneck", "necklower", "spine004"}},
+    {"Head", {"head", "spine006"}},
 };
 const std::vector<Part> kSides = {
-    {"Shoulder", {"clavicle", "collar", "shoulder"}},
-    {"UpperArm", {"upperarm", "arm", "shldr", "uparm", "shoulder"}},
-    {"LowerArm", {"lowerarm", "forearm", "elbow"}},
-    {"Hand", {"hand", "wrist"}},
-    {"UpperLeg", {"upperleg", "upleg", "thigh", "hip"}},
-    {"LowerLeg", {"lowerleg", "leg", "calf", "shin", "knee"}},
-    {"Foot", {"foot", "ankle"}},
-    {"Toes", {"toes", "toe", "toebase", "toe0", "ball"}},
+    {"Shoulder", {"clavicle", "collar", "shoulder", "thorax"}},
+    {"UpperArm", {"upperarm", "arm", "shldr", "shldrbend", "uparm", "upperarm01", "humerus", "shoulder"}},
+    {"LowerArm", {"lowerarm", "forearm", "forearmbend", "lowarm", "lowerarm01", "radius", "elbow"}},
+    {"Hand", {"wrist", "hand"}},
+    {"UpperLeg", {"upperleg", "upleg", "thigh", "thighbend", "upperleg01", "femur", "hip"}},
+    {"LowerLeg", {"lowerleg", "lowleg", "leg", "calf", "shin", "lowerleg01", "tibia", "knee"}},
+    {"Foot", {"ankle", "foot"}},
+    {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "foot"}},
 };
+
+/// What stands in names of nodes beside side and part: of Biped, Rigify, Source, VRM, Character Creator.
+bool says_nothing(const std::string& word) {
+  static const std::vector<std::string> kWords = {"b", "bn",  "c",     "cc",    "base", "def",
+                                                  "j", "bip", "biped", "valve", "m"};
+  return word.starts_with("bip0") || std::ranges::find(kWords, word) != kWords.end();
+}
 
 /// The words of a name in lower case: "Bip01 L UpperArm" and "upper_arm.L" have "upper", "arm" and "l". Digits stay
 /// with the word before them. What stands before a colon is the name of a rig.
@@ -61,21 +72,95 @@ std::pair<std::string, std::string> side_and_part(const std::string& name) {
       side = "Left";
     } else if (word == "r" || word == "right") {
       side = "Right";
-    } else if (!word.starts_with("bip0") && word != "b" && word != "def") {
+    } else if (!says_nothing(word) || (word == "base" && !part.empty())) {
       part += word;
     }
   }
+  // "lfemur", "righthand": where nothing but the case could part them.
+  for (const auto& [letters, which] : {std::pair{"left", "Left"}, {"right", "Right"}, {"l", "Left"}, {"r", "Right"}})
+    if (side.empty() && part.starts_with(letters)) {
+      const std::string rest = part.substr(std::string(letters).size());
+      for (const Part& known : kSides)
+        if (std::ranges::find(known.aliases, rest) != known.aliases.end()) return {which, rest};
+    }
   return {side, part};
+}
+
+/// A node and its ancestors, from itself upward.
+std::vector<Index> line_of(std::span<const Node> nodes, Index node) {
+  std::vector<Index> line;
+  for (; node >= 0; node = nodes[node].parent) line.push_back(node);
+  return line;
+}
+
+/// The lowest node above, or the same as, both; -1 without one.
+Index common_ancestor(std::span<const Node> nodes, Index a, Index b) {
+  if (a < 0 || b < 0) return -1;
+  const std::vector<Index> line = line_of(nodes, a);
+  for (const Index node : line_of(nodes, b))
+    if (std::ranges::find(line, node) != line.end()) return node;
+  return -1;
+}
+
+bool is_above(std::span<const Node> nodes, Index above, Index node) {
+  const std::vector<Index> line = line_of(nodes, node);
+  return above >= 0 && above != node && std::ranges::find(line, above) != line.end();
+}
+
+/// Where names leave it open the tree says which nodes are trunk: hips are where legs and spine part, or above, the
+/// chest is where the arms part, and the spine is on the way.
+void settle_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
+  const auto at = [&](Joint joint) -> Index& { return joints[place_of(joint)]; };
+  const Index arms = common_ancestor(nodes, at(Joint::left_upper_arm), at(Joint::right_upper_arm));
+  const Index legs = common_ancestor(nodes, at(Joint::left_upper_leg), at(Joint::right_upper_leg));
+  const Index parting = common_ancestor(nodes, legs, arms);
+  if (parting >= 0 && parting != arms && at(Joint::hips) != parting && !is_above(nodes, at(Joint::hips), parting))
+    at(Joint::hips) = parting;
+  if (at(Joint::hips) < 0) at(Joint::hips) = legs;
+  if (!is_above(nodes, at(Joint::hips), arms)) return;
+  at(Joint::chest) = arms;
+  const Index spine = at(Joint::spine);
+  if (is_above(nodes, at(Joint::hips), spine) && is_above(nodes, spine, arms)) return;
+  const std::vector<Index> line = line_of(nodes, arms);  // from the chest down
+  const auto between = static_cast<std::size_t>(std::ranges::find(line, at(Joint::hips)) - line.begin()) - 1;
+  at(Joint::spine) = between > 0 ? line[(between + 1) / 2] : -1;
 }
 
 }  // namespace
 
+std::string_view name(Joint joint) {
+  constexpr std::array<std::string_view, kJointCount> names{
+      "Hips",          "Spine",         "Chest",         "Neck",          "Head",         "LeftShoulder",
+      "LeftUpperArm",  "LeftLowerArm",  "LeftHand",      "LeftUpperLeg",  "LeftLowerLeg", "LeftFoot",
+      "LeftToes",      "RightShoulder", "RightUpperArm", "RightLowerArm", "RightHand",    "RightUpperLeg",
+      "RightLowerLeg", "RightFoot",     "RightToes"};
+  return names[place_of(joint)];
+}
+
+Joint parent(Joint joint) {
+  switch (joint) {
+    case Joint::hips:
+    case Joint::spine:
+    case Joint::left_upper_leg:
+    case Joint::right_upper_leg:
+      return Joint::hips;
+    case Joint::chest:
+      return Joint::spine;
+    case Joint::neck:
+    case Joint::left_shoulder:
+    case Joint::right_shoulder:
+      return Joint::chest;
+    case Joint::head:
+      return Joint::neck;
+    default:
+      return static_cast<Joint>(place_of(joint) - 1);
+  }
+}
+
 const std::vector<std::string>& joint_names() {
   static const std::vector<std::string> kNames = [] {
     std::vector<std::string> names;
-    for (const Part& part : kMiddle) names.push_back(part.name);
-    for (const char* side : {"Left", "Right"})
-      for (const Part& part : kSides) names.push_back(side + part.name);
+    for (std::size_t j = 0; j < kJointCount; ++j) names.emplace_back(name(static_cast<Joint>(j)));
     return names;
   }();
   return kNames;
@@ -100,9 +185,13 @@ std::vector<Index> find_joints(std::span<const Node> nodes) {
   for (const char* side : {"Left", "Right"}) {
     const std::size_t shoulder = joints.size();
     for (const Part& part : kSides) joints.push_back(find(side, part));
-    // What some call the shoulder is the upper arm where there is no other.
+    // What some call the shoulder is the upper arm where there is no other, and what some call the foot the toes where
+    // there is an ankle.
     if (joints[shoulder] == joints[shoulder + 1]) joints[shoulder] = -1;
+    if (joints.back() == joints[joints.size() - 2]) joints.back() = -1;
   }
+  if (joints[place_of(Joint::spine)] == joints[place_of(Joint::chest)]) joints[place_of(Joint::chest)] = -1;
+  settle_trunk(nodes, joints);
   return joints;
 }
 

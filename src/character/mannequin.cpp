@@ -82,35 +82,6 @@ void bind_skin(Character& character, const mesh::MirroredMesh& skin, const std::
 
 }  // namespace
 
-std::string_view name(Joint joint) {
-  constexpr std::array<std::string_view, kJointCount> names{
-      "Hips",          "Spine",         "Chest",         "Neck",          "Head",         "LeftShoulder",
-      "LeftUpperArm",  "LeftLowerArm",  "LeftHand",      "LeftUpperLeg",  "LeftLowerLeg", "LeftFoot",
-      "LeftToes",      "RightShoulder", "RightUpperArm", "RightLowerArm", "RightHand",    "RightUpperLeg",
-      "RightLowerLeg", "RightFoot",     "RightToes"};
-  return names[z(joint)];
-}
-
-Joint parent(Joint joint) {
-  switch (joint) {
-    case Joint::hips:
-    case Joint::spine:
-    case Joint::left_upper_leg:
-    case Joint::right_upper_leg:
-      return Joint::hips;
-    case Joint::chest:
-      return Joint::spine;
-    case Joint::neck:
-    case Joint::left_shoulder:
-    case Joint::right_shoulder:
-      return Joint::chest;
-    case Joint::head:
-      return Joint::neck;
-    default:
-      return static_cast<Joint>(z(joint) - 1);
-  }
-}
-
 std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
   // Fractions of the height: Drillis & Contini (1966): ankle 0.039, knee 0.285, hip 0.530, shoulder 0.818 less half
   // of a shoulder's thickness, upper arm 0.186, forearm 0.146.

@@ -2,9 +2,9 @@
 #pragma once
 
 #include <array>
-#include <string_view>
 
 #include "character/character.hpp"
+#include "character/joints.hpp"
 
 namespace weft::character {
 
@@ -15,37 +15,6 @@ struct MannequinBuild {
   double masculinity = 0;     ///< 0: waist, hips and bust of a woman, 1: shoulders, chest and waist of a man
   double edge_length = 0.02;  ///< of the triangles [m]; head, hands and feet have shorter ones
 };
-
-/// Joints, parents first. Those of the left side are followed by their mirror images on the right.
-enum class Joint {
-  hips,
-  spine,
-  chest,
-  neck,
-  head,
-  left_shoulder,
-  left_upper_arm,
-  left_lower_arm,
-  left_hand,
-  left_upper_leg,
-  left_lower_leg,
-  left_foot,
-  left_toes,
-  right_shoulder,
-  right_upper_arm,
-  right_lower_arm,
-  right_hand,
-  right_upper_leg,
-  right_lower_leg,
-  right_foot,
-  right_toes,
-};
-inline constexpr std::size_t kJointCount = 21;
-inline constexpr std::size_t kSideJointCount = 8;  ///< of one side
-
-std::string_view name(Joint joint);
-/// The parent; hips are their own.
-Joint parent(Joint joint);
 
 /// Where the joints are at rest [m]: arms 45° from the body, legs slightly apart.
 std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build);

@@ -1,12 +1,16 @@
 #include "character/retarget.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
-#include "character/joints.hpp"
+#include "character/footing.hpp"
+#include "character/parts.hpp"
 #include "character/pose.hpp"
 
 namespace weft::character {
@@ -15,81 +19,45 @@ namespace {
 /// Keys of different joints that are closer than this are one [s].
 constexpr double kSameTime = 1e-6;
 
-Quat rotation_of(const Affine& map) {
-  return to_placement(map).rotation;
-}
+/// Joints of the same skeleton have the same axes within this angle [radians], and lengths within this share.
+constexpr double kSameAngle = 1e-3, kSameLength = 1e-3;
 
-/// Joints of a skeleton at a moment; only those that are there may be asked for.
-struct Joints {
-  std::vector<Affine> globals;  // of all nodes
-  std::span<const Index> nodes;
+constexpr double kDegree = std::numbers::pi / 180;
 
-  bool has(Index joint) const { return nodes[joint] >= 0; }
-  bool has(const std::string& joint) const { return has(joint_number(joint)); }
-  const Affine& global(Index joint) const { return globals[nodes[joint]]; }
-  Vec3 place(const std::string& joint) const { return global(joint_number(joint)).translation(); }
-  Vec3 from_to(const std::string& a, const std::string& b) const {
-    return has(a) && has(b) ? Vec3(place(b) - place(a)) : Vec3(Vec3::Zero());
-  }
-};
+/// What people reach, and some more for limbs that others push and for noise [degrees]: knees and elbows bend by 150
+/// and overstretch by 10, thighs go up by 130, heads turn by 90 and lean by 45, the spine turns by 45 and bends by 80
+/// (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).
+constexpr double kMostBend = 165, kMostBackward = 25, kMostThigh = 160, kMostHead = 120, kMostSpine = 120;
 
-Joints joints_at(const Rig& rig, const Pose& pose) {
-  return {global_transforms(rig.character, pose), rig.joints};
-}
+/// Toes bend back by no more [radians].
+constexpr double kToesBack = 80 * kDegree;
 
-/// From the right of the body to its left, level.
-Vec3 to_the_left(const Joints& joints, const Vec3& up) {
-  for (const char* part : {"UpperLeg", "UpperArm", "Shoulder"}) {
-    Vec3 across = joints.from_to(std::string("Right") + part, std::string("Left") + part);
-    across -= across.dot(up) * up;
-    if (across.norm() > 1e-9) return across.normalized();
-  }
-  return Vec3::Zero();
-}
+/// Soles that miss the floor by more are warned about [m].
+constexpr double kFloorMissed = 0.05;
 
-/// The turn about `up` that makes the motion face where the body does, both at rest.
-Quat facing(const Joints& body, const Joints& motion, const Vec3& up) {
-  const Vec3 to = to_the_left(body, up), from = to_the_left(motion, up);
-  if (to.isZero() || from.isZero()) return Quat::Identity();
+template <class Value>
+using PerJoint = std::array<Value, kJointCount>;
+
+/// The turn about `up` that makes a posture face as another does; both given by what goes to the left of the body.
+Quat facing(Vec3 from, Vec3 to, const Vec3& up) {
+  from -= from.dot(up) * up;
+  to -= to.dot(up) * up;
+  if (from.norm() < 1e-9 || to.norm() < 1e-9) return Quat::Identity();
   return Quat(Eigen::AngleAxisd(std::atan2(from.cross(to).dot(up), from.dot(to)), up));
 }
 
-/// Mean length of the legs from hip to ankle; 0 if there are none.
-double leg_length(const Joints& joints) {
-  double sum = 0;
-  int legs = 0;
-  for (const std::string side : {"Left", "Right"}) {
-    const double length = joints.from_to(side + "UpperLeg", side + "LowerLeg").norm() +
-                          joints.from_to(side + "LowerLeg", side + "Foot").norm();
-    sum += length;
-    legs += length > 0 ? 1 : 0;
-  }
-  return legs > 0 ? sum / legs : 0;
+/// To the left of the body: by the line of the hips and that of the shoulders.
+Vec3 to_the_left(const Skeleton& skeleton, const Posture& posture) {
+  const Vec3 hips = skeleton.across_hips(posture), shoulders = skeleton.across_shoulders(posture);
+  return hips.normalized() + shoulders.normalized();
 }
 
 /// Height of the lowest joint of the feet; infinite without feet.
-double lowest_foot(const Joints& joints, const Vec3& up) {
+double lowest_foot(const Skeleton& skeleton, const Posture& posture, const Vec3& up) {
   double height = std::numeric_limits<double>::infinity();
-  for (const char* joint : {"LeftFoot", "LeftToes", "RightFoot", "RightToes"})
-    if (joints.has(joint)) height = std::min(height, up.dot(joints.place(joint)));
+  for (const Joint joint : {Joint::left_foot, Joint::left_toes, Joint::right_foot, Joint::right_toes})
+    if (skeleton.has(joint)) height = std::min(height, up.dot(posture.places[place_of(joint)]));
   return height;
-}
-
-/// For each joint the turn that lays the limb of the body, at rest, along that of the motion at rest. Trunk, head and
-/// feet are taken to be upright and flat in both; hands go with their arms.
-std::vector<Quat> limb_turns(const Joints& body, const Joints& motion, const Quat& face) {
-  std::vector<Quat> turns(joint_names().size(), Quat::Identity());
-  const auto turn = [&](const std::string& joint) -> Quat& { return turns[joint_number(joint)]; };
-  constexpr std::array<std::array<const char*, 2>, 4> kLimbs{
-      {{"UpperArm", "LowerArm"}, {"LowerArm", "Hand"}, {"UpperLeg", "LowerLeg"}, {"LowerLeg", "Foot"}}};
-  for (const std::string side : {"Left", "Right"}) {
-    for (const auto& [from, to] : kLimbs) {
-      const Vec3 ours = body.from_to(side + from, side + to), theirs = face * motion.from_to(side + from, side + to);
-      if (ours.norm() > 1e-9 && theirs.norm() > 1e-9) turn(side + from).setFromTwoVectors(ours, theirs);
-    }
-    turn(side + "Hand") = turn(side + "LowerArm");
-  }
-  return turns;
 }
 
 /// All times at which a joint of the motion has a key, from 0 on.
@@ -106,99 +74,360 @@ std::vector<double> key_times(const Clip& clip) {
   return distinct;
 }
 
+/// Whether two skeletons at rest have the same joints, with the same axes and, up to one ratio, at the same places from
+/// the hips, once `turn` has turned b.
+bool same_skeleton(const Skeleton& a, const Posture& a_rest, const Skeleton& b, const Posture& b_rest, double ratio,
+                   const Quat& turn) {
+  const double size = kSameLength * (a.trunk(a_rest).norm() + a.leg_length(a_rest));
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    const auto joint = static_cast<Joint>(j);
+    if (a.has(joint) != b.has(joint)) return false;
+    if (!a.has(joint)) continue;
+    const Vec3 from_a = a_rest.places[j] - a_rest.places[0], from_b = b_rest.places[j] - b_rest.places[0];
+    if ((from_a - ratio * (turn * from_b)).norm() > size) return false;
+    if (a_rest.rotations[j].angularDistance(turn * b_rest.rotations[j]) > kSameAngle) return false;
+  }
+  return true;
+}
+
+/// What the body does at a key.
+struct Frame {
+  PerJoint<Quat> axes;    ///< of the body parts, in the world; see find_anatomy
+  PerJoint<Quat> turned;  ///< rotations of the joints, in the world
+  Vec3 hips{0, 0, 0};
+};
+
 class Retargeter {
  public:
   Retargeter(const Rig& body, const Rig& motion, const Clip& clip, const Vec3& up)
-      : body_(body), motion_(motion), clip_(clip), up_(up), at_rest_(rest_pose(body.character)) {
-    const Joints ours = joints_at(body_, at_rest_), theirs = joints_at(motion_, rest_pose(motion_.character));
-    face_ = facing(ours, theirs, up_);
-    const std::vector<Quat> limbs = limb_turns(ours, theirs, face_);
-    before_.resize(body_.character.nodes.size());
-    after_ = before_;
-    joint_of_.assign(body_.character.nodes.size(), -1);
-    for (std::size_t j = 0; j < limbs.size(); ++j) {
-      const auto joint = static_cast<Index>(j);
-      if (!ours.has(joint) || !theirs.has(joint)) continue;
-      const auto node = static_cast<std::size_t>(body_.joints[j]);
-      joint_of_[node] = joint;
-      before_[node] = face_;
-      after_[node] = rotation_of(theirs.global(joint)).conjugate() * face_.conjugate() * limbs[j] *
-                     rotation_of(ours.global(joint));
+      : body_(body),
+        ours_(body),
+        theirs_(motion),
+        clip_(clip),
+        up_(up),
+        at_rest_(rest_pose(body.character)),
+        rest_(ours_.at(at_rest_)),
+        times_(key_times(clip)) {
+    for (const double t : times_) postures_.push_back(theirs_.at(pose_at(motion.character, clip, t)));
+    const Posture motion_rest = theirs_.at(rest_pose(motion.character));
+    const double our_leg = ours_.leg_length(rest_), their_leg = theirs_.leg_length(postures_.front());
+    ratio_ = our_leg > 0 && their_leg > 0 ? our_leg / their_leg : 1;
+    const Vec3 our_left = to_the_left(ours_, rest_);
+    face_ = facing(to_the_left(theirs_, motion_rest), our_left, up_);
+    same_ = same_skeleton(ours_, rest_, theirs_, motion_rest, ratio_, face_);
+    if (!same_) {
+      steps_ = find_footsteps(theirs_, postures_, times_, up_);
+      face_ = facing(to_the_left(theirs_, postures_.front()), our_left, up_);
     }
-    const double ours_leg = leg_length(ours), theirs_leg = leg_length(theirs);
-    ratio_ = ours_leg > 0 && theirs_leg > 0 ? ours_leg / theirs_leg : 1;
-    hips_ = ours.place("Hips");
-    floor_ = lowest_foot(ours, up_);
+    find_axes();
+    joint_of_.assign(body.character.nodes.size(), -1);
+    for (std::size_t j = 0; j < kJointCount; ++j)
+      if (moves_[j]) joint_of_[static_cast<std::size_t>(body.joints[j])] = static_cast<int>(j);
   }
 
-  Clip run() {
-    const std::vector<double> times = key_times(clip_);
-    std::vector<Joints> moments;
-    double ground = std::numeric_limits<double>::infinity();
-    for (const double t : times) {
-      moments.push_back(joints_at(motion_, pose_at(motion_.character, clip_, t)));
-      ground = std::min(ground, lowest_foot(moments.back(), up_));
-    }
-    Clip result{clip_.name, clip_.duration, {}, {}};
+  Retargeted run() {
+    std::vector<Frame> frames;
+    for (std::size_t k = 0; k < times_.size(); ++k) frames.push_back(frame_at(k));
+    Retargeted result;
+    if (!same_ && can_stand()) stand(frames, result.doubts);
+    if (!same_) check_joints(result.doubts);
+    result.clip = {clip_.name, clip_.duration, {}, {}};
     for (std::size_t n = 0; n < joint_of_.size(); ++n)
-      if (joint_of_[n] >= 0) result.channels.push_back({static_cast<Index>(n), {}, {}, {}});
-    for (std::size_t k = 0; k < times.size(); ++k) append(times[k], moments[k], hips_at(moments, k, ground), result);
+      if (joint_of_[n] >= 0) result.clip.channels.push_back({static_cast<Index>(n), {}, {}, {}});
+    for (std::size_t k = 0; k < times_.size(); ++k) append(times_[k], frames[k], result.clip);
     return result;
   }
 
  private:
-  /// Where the hips of the body are at a moment.
-  Vec3 hips_at(const std::vector<Joints>& moments, std::size_t k, double ground) const {
-    const Vec3 place = moments[k].place("Hips"), moved = face_ * (place - moments[0].place("Hips"));
-    const bool feet = std::isfinite(ground) && std::isfinite(floor_);
-    const double height = feet ? floor_ + ratio_ * (up_.dot(place) - ground) : up_.dot(hips_) + ratio_ * up_.dot(moved);
-    const Vec3 level = hips_ + ratio_ * moved;
-    return level + (height - up_.dot(level)) * up_;
+  bool can_stand() const {
+    for (const bool right : {false, true})
+      for (const Joint joint : {Joint::left_upper_leg, Joint::left_lower_leg, Joint::left_foot})
+        if (!moves_[place_of(on_side(joint, right))]) return false;
+    return true;
   }
 
-  /// Appends the key of each joint. Nodes come after their parents, so that each is turned against where its parent is
-  /// by then.
-  void append(double t, const Joints& moment, const Vec3& hips, Clip& result) const {
+  void find_axes() {
+    theirs_own_.fill(Quat::Identity());
+    ours_own_ = theirs_own_;
+    if (!same_) {
+      theirs_own_ = find_anatomy(theirs_, postures_, steps_.flat, up_);
+      const std::vector<Flat> flat{{1, 1}};
+      ours_own_ = find_anatomy(ours_, std::span(&rest_, 1), flat, up_);
+    }
+    for (std::size_t j = 0; j < kJointCount; ++j) {
+      const auto joint = static_cast<Joint>(j);
+      moves_[j] = ours_.has(joint) && (theirs_.has(joint) || (!same_ && between(joint)));
+    }
+  }
+
+  /// Joints that follow others where the motion has none: of the trunk halfway between their neighbours, toes with the
+  /// foot.
+  bool between(Joint joint) const {
+    for (const bool right : {false, true})
+      if (joint == on_side(Joint::left_toes, right)) return theirs_.has(on_side(Joint::left_foot, right));
+    return (joint == Joint::spine && theirs_.has(Joint::chest)) ||
+           (joint == Joint::neck && theirs_.has(Joint::head) && theirs_.has(Joint::chest));
+  }
+
+  Frame frame_at(std::size_t k) const {
+    const Posture& posture = postures_[k];
+    Frame frame;
+    for (std::size_t j = 0; j < kJointCount; ++j)
+      frame.axes[j] = (face_ * posture.rotations[j] * theirs_own_[j]).normalized();
+    for (const Joint joint : {Joint::spine, Joint::neck})
+      if (const std::size_t j = place_of(joint); !theirs_.has(joint) && moves_[j])
+        frame.axes[j] = frame.axes[j - 1].slerp(0.5, frame.axes[j + 1]);
+    for (const bool right : {false, true})
+      if (const Joint toes = on_side(Joint::left_toes, right); !theirs_.has(toes))
+        frame.axes[place_of(toes)] = frame.axes[place_of(toes) - 1];
+    for (std::size_t j = 0; j < kJointCount; ++j)
+      frame.turned[j] = (frame.axes[j] * ours_own_[j].conjugate()).normalized();
+    frame.hips = hips_at(k, frame);
+    return frame;
+  }
+
+  /// Where the hips of the body are at a key.
+  Vec3 hips_at(std::size_t k, const Frame& frame) const {
+    // From the middle between the hip joints, whose height over the ankles is that of the legs.
+    const Vec3 place = theirs_.middle_of_hips(postures_[k]);
+    const Vec3 moved = face_ * (place - theirs_.middle_of_hips(postures_.front()));
+    const Vec3 middle = ours_.middle_of_hips(rest_), hips = rest_.places[0];
+    const Vec3 level = middle + ratio_ * moved;
+    const double height = up_.dot(level) + height_offset(place, middle, moved);
+    const Vec3 to = level + (height - up_.dot(level)) * up_;
+    return to + frame.turned[0] * (rest_.rotations[0].conjugate() * (hips - middle));
+  }
+
+  double height_offset(const Vec3& place, const Vec3& middle, const Vec3& moved) const {
+    const double travelled = up_.dot(middle) + ratio_ * up_.dot(moved);
+    if (same_) {
+      double ground = std::numeric_limits<double>::infinity();
+      for (const Posture& posture : postures_) ground = std::min(ground, lowest_foot(theirs_, posture, up_));
+      const double floor = lowest_foot(ours_, rest_, up_);
+      return std::isfinite(ground) ? floor + ratio_ * (up_.dot(place) - ground) - travelled : 0;
+    }
+    double ankles = 0;
+    for (const bool right : {false, true}) ankles += up_.dot(rest_.places[place_of(on_side(Joint::left_foot, right))]);
+    return can_stand() ? ankles / 2 + ratio_ * (up_.dot(place) - steps_.ankle_height) - travelled : 0;
+  }
+
+  /// Node to world of all nodes of the body.
+  std::vector<Affine> globals(const Frame& frame, std::vector<Placement>* locals = nullptr) const {
     std::vector<Affine> globals;
-    std::size_t channel = 0;
     for (std::size_t n = 0; n < joint_of_.size(); ++n) {
       const Index parent_node = body_.character.nodes[n].parent;
       const Affine parent = parent_node < 0 ? Affine::Identity() : globals[parent_node];
       Placement local = at_rest_.nodes[n];
       if (joint_of_[n] >= 0) {
-        Channel& to = result.channels[channel++];
-        const Quat turned = before_[n] * rotation_of(moment.global(joint_of_[n])) * after_[n];
-        local.rotation = (rotation_of(parent).conjugate() * turned).normalized();
-        to.rotation.times.push_back(t);
-        to.rotation.values.push_back(local.rotation);
-        if (joint_of_[n] == joint_number("Hips")) {
-          local.position = parent.inverse() * hips;
-          to.position.times.push_back(t);
-          to.position.values.push_back(local.position);
-        }
+        const Quat turned = frame.turned[static_cast<std::size_t>(joint_of_[n])];
+        local.rotation = (to_placement(parent).rotation.conjugate() * turned).normalized();
+        if (joint_of_[n] == 0) local.position = parent.inverse() * frame.hips;
       }
+      if (locals != nullptr) locals->push_back(local);
       globals.push_back(parent * local.to_affine());
+    }
+    return globals;
+  }
+
+  /// Nodes come after their parents, so that each is turned against where its parent is by then.
+  void append(double t, const Frame& frame, Clip& result) const {
+    std::vector<Placement> locals;
+    globals(frame, &locals);
+    std::size_t channel = 0;
+    for (std::size_t n = 0; n < joint_of_.size(); ++n) {
+      if (joint_of_[n] < 0) continue;
+      Channel& to = result.channels[channel++];
+      to.rotation.times.push_back(t);
+      to.rotation.values.push_back(locals[n].rotation);
+      if (joint_of_[n] != 0) continue;
+      to.position.times.push_back(t);
+      to.position.values.push_back(locals[n].position);
     }
   }
 
-  const Rig body_, motion_;
+  /// The height of the soles at rest: the lowest vertex, or the lowest joint of a body without skin.
+  double floor() const {
+    double floor = lowest_foot(ours_, rest_, up_);
+    std::vector<Vec3> skin_at_rest(body_.character.mesh.positions.size());
+    skin(body_.character, at_rest_, skin_at_rest);
+    for (const Vec3& x : skin_at_rest) floor = std::min(floor, up_.dot(x));
+    return floor;
+  }
+
+  Legs legs_of(const Frame& frame, double floor) const {
+    const std::vector<Affine> nodes = globals(frame);
+    Legs legs;
+    for (const bool right : {false, true}) {
+      const auto place = [&](Joint left) -> Vec3 {
+        return nodes[body_.joints[place_of(on_side(left, right))]].translation();
+      };
+      const std::size_t foot = place_of(on_side(Joint::left_foot, right));
+      const Joint toes = ours_.has(on_side(Joint::left_toes, right)) ? Joint::left_toes : Joint::left_foot;
+      const auto above_sole = [&](Joint left) { return up_.dot(rest_.places[place_of(on_side(left, right))]) - floor; };
+      const Vec3 normal = frame.axes[foot] * Vec3::UnitZ();
+      Leg& leg = legs[right];
+      leg.hip = place(Joint::left_upper_leg);
+      leg.knee = place(Joint::left_lower_leg);
+      leg.ankle = place(Joint::left_foot);
+      leg.heel = leg.ankle - above_sole(Joint::left_foot) * normal;
+      leg.ball = place(toes) - above_sole(toes) * normal;
+      leg.hinge = frame.axes[place_of(on_side(Joint::left_lower_leg, right))] * Vec3::UnitX();
+    }
+    return legs;
+  }
+
+  void stand(std::vector<Frame>& frames, std::vector<std::string>& doubts) {
+    const double sole = floor();
+    for (const bool right : {false, true}) toe_length_[right] = toe_length(right);
+    std::vector<Legs> legs;
+    for (const Frame& frame : frames) legs.push_back(legs_of(frame, sole));
+    const std::vector<Stance> stances = plant_feet(legs, steps_, times_, sole, up_);
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      const Stance& stance = stances[k];
+      frames[k].hips += stance.rise * up_;
+      for (const bool right : {false, true}) {
+        Leg leg = legs[k][right];
+        const Vec3 ankle = leg.ankle + stance.shift[right];
+        for (Vec3* joint : {&leg.hip, &leg.knee, &leg.ankle}) *joint += stance.rise * up_;
+        if (ankle != leg.ankle) bend_leg(frames[k], leg, ankle, right);
+        bend_toes(frames[k], legs[k][right].ball + stance.shift[right], sole, right);
+      }
+    }
+    check_floor(frames, stances, sole, doubts);
+  }
+
+  void check_floor(const std::vector<Frame>& frames, const std::vector<Stance>& stances, double sole,
+                   std::vector<std::string>& doubts) const {
+    double worst = 0, when = 0;
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      const Legs legs = legs_of(frames[k], sole);
+      for (const bool right : {false, true}) {
+        const double gap = std::min(up_.dot(legs[right].ball), up_.dot(legs[right].heel)) - sole;
+        if (!stances[k].in_contact[right] || std::abs(gap) <= std::abs(worst)) continue;
+        worst = gap;
+        when = times_[k];
+      }
+    }
+    if (std::abs(worst) > kFloorMissed)
+      doubts.push_back(fmt::format("a foot that stands is {:.3g} m {} the floor at {:.3g} s of the motion",
+                                   std::abs(worst), worst > 0 ? "above" : "below", when));
+  }
+
+  static void bend_leg(Frame& frame, const Leg& leg, const Vec3& ankle, bool right) {
+    const LegTurns turns = reach(leg, ankle);
+    Quat& upper = frame.turned[place_of(on_side(Joint::left_upper_leg, right))];
+    Quat& lower = frame.turned[place_of(on_side(Joint::left_lower_leg, right))];
+    upper = (turns.upper * upper).normalized();
+    lower = (turns.lower * lower).normalized();
+  }
+
+  /// Toes do not reach below the floor.
+  void bend_toes(Frame& frame, const Vec3& ball, double floor, bool right) const {
+    const std::size_t toes = place_of(on_side(Joint::left_toes, right));
+    if (!moves_[toes] || toe_length_[right] <= 0) return;
+    const Vec3 forward = frame.axes[toes] * Vec3::UnitX(), normal = frame.axes[toes] * Vec3::UnitZ();
+    // Turned by an angle toward their back, toes go down by cos(angle) · down + sin(angle) · back times their length.
+    const double down = -up_.dot(forward), back = -up_.dot(normal);
+    const double most = std::max(0.0, (up_.dot(ball) - floor) / toe_length_[right]), size = std::hypot(down, back);
+    if (down <= most || size <= most) return;
+    const double angle = std::atan2(back, down) + std::acos(most / size);
+    const Quat turn(Eigen::AngleAxisd(std::min(angle, kToesBack), forward.cross(normal)));
+    frame.turned[toes] = (turn * frame.turned[toes]).normalized();
+  }
+
+  /// How far the skin of the toes goes beyond their joint at rest [m].
+  double toe_length(bool right) const {
+    const std::size_t toes = place_of(on_side(Joint::left_toes, right));
+    if (body_.joints[toes] < 0) return 0;
+    const Vec3 forward = rest_.rotations[toes] * (ours_own_[toes] * Vec3::UnitX());
+    const VertexMask mask = vertices_below(body_.character, body_.joints[toes]);
+    std::vector<Vec3> at_rest(mask.size());
+    skin(body_.character, at_rest_, at_rest);
+    double length = 0;
+    for (std::size_t v = 0; v < mask.size(); ++v)
+      if (mask[v] != 0) length = std::max(length, forward.dot(at_rest[v] - rest_.places[toes]));
+    return length;
+  }
+
+  /// Warns of a joint that goes further than it does in people. `angle`: of a posture [degrees].
+  template <class Angle>
+  void check_joint(const std::string& what, double most, const Angle& angle, std::vector<std::string>& doubts) const {
+    double worst = 0, when = 0;
+    for (std::size_t k = 0; k < times_.size(); ++k) {
+      const double here = angle(postures_[k]) / kDegree;
+      if (here <= worst) continue;
+      worst = here;
+      when = times_[k];
+    }
+    if (worst > most)
+      doubts.push_back(
+          fmt::format("{} by {:.0f}° at {:.3g} s of the motion; people reach {:.0f}°", what, worst, when, most));
+  }
+
+  void check_joints(std::vector<std::string>& doubts) const {
+    const auto axis = [&](const Posture& p, Joint joint, const Vec3& of) -> Vec3 {
+      return p.rotations[place_of(joint)] * (theirs_own_[place_of(joint)] * of);
+    };
+    const auto angle = [](const Vec3& a, const Vec3& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); };
+    const auto lean = [&](Joint a, Joint b, const std::string& what, double most) {
+      if (theirs_.has(a) && theirs_.has(b))
+        check_joint(
+            what, most, [&](const Posture& p) { return angle(axis(p, a, Vec3::UnitZ()), axis(p, b, Vec3::UnitZ())); },
+            doubts);
+    };
+    lean(Joint::hips, Joint::chest, "the chest leans against the hips", kMostSpine);
+    lean(Joint::chest, Joint::head, "the head leans against the chest", kMostHead);
+    for (const bool right : {false, true}) {
+      if (const Joint thigh = on_side(Joint::left_upper_leg, right); theirs_.has(thigh))
+        check_joint(
+            fmt::format("{} goes up", name(thigh)), kMostThigh,
+            [&](const Posture& p) { return angle(-axis(p, Joint::hips, Vec3::UnitZ()), theirs_.bone(p, thigh)); },
+            doubts);
+      for (const Joint left : {Joint::left_lower_arm, Joint::left_lower_leg}) {
+        const Joint lower = on_side(left, right), upper = static_cast<Joint>(place_of(lower) - 1);
+        if (!theirs_.has(lower) || !theirs_.has(upper)) continue;
+        const auto bend = [&](const Posture& p) { return angle(theirs_.bone(p, upper), theirs_.bone(p, lower)); };
+        const auto backward = [&](const Posture& p) {
+          const Vec3 hinge = theirs_.bone(p, upper).cross(theirs_.bone(p, lower));
+          return hinge.dot(axis(p, lower, Vec3::UnitX())) < 0 ? bend(p) : 0;
+        };
+        check_joint(fmt::format("{} bends", name(lower)), kMostBend, bend, doubts);
+        check_joint(fmt::format("{} bends backward", name(lower)), kMostBackward, backward, doubts);
+      }
+    }
+  }
+
+  const Rig body_;
+  const Skeleton ours_, theirs_;
   const Clip& clip_;
   const Vec3 up_;
   const Pose at_rest_;  // of the body
-  Quat face_;
-  // Of each node of the body: the joint that moves it, or -1; a rotation R of its counterpart becomes before · R ·
-  // after.
-  std::vector<Index> joint_of_;
-  std::vector<Quat> before_, after_;
-  double ratio_ = 1;  // of lengths, body to motion
-  Vec3 hips_;         // of the body at rest
-  double floor_ = 0;  // height of its lowest foot at rest
+  const Posture rest_;
+  const std::vector<double> times_;
+  std::vector<Posture> postures_;  // of the motion, at these times
+  double ratio_ = 1;               // of lengths, body to motion
+  bool same_ = false;              // skeletons
+  Footsteps steps_;
+  std::array<double, 2> toe_length_{};  // [m]
+  Quat face_ = Quat::Identity();
+  PerJoint<Quat> theirs_own_, ours_own_;  // axes of body parts in those of the joints
+  PerJoint<bool> moves_{};                // joints of the body
+  std::vector<int> joint_of_;             // of each node of the body, or -1
 };
 
 }  // namespace
 
-Clip retarget(const Rig& body, const Rig& motion, const Clip& clip, const Vec3& up) {
+Retargeted retarget(const Rig& body, const Rig& motion, const Clip& clip, const Vec3& up) {
   return Retargeter(body, motion, clip, up).run();
+}
+
+Vec3 mean_trunk(const Rig& motion, const Clip& clip) {
+  const Skeleton skeleton(motion);
+  if (!skeleton.has(Joint::hips)) return Vec3::Zero();
+  Vec3 sum = Vec3::Zero();
+  const std::vector<double> times = key_times(clip);
+  for (const double t : times) sum += skeleton.trunk(skeleton.at(pose_at(motion.character, clip, t))).normalized();
+  return sum / static_cast<double>(times.size());
 }
 
 }  // namespace weft::character

@@ -32,6 +32,15 @@ constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
 /// Ends of a clip that are further apart do not close to the eye [m].
 constexpr double kGap = 1e-3;
 
+/// A trunk that points up, in the mean over a motion, by more than this stands [1].
+constexpr double kStands = 0.7;
+
+/// Bodies of people and their toys are this tall [m]; a file in centimetres is a hundred times taller.
+constexpr double kLeastSize = 0.3, kMostSize = 3;
+
+/// Nothing with legs goes faster [m/s]; sprinters reach 12.
+constexpr double kMostSpeed = 20;
+
 /// What there is to be sampled.
 struct Body {
   std::string source;  ///< for messages: the file it is from
@@ -117,11 +126,32 @@ void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::s
                                    source));
 }
 
+/// Formats that do not say which axis is up: of these y is, as is usual, unless the bodies in the file stand along z.
+assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acting,
+                                     std::vector<std::string>& warnings) {
+  const auto load = [&](scene::FileUp up) {
+    return assets::load_motion(*acting.motion, {{}, up, cast.scene.up}, cast.where);
+  };
+  assets::LoadedCharacter motion = load(acting.motion_up);
+  if (acting.motion_up != scene::FileUp::as_file || acting.motion->extension() != ".bvh") return motion;
+  const auto joints =
+      joints_of(cast, acting.joints, &scene::JointNames::motion, motion.character, acting.motion->string());
+  const character::Clip& clip = choose_clip(cast, acting.clip, motion.character.clips, acting.motion->string());
+  const Vec3 trunk = character::mean_trunk({motion.character, joints}, clip);
+  const Mat3 from_y = assets::turn_up(1, cast.scene.up), from_z = assets::turn_up(2, cast.scene.up);
+  const double along_y = trunk.dot(cast.up()), along_z = (from_z * from_y.transpose() * trunk).dot(cast.up());
+  if (along_z < kStands || along_y > along_z) return motion;
+  warnings.push_back(
+      fmt::format("{}: motion file {}: bodies stand along z, which is taken to be up; if y is, write "
+                  "motion_up = \"y\"",
+                  cast.where, acting.motion->string()));
+  return load(scene::FileUp::z);
+}
+
 /// The clip of another skeleton, on this one.
 character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& body) {
   const std::string file = acting.motion->string();
-  assets::LoadedCharacter motion =
-      assets::load_motion(*acting.motion, {{}, scene::FileUp::as_file, cast.scene.up}, cast.where);
+  assets::LoadedCharacter motion = load_upright(cast, acting, body.warnings);
   body.warnings.insert(body.warnings.end(), motion.warnings.begin(), motion.warnings.end());
   const auto ours = joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source);
   const auto theirs = joints_of(cast, acting.joints, &scene::JointNames::motion, motion.character, file);
@@ -134,7 +164,11 @@ character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& b
     body.warnings.push_back(
         fmt::format("{}: motion file {}: nothing that moves {}", cast.where, file, fmt::join(still, ", ")));
   const character::Clip& clip = choose_clip(cast, acting.clip, motion.character.clips, file);
-  return character::retarget({body.character, ours}, {motion.character, theirs}, clip, cast.up());
+  character::Retargeted result =
+      character::retarget({body.character, ours}, {motion.character, theirs}, clip, cast.up());
+  for (const std::string& doubt : result.doubts)
+    body.warnings.push_back(fmt::format("{}: motion file {}: {}", cast.where, file, doubt));
+  return std::move(result.clip);
 }
 
 /// The body as its file has it.
@@ -322,9 +356,48 @@ KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
           cast.settings.dressing > 0};
 }
 
+/// Warns of a body whose file must have meant another unit.
+void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body) {
+  if (cast.settings.scale) return;
+  std::vector<Vec3> x(body.character.mesh.positions.size());
+  character::skin(body.character, character::rest_pose(body.character), x);
+  const auto [low, high] = std::ranges::minmax(x, {}, [&](const Vec3& v) { return cast.up().dot(v); });
+  const double height = cast.up().dot(high - low);
+  if (height < kLeastSize || height > kMostSize)
+    body.warnings.push_back(
+        fmt::format("{}: {} is {:.3g} m tall, where {:g} to {:g} m are expected; scale says how many "
+                    "metres a unit of the file has",
+                    cast.where, source.path.string(), height, kLeastSize, kMostSize));
+}
+
+void check_size(const Cast&, const scene::Mannequin&, Body&) {}
+
+/// Warns of a body that flies.
+void check_speed(const Cast& cast, const KeyTimes& times, const KeyFrames& keys, std::size_t vertices,
+                 std::vector<std::string>& warnings) {
+  std::vector<Vec3> x(vertices);
+  const auto middle = [&](std::size_t k) -> Vec3 {
+    keys.at(static_cast<double>(times.first + static_cast<long>(k)) / times.rate, x);
+    Vec3 sum = Vec3::Zero();
+    for (const Vec3& v : x) sum += v;
+    return sum / static_cast<double>(x.size());
+  };
+  double fastest = 0;
+  Vec3 before = middle(0);
+  for (std::size_t k = 1; k < times.count; ++k) {
+    const Vec3 now = middle(k);
+    fastest = std::max(fastest, (now - before).norm() * times.rate);
+    before = now;
+  }
+  if (fastest > kMostSpeed)
+    warnings.push_back(fmt::format("{}: it moves at up to {:.3g} m/s; bodies with legs reach {:g} m/s", cast.where,
+                                   fastest, kMostSpeed));
+}
+
 template <class Source>
 Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> following) {
   Body body = cast_body(cast, source);
+  check_size(cast, source, body);
   const character::Clip still;
   const character::Clip& clip = body.clip ? *body.clip : still;
   const character::Performance performance(
@@ -339,9 +412,11 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   const std::size_t vertices = body.character.mesh.positions.size();
   const character::Pose start = performance.at(-cast.scene.preroll_frames() / cast.scene.time.fps);
   for (const FollowingPin& pin : following) follow(cast, pin, parts, start, vertices, body.character);
-  KeyFrames keys =
-      sample(cast, key_times(cast, character::key_rate(clip)), body.character.mesh.positions.size(),
-             [&](double t, std::vector<Vec3>& x) { character::skin(body.character, performance.at(t), x); });
+  const KeyTimes times = key_times(cast, character::key_rate(clip));
+  KeyFrames keys = sample(cast, times, body.character.mesh.positions.size(), [&](double t, std::vector<Vec3>& x) {
+    character::skin(body.character, performance.at(t), x);
+  });
+  check_speed(cast, times, keys, body.character.mesh.positions.size(), body.warnings);
   mesh::Mesh mesh = std::move(body.character.mesh);
   mesh.positions.resize(vertices);
   keys.at(0, mesh.positions);

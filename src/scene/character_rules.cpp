@@ -58,6 +58,8 @@ void acting_rows(TableBuilder<Character>& rows) {
   rows.plain(Type::file, "motion", of_source<Kind>(&Acting::motion),
              "file, such as BVH, of a skeleton whose motion it takes over")
       .by_default("none")
+      .choice("motion_up", of_source<Kind>(&Acting::motion_up), {"as_file", "x", "y", "z"},
+              "axis of that file that points up; of BVH, which does not say, the one along which bodies stand")
       .list(Type::list, "joint", of_source<Kind>(&Acting::joints), joint_rules())
       .plain(Type::text, "clip", of_source<Kind>(&Acting::clip), "animation of the motion, else of the body itself")
       .by_default("the first")

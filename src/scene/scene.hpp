@@ -263,6 +263,7 @@ struct JointNames {
 struct Acting {
   std::optional<std::string> clip;              ///< of `motion`, else of the body itself; absent: the first
   std::optional<std::filesystem::path> motion;  ///< file whose motion it takes over; absolute after checking
+  FileUp motion_up = FileUp::as_file;           ///< axis of `motion` that points up
   std::vector<JointNames> joints;
   Stance stance = Stance::first;  ///< pose that is held while dressing
   bool loop = false;              ///< again and again, each round from where the last one has come to

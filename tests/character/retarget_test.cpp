@@ -105,7 +105,7 @@ struct Result {
 
 Result retargeted(const Character& body, const Character& motion, const Clip& clip) {
   const auto ours = find_joints(body.nodes), theirs = find_joints(motion.nodes);
-  return {body, retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ())};
+  return {body, retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ()).clip};
 }
 
 const Quat kOwnFrame = about(Vec3(1, 2, -1).normalized(), 77);
@@ -181,6 +181,27 @@ TEST(Joints, OfTheUsualRigsAreFoundByName) {
       {"by joints",
        {"Hips", "Ab", "Chest", "Neck", "Head", "LeftCollar", "LeftShoulder", "LeftElbow", "LeftWrist", "LeftHip",
         "LeftKnee", "LeftAnkle", "LeftToe", "RightShoulder"}},
+      {"Character Creator",
+       {"CC_Base_Pelvis", "CC_Base_Waist", "CC_Base_Spine02", "CC_Base_NeckTwist01", "CC_Base_Head",
+        "CC_Base_L_Clavicle", "CC_Base_L_Upperarm", "CC_Base_L_Forearm", "CC_Base_L_Hand", "CC_Base_L_Thigh",
+        "CC_Base_L_Calf", "CC_Base_L_Foot", "CC_Base_L_ToeBase", "CC_Base_R_Upperarm"}},
+      {"VRM",
+       {"J_Bip_C_Hips", "J_Bip_C_Spine", "J_Bip_C_UpperChest", "J_Bip_C_Neck", "J_Bip_C_Head", "J_Bip_L_Shoulder",
+        "J_Bip_L_UpperArm", "J_Bip_L_LowerArm", "J_Bip_L_Hand", "J_Bip_L_UpperLeg", "J_Bip_L_LowerLeg", "J_Bip_L_Foot",
+        "J_Bip_L_ToeBase", "J_Bip_R_UpperArm"}},
+      {"SMPL",
+       {"Pelvis", "Spine1", "Spine3", "Neck", "Head", "L_Collar", "L_Shoulder", "L_Elbow", "L_Wrist", "L_Hip", "L_Knee",
+        "L_Ankle", "L_Foot", "R_Shoulder"}},
+      {"Bandai",
+       {"Hips", "Spine", "Chest", "Neck", "Head", "Shoulder_L", "UpperArm_L", "LowerArm_L", "Hand_L", "UpperLeg_L",
+        "LowerLeg_L", "Foot_L", "Toes_L", "UpperArm_R"}},
+      {"Acclaim",
+       {"hips", "lowerback", "thorax", "lowerneck", "head", "lclavicle", "lhumerus", "lradius", "lwrist", "lfemur",
+        "ltibia", "lfoot", "ltoes", "rhumerus"}},
+      {"Truebones",
+       {"BN_Bip01_Pelvis", "BN_Bip01_Spine", "BN_Bip01_Spine1", "BN_Bip01_Neck", "BN_Bip01_Head", "BN_Bip01_L_Clavicle",
+        "BN_Bip01_L_UpperArm", "BN_Bip01_L_Forearm", "BN_Bip01_L_Hand", "BN_Bip01_L_Thigh", "BN_Bip01_L_Calf",
+        "BN_Bip01_L_Foot", "BN_Bip01_L_Toe0", "BN_Bip01_R_UpperArm"}},
   };
   const std::vector<std::string>& joints = rigs[0].second;
   for (const auto& [rig, names] : rigs) {
@@ -192,6 +213,45 @@ TEST(Joints, OfTheUsualRigsAreFoundByName) {
     EXPECT_EQ(found[joint_number("RightFoot")], -1) << rig;
     EXPECT_EQ(found[joint_number("RightShoulder")], -1) << rig;
   }
+}
+
+TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
+  // As 100STYLE has it: four chests and no spine.
+  std::vector<Node> nodes;
+  const auto add = [&](const std::string& name, Index parent) {
+    nodes.push_back({name, parent, Affine::Identity()});
+    return static_cast<Index>(nodes.size() - 1);
+  };
+  Index last = add("Hips", -1);
+  for (const char* name : {"Chest", "Chest2", "Chest3", "Chest4"}) last = add(name, last);
+  add("LeftShoulder", add("LeftCollar", last));
+  add("RightShoulder", add("RightCollar", last));
+  for (const char* leg : {"LeftHip", "RightHip"}) add(leg, 0);
+  auto found = find_joints(nodes);
+  EXPECT_EQ(found[place_of(Joint::hips)], 0);
+  EXPECT_EQ(found[place_of(Joint::spine)], 2);
+  EXPECT_EQ(found[place_of(Joint::chest)], 4);
+  // As Character Creator and Rigify have it: legs hang from a pelvis beside the spine; nothing is called hips.
+  nodes.clear();
+  const Index hip = add("CC_Base_Hip", add("root", -1)), pelvis = add("CC_Base_Pelvis", hip);
+  last = add("CC_Base_Spine01", add("CC_Base_Waist", hip));
+  for (const char* leg : {"CC_Base_L_Thigh", "CC_Base_R_Thigh"}) add(leg, pelvis);
+  for (const char* arm : {"CC_Base_L_Upperarm", "CC_Base_R_Upperarm"}) add(arm, last);
+  found = find_joints(nodes);
+  EXPECT_EQ(found[place_of(Joint::hips)], hip);
+  EXPECT_EQ(nodes[found[place_of(Joint::spine)]].name, "CC_Base_Waist");
+  EXPECT_EQ(found[place_of(Joint::chest)], last);
+}
+
+TEST(Retarget, DoubtsWhatNoBodyDoes) {
+  const Character motion = sticks(1, 0, 0, Quat::Identity());
+  Clip clip = waving(motion, Vec3::Zero());
+  clip.channels[0].rotation.values[1] = about(Vec3::UnitY(), -175);
+  const Character body = sticks(1, 30, 0, kOwnFrame);
+  const auto ours = find_joints(body.nodes), theirs = find_joints(motion.nodes);
+  const Retargeted result = retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ());
+  ASSERT_EQ(result.doubts.size(), 1u);
+  EXPECT_EQ(result.doubts[0], "LeftLowerArm bends by 175° at 1 s of the motion; people reach 165°");
 }
 
 }  // namespace

@@ -312,6 +312,44 @@ TEST_F(Acting, TakesOverTheMotionOfAnotherFileByTheNamesThatTheSceneGives) {
   EXPECT_NE(make().warnings[0].find("nothing that moves Spine"), std::string::npos);
 }
 
+TEST_F(Acting, StandsUpAMotionWhoseFileHasZUp) {
+  std::string file = bvh();
+  for (std::size_t at = 0; (at = file.find("OFFSET 0 5 0", at)) != std::string::npos; ++at)
+    file.replace(at, 12, "OFFSET 0 0 5");
+  file.replace(file.find("90 0 0\n"), 6, "0 0 90");
+  support::write_bytes(folder_ / "walk.bvh", file);
+  file_.motion = folder_ / "walk.bvh";
+  file_.joints = {{"Spine", std::nullopt, "Back"}};
+  const Actor actor = make();
+  ASSERT_EQ(actor.warnings.size(), 1u);
+  EXPECT_NE(actor.warnings[0].find("bodies stand along z, which is taken to be up"), std::string::npos);
+  EXPECT_LT((at(actor, 0)[4] - Vec3(0.1, 0, 2)).norm(), kSingle);
+  file_.motion_up = scene::FileUp::z;
+  EXPECT_TRUE(make().warnings.empty());
+  EXPECT_EQ(make().keys.bytes(), actor.keys.bytes());
+}
+
+TEST_F(Acting, WarnsOfSizesAndSpeedsThatNobodyHas) {
+  file_.motion = folder_ / "walk.bvh";
+  file_.joints = {{"Spine", std::nullopt, "Back"}};
+  std::string fast = bvh();
+  fast.replace(fast.find("0 0 3 "), 6, "0 0 90 ");
+  support::write_bytes(folder_ / "walk.bvh", fast);
+  const Actor actor = make();
+  ASSERT_EQ(actor.warnings.size(), 1u);
+  EXPECT_NE(actor.warnings[0].find("it moves at up to 90 m/s; bodies with legs reach 20 m/s"), std::string::npos)
+      << actor.warnings[0];
+
+  file_ = {};
+  file_.path = folder_ / "tall.obj";
+  support::write_bytes(file_.path, "v 0 0 0\nv 1 0 0\nv 0 170 0\nf 1 2 3\n");
+  const Actor tall = make();
+  ASSERT_EQ(tall.warnings.size(), 1u);
+  EXPECT_NE(tall.warnings[0].find("tall.obj is 170 m tall, where 0.3 to 3 m are expected"), std::string::npos);
+  character_.scale = 0.01;
+  EXPECT_TRUE(make().warnings.empty());
+}
+
 std::string triangle(double height, const std::string& face = "1 2 3") {
   return fmt::format("v 0 {0} 0\nv 1 {0} 0\nv 0 {0} 1\nf {1}\n", height, face);
 }

@@ -1,0 +1,333 @@
+#include "character/anatomy.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <string_view>
+
+namespace weft::character {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+/// Directions from shorter lengths than this, relative to others, are noise.
+constexpr double kNothing = 1e-9;
+
+/// How much of the postures, in the mean, must show how a joint is turned; a guess makes up for what they lack. Hinges
+/// show by the square of the sine of their angle, so that elbows which bend by 13° are no longer guessed.
+constexpr double kEnough = 0.05;
+
+/// A trunk that stands leans by less (people who walk: 2 to 5°, who stoop: above 15°); its single bones lean by less.
+constexpr double kStanding = 5 * kDegree, kStandingBone = 20 * kDegree;
+
+Vec3 unit(const Vec3& v) {
+  const double length = v.norm();
+  return length > kNothing ? Vec3(v / length) : Vec3(Vec3::Zero());
+}
+
+double angle(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b));
+}
+
+/// 1 for no angle, falling off beyond `width`.
+double within(double angle, double width) {
+  return std::exp(-(angle / width) * (angle / width));
+}
+
+/// The first node at or below `node` whose name has the word, in lower case, in it; -1 if there is none.
+Index find_below(const Character& character, Index node, std::string_view word) {
+  std::vector<char> below(character.nodes.size(), 0);
+  below[node] = 1;
+  for (std::size_t n = static_cast<std::size_t>(node) + 1; n < below.size(); ++n) {
+    const Node& candidate = character.nodes[n];
+    if (candidate.parent < 0 || below[candidate.parent] == 0) continue;
+    below[n] = 1;
+    std::string lower;
+    for (const char c : candidate.name) lower += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+    if (lower.find(word) != std::string::npos) return static_cast<Index>(n);
+  }
+  return -1;
+}
+
+/// Finds the axes of a body in those of the joints; see find_anatomy.
+class AnatomyFinder {
+ public:
+  AnatomyFinder(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const Flat> flat, const Vec3& up)
+      : skeleton_(skeleton), postures_(postures), flat_(flat), up_(up) {
+    own_.fill(Quat::Identity());
+    // Where nothing tells left from right both skeletons have the same axes of the world.
+    level_ = up.unitOrthogonal();
+  }
+
+  std::array<Quat, kJointCount> find() {
+    for (const Joint joint : {Joint::hips, Joint::spine, Joint::chest, Joint::neck, Joint::head})
+      if (skeleton_.has(joint)) find_trunk(joint);
+    for (const bool right : {false, true}) {
+      const Joint chest = trunk_joint();
+      if (const Joint shoulder = on_side(Joint::left_shoulder, right); skeleton_.has(shoulder)) take(shoulder, chest);
+      find_limb(on_side(Joint::left_upper_arm, right), on_side(Joint::left_lower_arm, right), chest, right);
+      find_hand(on_side(Joint::left_hand, right), on_side(Joint::left_lower_arm, right), right);
+      find_limb(on_side(Joint::left_upper_leg, right), on_side(Joint::left_lower_leg, right), Joint::hips, right);
+      find_foot(right);
+    }
+    return own_;
+  }
+
+ private:
+  Vec3 axis(const Posture& posture, Joint joint, const Vec3& of) const {
+    return posture.rotations[place_of(joint)] * (own_[place_of(joint)] * of);
+  }
+
+  /// The sum over all postures of a direction in the world, in the axes of the joint.
+  template <class Direction>
+  Vec3 sum(Joint joint, const Direction& direction) const {
+    Vec3 sum = Vec3::Zero();
+    for (std::size_t k = 0; k < postures_.size(); ++k)
+      sum += postures_[k].rotations[place_of(joint)].conjugate() * Vec3(direction(postures_[k], k));
+    return sum;
+  }
+
+  /// The sum of what each posture shows and, as far as that is not enough, of a guess. `weight`: of what it shows.
+  template <class Weight, class Shown, class Guess>
+  Vec3 sum(Joint joint, const Weight& weight, const Shown& shown, const Guess& guess) const {
+    double shows = 0;
+    for (std::size_t k = 0; k < postures_.size(); ++k) shows += weight(postures_[k], k);
+    const double lacks = std::max(0.0, kEnough - shows / static_cast<double>(postures_.size()));
+    return sum(joint, [&](const Posture& p, std::size_t k) {
+      Vec3 sum = weight(p, k) * shown(p, k);
+      if (lacks > 0) sum += lacks * guess(p, k);
+      return sum;
+    });
+  }
+
+  /// An axis of a body part in each posture.
+  auto axis_of(Joint joint, const Vec3& of) const {
+    return [this, joint, of](const Posture& p, std::size_t) { return axis(p, joint, of); };
+  }
+
+  auto upright() const {
+    return [this](const Posture&, std::size_t) { return up_; };
+  }
+
+  Vec3 along(const Posture& posture, Joint joint) const { return unit(skeleton_.bone(posture, joint)); }
+
+  /// The chest, or what a skeleton without one has.
+  Joint trunk_joint() const {
+    for (const Joint joint : {Joint::chest, Joint::spine})
+      if (skeleton_.has(joint)) return joint;
+    return Joint::hips;
+  }
+
+  /// Gives a joint the axes of another, in the mean.
+  void take(Joint joint, Joint from) {
+    own_[place_of(joint)] =
+        axes_along(sum(joint, axis_of(from, Vec3::UnitZ())), sum(joint, axis_of(from, Vec3::UnitX())));
+  }
+
+  /// Gives a joint axes along its bone; to one without a bone those of its parent.
+  void take_bone(Joint joint, Joint parent, const Vec3& across) {
+    const Vec3 z = sum(joint, [&](const Posture& p, std::size_t) { return along(p, joint); });
+    if (unit(z).isZero()) return take(joint, parent);
+    own_[place_of(joint)] = axes_along(z, across);
+  }
+
+  void find_trunk(Joint joint) {
+    const auto bone = [&](const Posture& p, std::size_t) {
+      const Joint below = skeleton_.has(Joint::neck) ? Joint::neck : trunk_joint();
+      return joint == Joint::head ? unit(p.places[place_of(joint)] - p.places[place_of(below)]) : along(p, joint);
+    };
+    const auto standing = [&](const Posture& p, std::size_t k) {
+      const Vec3 along = bone(p, k);
+      return within(angle(skeleton_.trunk(p), up_), kStanding) *
+             (along.isZero() ? 1 : within(angle(along, up_), kStandingBone));
+    };
+    const Vec3 z = sum(joint, standing, upright(), bone);
+    const Vec3 x = sum(joint, [&](const Posture& p, std::size_t) {
+      const Vec3 hips = unit(skeleton_.across_hips(p)), shoulders = unit(skeleton_.across_shoulders(p));
+      if (hips.isZero() && shoulders.isZero()) return level_;
+      if (joint == Joint::hips && !hips.isZero()) return Vec3(hips);
+      return shoulders.isZero() || joint == Joint::spine ? Vec3(hips + shoulders) : shoulders;
+    });
+    // The hip joints belong to the hips, so that they say best how these are turned.
+    const Vec3 line = unit(x), beside = z - z.dot(line) * line;
+    own_[place_of(joint)] = axes_along(joint == Joint::hips && beside.norm() > 0.1 * z.norm() ? beside : z, x);
+  }
+
+  /// Upper and lower arm or leg.
+  void find_limb(Joint upper, Joint lower, Joint trunk, bool right) {
+    if (!skeleton_.has(upper)) return;
+    const bool arm = place_of(upper) < place_of(on_side(Joint::left_upper_leg, right));
+    // The guess: arms stretched out sideways bend forward, legs straight down backward, and turn from there to where
+    // they are on the shortest way.
+    const auto guess = [&](const Posture& p, std::size_t) {
+      const Vec3 left = axis(p, trunk, Vec3::UnitX()), back = axis(p, trunk, Vec3::UnitY());
+      const Vec3 from = arm ? Vec3(right ? -left : left) : Vec3(-axis(p, trunk, Vec3::UnitZ()));
+      const Vec3 hinge = from.cross(arm ? Vec3(-back) : back), to = along(p, upper);
+      return Vec3((1 + from.dot(to)) / 2 * (Quat::FromTwoVectors(from, to) * hinge));
+    };
+    const auto bend = [&](const Posture& p, std::size_t) { return unit(along(p, upper).cross(along(p, lower))); };
+    const auto bent = [&](const Posture& p, std::size_t) {
+      return skeleton_.has(lower) ? along(p, upper).cross(along(p, lower)).squaredNorm() : 0;
+    };
+    take_bone(upper, trunk, sum(upper, bent, bend, guess));
+    if (!skeleton_.has(lower)) return;
+    const auto hinge = [&](const Posture& p, std::size_t) {
+      return Vec3(Quat::FromTwoVectors(along(p, upper), along(p, lower)) * axis(p, upper, Vec3::UnitX()));
+    };
+    take_bone(lower, upper, sum(lower, bent, bend, hinge));
+  }
+
+  void find_hand(Joint hand, Joint lower_arm, bool right) {
+    if (!skeleton_.has(hand)) return;
+    if (!skeleton_.has(lower_arm)) return take(hand, trunk_joint());
+    take_bone(hand, lower_arm, sum(hand, [&](const Posture& p, std::size_t) {
+                const Vec3 palm = p.knuckles[right].cross(skeleton_.bone(p, hand));
+                return palm.isZero() ? axis(p, lower_arm, Vec3::UnitX()) : unit(palm);
+              }));
+  }
+
+  void find_foot(bool right) {
+    const Joint shin = on_side(Joint::left_lower_leg, right), foot = on_side(Joint::left_foot, right),
+                toes = on_side(Joint::left_toes, right);
+    if (!skeleton_.has(foot) || !skeleton_.has(shin)) return;
+    const auto flat = [&](const Posture&, std::size_t k) { return flat_[k][right]; };
+    const auto forward = [&](const Posture& p, std::size_t) {
+      return skeleton_.has(toes) ? along(p, foot)
+                                 : Vec3(axis(p, shin, Vec3::UnitZ()).cross(axis(p, shin, Vec3::UnitX())));
+    };
+    // The guess: at a right angle to the shin, with straight toes.
+    own_[place_of(foot)] =
+        axes_along(sum(foot, flat, upright(), axis_of(shin, -Vec3::UnitZ())), sum(foot, flat, forward, forward));
+    if (!skeleton_.has(toes)) return;
+    const auto of_foot = axis_of(foot, Vec3::UnitX());
+    own_[place_of(toes)] =
+        axes_along(sum(toes, flat, upright(), axis_of(foot, Vec3::UnitZ())), sum(toes, flat, of_foot, of_foot));
+  }
+
+  const Skeleton& skeleton_;
+  std::span<const Posture> postures_;
+  std::span<const Flat> flat_;
+  Vec3 up_, level_;
+  std::array<Quat, kJointCount> own_;
+};
+
+}  // namespace
+
+Quat axes_along(const Vec3& z, const Vec3& x) {
+  const Vec3 first = z.norm() > kNothing ? Vec3(z.normalized()) : Vec3(Vec3::UnitZ());
+  Vec3 second = x - x.dot(first) * first;
+  if (!(second.norm() > kNothing * std::max(1.0, x.norm()))) second = first.unitOrthogonal();
+  second.normalize();
+  Mat3 axes;
+  axes << second, first.cross(second), first;
+  return Quat(axes).normalized();
+}
+
+Skeleton::Skeleton(const Rig& rig) : rig_(rig) {
+  for (std::size_t j = 0; j < kJointCount; ++j)
+    for (std::size_t n = 0; n < rig.character.nodes.size(); ++n)
+      if (rig.joints[j] >= 0 && rig.character.nodes[n].parent == rig.joints[j])
+        children_[j].push_back(static_cast<Index>(n));
+  for (const bool right : {false, true}) {
+    fingers_[right] = {-1, -1};
+    const Index hand = rig.joints[place_of(on_side(Joint::left_hand, right))];
+    if (hand < 0) continue;
+    Index little = find_below(rig.character, hand, "pinky");
+    for (const char* other : {"little", "pinkie", "ring", "finger4", "finger3"})
+      if (little < 0) little = find_below(rig.character, hand, other);
+    Index index = find_below(rig.character, hand, "index");
+    if (index < 0) index = find_below(rig.character, hand, "finger1");
+    if (index >= 0 && little >= 0) fingers_[right] = {index, little};
+  }
+}
+
+Posture Skeleton::at(const Pose& pose) const {
+  const std::vector<Affine> globals = global_transforms(rig_.character, pose);
+  Posture posture;
+  for (std::size_t j = 0; j < kJointCount; ++j) {
+    posture.places[j].setZero();
+    posture.ends[j].setZero();
+    posture.rotations[j].setIdentity();
+    if (rig_.joints[j] < 0) continue;
+    const Affine& global = globals[rig_.joints[j]];
+    posture.places[j] = global.translation();
+    posture.rotations[j] = to_placement(global).rotation;
+    for (const Index child : children_[j]) posture.ends[j] += globals[child].translation();
+    posture.ends[j] =
+        children_[j].empty() ? posture.places[j] : Vec3(posture.ends[j] / static_cast<double>(children_[j].size()));
+  }
+  for (std::size_t side = 0; side < 2; ++side)
+    posture.knuckles[side] =
+        fingers_[side][0] < 0
+            ? Vec3(Vec3::Zero())
+            : Vec3(globals[fingers_[side][1]].translation() - globals[fingers_[side][0]].translation());
+  return posture;
+}
+
+Vec3 Skeleton::bone(const Posture& posture, Joint joint) const {
+  const std::size_t from = place_of(joint);
+  std::size_t last = from;  // of its limb
+  if (joint <= Joint::head) {
+    last = place_of(Joint::head);
+  } else {
+    const std::size_t in_side = (from - place_of(Joint::left_shoulder)) % kSideJointCount;
+    const std::size_t end = in_side <= place_of(Joint::left_hand) - place_of(Joint::left_shoulder)
+                                ? place_of(Joint::left_hand)
+                                : place_of(Joint::left_toes);
+    last = from - in_side + end - place_of(Joint::left_shoulder);
+  }
+  for (std::size_t to = from + 1; to <= last; ++to)
+    if (has(static_cast<Joint>(to))) return posture.places[to] - posture.places[from];
+  return posture.ends[from] - posture.places[from];
+}
+
+Vec3 Skeleton::across(const Posture& posture, Joint left) const {
+  const Joint right = on_side(left, true);
+  return has(left) && has(right) ? Vec3(posture.places[place_of(left)] - posture.places[place_of(right)])
+                                 : Vec3(Vec3::Zero());
+}
+
+Vec3 Skeleton::across_hips(const Posture& posture) const {
+  return across(posture, Joint::left_upper_leg);
+}
+
+Vec3 Skeleton::across_shoulders(const Posture& posture) const {
+  const Vec3 arms = across(posture, Joint::left_upper_arm);
+  return arms.isZero() ? across(posture, Joint::left_shoulder) : arms;
+}
+
+Vec3 Skeleton::middle_of_hips(const Posture& posture) const {
+  if (!has(Joint::left_upper_leg) || !has(Joint::right_upper_leg)) return posture.places[place_of(Joint::hips)];
+  return (posture.places[place_of(Joint::left_upper_leg)] + posture.places[place_of(Joint::right_upper_leg)]) / 2;
+}
+
+Vec3 Skeleton::trunk(const Posture& posture) const {
+  const Vec3 from = middle_of_hips(posture);
+  if (has(Joint::left_upper_arm) && has(Joint::right_upper_arm))
+    return (posture.places[place_of(Joint::left_upper_arm)] + posture.places[place_of(Joint::right_upper_arm)]) / 2 -
+           from;
+  for (const Joint top : {Joint::neck, Joint::head, Joint::chest, Joint::spine})
+    if (has(top)) return posture.places[place_of(top)] - from;
+  return bone(posture, Joint::hips);
+}
+
+double Skeleton::leg_length(const Posture& posture) const {
+  double sum = 0;
+  int legs = 0;
+  for (const bool right : {false, true}) {
+    const Joint upper = on_side(Joint::left_upper_leg, right), lower = on_side(Joint::left_lower_leg, right);
+    if (!has(upper) || !has(lower) || !has(on_side(Joint::left_foot, right))) continue;
+    sum += bone(posture, upper).norm() + bone(posture, lower).norm();
+    ++legs;
+  }
+  return legs > 0 ? sum / legs : 0;
+}
+
+std::array<Quat, kJointCount> find_anatomy(const Skeleton& skeleton, std::span<const Posture> postures,
+                                           std::span<const Flat> flat, const Vec3& up) {
+  return AnatomyFinder(skeleton, postures, flat, up).find();
+}
+
+}  // namespace weft::character

@@ -1,0 +1,152 @@
+// weft_retarget: takes motions of other skeletons over to a body and prints how well its bones and feet follow.
+#include "character/retarget.hpp"
+
+#include <fmt/format.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <exception>
+#include <limits>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "assets/character_file.hpp"
+#include "character/footing.hpp"
+#include "character/mannequin.hpp"
+#include "character/parts.hpp"
+#include "core/timer.hpp"
+
+namespace {
+
+using namespace weft;             // NOLINT(google-build-using-namespace)
+using namespace weft::character;  // NOLINT(google-build-using-namespace)
+
+const Vec3 kUp = Vec3::UnitZ();
+
+double angle(const Vec3& a, const Vec3& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180 / std::numbers::pi;
+}
+
+struct Follows {
+  double angle = 0;             // largest between a bone and that of the motion [degrees]
+  std::string bone;             // that has it
+  double trunk = 0;             // likewise from the hips to between the shoulders
+  double slip = 0;              // largest way of a ball of the foot during a contact [m]
+  double below = 0, above = 0;  // of the lowest vertex under and over the floor, with a foot on it [m]
+  std::size_t steps = 0, keys = 0;
+  double when = 0;
+};
+
+/// Height of the lowest vertex of the feet.
+double lowest(const Rig& body, const Pose& pose) {
+  static const VertexMask kFeet = vertices_of(body.character, body.joints, joints_of_part("feet"));
+  std::vector<Vec3> x(kFeet.size());
+  skin(body.character, pose, x);
+  double lowest = std::numeric_limits<double>::infinity();
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (kFeet[v] != 0) lowest = std::min(lowest, kUp.dot(x[v]));
+  return lowest;
+}
+
+Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Clip& ours) {
+  const Skeleton a(body), b(motion);
+  std::vector<double> times;
+  for (const Channel& channel : ours.channels)
+    if (channel.rotation.times.size() > times.size()) times = channel.rotation.times;
+  std::vector<Posture> at, from;
+  const double floor = lowest(body, rest_pose(body.character));
+  for (const double t : times) {
+    at.push_back(a.at(pose_at(body.character, ours, t)));
+    from.push_back(b.at(pose_at(motion.character, theirs, t)));
+  }
+  Follows result;
+  result.keys = times.size();
+  // Both faces at the first key.
+  const auto left = [](const Skeleton& s, const Posture& p) -> Vec3 {
+    const Vec3 v = s.across_hips(p).normalized() + s.across_shoulders(p).normalized();
+    return v - v.dot(kUp) * kUp;
+  };
+  const Vec3 l0 = left(b, from.front()), l1 = left(a, at.front());
+  const Quat face(Eigen::AngleAxisd(std::atan2(l0.cross(l1).dot(kUp), l0.dot(l1)), kUp));
+  const Footsteps steps = find_footsteps(b, from, times, kUp);
+  std::vector<bool> standing(times.size(), false);
+  for (const bool right : {false, true}) {
+    const Joint toes = on_side(a.has(Joint::left_toes) ? Joint::left_toes : Joint::left_foot, right);
+    for (const Contact& contact : steps.contacts[right]) {
+      ++result.steps;
+      for (std::size_t k = contact.first; k <= contact.last; ++k) {
+        standing[k] = true;
+        Vec3 way = at[k].places[place_of(toes)] - at[contact.first].places[place_of(toes)];
+        way -= way.dot(kUp) * kUp;
+        result.slip = std::max(result.slip, way.norm());
+      }
+    }
+  }
+  for (std::size_t k = 0; k < times.size(); ++k) {
+    for (const Joint left_joint :
+         {Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_upper_leg, Joint::left_lower_leg})
+      for (const bool right : {false, true}) {
+        const Joint joint = on_side(left_joint, right);
+        if (!a.has(joint) || !b.has(joint)) continue;
+        const double between = angle(a.bone(at[k], joint), face * b.bone(from[k], joint));
+        if (between <= result.angle) continue;
+        result.angle = between;
+        result.bone = name(joint);
+      }
+    result.trunk = std::max(result.trunk, angle(a.trunk(at[k]), face * b.trunk(from[k])));
+    if (!standing[k] || k % 3 != 0) continue;
+    const double gap = lowest(body, pose_at(body.character, ours, times[k])) - floor;
+    if (gap < result.below) result.when = times[k];
+    result.below = std::min(result.below, gap);
+    result.above = std::max(result.above, gap);
+  }
+  return result;
+}
+
+void report(const Character& body, const std::string& file) {
+  assets::LoadedCharacter motion = assets::load_motion(file, {}, file);
+  const auto ours = find_joints(body.nodes), theirs = find_joints(motion.character.nodes);
+  if (mean_trunk({motion.character, theirs}, motion.character.clips.front()).dot(kUp) < 0.5)
+    motion = assets::load_motion(file, {{}, scene::FileUp::z}, file);
+  std::string missing;
+  for (std::size_t j = 0; j < kJointCount; ++j)
+    if (theirs[j] < 0 && ours[j] >= 0) missing += fmt::format(" {}", joint_names()[j]);
+  if (theirs[0] < 0) throw std::runtime_error("no hips");
+  const Clip& clip = motion.character.clips.front();
+  const double begin = process_cpu_seconds();
+  const Retargeted result = retarget({body, ours}, {motion.character, theirs}, clip, kUp);
+  const double seconds = process_cpu_seconds() - begin;
+  const Follows f = measure({body, ours}, {motion.character, theirs}, clip, result.clip);
+  const std::string short_name = file.substr(file.rfind('/') + 1);
+  std::printf("| %s | %zu | %zu | %.1f (%.2f s) to %.1f | %.1f | %.1f %s | %.1f | %.2f |%s\n", short_name.c_str(),
+              f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, f.angle, f.bone.c_str(), f.trunk,
+              seconds, missing.empty() ? "" : (" without" + missing).c_str());
+  for (const std::string& doubt : result.doubts) std::printf("    %s\n", doubt.c_str());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("Takes motions over to a body and prints how well it follows.");
+  std::vector<std::string> files;
+  std::string body_file;
+  app.add_option("FILES", files, "BVH, glTF, FBX and so on, with a motion each")->required();
+  app.add_option("--body", body_file, "a character from a file, with z up [the mannequin]");
+  CLI11_PARSE(app, argc, argv);
+  const Character body =
+      body_file.empty() ? make_mannequin({}) : assets::load_character(body_file, {}, body_file).character;
+  std::printf(
+      "| Motion | keys | steps | feet over the floor [mm] | slip [mm] | bone off by [°] | trunk [°] | CPU [s] "
+      "|\n");
+  for (const std::string& file : files) {
+    try {
+      report(body, file);
+    } catch (const std::exception& e) {
+      std::printf("| %s | %s\n", file.c_str(), e.what());
+    }
+  }
+  return 0;
+}
