@@ -19,8 +19,9 @@ constexpr double kSpeedWindow = 1.0 / 30;
 constexpr double kShortest = 0.08;
 /// A ball that goes further than this within a contact shuffles: there, one contact ends and the next begins [legs].
 constexpr double kShuffle = 0.08;
-/// The share of the keys with the lowest feet that may lie below the floor: outliers of recordings.
-constexpr double kOutliers = 0.02;
+/// The floor is at the lowest height at which feet are slow at least half as often as where they are most often: below
+/// are poses that recordings begin with and outliers, above are steps and chairs.
+constexpr double kOften = 0.5;
 /// In which feet go over from a contact to their own motion [s]; a step takes 0.4 s or more.
 constexpr double kRamp = 0.15;
 /// In which hips come down and up again around a key where a leg would not reach [s].
@@ -85,6 +86,28 @@ std::vector<Contact> contacts_of(const Track& ball, std::span<const double> time
     k = contact.last;
   }
   return contacts;
+}
+
+/// The lowest height of balls that stand on the floor; without slow ones that of all.
+double floor_height(const std::array<Track, 2>& balls, double leg) {
+  std::vector<double> slow;
+  double lowest = std::numeric_limits<double>::infinity();
+  for (const Track& ball : balls)
+    for (std::size_t k = 0; k < ball.heights.size(); ++k) {
+      lowest = std::min(lowest, ball.heights[k]);
+      if (ball.speeds[k] < kSlow * leg) slow.push_back(ball.heights[k]);
+    }
+  if (slow.empty()) return lowest;
+  std::ranges::sort(slow);
+  // How many lie up to kLow above each.
+  std::vector<std::ptrdiff_t> many;
+  for (auto h = slow.begin(); h != slow.end(); ++h)
+    many.push_back(std::upper_bound(h, slow.end(), *h + kLow * leg) - h);
+  const double often = kOften * static_cast<double>(std::ranges::max(many));
+  std::size_t k = 0;
+  while (static_cast<double>(many[k]) < often) ++k;
+  while (k + 1 < many.size() && many[k + 1] >= many[k]) ++k;
+  return slow[k];
 }
 
 /// What a quantity that is known in contacts alone is at other keys: that of the nearest contact, less and less.
@@ -167,21 +190,17 @@ Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> post
   steps.flat.assign(postures.size(), Flat{0, 0});
   steps.ankle_height = std::numeric_limits<double>::infinity();
   std::array<Track, 2> balls, ankles;
-  std::vector<double> lowest_ball(postures.size(), std::numeric_limits<double>::infinity());
   for (const bool right : {false, true}) {
     const Joint foot = on_side(Joint::left_foot, right), toes = on_side(Joint::left_toes, right);
     if (!skeleton.has(foot)) continue;
     ankles[right] = track_of(foot, postures, times, up);
     balls[right] = skeleton.has(toes) ? track_of(toes, postures, times, up) : ankles[right];
-    for (std::size_t k = 0; k < postures.size(); ++k) {
-      lowest_ball[k] = std::min(lowest_ball[k], balls[right].heights[k]);
-      steps.ankle_height = std::min(steps.ankle_height, ankles[right].heights[k]);
-    }
+    for (const double height : ankles[right].heights) steps.ankle_height = std::min(steps.ankle_height, height);
   }
   const double leg = skeleton.leg_length(postures.front());
   if (leg == 0 || !std::isfinite(steps.ankle_height)) return steps;
 
-  const double floor = quantile(lowest_ball, kOutliers);
+  const double floor = floor_height(balls, leg);
   std::vector<double> standing;  // heights of ankles
   for (const bool right : {false, true}) {
     if (balls[right].places.empty()) continue;

@@ -19,8 +19,9 @@ namespace {
 /// Keys of different joints that are closer than this are one [s].
 constexpr double kSameTime = 1e-6;
 
-/// Joints of the same skeleton have the same axes within this angle [radians], and lengths within this share.
-constexpr double kSameAngle = 1e-3, kSameLength = 1e-3;
+/// Skeletons whose joints differ by less are the same: a thousandth of all their lengths, 3 mm in an adult; and they
+/// face the same way if what the hips hang from is turned by less [radians].
+constexpr double kSameLength = 1e-3, kSameAngle = 1e-3;
 
 constexpr double kDegree = std::numbers::pi / 180;
 
@@ -29,8 +30,8 @@ constexpr double kDegree = std::numbers::pi / 180;
 /// (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).
 constexpr double kMostBend = 165, kMostBackward = 25, kMostThigh = 160, kMostHead = 120, kMostSpine = 120;
 
-/// Toes bend back by no more [radians].
-constexpr double kToesBack = 80 * kDegree;
+/// Toes on the floor turn back by no more from where those of the motion point [radians].
+constexpr double kToesBack = 150 * kDegree;
 
 /// Soles that miss the floor by more are warned about [m].
 constexpr double kFloorMissed = 0.05;
@@ -74,20 +75,29 @@ std::vector<double> key_times(const Clip& clip) {
   return distinct;
 }
 
-/// Whether two skeletons at rest have the same joints, with the same axes and, up to one ratio, at the same places from
-/// the hips, once `turn` has turned b.
-bool same_skeleton(const Skeleton& a, const Posture& a_rest, const Skeleton& b, const Posture& b_rest, double ratio,
-                   const Quat& turn) {
-  const double size = kSameLength * (a.trunk(a_rest).norm() + a.leg_length(a_rest));
-  for (std::size_t j = 0; j < kJointCount; ++j) {
-    const auto joint = static_cast<Joint>(j);
-    if (a.has(joint) != b.has(joint)) return false;
-    if (!a.has(joint)) continue;
-    const Vec3 from_a = a_rest.places[j] - a_rest.places[0], from_b = b_rest.places[j] - b_rest.places[0];
-    if ((from_a - ratio * (turn * from_b)).norm() > size) return false;
-    if (a_rest.rotations[j].angularDistance(turn * b_rest.rotations[j]) > kSameAngle) return false;
+/// Whether two skeletons have the same joints and, up to one ratio, the same places of joints in the axes of their
+/// parents, which poses do not change.
+bool same_skeleton(const Rig& a, const Rig& b) {
+  const auto place = [](const Rig& rig, std::size_t joint) -> Vec3 {
+    return rig.character.nodes[rig.joints[joint]].local.translation();
+  };
+  double size_a = 0, size_b = 0;
+  for (std::size_t j = 1; j < kJointCount; ++j) {
+    if ((a.joints[j] < 0) != (b.joints[j] < 0)) return false;
+    if (a.joints[j] < 0) continue;
+    size_a += place(a, j).norm();
+    size_b += place(b, j).norm();
   }
-  return true;
+  for (std::size_t j = 1; j < kJointCount && size_b > 0; ++j)
+    if (a.joints[j] >= 0 && (place(a, j) - size_a / size_b * place(b, j)).norm() > kSameLength * size_a) return false;
+  return size_b > 0;
+}
+
+/// The rotation of what the hips hang from.
+Quat rotation_above_hips(const Rig& rig) {
+  const Index above = rig.character.nodes[rig.joints[place_of(Joint::hips)]].parent;
+  const Pose rest = rest_pose(rig.character);
+  return above < 0 ? Quat::Identity() : to_placement(global_transforms(rig.character, rest)[above]).rotation;
 }
 
 /// What the body does at a key.
@@ -112,13 +122,10 @@ class Retargeter {
     const Posture motion_rest = theirs_.at(rest_pose(motion.character));
     const double our_leg = ours_.leg_length(rest_), their_leg = theirs_.leg_length(postures_.front());
     ratio_ = our_leg > 0 && their_leg > 0 ? our_leg / their_leg : 1;
-    const Vec3 our_left = to_the_left(ours_, rest_);
-    face_ = facing(to_the_left(theirs_, motion_rest), our_left, up_);
-    same_ = same_skeleton(ours_, rest_, theirs_, motion_rest, ratio_, face_);
-    if (!same_) {
-      steps_ = find_footsteps(theirs_, postures_, times_, up_);
-      face_ = facing(to_the_left(theirs_, postures_.front()), our_left, up_);
-    }
+    same_ = same_skeleton(body, motion);
+    if (!same_) steps_ = find_footsteps(theirs_, postures_, times_, up_);
+    if (!same_ || rotation_above_hips(body).angularDistance(rotation_above_hips(motion)) > kSameAngle)
+      face_ = facing(to_the_left(theirs_, same_ ? motion_rest : postures_.front()), to_the_left(ours_, rest_), up_);
     find_axes();
     joint_of_.assign(body.character.nodes.size(), -1);
     for (std::size_t j = 0; j < kJointCount; ++j)
@@ -299,10 +306,13 @@ class Retargeter {
   void check_floor(const std::vector<Frame>& frames, const std::vector<Stance>& stances, double sole,
                    std::vector<std::string>& doubts) const {
     double worst = 0, when = 0;
+    std::size_t in_air = 0;
     for (std::size_t k = 0; k < frames.size(); ++k) {
       const Legs legs = legs_of(frames[k], sole);
+      const auto above = [&](const Leg& leg) { return std::min(up_.dot(leg.ball), up_.dot(leg.heel)) - sole; };
+      if (std::min(above(legs[0]), above(legs[1])) > kFloorMissed) ++in_air;
       for (const bool right : {false, true}) {
-        const double gap = std::min(up_.dot(legs[right].ball), up_.dot(legs[right].heel)) - sole;
+        const double gap = above(legs[right]);
         if (!stances[k].in_contact[right] || std::abs(gap) <= std::abs(worst)) continue;
         worst = gap;
         when = times_[k];
@@ -311,6 +321,10 @@ class Retargeter {
     if (std::abs(worst) > kFloorMissed)
       doubts.push_back(fmt::format("a foot that stands is {:.3g} m {} the floor at {:.3g} s of the motion",
                                    std::abs(worst), worst > 0 ? "above" : "below", when));
+    if (2 * in_air > frames.size())
+      doubts.push_back(fmt::format("in {:.0f} % of the motion both feet are more than {:g} m above the floor",
+                                   100.0 * static_cast<double>(in_air) / static_cast<double>(frames.size()),
+                                   kFloorMissed));
   }
 
   static void bend_leg(Frame& frame, const Leg& leg, const Vec3& ankle, bool right) {

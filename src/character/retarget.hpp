@@ -20,8 +20,8 @@ struct Retargeted {
 /// the body is to stand upright, feet flat on the floor. The body faces at time 0 where it faces at rest. Hips travel
 /// by the ratio of the legs' lengths, from where the body stands; feet keep the contacts of the motion (footing.hpp).
 ///
-/// A motion of the very same skeleton, up to its size, is taken over turn by turn, its lowest foot as high as those of
-/// the body at rest. `up`: unit vector.
+/// A motion of the same skeleton, by the places of its joints up to one ratio, is taken over turn by turn, with its
+/// lowest foot as high as those of the body at rest. `up`: unit vector.
 Retargeted retarget(const Rig& body, const Rig& motion, const Clip& clip, const Vec3& up);
 
 /// The mean over a clip of the direction from the hips to between the shoulders; zero without a trunk.

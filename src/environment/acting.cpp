@@ -119,11 +119,14 @@ std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNam
   return joints;
 }
 
-void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::string& source) {
-  if (joints[character::joint_number("Hips")] < 0)
-    cast.fail("joint", fmt::format("expected a node of {} that is known as the hips, got none; name it in a "
-                                   "[[character.joint]] with name = \"Hips\"",
-                                   source));
+void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::vector<character::Node>& nodes,
+                const std::string& source) {
+  if (joints[character::joint_number("Hips")] >= 0) return;
+  std::vector<std::string> names;
+  for (const character::Node& node : nodes) names.push_back(node.name);
+  cast.fail("joint", fmt::format("expected a node of {} that is known as the hips, got \"{}\"; name each joint in a "
+                                 "[[character.joint]], the hips with name = \"Hips\"",
+                                 source, fmt::join(names, "\", \"")));
 }
 
 /// Formats that do not say which axis is up: of these y is, as is usual, unless the bodies in the file stand along z.
@@ -155,8 +158,8 @@ character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& b
   body.warnings.insert(body.warnings.end(), motion.warnings.begin(), motion.warnings.end());
   const auto ours = joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source);
   const auto theirs = joints_of(cast, acting.joints, &scene::JointNames::motion, motion.character, file);
-  check_hips(cast, ours, body.source);
-  check_hips(cast, theirs, file);
+  check_hips(cast, ours, body.character.nodes, body.source);
+  check_hips(cast, theirs, motion.character.nodes, file);
   std::vector<std::string> still;
   for (std::size_t j = 0; j < ours.size(); ++j)
     if (ours[j] >= 0 && theirs[j] < 0) still.push_back(character::joint_names()[j]);

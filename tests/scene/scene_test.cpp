@@ -122,6 +122,7 @@ TEST_F(EveryKey, OfACharacterFillsItsMember) {
   const auto& file = std::get<CharacterFile>(character.source);
   EXPECT_EQ(file.path, kFolder + "triangle.obj");
   EXPECT_EQ(file.motion, kFolder + "triangle.obj");
+  EXPECT_EQ(file.motion_up, FileUp::y);
   EXPECT_EQ(file.clip, "Walk");
   EXPECT_EQ(file.stance, Stance::rest);
   EXPECT_TRUE(file.loop);

@@ -31,11 +31,12 @@ double angle(const Vec3& a, const Vec3& b) {
 }
 
 struct Follows {
-  double angle = 0;             // largest between a bone and that of the motion [degrees]
-  std::string bone;             // that has it
-  double trunk = 0;             // likewise from the hips to between the shoulders
-  double slip = 0;              // largest way of a ball of the foot during a contact [m]
-  double below = 0, above = 0;  // of the lowest vertex under and over the floor, with a foot on it [m]
+  double angle = 0;                  // largest between a bone and that of the motion [degrees]
+  std::string bone;                  // that has it
+  double arm = 0;                    // likewise of arms alone
+  double trunk = 0, trunk_when = 0;  // likewise from the hips to between the shoulders
+  double slip = 0;                   // largest way of a ball of the foot during a contact [m]
+  double below = 0, above = 0;       // of the lowest vertex under and over the floor, with a foot on it [m]
   std::size_t steps = 0, keys = 0;
   double when = 0;
 };
@@ -92,11 +93,15 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
         const Joint joint = on_side(left_joint, right);
         if (!a.has(joint) || !b.has(joint)) continue;
         const double between = angle(a.bone(at[k], joint), face * b.bone(from[k], joint));
+        if (left_joint <= Joint::left_hand) result.arm = std::max(result.arm, between);
         if (between <= result.angle) continue;
         result.angle = between;
         result.bone = name(joint);
       }
-    result.trunk = std::max(result.trunk, angle(a.trunk(at[k]), face * b.trunk(from[k])));
+    if (const double lean = angle(a.trunk(at[k]), face * b.trunk(from[k])); lean > result.trunk) {
+      result.trunk = lean;
+      result.trunk_when = times[k];
+    }
     if (!standing[k] || k % 3 != 0) continue;
     const double gap = lowest(body, pose_at(body.character, ours, times[k])) - floor;
     if (gap < result.below) result.when = times[k];
@@ -121,9 +126,10 @@ void report(const Character& body, const std::string& file) {
   const double seconds = process_cpu_seconds() - begin;
   const Follows f = measure({body, ours}, {motion.character, theirs}, clip, result.clip);
   const std::string short_name = file.substr(file.rfind('/') + 1);
-  std::printf("| %s | %zu | %zu | %.1f (%.2f s) to %.1f | %.1f | %.1f %s | %.1f | %.2f |%s\n", short_name.c_str(),
-              f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, f.angle, f.bone.c_str(), f.trunk,
-              seconds, missing.empty() ? "" : (" without" + missing).c_str());
+  std::printf("| %s | %zu | %zu | %.1f (%.2f s) to %.1f | %.1f | %.1f %s | %.2g | %.1f (%.2f s) | %.2f |%s\n",
+              short_name.c_str(), f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, f.angle,
+              f.bone.c_str(), f.arm, f.trunk, f.trunk_when, seconds,
+              missing.empty() ? "" : (" without" + missing).c_str());
   for (const std::string& doubt : result.doubts) std::printf("    %s\n", doubt.c_str());
 }
 
@@ -139,7 +145,8 @@ int main(int argc, char** argv) {
   const Character body =
       body_file.empty() ? make_mannequin({}) : assets::load_character(body_file, {}, body_file).character;
   std::printf(
-      "| Motion | keys | steps | feet over the floor [mm] | slip [mm] | bone off by [°] | trunk [°] | CPU [s] "
+      "| Motion | keys | steps | feet over the floor [mm] | slip [mm] | limb off by [°] | arm [°] | trunk [°] | CPU "
+      "[s] "
       "|\n");
   for (const std::string& file : files) {
     try {
