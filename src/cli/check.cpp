@@ -55,10 +55,11 @@ void check_patterns(const scene::Scene& scene, Mistakes& mistakes) {
 /// Particles of all cloths; those that a file holds or a pattern gives are counted by making them.
 std::size_t count_particles(const scene::Scene& scene, Mistakes& mistakes) {
   std::size_t particles = 0;
+  environment::Wearers wearers(scene);
   for (const scene::Cloth& cloth : scene.cloths) try {
       environment::check_spacing(scene, cloth);
       const auto known = static_cast<std::size_t>(rectangle_particles(cloth));
-      particles += known > 0 ? known : environment::make_cloth(scene, cloth).mesh.positions.size();
+      particles += known > 0 ? known : environment::make_cloth(scene, cloth, wearers).mesh.positions.size();
     } catch (const Error& error) {
       mistakes.add(error.code(), error.what());
     }

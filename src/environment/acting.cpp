@@ -397,15 +397,63 @@ void check_speed(const Cast& cast, const KeyTimes& times, const KeyFrames& keys,
                                    fastest, kMostSpeed));
 }
 
+/// The body and the clip must outlive it.
+template <class Source>
+character::Performance performance_of(const Cast& cast, const Source& source, const Body& body,
+                                      const character::Clip& clip) {
+  return {body.character,
+          clip,
+          {cast.timing(), source.loop, source.crossfade, source.stance == scene::Stance::rest && body.clip},
+          cast.up()};
+}
+/// When a run begins [s].
+double begin_of(const scene::Scene& scene) {
+  return -scene.preroll_frames() / scene.time.fps;
+}
+
+template <class Source>
+Standing stand_as(const Cast& cast, const Source& source, const std::string& /*where*/) {
+  const Body body = cast_body(cast, source);
+  const character::Character& character = body.character;
+  const character::Clip still;
+  const character::Pose pose =
+      performance_of(cast, source, body, body.clip ? *body.clip : still).at(begin_of(cast.scene));
+  const scene::Pose& placed = cast.settings.pose;
+  Standing standing;
+  standing.mesh = character.mesh;
+  character::skin(character, pose, standing.mesh.positions);
+  for (Vec3& x : standing.mesh.positions) x = placed.position + placed.rotation * x;
+  const std::vector<Index> nodes = joints_of(cast, source.joints, &scene::JointNames::body, character, body.source);
+  const std::vector<character::Affine> globals = character::global_transforms(character, pose);
+  for (const Index node : nodes) {
+    auto& joint = standing.joints.emplace_back();
+    if (node >= 0) joint = placed.position + placed.rotation * globals[node].translation();
+  }
+  const auto limb = [&](const std::string& side, const std::vector<std::string>& names) {
+    std::vector<Index> joints;
+    for (const std::string& name : names) joints.push_back(character::joint_number(side + name));
+    return character::vertices_of(character, nodes, joints);
+  };
+  const std::vector<std::string> arm{"UpperArm", "LowerArm", "Hand"}, leg{"UpperLeg", "LowerLeg", "Foot", "Toes"};
+  standing.left_arm = limb("Left", arm), standing.right_arm = limb("Right", arm);
+  standing.left_leg = limb("Left", leg), standing.right_leg = limb("Right", leg);
+  return standing;
+}
+
+Standing stand_as(const Cast& cast, const scene::MeshSequence& /*source*/, const std::string& where) {
+  throw Error(ExitCode::scene_invalid,
+              "{}: expected a wearer with bones for a pattern with panels around its parts, got '{}', a sequence of "
+              "meshes",
+              where, cast.settings.name);
+}
+
 template <class Source>
 Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> following) {
   Body body = cast_body(cast, source);
   check_size(cast, source, body);
   const character::Clip still;
   const character::Clip& clip = body.clip ? *body.clip : still;
-  const character::Performance performance(
-      body.character, clip,
-      {cast.timing(), source.loop, source.crossfade, source.stance == scene::Stance::rest && body.clip}, cast.up());
+  const character::Performance performance = performance_of(cast, source, body, clip);
   if (const double gap = performance.gap(); gap > kGap)
     body.warnings.push_back(
         fmt::format("{}: clip \"{}\" does not close: its end and its beginning are {:.3g} m apart; "
@@ -413,7 +461,7 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
                     cast.where, clip.name, gap));
   std::vector<Part> parts = parts_of(cast, source, following, body);
   const std::size_t vertices = body.character.mesh.positions.size();
-  const character::Pose start = performance.at(-cast.scene.preroll_frames() / cast.scene.time.fps);
+  const character::Pose start = performance.at(begin_of(cast.scene));
   for (const FollowingPin& pin : following) follow(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, character::key_rate(clip));
   KeyFrames keys = sample(cast, times, body.character.mesh.positions.size(), [&](double t, std::vector<Vec3>& x) {
@@ -461,6 +509,11 @@ Actor make_actor(const scene::Scene& scene, const scene::Character& character,
                  std::span<const FollowingPin> following) {
   const Cast cast = make_cast(scene, character);
   return std::visit([&](const auto& source) { return act(cast, source, following); }, character.source);
+}
+
+Standing stand(const scene::Scene& scene, const scene::Character& character, const std::string& where) {
+  const Cast cast = make_cast(scene, character);
+  return std::visit([&](const auto& source) { return stand_as(cast, source, where); }, character.source);
 }
 
 KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character& character) {

@@ -43,6 +43,17 @@ struct Actor {
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
                  std::span<const FollowingPin> following = {});
 
+/// A body with bones as it stands at the start of a scene, before its preroll.
+struct Standing {
+  mesh::Mesh mesh;                          ///< in the world [m]
+  std::vector<std::optional<Vec3>> joints;  ///< of joint_names(), likewise; none: not known
+  character::VertexMask left_arm, right_arm, left_leg, right_leg;
+};
+
+/// Reads the files of a character, once more than make_actor, which needs the garment. Throws as it does, and
+/// Error(scene_invalid) for a sequence of meshes, after `where`.
+Standing stand(const scene::Scene& scene, const scene::Character& character, const std::string& where);
+
 /// What make_actor would store, without making it, for the plan.
 struct KeyFrameCount {
   std::size_t keys = 0, vertices = 0, bytes = 0;

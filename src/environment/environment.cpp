@@ -102,9 +102,13 @@ void check_parts(const scene::Cloth& cloth, const ClothObject& object, const std
   for (const scene::Weight& weight : cloth.weights) check(weight, "weight");
 }
 
-/// Garments stand upright along z, like shapes. Parts of them are in fractions across and up.
-void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, ClothObject& object) {
-  garment::Garment garment = garment::sew(garment::load_pattern(cloth.file, where), cloth.edge_length, where);
+/// Garments stand upright along z, like shapes, those of panels around parts of a wearer where it stands. Parts of them
+/// are in fractions across and up.
+void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
+                 ClothObject& object) {
+  const garment::Pattern pattern = garment::load_pattern(cloth.file, where);
+  const garment::Wearer* wearer = pattern.wraps() ? &wearers.of(cloth, where) : nullptr;
+  garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);
   const Box3 box = mesh::bounding_box(garment.sheet.rest);
   for (const Vec3& x : garment.sheet.rest) {
     const Vec3 share = (x - box.min()).cwiseQuotient(box.sizes());
@@ -114,7 +118,7 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   object.mesh.positions = garment.sheet.rest;
   object.mesh.uv = std::move(garment.uv);
   object.edges = std::move(garment.edges);
-  object.mesh = turned_up(std::move(object.mesh), scene.up);
+  if (wearer == nullptr) object.mesh = turned_up(std::move(object.mesh), scene.up);
   object.sheet = std::move(garment.sheet);
   object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
   check_parts(cloth, object, where);
@@ -184,7 +188,7 @@ void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth) {
               1e3 * grid.least_spacing());
 }
 
-ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth) {
+ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers) {
   check_spacing(scene, cloth);
   ClothObject object;
   object.name = cloth.name;
@@ -206,7 +210,7 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth) {
       check_parts(cloth, object, where);
       break;
     case scene::ClothShape::pattern:
-      use_pattern(scene, cloth, where, object);
+      use_pattern(scene, cloth, where, wearers, object);
       break;
   }
   if (meets_obstacles(scene) && scene::rectangle_particles(cloth) == 0) check_triangles(object.sheet, where);
@@ -350,7 +354,8 @@ mesh::Grid grid_of(const scene::Cloth& cloth) {
 }
 
 Environment::Environment(const scene::Scene& scene) {
-  for (const scene::Cloth& cloth : scene.cloths) cloths.push_back(make_cloth(scene, cloth));
+  Wearers wearers(scene);
+  for (const scene::Cloth& cloth : scene.cloths) cloths.push_back(make_cloth(scene, cloth, wearers));
   for (const scene::Obstacle& obstacle : scene.obstacles) {
     bodies.push_back(make_obstacle(scene, obstacle));
     movers_.emplace_back(Track(obstacle.motion, obstacle.pose));

@@ -11,6 +11,7 @@
 #include "environment/acting.hpp"
 #include "environment/key_frames.hpp"
 #include "environment/track.hpp"
+#include "environment/wearers.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/sheet.hpp"
 #include "scene/scene.hpp"
@@ -65,7 +66,7 @@ void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
 
 /// A cloth as it starts. Throws Error(asset_unreadable, scene_invalid) for what its file holds, naming the scene's
 /// line.
-ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth);
+ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers);
 
 /// The particles of a part of a cloth, numbered within it.
 std::vector<Index> particles_of(const scene::ClothPart& part, const ClothObject& cloth);

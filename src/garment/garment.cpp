@@ -10,10 +10,13 @@
 #include "core/disjoint_sets.hpp"
 #include "core/error.hpp"
 #include "garment/start_shape.hpp"
+#include "garment/wrapping.hpp"
 
 namespace weft::garment {
 namespace {
 
+// Least distance from the skin at the start, by the gap of the pattern.
+constexpr double kClearance = 0.6;
 // Particles of one garment at most.
 constexpr double kMaxParticles = 1e6;
 
@@ -23,15 +26,20 @@ std::size_t at(Index i) {
 
 class Sewing {
  public:
-  Sewing(const Pattern& pattern, double spacing, const std::string& where)
-      : pattern_(pattern), spacing_(spacing), where_(where) {}
+  Sewing(const Pattern& pattern, double spacing, const std::string& where, const Wearer* wearer)
+      : pattern_(pattern), spacing_(spacing), where_(where), wearer_(wearer) {}
 
   Garment sew() {
     count_segments();
     mesh_panels();
     join_seams();
     number_vertices();
-    place();
+    make_triangles();
+    if (wearer_ != nullptr)
+      place_around();
+    else
+      place_flat();
+    garment_.sheet.sewn = true;
     add_bands();
     check();
     return std::move(garment_);
@@ -95,13 +103,13 @@ class Sewing {
   Vec2 placed(std::size_t panel, const Vec2& p) const {
     const Panel& of = pattern_.panels[panel];
     const Eigen::Rotation2Dd turn(of.rotation * std::numbers::pi / 180);
-    return of.position + turn * Vec2(of.scale.cwiseProduct(p));
+    return of.position.value_or(Vec2(0, 0)) + turn * Vec2(of.scale.cwiseProduct(p));
   }
   Vec2 placed_point(std::size_t panel, Index point) const {
     return placed(panel, meshes_[panel].points[at(point - first_[panel])]);
   }
 
-  // Which ends meet shows in where the panels lie.
+  // Which ends meet shows in where the panels lie; of panels that are bent, in that both have their fronts outside.
   void join_seams() {
     sewn_together_ = DisjointSets(at(total_));
     for (const Seam& seam : pattern_.seams) {
@@ -115,7 +123,9 @@ class Sewing {
       };
       const double straight = apart();
       std::ranges::reverse(b);
-      if (straight < apart()) std::ranges::reverse(b);
+      const bool in_line =
+          wearer_ != nullptr ? !seen_alike(pattern_.panels[p], pattern_.panels[q]) : straight < apart();
+      if (in_line) std::ranges::reverse(b);
       for (std::size_t k = 0; k < a.size(); ++k) sewn_together_.join(a[k], b[k]);
       garment_.seams.push_back({a, length(p, e), length(q, f)});
     }
@@ -139,23 +149,18 @@ class Sewing {
     }
   }
 
-  void place() {
-    std::vector<LaidPanel> laid;
+  // Triangles of joined vertices, and their shape in the pattern.
+  void make_triangles() {
     for (std::size_t p = 0; p < meshes_.size(); ++p) {
       const Panel& panel = pattern_.panels[p];
       const bool back = panel.side == Side::back;
-      laid.push_back({back, {}, {}});
       for (const mesh::Triangle& t : meshes_[p].triangles) {
         mesh::Triangle joined{};
-        std::array<Vec2, 3> corners, material;
+        std::array<Vec2, 3> material;
         for (std::size_t k = 0; k < 3; ++k) {
-          const Vec2& point = meshes_[p].points[at(t[k])];
           joined[k] = number_[at(first_[p] + t[k])];
-          corners[k] = placed(p, point);
-          material[k] = along_grain(panel, point);
+          material[k] = along_grain(panel, meshes_[p].points[at(t[k])]);
         }
-        laid.back().triangles.push_back(joined);
-        laid.back().corners.push_back(corners);
         // Seen from behind, where the front of a back panel is, left and right change places.
         if (back) {
           std::swap(joined[1], joined[2]);
@@ -168,10 +173,45 @@ class Sewing {
       }
     }
     check_surface();
+  }
+
+  void place_flat() {
+    std::vector<LaidPanel> laid;
+    for (std::size_t p = 0; p < meshes_.size(); ++p) {
+      laid.push_back({pattern_.panels[p].side == Side::back, {}, {}});
+      for (const mesh::Triangle& t : meshes_[p].triangles) {
+        laid.back().triangles.push_back(joined(p, t));
+        auto& corners = laid.back().corners.emplace_back();
+        for (std::size_t k = 0; k < 3; ++k) corners[k] = placed(p, meshes_[p].points[at(t[k])]);
+      }
+    }
     garment_.uv = lay_together(laid, at(vertices_));
     check_plane(laid);
     garment_.sheet.rest = inflate(laid, garment_.uv, pattern_.depth);
-    garment_.sheet.sewn = true;
+  }
+
+  void place_around() {
+    const auto bent = bend_around(pattern_, meshes_, *wearer_, [this](const std::string& text) { refuse(text); });
+    std::vector<std::array<Vec3, 3>> corners;
+    garment_.uv.assign(at(vertices_), Vec2::Zero());
+    for (std::size_t p = meshes_.size(); p-- > 0;)
+      for (const mesh::Triangle& t : meshes_[p].triangles)
+        for (std::size_t k = 0; k < 3; ++k)
+          garment_.uv[at(joined(p, t)[k])] = along_grain(pattern_.panels[p], meshes_[p].points[at(t[k])]);
+    for (std::size_t t = 0, p = 0, first = 0; t < garment_.sheet.triangles.size(); ++t) {
+      while (at(garment_.panel_of[t]) != p) first = t, ++p;
+      auto& of = corners.emplace_back();
+      mesh::Triangle own = meshes_[p].triangles[t - first];
+      if (pattern_.panels[p].side == Side::back) std::swap(own[1], own[2]);
+      for (std::size_t k = 0; k < 3; ++k) of[k] = bent[p][at(own[k])];
+    }
+    std::vector<Vec3>& x = garment_.sheet.rest;
+    x = join_in_space(garment_.sheet.triangles, corners, at(vertices_), spacing_);
+    clear_of_skin(*wearer_, garment_.sheet.triangles, kClearance * pattern_.gap, x);
+    for (Vec3& each : x) each = wearer_->to_world * each;
+  }
+  mesh::Triangle joined(std::size_t p, const mesh::Triangle& t) const {
+    return {number_[at(first_[p] + t[0])], number_[at(first_[p] + t[1])], number_[at(first_[p] + t[2])]};
   }
   static Vec2 along_grain(const Panel& panel, const Vec2& p) {
     return Eigen::Rotation2Dd(-panel.grain * std::numbers::pi / 180) * p;
@@ -240,6 +280,7 @@ class Sewing {
   const Pattern& pattern_;
   double spacing_;
   const std::string& where_;
+  const Wearer* wearer_;                    // null: panels start flat
   std::vector<std::vector<int>> segments_;  // per panel and edge
   std::vector<FlatMesh> meshes_;            // per panel
   std::vector<Index> first_;                // point of each panel, numbered through all
@@ -261,8 +302,8 @@ FlatMesh mesh_of(const Panel& panel, const std::vector<int>& segments, double sp
   return mesh_panel(outline, {-std::sin(grain), std::cos(grain)}, spacing);
 }
 
-Garment sew(const Pattern& pattern, double spacing, const std::string& where) {
-  return Sewing(pattern, spacing, where).sew();
+Garment sew(const Pattern& pattern, double spacing, const std::string& where, const Wearer* wearer) {
+  return Sewing(pattern, spacing, where, pattern.wraps() ? wearer : nullptr).sew();
 }
 
 }  // namespace weft::garment

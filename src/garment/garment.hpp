@@ -20,7 +20,7 @@ struct SewnSeam {
 /// A pattern as one mesh that is sewn from the start.
 ///
 /// Where the panels start is a smooth surface without intersections, and not at all isometric: Sheet::rest holds it, in
-/// the wearer's coordinates, x across, y from front to back, z up; front is where −y points. The shape at rest,
+/// the wearer's coordinates, x to its left, y from front to back, z up. The shape at rest,
 /// Sheet::material, is that of the flat panels. The front of the cloth faces away from the wearer.
 struct Garment {
   mesh::Sheet sheet;
@@ -32,8 +32,8 @@ struct Garment {
 
 /// `spacing` [m]: length of the edges of the mesh. `where` names what asks for it. Throws Error(scene_invalid) where
 /// panels are too small for the spacing, seams make what is no surface, or panels fold over when they are laid
-/// together.
-Garment sew(const Pattern& pattern, double spacing, const std::string& where);
+/// together. `wearer`: of patterns that wrap.
+Garment sew(const Pattern& pattern, double spacing, const std::string& where, const Wearer* wearer = nullptr);
 
 /// One panel, flat [m]; `segments` of each of its edges.
 FlatMesh mesh_of(const Panel& panel, const std::vector<int>& segments, double spacing);

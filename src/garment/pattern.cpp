@@ -31,22 +31,46 @@ constexpr double kMaxSize = 100;
 
 const Table& panel_rules() {
   static const Table kTable =
-      TableBuilder<Panel>("A flat piece of cloth, drawn as seen from before the wearer.")
+      TableBuilder<Panel>(
+          "A flat piece of cloth, drawn as seen from before the wearer where it has a side, else from outside.")
           .plain(Type::name, "name", &Panel::name, "unlike that of any other panel")
           .need(Need::required)
-          .choice("side", &Panel::side, {"front", "back"}, "of the wearer that it covers")
+          .choice_by(
+              "side", {"front", "back"}, "of the wearer, or of the part, that it covers",
+              [](Panel& p) { return static_cast<std::size_t>(p.side.value_or(Side::front)); },
+              [](Panel& p, std::size_t index) { p.side = static_cast<Side>(index); })
+          .by_default("front")
+          .excludes("angle")
+          .choice_by(
+              "around", {kAroundNames.begin() + 1, kAroundNames.end()},
+              "part of the wearer that it starts bent around; where panels of a pattern have it, torso is the part of "
+              "those without",
+              [](Panel& p) { return static_cast<std::size_t>(p.around) - 1; },
+              [](Panel& p, std::size_t index) { p.around = static_cast<Around>(index + 1); })
+          .by_default("none: panels start flat")
+          .number("angle", &Panel::angle, within(-360, 360), "degrees",
+                  "where around its part the panel's origin starts: 0 the front, 90 the wearer's left, 180 the back; "
+                  "the panel is drawn as seen from outside")
+          .by_default("of arms their outside, else that of `side`")
+          .excludes("side")
+          .whole_number("layer", &Panel::layer, within(0, 20), "how many panels of its part it starts above")
           .plain(Type::text, "path", &Panel::path, "closed outline as SVG path data, in metres, y upward")
           .excludes("file")
           .plain(Type::file, "file", &Panel::file, "SVG drawing with the outline; relative to the pattern's folder")
           .excludes("path")
           .plain(Type::text, "id", &Panel::id, "of the element in the drawing")
+          .plain(Type::text, "mirror_of", &Panel::mirror_of,
+                 "panel before it that it is the mirror image of; what it does not say itself it has from there, with "
+                 "left and right exchanged")
           .plain(Type::text, "edges", &Panel::edge_names,
                  "names of the curves of the outline, in their order; neighbours of one name are one edge")
           .by_default("1 2 3 and so on")
           .number("grain", &Panel::grain, within(-360, 360), "degrees",
                   "direction of the warp, counter-clockwise from the panel's y axis")
           .vector("position", &Panel::position, {"across", "up"}, within(-100, 100), "m",
-                  "of the panel's origin at the start")
+                  "of the panel's origin at the start: above the floor, on arms above the shoulder; across along the "
+                  "skin from its angle")
+          .by_default("[0, 0]; of a panel that is bent, where its seams are shortest")
           .number("rotation", &Panel::rotation, within(-360, 360), "degrees",
                   "at the start, counter-clockwise seen from before")
           .vector("scale", &Panel::scale, {"across", "up"}, scene::above(0, 10), "", "of lengths at the start")
@@ -81,6 +105,8 @@ const Table& pattern_rules() {
   static const Table kTable = TableBuilder<Pattern>("A sewing pattern.")
                                   .number("depth", &Pattern::depth, scene::above(0, 10), "m",
                                           "of the panels before and behind the wearer's coronal plane at the start")
+                                  .number("gap", &Pattern::gap, scene::above(0, 1), "m",
+                                          "of panels that start bent around the wearer from the skin")
                                   .list(Type::list, "panel", &Pattern::panels, panel_rules())
                                   .list(Type::list, "seam", &Pattern::seams, kSeams)
                                   .list(Type::list, "elastic", &Pattern::elastics, kElastics)
@@ -124,6 +150,22 @@ std::vector<PanelEdge> joined(const Outline& outline, const std::vector<std::str
   return edges;
 }
 
+/// Takes over what a mirror image does not say itself.
+void mirror(const Panel& from, Panel& panel) {
+  panel.path = from.path, panel.file = from.file, panel.id = from.id;
+  if (panel.edge_names.empty()) panel.edge_names = from.edge_names;
+  if (!panel.side && !panel.angle) {
+    panel.side = from.side;
+    if (from.angle) panel.angle = -*from.angle;
+  }
+  if (panel.around == Around::none) panel.around = mirrored(from.around);
+  if (panel.layer == 0) panel.layer = from.layer;
+  if (panel.grain == 0) panel.grain = -from.grain;
+  if (panel.rotation == 0) panel.rotation = -from.rotation;
+  if (panel.scale == Vec2(1, 1)) panel.scale = from.scale;
+  if (!panel.position && from.position) panel.position = Vec2(-from.position->x(), from.position->y());
+}
+
 /// The outline of a panel that is right; else what is wrong goes to the findings, or to the mistakes of drawings.
 std::optional<Outline> outline_of(const Panel& panel, const std::string& path, Findings& findings,
                                   std::vector<std::string>& in_drawings) {
@@ -140,17 +182,38 @@ std::optional<Outline> outline_of(const Panel& panel, const std::string& path, F
   return std::nullopt;
 }
 
+/// A mirror image gets what it is the image of.
+void find_original(std::vector<Panel>& panels, std::size_t i, Findings& findings) {
+  Panel& panel = panels[i];
+  if (panel.mirror_of.empty()) return;
+  const std::string key = findings.entry("panel", i) + ".mirror_of";
+  if (!panel.path.empty() || !panel.file.empty())
+    return findings.report(key, "expected an outline of its own or of another panel, got both");
+  std::vector<std::string> known;
+  for (std::size_t k = 0; k < i; ++k) {
+    if (!panels[k].mirror_of.empty()) continue;
+    if (panels[k].name == panel.mirror_of) return mirror(panels[k], panel);
+    known.push_back(panels[k].name);
+  }
+  findings.report(key, fmt::format("expected a panel before it that has an outline, got {}{}",
+                                   scene::in_quotes(panel.mirror_of), scene::suggestion(panel.mirror_of, known)));
+}
+
 /// Finds the edges of a panel from its outline, and what is wrong with it.
 void draw_panel(Panel& panel, const std::string& path, Findings& findings, std::vector<std::string>& in_drawings) {
   if (panel.path.empty() == panel.file.empty()) {
+    if (!panel.mirror_of.empty()) return;  // of one that has none, or that is not there
     if (!findings.faulty(path + ".path") && !findings.faulty(path + ".file"))
-      findings.report(path, "expected an outline, as path or as file and id, got none");
+      findings.report(path, "expected an outline, as path, as file and id or as mirror_of, got none");
     return;
   }
   const std::string key = panel.path.empty() ? path + ".file" : path + ".path";
   std::optional<Outline> drawn = outline_of(panel, path, findings, in_drawings);
   if (!drawn) return;
   Outline& outline = *drawn;
+  if (!panel.mirror_of.empty())
+    for (Curve& curve : outline)
+      for (Vec2& p : curve.control) p.x() = -p.x();
   std::vector<std::string> names;
   if (const std::string mistake = name_curves(panel.edge_names, outline, names); !mistake.empty())
     return findings.report(path + ".edges", mistake);
@@ -210,6 +273,7 @@ class EdgeNames {
 void check(Pattern& pattern, Findings& findings, std::vector<std::string>& in_drawings) {
   if (pattern.panels.empty() && !findings.has("panel"))
     findings.report("", "expected at least one [[panel]], got none");
+  for (std::size_t i = 0; i < pattern.panels.size(); ++i) find_original(pattern.panels, i, findings);
   for (std::size_t i = 0; i < pattern.panels.size(); ++i)
     draw_panel(pattern.panels[i], findings.entry("panel", i), findings, in_drawings);
   EdgeNames names(pattern, findings);
@@ -224,6 +288,10 @@ void check(Pattern& pattern, Findings& findings, std::vector<std::string>& in_dr
 }
 
 }  // namespace
+
+bool Pattern::wraps() const {
+  return std::ranges::any_of(panels, [](const Panel& p) { return p.around != Around::none || p.angle; });
+}
 
 std::pair<std::size_t, std::size_t> Pattern::find(const std::string& name) const {
   for (std::size_t p = 0; p < panels.size(); ++p)

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 #include "core/types.hpp"
 #include "garment/outline.hpp"
+#include "garment/wearer.hpp"
 
 namespace weft::garment {
 
@@ -19,18 +21,22 @@ struct PanelEdge {
   std::vector<Curve> curves;  ///< counter-clockwise around the panel [m]
 };
 
-/// A flat piece of cloth. All panels are drawn as seen from before the wearer.
+/// A flat piece of cloth, drawn as seen from before the wearer where it has a side, else from outside.
 struct Panel {
   std::string name;
-  Side side = Side::front;
+  std::optional<Side> side;    ///< none: the front, or where `angle` says
   std::string path;            ///< SVG path data in metres, y upward; or
   std::filesystem::path file;  ///< a drawing, and in it
   std::string id;              ///< the element with this id
   std::string edge_names;      ///< one for each curve, apart by spaces, in the order they are written; empty: 1 2 3 ...
   double grain = 0;            ///< of the warp, counter-clockwise from the panel's y axis [degrees]
-  Vec2 position{0, 0};         ///< where the panel's origin starts: across and up the wearer [m]
-  double rotation = 0;         ///< at the start, counter-clockwise seen from before [degrees]
-  Vec2 scale{1, 1};            ///< at the start, across and up, before the rotation
+  std::string mirror_of;       ///< or the panel whose outline it has, left and right exchanged
+  Around around = Around::none;  ///< part of the wearer that it starts bent around; none of all panels: flat
+  std::optional<double> angle;   ///< where around it the panel's origin is, from the front to the left [degrees]
+  int layer = 0;                 ///< how many layers of its part it lies above
+  std::optional<Vec2> position;  ///< where the panel's origin starts: across and up the wearer [m]
+  double rotation = 0;           ///< at the start, counter-clockwise seen from before [degrees]
+  Vec2 scale{1, 1};              ///< at the start, across and up, before the rotation
 
   std::vector<PanelEdge> edges;  ///< around the outline, counter-clockwise
 };
@@ -60,11 +66,14 @@ struct Pattern {
   std::filesystem::path file;
   double depth = 0.16;  ///< of the front panels before the wearer's coronal plane at the start, and of the back panels
                         ///< behind it, far from the seams that join both [m]
+  double gap = 0.015;   ///< of panels that are bent around the wearer from the skin at the start [m]
   std::vector<Panel> panels;
   std::vector<Seam> seams;
   std::vector<Elastic> elastics;
   std::vector<Hem> hems;
 
+  /// Whether panels start bent around parts of a wearer; else they lie before and behind it.
+  bool wraps() const;
   /// The edge named "panel.edge": indices of panel and edge. The name exists in a checked pattern.
   std::pair<std::size_t, std::size_t> find(const std::string& name) const;
 };

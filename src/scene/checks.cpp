@@ -86,6 +86,11 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
   check_part(cloth, pin, path, findings);
 }
 
+void check_wearer(const Scene& scene, const Cloth& cloth, const std::string& path, Findings& findings) {
+  if (!cloth.wearer.empty())
+    check_reference(cloth.wearer, names_of(scene.characters), "a character", path + ".wearer", findings);
+}
+
 void check_friction_pairs(const Scene& scene, Findings& findings) {
   std::vector<std::string> names = names_of(scene.cloths);
   for (const std::string& name : names_of(scene.obstacles)) names.push_back(name);
@@ -111,6 +116,7 @@ void check_cloths(const Scene& scene, Findings& findings) {
       findings.report(path + ".particles",
                       fmt::format("expected at most {} in all cloths together, got {}", kMaxParticles, particles));
     }
+    check_wearer(scene, cloth, path, findings);
     for (std::size_t p = 0; p < cloth.pins.size(); ++p) {
       check_pin(scene, cloth, cloth.pins[p], findings.entry(path + ".pin", p), findings);
     }

@@ -139,6 +139,9 @@ void cloth_shape_rows(TableBuilder<Cloth>& rows) {
                                      "sewing pattern (TOML); relative paths start at the scene's folder")
                               .need(Need::required)
                               .number("edge_length", &Cloth::edge_length, within(1e-4, 10), "m", "of the mesh")
+                              .plain(Type::text, "wearer", &Cloth::wearer,
+                                     "character that panels are bent around whose pattern names its parts")
+                              .by_default("the only character")
                               .number("sewing", &Cloth::sewing, within(0, 1000), "s",
                                       "time in which the panels, without weight, go to their own measures"));
 }

@@ -1,0 +1,98 @@
+#include "environment/wearers.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "character/joints.hpp"
+#include "core/error.hpp"
+#include "environment/acting.hpp"
+
+namespace weft::environment {
+namespace {
+
+using Joints = std::vector<std::optional<Vec3>>;
+
+const std::optional<Vec3>& joint(const Joints& joints, const std::string& name) {
+  return joints[character::joint_number(name)];
+}
+
+/// Upright, with the hips above its origin; left goes by the legs, or by the arms.
+Eigen::Isometry3d axes_of(const Standing& standing, const Vec3& up, const std::string& where) {
+  for (const char* name : {"UpperLeg", "UpperArm"}) {
+    const auto &left = joint(standing.joints, std::string("Left") + name),
+               &right = joint(standing.joints, std::string("Right") + name);
+    if (!left || !right) continue;
+    Vec3 across = *left - *right;
+    across -= across.dot(up) * up;
+    if (across.norm() == 0) continue;
+    across.normalize();
+    double floor = std::numeric_limits<double>::infinity();
+    for (const Vec3& x : standing.mesh.positions) floor = std::min(floor, up.dot(x));
+    const Vec3 middle = 0.5 * (*left + *right);
+    Eigen::Isometry3d axes = Eigen::Isometry3d::Identity();
+    axes.linear() << across, up.cross(across), up;
+    axes.translation() = middle + (floor - up.dot(middle)) * up;
+    return axes;
+  }
+  throw Error(ExitCode::scene_invalid,
+              "{}: expected a wearer that stands upright with two joints UpperLeg or UpperArm, got one without; "
+              "[[character.joint]] names them",
+              where);
+}
+
+garment::Wearer make_wearer(const Standing& standing, const Vec3& up, const std::string& where) {
+  garment::Wearer wearer;
+  wearer.to_world = axes_of(standing, up, where);
+  const Eigen::Isometry3d to_own = wearer.to_world.inverse();
+  for (const Vec3& x : standing.mesh.positions) wearer.skin.push_back(to_own * x);
+  wearer.triangles = standing.mesh.topology.triangles;
+  wearer.regions.assign(wearer.skin.size(), garment::Region::trunk);
+  const auto mark = [&](const character::VertexMask& mask, garment::Region region) {
+    for (std::size_t v = 0; v < mask.size(); ++v)
+      if (mask[v] != 0) wearer.regions[v] = region;
+  };
+  mark(standing.left_arm, garment::Region::left_arm);
+  mark(standing.right_arm, garment::Region::right_arm);
+  mark(standing.left_leg, garment::Region::left_leg);
+  mark(standing.right_leg, garment::Region::right_leg);
+  const auto limb = [&](const std::string& side, const std::array<const char*, 3>& names) {
+    std::optional<garment::Limb> joints(std::in_place);
+    for (std::size_t k = 0; k < names.size(); ++k) {
+      const auto& place = joint(standing.joints, side + names[k]);
+      if (!place) return std::optional<garment::Limb>();
+      (*joints)[k] = to_own * *place;
+    }
+    return joints;
+  };
+  constexpr std::array kArm{"UpperArm", "LowerArm", "Hand"}, kLeg{"UpperLeg", "LowerLeg", "Foot"};
+  wearer.left_arm = limb("Left", kArm), wearer.right_arm = limb("Right", kArm);
+  wearer.left_leg = limb("Left", kLeg), wearer.right_leg = limb("Right", kLeg);
+  // Without a neck the shoulders tell, without them the crown.
+  double crown = 0;
+  for (const Vec3& x : wearer.skin) crown = std::max(crown, x.z());
+  constexpr double kNeck = 0.83;  // of the height of a person
+  wearer.neck = kNeck * crown;
+  if (const auto& neck = joint(standing.joints, "Neck")) wearer.neck = (to_own * *neck).z();
+  return wearer;
+}
+
+}  // namespace
+
+const garment::Wearer& Wearers::of(const scene::Cloth& cloth, const std::string& where) {
+  const auto& characters = scene_.characters;
+  if (characters.empty())
+    throw Error(ExitCode::scene_invalid,
+                "{}: expected a [[character]] to put the garment on, whose panels are around its parts, got none",
+                where);
+  if (cloth.wearer.empty() && characters.size() > 1)
+    throw Error(ExitCode::scene_invalid, "{}: expected the wearer, one of {} characters such as {}, got none", where,
+                characters.size(), characters[0].name);
+  const auto found =
+      std::ranges::find(characters, cloth.wearer.empty() ? characters[0].name : cloth.wearer, &scene::Character::name);
+  const auto known = made_.find(found->name);
+  if (known != made_.end()) return known->second;
+  const Vec3 up = scene_.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+  return made_.emplace(found->name, make_wearer(stand(scene_, *found, where), up, where)).first->second;
+}
+
+}  // namespace weft::environment

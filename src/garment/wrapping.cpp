@@ -1,0 +1,318 @@
+#include "garment/wrapping.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/SparseCholesky>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <optional>
+#include <unordered_map>
+
+#include "mesh/geometry.hpp"
+
+namespace weft::garment {
+namespace {
+
+// Distance between layers at the start [m]: more than any fabric's contact thickness.
+constexpr double kLayer = 0.01;
+// Points along a seam by which a panel is moved to its neighbour, and rounds of that.
+constexpr int kSeamPoints = 16, kSeamRounds = 6;
+// Distance over which closing a seam bends panels [m]: shorter, and a sleeve is creased at its cap; longer, and it
+// leaves the arm's axis.
+constexpr double kBendOver = 0.1;
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+double radians(double degrees) {
+  return degrees * std::numbers::pi / 180;
+}
+
+/// Lengths across and heights of a panel's points where they are bent, in the sense seen from outside.
+Vec2 laid(const Panel& panel, const Vec2& position, const Vec2& p) {
+  const Vec2 turned = Eigen::Rotation2Dd(radians(panel.rotation)) * Vec2(panel.scale.cwiseProduct(p));
+  const Vec2 q = position + turned;
+  return {panel.side == Side::back ? -q.x() : q.x(), q.y()};
+}
+
+class Bending {
+ public:
+  Bending(const Pattern& pattern, std::span<const FlatMesh> meshes, const Wearer& wearer)
+      : pattern_(pattern), meshes_(meshes), positions_(pattern.panels.size()) {
+    for (const Panel& panel : pattern.panels)
+      if (!tubes_.contains(part_of(panel))) tubes_.emplace(part_of(panel), Tube(wearer, part_of(panel)));
+  }
+
+  /// Positions that are given, then those that seams decide. Returns a panel that has none, if there is one.
+  const Panel* find_positions() {
+    for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = pattern_.panels[p].position;
+    measure_ease();
+    for (bool found = true; found;) {
+      found = false;
+      for (std::size_t p = 0; p < positions_.size(); ++p) {
+        if (positions_[p]) continue;
+        positions_[p] = by_seams(p);
+        found |= positions_[p].has_value();
+      }
+    }
+    measure_ease();
+    for (std::size_t p = 0; p < positions_.size(); ++p)
+      if (!positions_[p]) return &pattern_.panels[p];
+    return nullptr;
+  }
+
+  std::vector<Vec3> bent(std::size_t p) const {
+    std::vector<Vec3> points;
+    for (const Vec2& point : meshes_[p].points) points.push_back(place(p, *positions_[p], point));
+    return points;
+  }
+
+ private:
+  static Around part_of(const Panel& panel) { return panel.around == Around::none ? Around::torso : panel.around; }
+  static double angle_of(const Panel& panel) {
+    if (panel.angle) return radians(*panel.angle);
+    if (panel.side) return *panel.side == Side::back ? std::numbers::pi : 0;
+    const bool left = panel.around == Around::left_arm, right = panel.around == Around::right_arm;
+    return left ? 0.5 * std::numbers::pi : right ? -0.5 * std::numbers::pi : 0;
+  }
+
+  Vec3 place(std::size_t p, const Vec2& position, const Vec2& point) const {
+    const Panel& panel = pattern_.panels[p];
+    const Vec2 q = laid(panel, position, point);
+    return tubes_.at(part_of(panel)).at(q.y(), angle_of(panel), q.x(), outward(panel, q.y()));
+  }
+  double outward(const Panel& panel, double s) const {
+    double ease = 0;
+    if (const auto found = eases_.find(part_of(panel)); found != eases_.end()) {
+      const auto& [first, of_height] = found->second;
+      const double place = std::clamp((s - first) / kStep, 0.0, static_cast<double>(of_height.size() - 1));
+      const auto below = std::min(static_cast<std::size_t>(place), of_height.size() - 1);
+      const double share = place - static_cast<double>(below);
+      ease = (1 - share) * of_height[below] + share * of_height[std::min(below + 1, of_height.size() - 1)];
+    }
+    return pattern_.gap + kLayer * panel.layer + ease;
+  }
+
+  // By how much the panels that make a ring are wider than their part, at each height: so far out they close it.
+  void measure_ease() {
+    std::map<Around, std::map<long, double>> widths;
+    for (std::size_t p = 0; p < positions_.size(); ++p) {
+      const Panel& panel = pattern_.panels[p];
+      if (!positions_[p] || panel.layer > 0) continue;
+      std::map<long, std::pair<double, double>> extents;
+      for (const mesh::Triangle& t : meshes_[p].triangles)
+        for (std::size_t k = 0; k < 3; ++k) {
+          Vec2 a = laid(panel, *positions_[p], meshes_[p].points[at(t[k])]);
+          Vec2 b = laid(panel, *positions_[p], meshes_[p].points[at(t[(k + 1) % 3])]);
+          if (a.y() > b.y()) std::swap(a, b);
+          for (auto level = static_cast<long>(std::ceil(a.y() / kStep)); level <= b.y() / kStep && b.y() > a.y();
+               ++level) {
+            const double x = a.x() + (level * kStep - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+            auto [entry, fresh] = extents.try_emplace(level, x, x);
+            auto& [low, high] = entry->second;
+            low = std::min(low, x), high = std::max(high, x);
+          }
+        }
+      for (const auto& [level, extent] : extents) widths[part_of(panel)][level] += extent.second - extent.first;
+    }
+    eases_.clear();
+    for (const auto& [part, of_level] : widths) {
+      auto& [first, of_height] = eases_[part];
+      first = kStep * static_cast<double>(of_level.begin()->first);
+      std::vector<double> raw;
+      for (const auto& [level, width] : of_level)
+        raw.push_back(std::max(0.0, width - tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap)) /
+                      (2 * std::numbers::pi));
+      // A panel that begins or ends beside others changes the width at once.
+      constexpr long kSmooth = 4;
+      const auto count = static_cast<long>(raw.size());
+      for (long i = 0; i < count; ++i) {
+        double sum = 0;
+        for (long k = i - kSmooth; k <= i + kSmooth; ++k)
+          sum += raw[static_cast<std::size_t>(std::clamp(k, 0L, count - 1))];
+        of_height.push_back(sum / (2 * kSmooth + 1));
+      }
+    }
+  }
+
+  // Along its part to where the seams with panels that have a place are shortest.
+  std::optional<Vec2> by_seams(std::size_t p) const {
+    struct Pair {
+      Vec2 own;
+      Vec3 other;
+    };
+    std::vector<Pair> pairs;
+    for (const Seam& seam : pattern_.seams)
+      for (const bool swapped : {false, true}) {
+        const auto [own, edge] = pattern_.find(swapped ? seam.b : seam.a);
+        const auto [other, other_edge] = pattern_.find(swapped ? seam.a : seam.b);
+        if (own != p || other == p || !positions_[other]) continue;
+        const Panel &panel = pattern_.panels[own], &neighbour = pattern_.panels[other];
+        const Arclength along(panel.edges[edge].curves), beside(neighbour.edges[other_edge].curves);
+        const bool reversed = seen_alike(panel, neighbour);
+        for (int k = 0; k <= kSeamPoints; ++k) {
+          const double share = double(k) / kSeamPoints;
+          pairs.push_back({along.at(share), place(other, *positions_[other], beside.at(reversed ? 1 - share : share))});
+        }
+      }
+    if (pairs.empty()) return std::nullopt;
+    const Tube& tube = tubes_.at(part_of(pattern_.panels[p]));
+    // From the end nearest to the trunk, or from where the seams are.
+    Vec2 position(0, tube.high());
+    for (int round = 0; round < kSeamRounds; ++round) {
+      double sum = 0;
+      for (const Pair& pair : pairs) {
+        const double s = laid(pattern_.panels[p], position, pair.own).y();
+        sum += (pair.other - place(p, position, pair.own)).dot(tube.along(s));
+      }
+      position.y() += sum / static_cast<double>(pairs.size());
+    }
+    return position;
+  }
+
+  static constexpr double kStep = 0.01;  // of heights at which widths are measured [m]
+
+  const Pattern& pattern_;
+  std::span<const FlatMesh> meshes_;
+  std::vector<std::optional<Vec2>> positions_;
+  std::map<Around, Tube> tubes_;
+  std::map<Around, std::pair<double, std::vector<double>>> eases_;  // first height, and the ease at each [m]
+};
+
+/// Vertices of the skin by the cubes of space that they are in.
+class NearSkin {
+ public:
+  NearSkin(const Wearer& wearer, double reach)
+      : wearer_(wearer), reach_(reach), normals_(wearer.skin.size(), Vec3::Zero()) {
+    for (const mesh::Triangle& t : wearer.triangles) {
+      const Vec3 area = mesh::area_vector(t, wearer.skin);
+      for (const Index v : t) normals_[at(v)] += area;
+    }
+    for (std::size_t v = 0; v < normals_.size(); ++v) {
+      if (normals_[v].norm() > 0) normals_[v].normalize();
+      cells_[key(cell(wearer.skin[v]))].push_back(static_cast<Index>(v));
+    }
+  }
+  /// The nearest vertex within reach; −1: none.
+  Index nearest(const Vec3& x) const {
+    const auto middle = cell(x);
+    double best = reach_ * reach_;
+    Index found = -1;
+    for (long i = -1; i <= 1; ++i)
+      for (long j = -1; j <= 1; ++j)
+        for (long k = -1; k <= 1; ++k) {
+          const auto of_cell = cells_.find(key({middle[0] + i, middle[1] + j, middle[2] + k}));
+          if (of_cell == cells_.end()) continue;
+          for (const Index v : of_cell->second)
+            if (const double d = (wearer_.skin[at(v)] - x).squaredNorm(); d < best) best = d, found = v;
+        }
+    return found;
+  }
+  const Vec3& normal(Index v) const { return normals_[at(v)]; }
+
+ private:
+  std::array<long, 3> cell(const Vec3& x) const {
+    return {std::lround(std::floor(x.x() / reach_)), std::lround(std::floor(x.y() / reach_)),
+            std::lround(std::floor(x.z() / reach_))};
+  }
+  static std::int64_t key(const std::array<long, 3>& c) {
+    constexpr std::int64_t kMost = 1 << 20;
+    return ((c[0] + kMost) * 2 * kMost + c[1] + kMost) * 2 * kMost + c[2] + kMost;
+  }
+  const Wearer& wearer_;
+  double reach_;
+  std::vector<Vec3> normals_;
+  std::unordered_map<std::int64_t, std::vector<Index>> cells_;
+};
+
+}  // namespace
+
+bool seen_alike(const Panel& a, const Panel& b) {
+  return (a.side == Side::back) == (b.side == Side::back);
+}
+
+std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<const FlatMesh> meshes,
+                                           const Wearer& wearer,
+                                           const std::function<void(const std::string&)>& refuse) {
+  Bending bending(pattern, meshes, wearer);
+  if (const Panel* lost = bending.find_positions())
+    refuse(fmt::format("panel {}: expected a position, or a seam to a panel that has one, got neither", lost->name));
+  std::vector<std::vector<Vec3>> points;
+  for (std::size_t p = 0; p < pattern.panels.size(); ++p) points.push_back(bending.bent(p));
+  return points;
+}
+
+std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
+                                std::size_t vertices, double spacing) {
+  // As lay_together(), with a pull of each vertex to its place that is felt over kBendOver.
+  const double anchor = spacing * spacing / (kBendOver * kBendOver);
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(vertices), 3);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index i = triangles[t][k], j = triangles[t][(k + 1) % 3];
+      const Vec3 &p = corners[t][k], &q = corners[t][(k + 1) % 3];
+      entries.emplace_back(i, i, 1 + anchor);
+      entries.emplace_back(j, j, 1);
+      entries.emplace_back(i, j, -1);
+      entries.emplace_back(j, i, -1);
+      right.row(i) += (p - q + anchor * p).transpose();
+      right.row(j) -= (p - q).transpose();
+    }
+  Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(vertices), static_cast<Eigen::Index>(vertices));
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
+  const Eigen::MatrixX3d solved = solver.solve(right);
+  std::vector<Vec3> x(vertices);
+  for (std::size_t v = 0; v < vertices; ++v) x[v] = solved.row(static_cast<Eigen::Index>(v)).transpose();
+  return x;
+}
+
+void clear_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,
+                   std::span<Vec3> x) {
+  constexpr double kReach = 0.08;  // deepest that cloth is drawn out of the skin [m]
+  constexpr int kRounds = 30, kRings = 3;
+  const NearSkin skin(wearer, kReach);
+  std::vector<std::vector<Index>> neighbours(x.size());
+  std::vector<char> rim(x.size(), 0);
+  const std::vector<mesh::Triangle> all(triangles.begin(), triangles.end());
+  const mesh::EdgeSet edges = mesh::collect_edges(all);
+  for (const mesh::Edge& edge : edges.edges)
+    if (edge.triangles[1] < 0) rim[at(edge.vertices[0])] = rim[at(edge.vertices[1])] = 1;
+  for (const mesh::Edge& edge : edges.edges) {
+    const auto [a, b] = edge.vertices;
+    // The rim moves along itself.
+    if (!rim[at(a)] || edge.triangles[1] < 0) neighbours[at(a)].push_back(b);
+    if (!rim[at(b)] || edge.triangles[1] < 0) neighbours[at(b)].push_back(a);
+  }
+  std::vector<char> moving(x.size(), 0);
+  for (int round = 0; round < kRounds; ++round) {
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      const Index near = skin.nearest(x[v]);
+      if (near < 0) continue;
+      const double missing = clearance - (x[v] - wearer.skin[at(near)]).dot(skin.normal(near));
+      if (missing <= 0) continue;
+      x[v] += missing * skin.normal(near);
+      moving[v] = 1;
+    }
+    if (std::ranges::none_of(moving, [](char m) { return m != 0; }) || round + 1 == kRounds) break;
+    if (round == 0)
+      for (int ring = 0; ring < kRings; ++ring) {
+        const std::vector<char> before = moving;
+        for (std::size_t v = 0; v < x.size(); ++v)
+          for (const Index n : neighbours[v]) moving[v] |= before[at(n)];
+      }
+    const std::vector<Vec3> before(x.begin(), x.end());
+    for (std::size_t v = 0; v < x.size(); ++v) {
+      if (!moving[v] || neighbours[v].empty()) continue;
+      Vec3 sum = Vec3::Zero();
+      for (const Index n : neighbours[v]) sum += before[at(n)];
+      x[v] = 0.5 * (before[v] + sum / static_cast<double>(neighbours[v].size()));
+    }
+  }
+}
+
+}  // namespace weft::garment
