@@ -11,8 +11,10 @@ std::vector<double> lumped_masses(const mesh::Grid& grid, double density) {
 
 std::vector<double> lumped_masses(const mesh::Sheet& sheet, double density) {
   std::vector<double> masses(sheet.rest.size());
-  for (std::size_t t = 0; t < sheet.triangles.size(); ++t)
-    for (Index i : sheet.triangles[t]) masses[i] += density * mesh::rest_area(sheet, t) / 3;
+  for (std::size_t t = 0; t < sheet.triangles.size(); ++t) {
+    const double own = sheet.reinforcements.empty() ? density : density * sheet.reinforcements[t].density;
+    for (Index i : sheet.triangles[t]) masses[i] += own * mesh::rest_area(sheet, t) / 3;
+  }
   for (const mesh::Band& band : sheet.bands)
     for (std::size_t k = 0; k < band.lengths.size(); ++k)
       for (Index i : {band.vertices[k], band.vertices[k + 1]})

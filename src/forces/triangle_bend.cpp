@@ -86,9 +86,10 @@ void TriangleBend::use_held() {
   std::size_t pairs = 0;
   std::vector<CurvatureStencil> stencils = curvature_stencils(sheet_, pinned_, held_);
   for (std::size_t t = 0; t < stencils.size(); ++t) {
-    const double area = mesh::rest_area(sheet_, t);
+    double area = mesh::rest_area(sheet_, t);
     Vec3 rest = Vec3::Zero();
     if (!sheet_.sewn) rest = take_rest(stencils[t], area, sheet_.material[t], sheet_.rest);
+    if (!sheet_.reinforcements.empty()) area *= sheet_.reinforcements[t].bend;
     const std::size_t begin = particles_.size(), count = stencils[t].vertices.size();
     for (Index vertex : stencils[t].vertices) particles_.push_back(first_ + vertex);
     for (const Vec3& weight : stencils[t].weights) weights_.push_back(solver::quad_of<double>(weight));

@@ -36,7 +36,7 @@ class TriangleBend final : public Force {
   struct Element {
     std::size_t begin, end;    // of its particles, corners first
     std::size_t pairs;         // the first of them, 01, 02, ... 12, ...
-    double area;               // [m²]
+    double area;               // [m²], times the reinforcement
     Vec3 rest = Vec3::Zero();  // κ_uu, κ_vv, κ_uv [1/m]
   };
   /// s_uu, s_vv and s_uv of an element, of four elements.

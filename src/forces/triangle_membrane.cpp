@@ -28,6 +28,7 @@ TriangleMembrane::TriangleMembrane(const mesh::Sheet& sheet, Index first, const 
     Eigen::Matrix2d sides;
     sides << m[1] - m[0], m[2] - m[0];
     element.area = 0.5 * sides.determinant();
+    if (!sheet.reinforcements.empty()) element.area *= sheet.reinforcements[t].stretch;
     const Eigen::Matrix2d inverse = sides.inverse();
     use_rest(inverse, element);
     elements_.push_back(element);

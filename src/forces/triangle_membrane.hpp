@@ -23,7 +23,7 @@ class TriangleMembrane : public Membrane {
   struct Element {
     std::array<Index, 3> particles;
     std::array<Vec2, 3> gradients;  // s_u = Σ gradients[k].x() x_k, s_v likewise [1/m]
-    double area;                    // [m²]
+    double area;                    // [m²], times the reinforcement
   };
 
   TriangleMembrane(const mesh::Sheet& sheet, Index first, const StretchParameters& stretch,

@@ -41,6 +41,7 @@ class Sewing {
       place_flat();
     garment_.sheet.sewn = true;
     add_bands();
+    add_closures();
     check();
     return std::move(garment_);
   }
@@ -113,6 +114,7 @@ class Sewing {
   void join_seams() {
     sewn_together_ = DisjointSets(at(total_));
     for (const Seam& seam : pattern_.seams) {
+      if (seam.closure()) continue;
       const auto [p, e] = pattern_.find(seam.a);
       const auto [q, f] = pattern_.find(seam.b);
       const std::vector<Index> a = chain(p, e);
@@ -151,6 +153,8 @@ class Sewing {
 
   // Triangles of joined vertices, and their shape in the pattern.
   void make_triangles() {
+    const bool reinforced = std::ranges::any_of(
+        pattern_.panels, [](const Panel& panel) { return panel.reinforcement != mesh::Reinforcement{}; });
     for (std::size_t p = 0; p < meshes_.size(); ++p) {
       const Panel& panel = pattern_.panels[p];
       const bool back = panel.side == Side::back;
@@ -169,6 +173,7 @@ class Sewing {
         }
         garment_.sheet.triangles.push_back(joined);
         garment_.sheet.material.push_back(material);
+        if (reinforced) garment_.sheet.reinforcements.push_back(panel.reinforcement);
         garment_.panel_of.push_back(static_cast<Index>(p));
       }
     }
@@ -250,11 +255,14 @@ class Sewing {
       }
       return band;
     };
-    for (std::size_t s = 0; s < pattern_.seams.size(); ++s) {
-      if (pattern_.seams[s].allowance == 0) continue;
+    std::size_t s = 0;
+    for (const Seam& seam : pattern_.seams) {
+      if (seam.closure()) continue;
+      const SewnSeam& sewn = garment_.seams[s++];
+      if (seam.allowance == 0) continue;
       // Between the two sides, where one is eased in.
-      const double mean = 0.5 * (garment_.seams[s].length_a + garment_.seams[s].length_b);
-      mesh::Band band{.vertices = garment_.seams[s].vertices, .lengths = {}, .allowance = pattern_.seams[s].allowance};
+      const double mean = 0.5 * (sewn.length_a + sewn.length_b);
+      mesh::Band band{.vertices = sewn.vertices, .lengths = {}, .allowance = seam.allowance};
       band.lengths.assign(band.vertices.size() - 1, mean / static_cast<double>(band.vertices.size() - 1));
       garment_.sheet.bands.push_back(std::move(band));
     }
@@ -267,6 +275,31 @@ class Sewing {
       garment_.sheet.bands.push_back(band_along(hem.edge));
       garment_.sheet.bands.back().mass = hem.mass;
       garment_.sheet.bands.back().bend = hem.bend;
+    }
+  }
+
+  // Between the points of two edges; which ends meet shows in where they start.
+  void add_closures() {
+    const std::vector<Vec3>& x = garment_.sheet.rest;
+    for (const Seam& seam : pattern_.seams) {
+      if (!seam.closure()) continue;
+      const std::vector<Index>& a = garment_.edges.at(seam.a);
+      std::vector<Index> b = garment_.edges.at(seam.b);
+      const auto apart = [&] {
+        return (x[at(a.front())] - x[at(b.front())]).norm() + (x[at(a.back())] - x[at(b.back())]).norm();
+      };
+      const double straight = apart();
+      std::ranges::reverse(b);
+      if (straight < apart()) std::ranges::reverse(b);
+      const std::size_t last = a.size() - 1;
+      const std::size_t count = seam.buttons > 0 ? static_cast<std::size_t>(seam.buttons) : a.size();
+      for (std::size_t i = 0; i < count; ++i) {
+        const std::size_t k = count == 1 ? last / 2 : (2 * i * last + count - 1) / (2 * (count - 1));
+        mesh::Tie tie{.a = a[k], .b = b[k], .strength = seam.strength};
+        if (seam.open) tie.open = *seam.open;
+        if (seam.closed) tie.closed = *seam.closed;
+        if (tie.a != tie.b && (i == 0 || garment_.sheet.ties.back().a != tie.a)) garment_.sheet.ties.push_back(tie);
+      }
     }
   }
 

@@ -26,7 +26,7 @@ struct Garment {
   mesh::Sheet sheet;
   std::vector<Vec2> uv;         ///< per vertex: the panels laid together in one plane, for drawing the weave [m]
   std::vector<Index> panel_of;  ///< per triangle
-  std::vector<SewnSeam> seams;  ///< as in the pattern
+  std::vector<SewnSeam> seams;  ///< as in the pattern, without closures
   std::map<std::string, std::vector<Index>> edges;  ///< by "panel.edge": its vertices, from its start
 };
 

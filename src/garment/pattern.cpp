@@ -30,6 +30,13 @@ constexpr int kPointsPerCurve = 16;
 constexpr double kMaxSize = 100;
 
 const Table& panel_rules() {
+  static const Table kFabric =
+      TableBuilder<mesh::Reinforcement>("The fabric of a panel against that of the garment: fusing, or another one.")
+          .number("stretch", &mesh::Reinforcement::stretch, scene::above(0, 1000), "",
+                  "factor on the stiffness against stretch and shear")
+          .number("bend", &mesh::Reinforcement::bend, scene::above(0, 1000), "", "on that against bending")
+          .number("density", &mesh::Reinforcement::density, scene::above(0, 1000), "", "on the mass")
+          .build();
   static const Table kTable =
       TableBuilder<Panel>(
           "A flat piece of cloth, drawn as seen from before the wearer where it has a side, else from outside.")
@@ -75,20 +82,34 @@ const Table& panel_rules() {
                   "at the start, counter-clockwise seen from before")
           .vector("scale", &Panel::scale, {"across", "up"}, scene::above(0, 10), "", "of lengths at the start")
           .single_fills_all()
+          .table("fabric", &Panel::reinforcement, kFabric)
           .build();
   return kTable;
 }
 
 const Table& pattern_rules() {
-  static const Table kSeams = TableBuilder<Seam>("Two edges sewn together.")
-                                  .plain(Type::text, "a", &Seam::a, "an edge, as panel.edge")
-                                  .need(Need::required)
-                                  .plain(Type::text, "b", &Seam::b, "the other, of any panel")
-                                  .need(Need::required)
-                                  .number("allowance", &Seam::allowance, within(0, 1), "m",
-                                          "width of the cloth turned in along the seam, of both sides together; it "
-                                          "weighs and resists stretching like any other")
-                                  .build();
+  static const Table kSeams =
+      TableBuilder<Seam>(
+          "Two edges sewn together; with buttons, open or closed a closure that holds them "
+          "together while it is closed.")
+          .plain(Type::text, "a", &Seam::a, "an edge, as panel.edge")
+          .need(Need::required)
+          .plain(Type::text, "b", &Seam::b, "the other, of any panel")
+          .need(Need::required)
+          .whole_number("buttons", &Seam::buttons, within(0, 1000),
+                        "that hold the edges together, evenly from end to end; 0: a zip, or a "
+                        "seam that is sewn")
+          .number("open", &Seam::open, within(-1e6, 1e6), "s", "time of the scene from which on the closure is open")
+          .by_default("never")
+          .number("closed", &Seam::closed, within(-1e6, 1e6), "s",
+                  "from which on it is closed; before the first of both times it is the other")
+          .by_default("never")
+          .number("strength", &Seam::strength, scene::above(0, 1e4), "N",
+                  "most that each button, or each point of a zip, pulls with")
+          .number("allowance", &Seam::allowance, within(0, 1), "m",
+                  "width of the cloth turned in along the seam, of both sides together; it "
+                  "weighs and resists stretching like any other")
+          .build();
   static const Table kElastics =
       TableBuilder<Elastic>("An elastic band along an edge.")
           .plain(Type::text, "edge", &Elastic::edge, "as panel.edge")

@@ -10,6 +10,7 @@
 #include "core/types.hpp"
 #include "garment/outline.hpp"
 #include "garment/wearer.hpp"
+#include "mesh/sheet.hpp"
 
 namespace weft::garment {
 
@@ -38,14 +39,21 @@ struct Panel {
   double rotation = 0;           ///< at the start, counter-clockwise seen from before [degrees]
   Vec2 scale{1, 1};              ///< at the start, across and up, before the rotation
 
+  mesh::Reinforcement reinforcement;  ///< fusing, or a heavier fabric
+
   std::vector<PanelEdge> edges;  ///< around the outline, counter-clockwise
 };
 
 /// Sews two edges together, named "panel.edge". Both get the same points, at the same shares of their lengths: the
-/// longer one is eased in.
+/// longer one is eased in. With buttons or times it is a closure: the points are held together while it is closed.
 struct Seam {
   std::string a, b;
-  double allowance = 0.02;  ///< width of the cloth turned in along it, of both sides together [m]
+  int buttons = 0;                     ///< that hold it; 0: all points do, as in a zip
+  std::optional<double> open, closed;  ///< from when on [s]
+  double strength = 2;                 ///< most that a button, or a point of a zip, pulls with [N]
+  double allowance = 0.02;             ///< width of the cloth turned in along it, of both sides together [m]
+
+  bool closure() const { return buttons > 0 || open || closed; }
 };
 
 /// A band that pulls an edge together.

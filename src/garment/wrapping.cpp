@@ -18,6 +18,8 @@ namespace {
 
 // Distance between layers at the start [m]: more than any fabric's contact thickness.
 constexpr double kLayer = 0.01;
+// Room in a ring whose panels are buttoned together, not sewn [m]: they do not start in one place.
+constexpr double kRoom = 0.03;
 // Points along a seam by which a panel is moved to its neighbour, and rounds of that.
 constexpr int kSeamPoints = 16, kSeamRounds = 6;
 // Distance over which closing a seam bends panels [m]: shorter, and a sleeve is creased at its cap; longer, and it
@@ -119,13 +121,15 @@ class Bending {
       for (const auto& [level, extent] : extents) widths[part_of(panel)][level] += extent.second - extent.first;
     }
     eases_.clear();
+    const double room = std::ranges::any_of(pattern_.seams, &Seam::closure) ? kRoom : 0;
     for (const auto& [part, of_level] : widths) {
       auto& [first, of_height] = eases_[part];
       first = kStep * static_cast<double>(of_level.begin()->first);
       std::vector<double> raw;
       for (const auto& [level, width] : of_level)
-        raw.push_back(std::max(0.0, width - tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap)) /
-                      (2 * std::numbers::pi));
+        raw.push_back(
+            std::max(0.0, width + room - tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap)) /
+            (2 * std::numbers::pi));
       // A panel that begins or ends beside others changes the width at once.
       constexpr long kSmooth = 4;
       const auto count = static_cast<long>(raw.size());

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "mesh/mesh.hpp"
@@ -20,6 +21,21 @@ struct Band {
   double allowance = 0;         ///< width of cloth that lies along it beside what the triangles are [m]
 };
 
+/// Two vertices that a button or a tooth of a zip holds together while it is closed. Times are those of the scene [s];
+/// without one nothing happens.
+struct Tie {
+  Index a = 0, b = 0;
+  double strength = 0;  ///< most that it pulls with [N]
+  double open = std::numeric_limits<double>::infinity(), closed = std::numeric_limits<double>::infinity();
+};
+
+/// Of a triangle against the cloth's material: factors on stiffness in the plane, in bending, and mass.
+struct Reinforcement {
+  double stretch = 1, bend = 1, density = 1;
+
+  bool operator==(const Reinforcement&) const = default;
+};
+
 /// Rest shape of cloth made of triangles, flat or not.
 struct Sheet {
   std::vector<Triangle> triangles;            ///< manifold and equally oriented
@@ -27,6 +43,8 @@ struct Sheet {
   std::vector<std::array<Vec2, 3>> material;  ///< (weft, warp) of each triangle's corners, counter-clockwise [m]
   bool sewn = false;  ///< of flat panels: their shape at rest is `material` alone, and `rest` is where they start
   std::vector<Band> bands;
+  std::vector<Tie> ties;
+  std::vector<Reinforcement> reinforcements;  ///< per triangle; empty: none
 };
 
 /// Area of a triangle at rest [m²].

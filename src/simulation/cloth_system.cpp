@@ -114,7 +114,7 @@ bool locks(const scene::Material& material) {
 }
 
 ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environment& environment)
-    : gravity_(scene.physics.gravity) {
+    : gravity_(scene.physics.gravity), begin_(-scene.preroll_frames() / scene.time.fps) {
   Index first = 0;
   forces_.resize(scene.cloths.size());
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
@@ -197,7 +197,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
   else
     membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
   membranes_.push_back(membrane.get());
-  if (sheet.sewn) sewing_.push_back({cloth, of.sewing, -1, membrane.get(), nullptr, nullptr});
+  if (sheet.sewn) sewing_.push_back({cloth, of.sewing, -1, membrane.get(), nullptr, nullptr, nullptr});
   if (locks(material)) {
     auto limit = std::make_unique<forces::StretchLimit>(*membrane, largest_extension(material), largest_sine(material));
     if (sheet.sewn) sewing_.back().limit = limit.get();
@@ -208,6 +208,11 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
     auto bands = std::make_unique<forces::Bands>(sheet, first, 0.5 * (material.stretch_weft + material.stretch_warp));
     if (sheet.sewn) sewing_.back().bands = bands.get();
     forces_[cloth].push_back(std::move(bands));
+  }
+  if (!sheet.ties.empty()) {
+    auto ties = std::make_unique<forces::Ties>(sheet, first);
+    sewing_.back().ties = ties.get();
+    forces_[cloth].push_back(std::move(ties));
   }
   if (bends(material))
     forces_[cloth].push_back(std::make_unique<forces::TriangleBend>(sheet, first, bend_of(material), held_));
@@ -265,6 +270,10 @@ bool ClothSystem::sew(double t) {
   bool changed = false;
   for (Sewing& sewing : sewing_) {
     const double share = sewing.duration > 0 ? ease(t / sewing.duration) : 1;
+    if (sewing.ties != nullptr) {
+      sewing.time = t;
+      changed |= sewing.ties->use(begin_ + t, share);
+    }
     if (share == sewing.share) continue;
     sewing.use_share(share);
     changed = true;
@@ -286,9 +295,11 @@ template <class Archive>
 void ClothSystem::serialize(Archive& archive) {
   for (Sewing& sewing : sewing_) {
     archive.value(sewing.share);
+    if (sewing.ties != nullptr) archive.value(sewing.time);
     if constexpr (!Archive::kReads) continue;
     require(sewing.share >= 0 && sewing.share <= 1, "a share of the way to the pattern");
     sewing.use_share(sewing.share);
+    if (sewing.ties != nullptr) sewing.ties->use(begin_ + sewing.time, sewing.share);
   }
 }
 

@@ -9,6 +9,7 @@
 #include "environment/environment.hpp"
 #include "forces/bands.hpp"
 #include "forces/force.hpp"
+#include "forces/ties.hpp"
 #include "forces/triangle_membrane.hpp"
 #include "integrator/system.hpp"
 #include "scene/scene.hpp"
@@ -112,12 +113,15 @@ class ClothSystem {
     forces::TriangleMembrane* membrane;
     forces::Bands* bands;         // nullptr where it has none
     forces::StretchLimit* limit;  // likewise
+    forces::Ties* ties;           // likewise
+    double time = 0;              // of ties, since the run began [s]
 
     void use_share(double new_share);
   };
   std::vector<Sewing> sewing_;
   std::vector<char> held_;  // per particle: by a pin
   Vec3 gravity_;
+  double begin_;  // of the run, in the time of the scene [s]
   double spacing_ = std::numeric_limits<double>::infinity();
   std::vector<solver::Grouping> groupings_;  // of the preconditioner
 };

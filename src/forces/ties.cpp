@@ -1,0 +1,103 @@
+#include "forces/ties.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace weft::forces {
+namespace {
+
+std::size_t at_index(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+// How far a tie is closed at time t: what happened last counts, before that the other of what happens first.
+double closed_share(const mesh::Tie& tie, double t) {
+  const bool reopens = tie.closed < tie.open;
+  const bool closed = reopens ? t >= tie.closed && t < tie.open : t < tie.open || t >= tie.closed;
+  if (!closed) return 0;
+  if (t < tie.closed) return 1;  // from the start on
+  const double s = std::clamp((t - tie.closed) / Ties::kClosing, 0.0, 1.0);
+  return s * s * (3 - 2 * s);
+}
+
+}  // namespace
+
+Ties::Ties(const mesh::Sheet& sheet, Index first) {
+  for (mesh::Tie tie : sheet.ties) {
+    tie.a += first, tie.b += first;
+    pieces_.push_back({tie});
+  }
+}
+
+bool Ties::use(double t, double share) {
+  bool changed = false;
+  for (Piece& piece : pieces_) {
+    const double strength = piece.tie.strength * share * closed_share(piece.tie, t);
+    changed |= strength != piece.strength;
+    piece.strength = strength;
+  }
+  return changed;
+}
+
+void Ties::couple(std::vector<std::pair<Index, Index>>& pairs) const {
+  for (const Piece& piece : pieces_) pairs.emplace_back(piece.tie.a, piece.tie.b);
+}
+
+void Ties::attach(const solver::Assembly& assembly) {
+  for (Piece& piece : pieces_) {
+    const auto [i, j] = std::minmax(piece.tie.a, piece.tie.b);
+    piece.block = assembly.block(i, j);
+  }
+}
+
+Ties::Pull Ties::pull(const Piece& piece, double length) {
+  if (length <= kRest) return {};
+  if (length >= 2 * kRest) return {piece.strength, 0};
+  return {piece.strength * (length / kRest - 1), piece.strength / kRest};
+}
+
+// Between the ends, of a pull: positive semidefinite as it is.
+Mat3 Ties::stiffness(const Piece& piece, const Vec3& along) {
+  const double length = along.norm();
+  const Pull now = pull(piece, length);
+  if (now.force == 0) return Mat3::Zero();
+  const Vec3 n = along / length;
+  const double lateral = now.force / length;
+  return (now.axial - lateral) * n * n.transpose() + lateral * Mat3::Identity();
+}
+
+void Ties::add(const Evaluation& at) const {
+  for (const Piece& piece : pieces_) {
+    const Vec3 along = solver::vec3_of(at.x[at_index(piece.tie.b)] - at.x[at_index(piece.tie.a)]);
+    const double length = along.norm();
+    const Pull now = pull(piece, length);
+    if (now.force == 0) continue;
+    const Vec3 force = now.force / length * along;
+    const auto quad = solver::quad_of<double>(force);
+    at.force.add(piece.tie.a, quad);
+    at.force.subtract(piece.tie.b, quad);
+    if (at.assembly) at.assembly.add(piece.block, Mat3(-stiffness(piece, along)));
+  }
+}
+
+void Ties::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double /*rate*/,
+                        solver::BlockMatrix& jacobian) const {
+  const auto add = [&](Index i, Index j, const Mat3& block) { jacobian.add(jacobian.slot(i, j), block); };
+  for (const Piece& piece : pieces_) {
+    const auto a = piece.tie.a, b = piece.tie.b;
+    const Mat3 k = stiffness(piece, x[at_index(b)] - x[at_index(a)]);
+    add(a, a, k), add(a, b, -k), add(b, a, -k), add(b, b, k);
+  }
+}
+
+double Ties::energy(std::span<const Vec3> x) const {
+  double sum = 0;
+  for (const Piece& piece : pieces_) {
+    const double over = (x[at_index(piece.tie.b)] - x[at_index(piece.tie.a)]).norm() / kRest - 1;
+    if (over <= 0) continue;
+    sum += piece.strength * kRest * (over < 1 ? 0.5 * over * over : over - 0.5);
+  }
+  return sum;
+}
+
+}  // namespace weft::forces
