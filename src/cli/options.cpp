@@ -244,7 +244,8 @@ struct Parser {
 
   void add_schema() {
     CLI::App& command = *app.add_subcommand("schema", "Print the JSON schema of the scene format");
-    command.footer("\nExample:\n  weft schema > weft.schema.json");
+    command.add_flag("--pattern", schema.pattern, "That of sewing patterns instead");
+    command.footer("\nExample:\n  weft schema > weft.schema.json\n  weft schema --pattern > pattern.schema.json");
   }
 
   void add_doctor() {

@@ -73,7 +73,9 @@ struct SheetOptions {
   SheetOptions() { common.quality = render::Quality::preview; }
 };
 
-struct SchemaOptions {};
+struct SchemaOptions {
+  bool pattern = false;  ///< of sewing patterns, not of scenes
+};
 
 struct DoctorOptions {
   render::Backend backend = render::Backend::automatic;

@@ -10,6 +10,7 @@
 #include "cli/failure.hpp"
 #include "cli/options.hpp"
 #include "core/log.hpp"
+#include "garment/pattern.hpp"
 #include "scene/loader.hpp"
 
 namespace weft::cli {
@@ -28,7 +29,10 @@ struct Dispatch {
   ExitCode operator()(const CheckOptions& options) const { return check(options); }
   ExitCode operator()(const ThumbnailOptions& options) const { return thumbnail(options); }
   ExitCode operator()(const SheetOptions& options) const { return sheet(options); }
-  ExitCode operator()(const SchemaOptions&) const { return print(scene::json_schema() + "\n"); }
+  ExitCode operator()(const SchemaOptions& options) const {
+    return print(
+        (options.pattern ? scene::json_schema(garment::pattern_rules(), "Weft pattern") : scene::json_schema()) + "\n");
+  }
   ExitCode operator()(const DoctorOptions& options) const { return doctor(options); }
   ExitCode operator()(const BenchOptions& options) const { return bench(options); }
   ExitCode operator()(const DiffOptions& options) const { return diff(options); }

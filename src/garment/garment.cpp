@@ -30,6 +30,7 @@ class Sewing {
       : pattern_(pattern), spacing_(spacing), where_(where), wearer_(wearer) {}
 
   Garment sew() {
+    if (pattern_.wraps() && wearer_ == nullptr) refuse("expected a wearer for panels around its parts, got none");
     count_segments();
     mesh_panels();
     join_seams();

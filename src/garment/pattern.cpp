@@ -87,55 +87,6 @@ const Table& panel_rules() {
   return kTable;
 }
 
-const Table& pattern_rules() {
-  static const Table kSeams =
-      TableBuilder<Seam>(
-          "Two edges sewn together; with buttons, open or closed a closure that holds them "
-          "together while it is closed.")
-          .plain(Type::text, "a", &Seam::a, "an edge, as panel.edge")
-          .need(Need::required)
-          .plain(Type::text, "b", &Seam::b, "the other, of any panel")
-          .need(Need::required)
-          .whole_number("buttons", &Seam::buttons, within(0, 1000),
-                        "that hold the edges together, evenly from end to end; 0: a zip, or a "
-                        "seam that is sewn")
-          .number("open", &Seam::open, within(-1e6, 1e6), "s", "time of the scene from which on the closure is open")
-          .by_default("never")
-          .number("closed", &Seam::closed, within(-1e6, 1e6), "s",
-                  "from which on it is closed; before the first of both times it is the other")
-          .by_default("never")
-          .number("strength", &Seam::strength, scene::above(0, 1e4), "N",
-                  "most that each button, or each point of a zip, pulls with")
-          .number("allowance", &Seam::allowance, within(0, 1), "m",
-                  "width of the cloth turned in along the seam, of both sides together; it "
-                  "weighs and resists stretching like any other")
-          .build();
-  static const Table kElastics =
-      TableBuilder<Elastic>("An elastic band along an edge.")
-          .plain(Type::text, "edge", &Elastic::edge, "as panel.edge")
-          .need(Need::required)
-          .number("ratio", &Elastic::ratio, within(0.1, 1), "", "rest length of the band by that of the edge")
-          .number("stiffness", &Elastic::stiffness, within(0, 1e6), "N", "force per strain of the band")
-          .build();
-  static const Table kHems = TableBuilder<Hem>("A hem along an edge: heavier and stiffer than the cloth.")
-                                 .plain(Type::text, "edge", &Hem::edge, "as panel.edge")
-                                 .need(Need::required)
-                                 .number("mass", &Hem::mass, within(0, 100), "kg/m", "beside that of the cloth")
-                                 .number("bend", &Hem::bend, within(0, 1), "N·m²", "against bending of the edge")
-                                 .build();
-  static const Table kTable = TableBuilder<Pattern>("A sewing pattern.")
-                                  .number("depth", &Pattern::depth, scene::above(0, 10), "m",
-                                          "of the panels before and behind the wearer's coronal plane at the start")
-                                  .number("gap", &Pattern::gap, scene::above(0, 1), "m",
-                                          "of panels that start bent around the wearer from the skin")
-                                  .list(Type::list, "panel", &Pattern::panels, panel_rules())
-                                  .list(Type::list, "seam", &Pattern::seams, kSeams)
-                                  .list(Type::list, "elastic", &Pattern::elastics, kElastics)
-                                  .list(Type::list, "hem", &Pattern::hems, kHems)
-                                  .build();
-  return kTable;
-}
-
 std::vector<Vec2> sampled(const Outline& outline) {
   std::vector<Vec2> points;
   for (const Curve& curve : outline)
@@ -312,6 +263,55 @@ void check(Pattern& pattern, Findings& findings, std::vector<std::string>& in_dr
 
 bool Pattern::wraps() const {
   return std::ranges::any_of(panels, [](const Panel& p) { return p.around != Around::none || p.angle; });
+}
+
+const scene::Table& pattern_rules() {
+  static const Table kSeams =
+      TableBuilder<Seam>(
+          "Two edges sewn together; with buttons, open or closed a closure that holds them "
+          "together while it is closed.")
+          .plain(Type::text, "a", &Seam::a, "an edge, as panel.edge")
+          .need(Need::required)
+          .plain(Type::text, "b", &Seam::b, "the other, of any panel")
+          .need(Need::required)
+          .whole_number("buttons", &Seam::buttons, within(0, 1000),
+                        "that hold the edges together, evenly from end to end; 0: a zip, or a "
+                        "seam that is sewn")
+          .number("open", &Seam::open, within(-1e6, 1e6), "s", "time of the scene from which on the closure is open")
+          .by_default("never")
+          .number("closed", &Seam::closed, within(-1e6, 1e6), "s",
+                  "from which on it is closed; before the first of both times it is the other")
+          .by_default("never")
+          .number("strength", &Seam::strength, scene::above(0, 1e4), "N",
+                  "most that each button, or each point of a zip, pulls with")
+          .number("allowance", &Seam::allowance, within(0, 1), "m",
+                  "width of the cloth turned in along the seam, of both sides together; it "
+                  "weighs and resists stretching like any other")
+          .build();
+  static const Table kElastics =
+      TableBuilder<Elastic>("An elastic band along an edge.")
+          .plain(Type::text, "edge", &Elastic::edge, "as panel.edge")
+          .need(Need::required)
+          .number("ratio", &Elastic::ratio, within(0.1, 1), "", "rest length of the band by that of the edge")
+          .number("stiffness", &Elastic::stiffness, within(0, 1e6), "N", "force per strain of the band")
+          .build();
+  static const Table kHems = TableBuilder<Hem>("A hem along an edge: heavier and stiffer than the cloth.")
+                                 .plain(Type::text, "edge", &Hem::edge, "as panel.edge")
+                                 .need(Need::required)
+                                 .number("mass", &Hem::mass, within(0, 100), "kg/m", "beside that of the cloth")
+                                 .number("bend", &Hem::bend, within(0, 1), "N·m²", "against bending of the edge")
+                                 .build();
+  static const Table kTable = TableBuilder<Pattern>("A sewing pattern.")
+                                  .number("depth", &Pattern::depth, scene::above(0, 10), "m",
+                                          "of the panels before and behind the wearer's coronal plane at the start")
+                                  .number("gap", &Pattern::gap, scene::above(0, 1), "m",
+                                          "of panels that start bent around the wearer from the skin")
+                                  .list(Type::list, "panel", &Pattern::panels, panel_rules())
+                                  .list(Type::list, "seam", &Pattern::seams, kSeams)
+                                  .list(Type::list, "elastic", &Pattern::elastics, kElastics)
+                                  .list(Type::list, "hem", &Pattern::hems, kHems)
+                                  .build();
+  return kTable;
 }
 
 std::pair<std::size_t, std::size_t> Pattern::find(const std::string& name) const {

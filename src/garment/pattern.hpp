@@ -11,6 +11,7 @@
 #include "garment/outline.hpp"
 #include "garment/wearer.hpp"
 #include "mesh/sheet.hpp"
+#include "scene/rule.hpp"
 
 namespace weft::garment {
 
@@ -85,6 +86,9 @@ struct Pattern {
   /// The edge named "panel.edge": indices of panel and edge. The name exists in a checked pattern.
   std::pair<std::size_t, std::size_t> find(const std::string& name) const;
 };
+
+/// The format of pattern files.
+const scene::Table& pattern_rules();
 
 /// A pattern as far as it could be read.
 struct ReadPattern {

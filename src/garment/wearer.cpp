@@ -111,7 +111,7 @@ Tube::Tube(const Wearer& wearer, Around part) {
   double floor = std::numeric_limits<double>::infinity(), crown = -floor;
   for (const Vec3& x : wearer.skin) floor = std::min(floor, x.z()), crown = std::max(crown, x.z());
   const std::string& name = kAroundNames[static_cast<std::size_t>(part)];
-  Axis axis{{Vec3(0, 0, floor), Vec3(0, 0, crown)}, floor};
+  Axis axis{{Vec3(0, 0, floor), Vec3(0, 0, part == Around::head ? crown + kDome : crown)}, floor};
   const bool arm = part == Around::left_arm || part == Around::right_arm;
   const bool leg = part == Around::left_leg || part == Around::right_leg;
   const bool left = part == Around::left_arm || part == Around::left_leg;

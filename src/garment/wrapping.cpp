@@ -20,6 +20,9 @@ namespace {
 constexpr double kLayer = 0.01;
 // Room in a ring whose panels are buttoned together, not sewn [m]: they do not start in one place.
 constexpr double kRoom = 0.03;
+// Nearest that a narrow sleeve starts to the skin; by how much the width of a sleeve gets less where its cap begins
+// [m].
+constexpr double kSkin = 0.006, kCap = 0.01;
 // Points along a seam by which a panel is moved to its neighbour, and rounds of that.
 constexpr int kSeamPoints = 16, kSeamRounds = 6;
 // Distance over which closing a seam bends panels [m]: shorter, and a sleeve is creased at its cap; longer, and it
@@ -53,12 +56,12 @@ class Bending {
     for (std::size_t p = 0; p < positions_.size(); ++p) positions_[p] = pattern_.panels[p].position;
     measure_ease();
     for (bool found = true; found;) {
-      found = false;
-      for (std::size_t p = 0; p < positions_.size(); ++p) {
-        if (positions_[p]) continue;
-        positions_[p] = by_seams(p);
-        found |= positions_[p].has_value();
-      }
+      // All that can be found at once, so that mirror images are treated alike.
+      std::vector<std::optional<Vec2>> next = positions_;
+      for (std::size_t p = 0; p < positions_.size(); ++p)
+        if (!positions_[p]) next[p] = by_seams(p);
+      found = next != positions_;
+      positions_ = std::move(next);
     }
     measure_ease();
     for (std::size_t p = 0; p < positions_.size(); ++p)
@@ -98,9 +101,9 @@ class Bending {
     return pattern_.gap + kLayer * panel.layer + ease;
   }
 
-  // By how much the panels that make a ring are wider than their part, at each height: so far out they close it.
-  void measure_ease() {
-    std::map<Around, std::map<long, double>> widths;
+  // How wide the panels that make a ring around each part are together, by height in steps.
+  std::map<Around, std::map<long, double>> widths() const {
+    std::map<Around, std::map<long, double>> of_part;
     for (std::size_t p = 0; p < positions_.size(); ++p) {
       const Panel& panel = pattern_.panels[p];
       if (!positions_[p] || panel.layer > 0) continue;
@@ -110,7 +113,7 @@ class Bending {
           Vec2 a = laid(panel, *positions_[p], meshes_[p].points[at(t[k])]);
           Vec2 b = laid(panel, *positions_[p], meshes_[p].points[at(t[(k + 1) % 3])]);
           if (a.y() > b.y()) std::swap(a, b);
-          for (auto level = static_cast<long>(std::ceil(a.y() / kStep)); level <= b.y() / kStep && b.y() > a.y();
+          for (auto level = static_cast<long>(std::ceil(a.y() / kStep)); level * kStep <= b.y() && b.y() > a.y();
                ++level) {
             const double x = a.x() + (level * kStep - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
             auto [entry, fresh] = extents.try_emplace(level, x, x);
@@ -118,18 +121,36 @@ class Bending {
             low = std::min(low, x), high = std::max(high, x);
           }
         }
-      for (const auto& [level, extent] : extents) widths[part_of(panel)][level] += extent.second - extent.first;
+      for (const auto& [level, extent] : extents) of_part[part_of(panel)][level] += extent.second - extent.first;
     }
+    return of_part;
+  }
+  // Whether a ring around a part is buttoned.
+  bool has_closure(Around part) const {
+    return std::ranges::any_of(pattern_.seams, [&](const Seam& seam) {
+      return seam.closure() && part_of(pattern_.panels[pattern_.find(seam.a).first]) == part;
+    });
+  }
+
+  // By how much the panels of a ring are wider than their part: so far out they close it. Sleeves that are narrower are
+  // let in toward the skin, since closing them across an arm would draw them through it.
+  void measure_ease() {
     eases_.clear();
-    const double room = std::ranges::any_of(pattern_.seams, &Seam::closure) ? kRoom : 0;
-    for (const auto& [part, of_level] : widths) {
+    for (const auto& [part, of_level] : widths()) {
       auto& [first, of_height] = eases_[part];
       first = kStep * static_cast<double>(of_level.begin()->first);
+      const double room = has_closure(part) ? kRoom : 0;
+      const bool arm = part == Around::left_arm || part == Around::right_arm;
+      const double least = arm ? std::min(kSkin - pattern_.gap, 0.0) : 0;
       std::vector<double> raw;
-      for (const auto& [level, width] : of_level)
-        raw.push_back(
-            std::max(0.0, width + room - tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap)) /
-            (2 * std::numbers::pi));
+      double widest = 0;
+      for (const auto& [level, width] : of_level) {
+        const double girth = tubes_.at(part).girth(kStep * static_cast<double>(level), pattern_.gap);
+        const double ease = std::max(least, (width + room - girth) / (2 * std::numbers::pi));
+        // The cap of a sleeve gets narrower, and does not close.
+        raw.push_back(arm && width < widest - kCap ? raw.back() : ease);
+        widest = std::max(widest, width);
+      }
       // A panel that begins or ends beside others changes the width at once.
       constexpr long kSmooth = 4;
       const auto count = static_cast<long>(raw.size());

@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "scene/rule.hpp"
 #include "scene/scene.hpp"
 
 namespace weft::scene {
@@ -39,8 +40,8 @@ LoadResult load(const std::filesystem::path& file, const std::vector<std::string
 LoadResult load_text(std::string_view text, const std::filesystem::path& name,
                      const std::vector<std::string>& overrides = {});
 
-/// The JSON schema (Draft 4) of the scene format, made from the rule table.
-std::string json_schema();
+/// The JSON schema (Draft 4) of a format, made from its rule table.
+std::string json_schema(const Table& table = scene_rules(), const std::string& title = "Weft scene");
 
 /// The checked scene with every default filled in, as TOML.
 std::string effective_scene(const Scene& scene);

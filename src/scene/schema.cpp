@@ -117,9 +117,9 @@ Json table_schema(const Table& table) {
 
 }  // namespace
 
-std::string json_schema() {
-  Json schema = {{"$schema", "http://json-schema.org/draft-04/schema#"}, {"title", "Weft scene"}};
-  schema.update(table_schema(scene_rules()));
+std::string json_schema(const Table& table, const std::string& title) {
+  Json schema = {{"$schema", "http://json-schema.org/draft-04/schema#"}, {"title", title}};
+  schema.update(table_schema(table));
   return schema.dump(2) + "\n";
 }
 

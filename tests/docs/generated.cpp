@@ -197,6 +197,7 @@ std::string print(const fs::path& root, const fs::path& file, const std::string&
   if (name == "fabrics") return fabrics();
   if (name == "modules") return modules(root);
   if (name == "scene keys") return scene_keys();
+  if (name == "pattern keys") return pattern_keys();
   const std::string measured = "measured ";
   if (name.starts_with(measured)) return side_by_side(root / file.parent_path(), name.substr(measured.size()));
   throw std::runtime_error(file.string() + ": nothing prints '" + name + "'");

@@ -5,6 +5,7 @@
 #include <map>
 #include <regex>
 
+#include "garment/pattern.hpp"
 #include "scene/rule.hpp"
 
 namespace weft::docs {
@@ -88,6 +89,12 @@ class Printer {
 std::string scene_keys() {
   Printer printer;
   printer.print(scene::scene_rules(), "", "The scene itself");
+  return printer.text;
+}
+
+std::string pattern_keys() {
+  Printer printer;
+  printer.print(garment::pattern_rules(), "", "The pattern itself");
   return printer.text;
 }
 

@@ -12,6 +12,7 @@
 
 #include "core/error.hpp"
 #include "core/temporary_file.hpp"
+#include "environment/wearers.hpp"
 #include "garment/garment.hpp"
 #include "garment/triangulation.hpp"
 #include "support/mesh_measures.hpp"
@@ -111,7 +112,12 @@ int main(int count, char** arguments) try {
   }
   const double spacing = std::stod(arguments[2]);
   const garment::Pattern pattern = garment::load_pattern(arguments[1], arguments[1]);
-  const garment::Garment garment = garment::sew(pattern, spacing, arguments[1]);
+  // Where it starts does not show: any wearer does.
+  scene::Scene scene;
+  scene.characters.emplace_back().source = scene::Mannequin{};
+  environment::Wearers wearers(scene);
+  const garment::Wearer* wearer = pattern.wraps() ? &wearers.of(scene::Cloth{}, arguments[1]) : nullptr;
+  const garment::Garment garment = garment::sew(pattern, spacing, arguments[1], wearer);
   write_file(arguments[3], picture(pattern, garment));
   fmt::print("{}: {}\n", arguments[1], quality(garment, spacing));
   return 0;
