@@ -18,6 +18,7 @@
 #include "character/retarget.hpp"
 #include "core/error.hpp"
 #include "core/nearest.hpp"
+#include "environment/plausibility.hpp"
 #include "scene/sequence_files.hpp"
 
 namespace weft::environment {
@@ -34,12 +35,6 @@ constexpr double kGap = 1e-3;
 
 /// A trunk that points up, in the mean over a motion, by more than this stands [1].
 constexpr double kStands = 0.7;
-
-/// Bodies of people and their toys are this tall [m]; a file in centimetres is a hundred times taller.
-constexpr double kLeastSize = 0.3, kMostSize = 3;
-
-/// Nothing with legs goes faster [m/s]; sprinters reach 12.
-constexpr double kMostSpeed = 20;
 
 /// What there is to be sampled.
 struct Body {
@@ -364,38 +359,11 @@ void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body
   if (cast.settings.scale) return;
   std::vector<Vec3> x(body.character.mesh.positions.size());
   character::skin(body.character, character::rest_pose(body.character), x);
-  const auto [low, high] = std::ranges::minmax(x, {}, [&](const Vec3& v) { return cast.up().dot(v); });
-  const double height = cast.up().dot(high - low);
-  if (height < kLeastSize || height > kMostSize)
-    body.warnings.push_back(
-        fmt::format("{}: {} is {:.3g} m tall, where {:g} to {:g} m are expected; scale says how many "
-                    "metres a unit of the file has",
-                    cast.where, source.path.string(), height, kLeastSize, kMostSize));
+  if (const auto doubt = doubt_of_height(x, cast.up()))
+    body.warnings.push_back(fmt::format("{}: {} {}", cast.where, source.path.string(), *doubt));
 }
 
 void check_size(const Cast&, const scene::Mannequin&, Body&) {}
-
-/// Warns of a body that flies.
-void check_speed(const Cast& cast, const KeyTimes& times, const KeyFrames& keys, std::size_t vertices,
-                 std::vector<std::string>& warnings) {
-  std::vector<Vec3> x(vertices);
-  const auto middle = [&](std::size_t k) -> Vec3 {
-    keys.at(static_cast<double>(times.first + static_cast<long>(k)) / times.rate, x);
-    Vec3 sum = Vec3::Zero();
-    for (const Vec3& v : x) sum += v;
-    return sum / static_cast<double>(x.size());
-  };
-  double fastest = 0;
-  Vec3 before = middle(0);
-  for (std::size_t k = 1; k < times.count; ++k) {
-    const Vec3 now = middle(k);
-    fastest = std::max(fastest, (now - before).norm() * times.rate);
-    before = now;
-  }
-  if (fastest > kMostSpeed)
-    warnings.push_back(fmt::format("{}: it moves at up to {:.3g} m/s; bodies with legs reach {:g} m/s", cast.where,
-                                   fastest, kMostSpeed));
-}
 
 /// The body and the clip must outlive it.
 template <class Source>
@@ -406,6 +374,7 @@ character::Performance performance_of(const Cast& cast, const Source& source, co
           {cast.timing(), source.loop, source.crossfade, source.stance == scene::Stance::rest && body.clip},
           cast.up()};
 }
+
 /// When a run begins [s].
 double begin_of(const scene::Scene& scene) {
   return -scene.preroll_frames() / scene.time.fps;
@@ -467,7 +436,9 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   KeyFrames keys = sample(cast, times, body.character.mesh.positions.size(), [&](double t, std::vector<Vec3>& x) {
     character::skin(body.character, performance.at(t), x);
   });
-  check_speed(cast, times, keys, body.character.mesh.positions.size(), body.warnings);
+  if (const auto doubt = doubt_of_speed(keys, static_cast<double>(times.first) / times.rate, times.rate, times.count,
+                                        body.character.mesh.positions.size()))
+    body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
   mesh::Mesh mesh = std::move(body.character.mesh);
   mesh.positions.resize(vertices);
   keys.at(0, mesh.positions);

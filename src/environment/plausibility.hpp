@@ -1,0 +1,20 @@
+// What bodies of people and animals do not do: sizes and speeds that must come of another unit or rate.
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+
+#include "environment/key_frames.hpp"
+
+namespace weft::environment {
+
+/// What is wrong with a body that is as high along `up` as these places [m].
+std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& up);
+
+/// What is wrong with a body that moves so: `count` key frames of `vertices` places from `begin` [s] on, `rate` a
+/// second.
+std::optional<std::string> doubt_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
+                                          std::size_t vertices);
+
+}  // namespace weft::environment
