@@ -84,6 +84,10 @@ class Engine {
     return list_pinches(pinched_, bodies_, candidates_.hierarchies(), x);
   }
 
+  /// What is exempted, and adding to it between two steps: for an engine that goes on where another has come to.
+  const PinchedPairs& exempted() const { return pinched_; }
+  void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
+
   /// Pairs of features within the reach, 1.5 contact ranges, at the start of the last step.
   int proximities() const { return static_cast<int>(proximities_.size()); }
   /// Their smallest distance [m]; infinite if there are none.

@@ -358,7 +358,7 @@ Environment::Environment(const scene::Scene& scene) {
   for (const scene::Cloth& cloth : scene.cloths) cloths.push_back(make_cloth(scene, cloth, wearers));
   for (const scene::Obstacle& obstacle : scene.obstacles) {
     bodies.push_back(make_obstacle(scene, obstacle));
-    movers_.emplace_back(Track(obstacle.motion, obstacle.pose));
+    movers_.push_back(std::make_shared<const Mover>(Track(obstacle.motion, obstacle.pose)));
   }
   for (const scene::Character& character : scene.characters) {
     std::vector<BodyObject::Follower> followers;
@@ -368,12 +368,26 @@ Environment::Environment(const scene::Scene& scene) {
     const bool has_bones = scene::acting_of(character) != nullptr;
     for (BodyObject::Follower& follower : followers) follower.first_vertex += actor.mesh.positions.size();
     if (has_bones) bodies.back().followers = std::move(followers);
-    movers_.emplace_back(std::move(actor.keys));
+    movers_.push_back(std::make_shared<const Mover>(std::move(actor.keys)));
   }
 }
 
+Environment Environment::with_cloths(std::span<const std::size_t> numbers) const {
+  Environment part = *this;
+  part.cloths.clear();
+  for (const std::size_t number : numbers) part.cloths.push_back(cloths[number]);
+  for (BodyObject& body : part.bodies) {
+    std::erase_if(body.followers, [&](const BodyObject::Follower& follower) {
+      return std::ranges::find(numbers, follower.cloth) == numbers.end();
+    });
+    for (BodyObject::Follower& follower : body.followers)
+      follower.cloth = static_cast<std::size_t>(std::ranges::find(numbers, follower.cloth) - numbers.begin());
+  }
+  return part;
+}
+
 void Environment::place(std::size_t body, double t, std::span<Vec3> positions) const {
-  std::visit(Place{bodies[body].mesh.positions, bodies[body].moving ? t : 0, positions}, movers_[body]);
+  std::visit(Place{bodies[body].mesh.positions, bodies[body].moving ? t : 0, positions}, *movers_[body]);
 }
 
 }  // namespace weft::environment

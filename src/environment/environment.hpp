@@ -2,6 +2,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <span>
 #include <string>
 #include <variant>
@@ -31,6 +32,7 @@ struct ClothObject {
   double spacing = 0;
   std::vector<Vec3> start;  ///< positions of the particles [m]
   Vec3 velocity{0, 0, 0};   ///< of all of them [m/s]
+  double put_on = 0;        ///< time after the start of the simulation, its preroll included, at which it comes [s]
 };
 
 /// A body that moves cloth and is not moved by it: an obstacle, still or moved as a rigid body, or a character.
@@ -77,16 +79,19 @@ class Environment {
   /// Makes meshes and motions. Throws Error(asset_unreadable, scene_invalid) naming file and scene line.
   explicit Environment(const scene::Scene& scene);
 
+  /// The same with these cloths alone, by ascending number; motions are shared.
+  Environment with_cloths(std::span<const std::size_t> numbers) const;
+
   /// Writes where the vertices of a body are at time t [s], as many as its mesh has. Linear in them, in parallel;
   /// allocates nothing. A body that does not move is where it is at time 0.
   void place(std::size_t body, double t, std::span<Vec3> positions) const;
 
   /// Pose of an obstacle at any time [s], and how it changes.
-  PoseSample pose(std::size_t obstacle, double t) const { return std::get<Track>(movers_[obstacle]).at(t); }
+  PoseSample pose(std::size_t obstacle, double t) const { return std::get<Track>(*movers_[obstacle]).at(t); }
 
   /// The same of one vertex of a character, or of what follows it.
   VertexMotion vertex(std::size_t character, std::size_t vertex, double t) const {
-    return std::get<KeyFrames>(movers_[character]).at(t, vertex);
+    return std::get<KeyFrames>(*movers_[character]).at(t, vertex);
   }
 
   std::vector<ClothObject> cloths;
@@ -94,7 +99,7 @@ class Environment {
 
  private:
   using Mover = std::variant<Track, KeyFrames>;
-  std::vector<Mover> movers_;  ///< one per body
+  std::vector<std::shared_ptr<const Mover>> movers_;  ///< one per body
 };
 
 }  // namespace weft::environment

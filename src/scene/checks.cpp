@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/grading.hpp"
+#include "scene/layers.hpp"
 #include "scene/reader.hpp"
 #include "scene/sequence_files.hpp"
 
@@ -103,6 +104,24 @@ void check_friction_pairs(const Scene& scene, Findings& findings) {
     if (pair.static_friction && *pair.static_friction < pair.friction)
       findings.report(path + ".static_friction",
                       fmt::format("expected >= {}, that of sliding, got {}", pair.friction, *pair.static_friction));
+  }
+}
+
+/// What a cloth is worn over: cloths of the scene, and not around in a circle.
+void check_layers(const Scene& scene, Findings& findings) {
+  const std::vector<std::string> names = names_of(scene.cloths);
+  for (std::size_t i = 0; i < scene.cloths.size(); ++i)
+    for (const std::string& name : scene.cloths[i].over)
+      check_reference(name, names, "a cloth", findings.entry("cloth", i) + ".over", findings);
+  for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
+    const Cloth& cloth = scene.cloths[i];
+    const auto circle = std::ranges::find_if(
+        cloth.over, [&](const std::string& name) { return name == cloth.name || worn_over(scene, name, cloth.name); });
+    if (circle == cloth.over.end()) continue;
+    findings.report(findings.entry("cloth", i) + ".over",
+                    fmt::format("expected cloth that is put on before this one, got {}{}", in_quotes(*circle),
+                                *circle == cloth.name ? ", which it is itself" : ", which is worn over this one"));
+    return;
   }
 }
 
@@ -207,6 +226,7 @@ void check(const Scene& scene, Findings& findings) {
                     fmt::format("expected at most {} frames (duration * fps), got {:.0f}", kMaxFrames, frames));
   }
   check_cloths(scene, findings);
+  check_layers(scene, findings);
   check_friction_pairs(scene, findings);
   check_obstacles(scene, findings);
   check_characters(scene, findings);

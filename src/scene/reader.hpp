@@ -40,6 +40,7 @@ class Reader {
 
   Value read_value(const toml::node& node, const Rule& rule, const std::string& path);
   Value read_text(const toml::node& node, const Rule& rule, const std::string& path);
+  Value read_texts(const toml::node& node, const Rule& rule, const std::string& path);
   Value read_numbers(const toml::node& node, const Rule& rule, const std::string& path);
   Value read_color(const toml::node& node, const Rule& rule, const std::string& path);
   bool read_number(const toml::node& node, const Rule& rule, const std::string& path, double& number);

@@ -19,6 +19,8 @@ Value Reader::read_value(const toml::node& node, const Rule& rule, const std::st
       return read_color(node, rule, path);
     case Type::number:
       return read_numbers(node, rule, path);
+    case Type::texts:
+      return read_texts(node, rule, path);
     default:
       return read_text(node, rule, path);
   }
@@ -40,6 +42,22 @@ Value Reader::read_text(const toml::node& node, const Rule& rule, const std::str
     return refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), in_quotes(text)));
   }
   return text;
+}
+
+Value Reader::read_texts(const toml::node& node, const Rule& rule, const std::string& path) {
+  std::vector<std::string> texts;
+  if (const auto* string = node.as_string()) texts.push_back(string->get());
+  const auto* array = node.as_array();
+  for (std::size_t i = 0; array != nullptr && i < array->size(); ++i) {
+    const auto* string = array->get(i)->as_string();
+    if (string == nullptr)
+      return refuse(*array->get(i), path,
+                    fmt::format("expected {}, got {}", expectation(rule), describe_node(*array->get(i))));
+    texts.push_back(string->get());
+  }
+  if (texts.empty())
+    return refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+  return texts;
 }
 
 bool Reader::read_number(const toml::node& node, const Rule& rule, const std::string& path, double& number) {

@@ -64,6 +64,8 @@ std::string expectation(const Rule& rule) {
       return "true or false";
     case Type::text:
       return "a text";
+    case Type::texts:
+      return "a text or an array of texts";
     case Type::name:
       return "a name of letters, digits, _ and -, starting with a letter, at most 64 long";
     case Type::file:

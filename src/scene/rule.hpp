@@ -10,12 +10,14 @@
 
 namespace weft::scene {
 
-/// A value between TOML and a struct: absent, a flag, a text, or numbers (one, or as many as the rule has components).
-using Value = std::variant<std::monostate, bool, std::string, std::vector<double>>;
+/// A value between TOML and a struct: absent, a flag, a text, numbers (one, or as many as the rule has components), or
+/// texts.
+using Value = std::variant<std::monostate, bool, std::string, std::vector<double>, std::vector<std::string>>;
 
 enum class Type {
   boolean,
   text,
+  texts,   ///< a text, or an array of texts
   name,    ///< of a list entry: becomes part of key paths and file names
   file,    ///< path of an existing file, relative to the scene's folder
   choice,  ///< one of `choices`

@@ -165,6 +165,10 @@ const Table& cloth_rules() {
           .choice("start", &Cloth::start, {"as_given", "untangle"},
                   "where it touches or crosses itself, other cloth or an obstacle, which a run cannot begin with: "
                   "refused as it is given, or taken apart before the first step")
+          .plain(Type::texts, "over", &Cloth::over,
+                 "names of cloths that it is worn over: it is put on when they are, for which the preroll is shared, "
+                 "and pushed outside of them where it does not start so")
+          .by_default("none")
           .vector("start_scale", &Cloth::start_scale, kWeftWarp, above(0, 1000), "",
                   "lengths along weft and warp at the start, times those at rest")
           .single_fills_all()

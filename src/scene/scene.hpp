@@ -194,6 +194,7 @@ struct Cloth {
   Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
   Vec2 start_scale{1, 1};    ///< lengths along weft and warp at the start, times those at rest
   ClothStart start = ClothStart::as_given;  ///< where it touches or crosses something
+  std::vector<std::string> over;            ///< cloths that are put on before it, and stay inside of it
   double start_noise = 0;                   ///< most that a particle is off its place at the start, along each axis [m]
   Material material;
   Look look;

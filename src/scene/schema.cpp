@@ -36,6 +36,8 @@ Json type_schema(const Rule& rule) {
     case Type::text:
     case Type::file:
       return {{"type", "string"}};
+    case Type::texts:
+      return {{"anyOf", {{{"type", "string"}}, {{"type", "array"}, {"items", {{"type", "string"}}}}}}};
     case Type::name:
       return {{"type", "string"}, {"pattern", "^[A-Za-z][A-Za-z0-9_-]{0,63}$"}};
     case Type::choice:

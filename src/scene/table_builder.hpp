@@ -26,6 +26,9 @@ inline Value to_value(bool flag) {
 inline Value to_value(const std::string& text) {
   return text;
 }
+inline Value to_value(const std::vector<std::string>& texts) {
+  return texts.empty() ? Value{} : texts;
+}
 inline Value to_value(const std::filesystem::path& path) {
   return path.string();
 }
@@ -58,6 +61,9 @@ inline void assign(bool& target, const Value& value) {
 }
 inline void assign(std::string& target, const Value& value) {
   target = std::get<std::string>(value);
+}
+inline void assign(std::vector<std::string>& target, const Value& value) {
+  target = std::get<std::vector<std::string>>(value);
 }
 inline void assign(std::filesystem::path& target, const Value& value) {
   target = std::get<std::string>(value);
@@ -121,7 +127,7 @@ class TableBuilder {
     rule.set = [set](void* s, const Value& value) { set(*static_cast<S*>(s), numbers_of(value)); };
     return *this;
   }
-  /// A flag, text, name or file.
+  /// A flag, text, list of texts, name or file.
   template <class Member>
   TableBuilder& plain(Type type, std::string key, Member member, std::string documentation) {
     bind(std::move(key), type, member, std::move(documentation));

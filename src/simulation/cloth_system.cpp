@@ -134,7 +134,7 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     if (cloth.sheet.triangles.empty())
       add_quad_forces(c, cloth.grid, material, scene.physics);
     else
-      add_triangle_forces(c, cloth.sheet, scene.cloths[c], scene.physics);
+      add_triangle_forces(c, cloth.sheet, scene.cloths[c], cloth.put_on, scene.physics);
     spacing_ = std::min(spacing_, cloth.spacing);
     first += static_cast<Index>(masses.size());
   }
@@ -187,7 +187,7 @@ void ClothSystem::add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLi
 }
 
 void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of,
-                                      const scene::Physics& physics) {
+                                      double put_on, const scene::Physics& physics) {
   const scene::Material& material = of.material;
   const Index first = first_[cloth];
   const bool crossed = of.shape == scene::ClothShape::crossed_triangles;
@@ -197,7 +197,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
   else
     membrane = std::make_unique<forces::TriangleMembrane>(sheet, first, stretch_of(material), shear_of(material));
   membranes_.push_back(membrane.get());
-  if (sheet.sewn) sewing_.push_back({cloth, of.sewing, -1, membrane.get(), nullptr, nullptr, nullptr});
+  if (sheet.sewn) sewing_.push_back({cloth, put_on, of.sewing, -1, membrane.get(), nullptr, nullptr, nullptr});
   if (locks(material)) {
     auto limit = std::make_unique<forces::StretchLimit>(*membrane, largest_extension(material), largest_sine(material));
     if (sheet.sewn) sewing_.back().limit = limit.get();
@@ -269,7 +269,7 @@ void ClothSystem::Sewing::use_share(double new_share) {
 bool ClothSystem::sew(double t) {
   bool changed = false;
   for (Sewing& sewing : sewing_) {
-    const double share = sewing.duration > 0 ? ease(t / sewing.duration) : 1;
+    const double share = sewing.duration > 0 ? ease((t - sewing.begin) / sewing.duration) : 1;
     if (sewing.ties != nullptr) {
       sewing.time = t;
       changed |= sewing.ties->use(begin_ + t, share);

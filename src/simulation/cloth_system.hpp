@@ -62,8 +62,8 @@ class ClothSystem {
   /// An empty system with the pattern of this one.
   solver::LinearSystem make_linear_system() const;
 
-  /// Gives cloths that are being sewn the rest shape that they have at time t [s]; whether one changed, and with it the
-  /// forces.
+  /// Gives cloths that are being sewn the rest shape that they have at time t of the simulation [s]; whether one
+  /// changed, and with it the forces.
   bool sew(double t);
 
   /// Which particles pins hold from now on; whether that is a change, and with it the stiffness at the borders of pins.
@@ -92,7 +92,7 @@ class ClothSystem {
  private:
   void add_quad_forces(std::size_t cloth, const mesh::Grid& grid, const scene::Material& material,
                        const scene::Physics& physics);
-  void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of,
+  void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of, double put_on,
                            const scene::Physics& physics);
   void add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit);
   solver::BlockMatrix lay_out_matrix() const;
@@ -108,8 +108,8 @@ class ClothSystem {
   /// A cloth while it is sewn.
   struct Sewing {
     std::size_t cloth;
-    double duration;    // [s]
-    double share = -1;  // of the way to the pattern
+    double begin, duration;  // [s]
+    double share = -1;       // of the way to the pattern
     forces::TriangleMembrane* membrane;
     forces::Bands* bands;         // nullptr where it has none
     forces::StretchLimit* limit;  // likewise

@@ -295,6 +295,20 @@ void CollisionStage::note_pinches(const Moment& start) {
   }
 }
 
+void CollisionStage::take_over(const CollisionStage& before, std::span<const std::size_t> cloths) {
+  const collision::Bodies &old_bodies = before.engine_.bodies(), &bodies = engine_.bodies();
+  const auto here = [&](std::size_t body) {
+    return body < cloths.size() ? cloths[body] : body - cloths.size() + environment_.cloths.size();
+  };
+  for (const auto& [key, origin] : before.engine_.exempted().origins()) {
+    const std::size_t cloth = old_bodies.body_of(key.cloth[0]);
+    collision::PinchedPairs::Key moved{key.cloth, here(key.body)};
+    for (Index& v : moved.cloth)
+      v += bodies.surfaces()[here(cloth)].first_vertex - old_bodies.surfaces()[cloth].first_vertex;
+    engine_.exempt(moved, origin);
+  }
+}
+
 CollisionStage::Pinches CollisionStage::take_pinches(const Moment& last_start) {
   note_pinches(last_start);
   pinching_before_ = std::move(pinching_);

@@ -24,7 +24,9 @@ struct Moment : integrator::State {
   std::span<const Vec3> particles() const { return {x.data(), v.size()}; }
 };
 
-/// Whether a cloth of the scene may be moved at the start for what it touches or crosses.
+/// Whether a cloth may be moved at the start for what it touches or crosses.
+bool untangles(const scene::Cloth& cloth);
+/// Whether one of the scene may.
 bool untangles(const scene::Scene& scene);
 
 class CollisionStage {
@@ -41,8 +43,13 @@ class CollisionStage {
   std::vector<MeetingPlace> find_meetings(const Moment& start);
 
   /// Takes apart what touches or crosses at the start, as far as the scene has cloth that may be moved for it; `held`
-  /// is not. Throws Error(scene_invalid) where there is no way, with what is where.
-  void untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held, Moment& start);
+  /// is not, nor is cloth that was `dressed` before (by number), outside of which others get if one of them is worn
+  /// over it. Throws Error(scene_invalid) where there is no way, with what is where.
+  void untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
+                std::span<const std::size_t> dressed, Moment& start);
+
+  /// Goes on with what another has pinched, whose cloths are these here, by number.
+  void take_over(const CollisionStage& before, std::span<const std::size_t> cloths);
 
   /// Before the solve: bodies go from where they are at t in `now` to where they are at t + h in `next`; contacts are
   /// found for the particles as they are now and would be, in `next`, with unchanged velocity.

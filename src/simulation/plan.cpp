@@ -5,6 +5,7 @@
 #include <array>
 
 #include "environment/acting.hpp"
+#include "scene/layers.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
 #include "simulation/pin_doubts.hpp"
@@ -112,9 +113,13 @@ void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
       "preparation: sewing", scene, [](const Cloth& c) { return c.shape == scene::ClothShape::pattern; },
       "no cloth is sewn from a pattern"));
   items.push_back(of_cloths(
-      "preparation: untangling", scene, [](const Cloth& c) { return c.start == scene::ClothStart::untangle; },
-      "every cloth starts as given"));
+      "preparation: untangling", scene, [](const Cloth& c) { return untangles(c); }, "every cloth starts as given"));
   const int frames = scene.preroll_frames();
+  const std::vector<scene::Layer> layers = scene::list_layers(scene);
+  std::string begins;
+  for (const scene::Layer& layer : layers) begins += fmt::format("{}{}", begins.empty() ? "" : ", ", layer.first_frame);
+  items.push_back(when("preparation: layers", layers.size() > 1,
+                       fmt::format("{}, put on at frames {}", layers.size(), begins), "no cloth is worn over another"));
   items.push_back(when("preparation: preroll", frames > 0,
                        fmt::format("{} frame{} before the first", frames, frames == 1 ? "" : "s"),
                        "time.preroll is 0"));

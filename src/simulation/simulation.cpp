@@ -12,6 +12,7 @@
 #include "core/log.hpp"
 #include "core/timer.hpp"
 #include "environment/environment.hpp"
+#include "scene/layers.hpp"
 #include "simulation/energy_bound.hpp"
 #include "simulation/meetings.hpp"
 #include "simulation/pin_doubts.hpp"
@@ -47,24 +48,51 @@ void check_start(const scene::Scene& scene, StepLoop& steps) {
                     "a cloth start = \"untangle\"");
 }
 
+// What is simulated of a scene while other cloths are not put on.
+struct DressedPart {
+  DressedPart(const scene::Scene& of, const environment::Environment& whole, std::span<const std::size_t> cloths)
+      : scene(of), environment(whole.with_cloths(cloths)) {
+    scene.cloths.clear();
+    for (const std::size_t c : cloths) scene.cloths.push_back(of.cloths[c]);
+  }
+  scene::Scene scene;
+  environment::Environment environment;
+};
+
+// From when on cloths are there.
+void note_layers(const scene::Scene& scene, const std::vector<scene::Layer>& layers,
+                 environment::Environment& environment) {
+  for (const scene::Layer& layer : layers)
+    for (const std::size_t c : layer.cloths)
+      environment.cloths[c].put_on = (layer.first_frame + scene.preroll_frames()) / scene.time.fps;
+}
+
 }  // namespace
 
 struct Simulation::Impl {
   explicit Impl(const scene::Scene& s);
 
+  void begin_layer(std::size_t number);
+  void put_on_next();
+  void make_start();
+  bool all_dressed() const { return layer + 1 == layers.size(); }
   FrameReport advance();
   double time() const { return frame / scene.time.fps; }
   void measure_energies(FrameReport& report) const;
   void measure(FrameReport& report) const;
   void report_obstructions(FrameReport& report);
   frame::SnapshotPtr make_snapshot() const;
+  std::vector<Vec3> particles_of_all() const;
   template <class Archive>
   void serialize(Archive& archive);
 
   scene::Scene scene;
   environment::Environment environment;
-  int frame;  // negative in the preroll
-  StepLoop steps;
+  std::vector<scene::Layer> layers;
+  std::size_t layer = 0;              // the last one that is put on
+  std::unique_ptr<DressedPart> part;  // none where all are
+  int frame;                          // negative in the preroll
+  std::unique_ptr<StepLoop> steps;
   SnapshotMaker snapshots;
   frame::SnapshotPtr current;
   FrameReport start_report;  // of frame 0
@@ -74,34 +102,73 @@ struct Simulation::Impl {
 Simulation::Impl::Impl(const scene::Scene& s)
     : scene(s),
       environment(scene),
+      layers(scene::list_layers(scene)),
       frame(-scene.preroll_frames()),
-      steps(scene, environment, time()),
       snapshots(scene, environment) {
-  if (untangles(scene)) steps.untangle();
-  check_start(scene, steps);
+  note_layers(scene, layers, environment);
+  // What is put on later stands in the way of nothing before, but a body that goes through it is told of now.
+  for (std::size_t later = 1; later < layers.size(); ++later) {
+    DressedPart alone(scene, environment, layers[later].cloths);
+    StepLoop trial(alone.scene, alone.environment, time());
+    trial.untangle();
+    check_start(alone.scene, trial);
+  }
+  begin_layer(0);
+  make_start();
+  put_on_next();
   current = make_snapshot();
   measure_energies(start_report);
-  start_report.max_strain = steps.cloth().max_strain(steps.progress().now.particles());
+  start_report.max_strain = steps->cloth().max_strain(steps->progress().now.particles());
   measure(start_report);
   energy_bound.emplace(scene, start_report);
   for (const std::string& text : find_jumps(scene, environment)) log::warn(text);
 }
 
+// Makes the steps of all cloths up to this layer, as they start.
+void Simulation::Impl::begin_layer(std::size_t number) {
+  layer = number;
+  part = all_dressed() ? nullptr : std::make_unique<DressedPart>(scene, environment, layers[layer].dressed);
+  steps = std::make_unique<StepLoop>(part ? part->scene : scene, part ? part->environment : environment, time());
+}
+
+// Puts on the cloths whose time has come, outside of those that are dressed.
+void Simulation::Impl::put_on_next() {
+  while (!all_dressed() && layers[layer + 1].first_frame <= frame) {
+    const std::unique_ptr<DressedPart> inner_part = std::move(part);  // which the steps below view
+    const std::unique_ptr<StepLoop> inner = std::move(steps);
+    begin_layer(layer + 1);
+    const std::vector<std::size_t>&now = layers[layer].dressed, &before = layers[layer - 1].dressed;
+    std::vector<std::size_t> numbers;  // of what is dressed, among all that is now
+    for (const std::size_t c : before)
+      numbers.push_back(static_cast<std::size_t>(std::ranges::find(now, c) - now.begin()));
+    steps->take_over(*inner, numbers);
+    make_start();
+  }
+}
+
+// Throws Error(scene_invalid) where the cloths cannot start so.
+void Simulation::Impl::make_start() {
+  const scene::Scene& dressed = part ? part->scene : scene;
+  if (untangles(dressed)) steps->untangle();
+  check_start(dressed, *steps);
+}
+
 FrameReport Simulation::Impl::advance() {
+  if (!all_dressed()) put_on_next();
   FrameReport report;
   report.frame = frame + 1;
   // Frame k is at k / fps exactly, whatever the steps between.
   report.time = report.frame / scene.time.fps;
   {
     const Stopwatch watch(report.simulate);
-    StepLoop::Checkpoint start = steps.checkpoint();
+    StepLoop::Checkpoint start = steps->checkpoint();
     try {
-      steps.advance(time(), report.time, report);
+      steps->advance(time(), report.time, report);
       measure_energies(report);
       if (std::optional<std::string> warning = energy_bound->check(report.frame, report))
         report.warnings.push_back(*std::move(warning));
     } catch (const Error&) {
-      steps.return_to(std::move(start));
+      steps->return_to(std::move(start));
       throw;
     }
   }
@@ -113,17 +180,17 @@ FrameReport Simulation::Impl::advance() {
 }
 
 void Simulation::Impl::measure_energies(FrameReport& report) const {
-  const Moment& now = steps.progress().now;
-  report.kinetic_energy = steps.cloth().kinetic_energy(now.v);
-  report.potential_energy = steps.cloth().potential_energy(now.particles(), scene.physics.gravity);
-  report.elastic_energy = steps.cloth().elastic_energy(now.particles());
+  const Moment& now = steps->progress().now;
+  report.kinetic_energy = steps->cloth().kinetic_energy(now.v);
+  report.potential_energy = steps->cloth().potential_energy(now.particles(), scene.physics.gravity);
+  report.elastic_energy = steps->cloth().elastic_energy(now.particles());
 }
 
 void Simulation::Impl::measure(FrameReport& report) const {
-  const Moment& now = steps.progress().now;
-  report.constraints = static_cast<int>(steps.held());
+  const Moment& now = steps->progress().now;
+  report.constraints = static_cast<int>(steps->held());
   report.min_distance = std::numeric_limits<double>::infinity();
-  const CollisionStage* collisions = steps.collisions();
+  const CollisionStage* collisions = steps->collisions();
   if (collisions == nullptr) return;
   report.proximities = collisions->proximities();
   report.constraints += collisions->response().active(now.x);
@@ -131,49 +198,77 @@ void Simulation::Impl::measure(FrameReport& report) const {
 }
 
 void Simulation::Impl::report_obstructions(FrameReport& report) {
-  const CollisionStage::Pinches pinches = steps.take_pinches();
+  const CollisionStage::Pinches pinches = steps->take_pinches();
   report.pinched_pairs = pinches.pairs;
   for (const std::string& text : pinches.begun) report.warnings.push_back(fmt::format("frame {}: {}", frame, text));
-  const YieldingPins::Lags lags = steps.take_lags();
+  const YieldingPins::Lags lags = steps->take_lags();
   report.lagging_particles = lags.particles;
   for (const std::string& text : lags.turns) report.warnings.push_back(fmt::format("frame {}: {}", frame, text));
 }
 
 frame::SnapshotPtr Simulation::Impl::make_snapshot() const {
-  const Moment& now = steps.progress().now;
+  const Moment& now = steps->progress().now;
   std::vector<std::vector<float>> heat;
+  if (!all_dressed()) return snapshots.make(frame, time(), environment, particles_of_all(), {});
   for (std::size_t c = 0; c < scene.cloths.size() && scene.render.heat != scene::HeatQuantity::none; ++c) {
     if (scene.render.heat == scene::HeatQuantity::strain) {
-      heat.push_back(steps.cloth().strain_per_particle(c, now.particles()));
+      heat.push_back(steps->cloth().strain_per_particle(c, now.particles()));
       continue;
     }
     heat.emplace_back();
-    for (Index i = steps.cloth().first_particle(c); i < steps.cloth().first_particle(c + 1); ++i)
+    for (Index i = steps->cloth().first_particle(c); i < steps->cloth().first_particle(c + 1); ++i)
       heat.back().push_back(static_cast<float>(now.v[i].norm()));
   }
   return snapshots.make(frame, time(), environment, now.particles(), std::move(heat));
 }
 
+// [m]; what is not put on is where it starts.
+std::vector<Vec3> Simulation::Impl::particles_of_all() const {
+  std::vector<Vec3> all;
+  const std::vector<std::size_t>& dressed = layers[layer].dressed;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const std::vector<Vec3>& start = environment.cloths[c].start;
+    const auto found = std::ranges::find(dressed, c);
+    const auto number = static_cast<std::size_t>(found - dressed.begin());
+    const Vec3* from =
+        found == dressed.end() ? start.data() : steps->progress().now.x.data() + steps->cloth().first_particle(number);
+    all.insert(all.end(), from, from + start.size());
+  }
+  return all;
+}
+
 template <class Archive>
 void Simulation::Impl::serialize(Archive& archive) {
   archive.value(frame);
-  if constexpr (Archive::kReads)
+  std::uint64_t last = layer;
+  archive.value(last);
+  if constexpr (Archive::kReads) {
     require(frame >= -scene.preroll_frames() && frame < kMostFrames, "a frame of the scene");
-  steps.serialize(archive);
+    require(last < layers.size(), "a layer of the scene");
+    if (last != layer) begin_layer(last);
+  }
+  steps->serialize(archive);
   energy_bound->serialize(archive);
   simulation::serialize(archive, start_report);
-  steps.serialize_contacts(archive, time());
+  steps->serialize_contacts(archive, time());
 }
 
 StartView view_start(const scene::Scene& scene) {
   const environment::Environment environment(scene);
   const int frame = -scene.preroll_frames();
   const double time = frame / scene.time.fps;
-  StepLoop steps(scene, environment, time);
   StartView view;
-  view.snapshot =
-      SnapshotMaker(scene, environment).make(frame, time, environment, steps.progress().now.particles(), {});
-  view.places = steps.find_meetings();
+  std::vector<Vec3> particles;
+  for (const environment::ClothObject& cloth : environment.cloths)
+    particles.insert(particles.end(), cloth.start.begin(), cloth.start.end());
+  view.snapshot = SnapshotMaker(scene, environment).make(frame, time, environment, particles, {});
+  // Layers are put on one after the other.
+  for (const scene::Layer& layer : scene::list_layers(scene)) {
+    const DressedPart part(scene, environment, layer.cloths);
+    StepLoop steps(part.scene, part.environment, time);
+    const std::vector<MeetingPlace> places = steps.find_meetings();
+    view.places.insert(view.places.end(), places.begin(), places.end());
+  }
   if (!view.places.empty()) view.description = describe(view.places);
   return view;
 }
@@ -188,17 +283,19 @@ FrameReport Simulation::advance() {
   return impl_->advance();
 }
 std::size_t Simulation::particles() const {
-  return impl_->steps.cloth().masses().size();
+  std::size_t count = 0;
+  for (const environment::ClothObject& cloth : impl_->environment.cloths) count += cloth.start.size();
+  return count;
 }
 
 MatrixSize Simulation::matrix() const {
-  const solver::BlockMatrix& matrix = impl_->steps.problem().memory().system.matrix;
+  const solver::BlockMatrix& matrix = impl_->steps->problem().memory().system.matrix;
   return {matrix.full().columns.size(), matrix.isotropic().columns.size()};
 }
 
 ParticleState Simulation::state() const {
-  const Moment& now = impl_->steps.progress().now;
-  return {now.particles(), now.v, impl_->steps.cloth().masses()};
+  const Moment& now = impl_->steps->progress().now;
+  return {now.particles(), now.v, impl_->steps->cloth().masses()};
 }
 
 bool Simulation::run_preroll(const std::function<bool()>& proceed) {

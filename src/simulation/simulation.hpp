@@ -55,7 +55,8 @@ struct StartView {
   std::string description;           ///< of the places, for a message; empty likewise
 };
 
-/// The start as the scene gives it: nothing is untangled. Throws Error(asset_unreadable, scene_invalid).
+/// The start as the scene gives it: nothing is untangled, and layers do not meet each other. Throws
+/// Error(asset_unreadable, scene_invalid).
 StartView view_start(const scene::Scene& scene);
 
 /// What the matrix of one iteration of Newton's method holds, contacts not counted.
@@ -86,7 +87,7 @@ class Simulation {
   std::vector<ObjectInfo> objects() const;
   std::size_t particles() const;
   MatrixSize matrix() const;
-  /// Of the current frame; valid until the next advance().
+  /// Of the current frame, and of cloths that are put on by then; valid until the next advance().
   ParticleState state() const;
 
   /// Appends all that later frames depend on, in a form for machines of one kind and one version of the program. Not

@@ -89,7 +89,7 @@ Moment start_of(const environment::Environment& environment, double t) {
 
 StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& environment, double start)
     : scene_(scene),
-      start_(start),
+      start_(-scene.preroll_frames() / scene.time.fps),
       cloth_(scene, environment),
       problem_(cloth_),
       pins_(scene, environment, first_particles(cloth_), cloth_.masses()),
@@ -107,9 +107,22 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
   next_ = now;
 }
 
+void StepLoop::take_over(const StepLoop& before, std::span<const std::size_t> cloths) {
+  dressed_.assign(cloths.begin(), cloths.end());
+  for (std::size_t c = 0; c < cloths.size(); ++c) {
+    const Index there = before.cloth_.first_particle(c), here = cloth_.first_particle(cloths[c]);
+    const Index count = before.cloth_.first_particle(c + 1) - there;
+    std::copy_n(before.progress_.now.x.begin() + there, count, progress_.now.x.begin() + here);
+    std::copy_n(before.progress_.now.v.begin() + there, count, progress_.now.v.begin() + here);
+    pins_.take_over(before.pins_, there, here, count);
+  }
+  if (collisions_ && before.collisions_) collisions_->take_over(*before.collisions_, cloths);
+  next_ = progress_.now;
+}
+
 void StepLoop::untangle() {
   if (!collisions_) return;
-  collisions_->untangle(scene_, held_, progress_.now);
+  collisions_->untangle(scene_, held_, dressed_, progress_.now);
   next_ = progress_.now;
 }
 

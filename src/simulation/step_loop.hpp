@@ -21,13 +21,17 @@ namespace weft::simulation {
 /// stiffness.
 class StepLoop {
  public:
-  /// The start of a simulation at time `start` [s]. Scene and environment must outlive it.
+  /// From time `start` on [s], at first that of the simulation. Scene and environment must outlive it.
   StepLoop(const scene::Scene& scene, const environment::Environment& environment, double start);
 
   StepLoop(const StepLoop&) = delete;  // its parts know each other
   StepLoop& operator=(const StepLoop&) = delete;
 
-  /// Takes apart what touches or crosses at the start and may be moved for it; before the first advance().
+  /// Before the first advance(): cloths of this number are where and as fast as those of a loop that ends here, in its
+  /// order.
+  void take_over(const StepLoop& before, std::span<const std::size_t> cloths);
+  /// Takes apart what touches or crosses at the start and may be moved for it, cloths that were taken over aside;
+  /// before the first advance().
   void untangle();
   /// Where surfaces touch or cross at the start; before the first advance().
   std::vector<MeetingPlace> find_meetings() {
@@ -101,7 +105,8 @@ class StepLoop {
   [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
 
   const scene::Scene& scene_;
-  double start_;  // of the simulation [s]
+  double start_;                      // of the simulation [s]
+  std::vector<std::size_t> dressed_;  // cloths that were taken over
   ClothSystem cloth_;
   StepProblem problem_;
   YieldingPins pins_;

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "core/error.hpp"
 #include "core/log.hpp"
+#include "scene/layers.hpp"
 #include "simulation/collision_stage.hpp"
 #include "untangle/untangle.hpp"
 
@@ -24,36 +24,71 @@ untangle::Kind kind_of(const environment::BodyObject& body) {
   return closed && !edges.edges.empty() ? untangle::Kind::solid : untangle::Kind::open;
 }
 
+// A cloth is a layer to others where one of them is worn over it.
+bool is_layer(const scene::Scene& scene, std::size_t cloth, std::span<const std::size_t> dressed) {
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    if (std::ranges::find(dressed, c) == dressed.end() &&
+        scene::worn_over(scene, scene.cloths[c].name, scene.cloths[cloth].name))
+      return true;
+  return false;
+}
+
 }  // namespace
 
+bool untangles(const scene::Cloth& cloth) {
+  return cloth.start == scene::ClothStart::untangle || !cloth.over.empty();
+}
+
 bool untangles(const scene::Scene& scene) {
-  return std::ranges::any_of(scene.cloths,
-                             [](const scene::Cloth& c) { return c.start == scene::ClothStart::untangle; });
+  return std::ranges::any_of(scene.cloths, [](const scene::Cloth& c) { return untangles(c); });
 }
 
 void CollisionStage::untangle(const scene::Scene& scene, std::span<const integrator::HeldParticle> held,
-                              Moment& start) {
-  const collision::Bodies& bodies = engine_.bodies();
-  std::vector<untangle::Kind> kinds(environment_.cloths.size(), untangle::Kind::cloth);
-  for (const std::size_t b : bodies_) kinds.push_back(kind_of(environment_.bodies[b]));
-  std::vector<std::uint8_t> movable(start.x.size(), 0);
-  std::vector<Vec3> rest;
-  for (std::size_t c = 0; c < environment_.cloths.size(); ++c) {
-    const std::vector<Vec3>& x = environment_.cloths[c].mesh.positions;
-    if (scene.cloths[c].start == scene::ClothStart::untangle)
-      std::fill_n(movable.begin() + static_cast<std::ptrdiff_t>(rest.size()), x.size(), std::uint8_t{1});
-    rest.insert(rest.end(), x.begin(), x.end());
-  }
-  for (const integrator::HeldParticle& particle : held) movable[particle.constraint.particle] = 0;
+                              std::span<const std::size_t> dressed, Moment& start) {
+  // What is dressed stands still like obstacles, and comes behind them: what gets out of a body gets out of that then.
+  std::vector<std::size_t> order;  // of the engine's bodies
+  const std::size_t cloths = environment_.cloths.size();
+  for (std::size_t c = 0; c < cloths; ++c)
+    if (std::ranges::find(dressed, c) == dressed.end()) order.push_back(c);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) order.push_back(cloths + b);
+  if (scene.contact.self) order.insert(order.end(), dressed.begin(), dressed.end());
 
-  const untangle::Fabric fabric(bodies, std::move(kinds), start.x, rest, movable);
-  const untangle::Report report = untangle::untangle(fabric, {scene.contact.self, !bodies_.empty()}, start.x);
+  collision::Bodies bodies;
+  std::vector<untangle::Kind> kinds;
+  std::vector<Vec3> x, rest;
+  std::vector<std::uint8_t> movable, is_held(start.v.size(), 0);
+  for (const integrator::HeldParticle& particle : held) is_held[particle.constraint.particle] = 1;
+  for (const std::size_t b : order) {
+    const collision::Surface& surface = engine_.bodies().surfaces()[b];
+    const auto first = static_cast<std::size_t>(surface.first_vertex);
+    std::vector<collision::Triangle> triangles(surface.triangles.begin(), surface.triangles.end());
+    for (collision::Triangle& t : triangles)
+      for (Index& v : t) v -= surface.first_vertex;
+    const bool fresh = b < cloths && std::ranges::find(dressed, b) == dressed.end();
+    bodies.add(triangles, surface.vertex_count, {.deformable = fresh, .thickness = engine_.bodies()[b].thickness});
+    if (fresh)
+      kinds.push_back(untangle::Kind::cloth);
+    else if (b >= cloths)
+      kinds.push_back(kind_of(environment_.bodies[bodies_[b - cloths]]));
+    else
+      kinds.push_back(is_layer(scene, b, dressed) ? untangle::Kind::layer : untangle::Kind::open);
+    for (std::size_t v = first; v < first + static_cast<std::size_t>(surface.vertex_count); ++v) {
+      x.push_back(start.x[v]);
+      movable.push_back(fresh && untangles(scene.cloths[b]) && is_held[v] == 0);
+    }
+    const std::vector<Vec3>& given = b < cloths ? environment_.cloths[b].mesh.positions : rest;
+    if (fresh) rest.insert(rest.end(), given.begin(), given.end());
+  }
+
+  const untangle::Fabric fabric(bodies, std::move(kinds), x, rest, movable);
+  const untangle::Report report =
+      untangle::untangle(fabric, {scene.contact.self, order.size() > cloths - dressed.size()}, x);
   if (!report.locked.empty()) {
     std::string regions;
     for (const untangle::InsideRegion& region : report.locked) {
       regions += fmt::format("{}'{}' in '{}' around ({:.3g}, {:.3g}, {:.3g}) m, {:.3g} m across, ",
-                             regions.empty() ? "" : "; ", names_[region.cloth], names_[region.body], region.centre.x(),
-                             region.centre.y(), region.centre.z(), region.size);
+                             regions.empty() ? "" : "; ", names_[order[region.cloth]], names_[order[region.body]],
+                             region.centre.x(), region.centre.y(), region.centre.z(), region.size);
       regions +=
           std::isfinite(region.shortest) ? fmt::format("by {:.2f} m", region.shortest) : "no straight way is free";
     }
@@ -67,6 +102,11 @@ void CollisionStage::untangle(const scene::Scene& scene, std::span<const integra
         fmt::format("untangled the start: {} pairs of triangles crossed, {} do after {} rounds; particles moved by "
                     "up to {:.3g} m, threads are up to {:.3g} % longer",
                     report.pairs_before, report.pairs_after, report.rounds, report.farthest, 100 * report.stretch));
+  std::size_t next = 0;
+  for (const std::size_t b : order) {
+    if (b >= cloths) break;
+    for (Vec3& moved : engine_.bodies().part(b, std::span(start.x))) moved = x[next++];
+  }
 }
 
 }  // namespace weft::simulation

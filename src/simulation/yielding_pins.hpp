@@ -1,6 +1,7 @@
 // Pins as the step sees them: held exactly while nothing is in the way, pulled along while something is.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -42,6 +43,11 @@ class YieldingPins {
     std::vector<std::string> turns;  ///< pins that began to lag or are held again: "pin 0 of 'a' gives way to 'b' ..."
   };
   Lags take_lags();
+
+  /// Particles from `first` on lag as those of another scene with the same cloth do, from `first_there` on.
+  void take_over(const YieldingPins& there, Index first_there, Index first, Index count) {
+    std::copy_n(there.lagged_.begin() + first_there, count, lagged_.begin() + first);
+  }
 
   /// Which particles lag, and what was said of that.
   template <class Archive>

@@ -27,7 +27,7 @@ std::optional<Pierced> pierce(const Vec3& p, const Vec3& q, const collision::Tri
 
 bool of_solid(const Fabric& fabric, Index vertex) {
   const Kind kind = fabric.kinds[fabric.bodies.body_of(vertex)];
-  return kind == Kind::solid || kind == Kind::floor;
+  return kind == Kind::solid || kind == Kind::floor || kind == Kind::layer;
 }
 
 }  // namespace

@@ -17,7 +17,7 @@ struct Crossing {
   std::array<double, 3> weights;  ///< of the triangle's corners
 };
 
-/// Whether one of the two is of an obstacle with an inside.
+/// Whether one of the two is of an obstacle with an inside, or a layer.
 bool with_solid(const Fabric& fabric, const Crossing& crossing);
 
 /// Of the surfaces of which one at least is cloth.

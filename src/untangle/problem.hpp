@@ -18,6 +18,7 @@ enum class Kind : std::uint8_t {
   solid,  ///< has an inside, where no cloth may be
   floor,  ///< below it no cloth may be
   open,   ///< has two sides
+  layer,  ///< has one side, the other one is that of the body below it
 };
 
 /// How surfaces hang together, and how long threads may be. Does not change.

@@ -11,6 +11,8 @@ namespace {
 
 // Above a face by this part of the body's size is what that face has outside: less than any detail, more than rounding.
 constexpr double kAbove = 1e-6;
+// Weight of a corner up to which the nearest point of a face is on the opposite edge.
+constexpr double kOnCorner = 1e-9;
 // Rays look this way: nearly along an axis, so that boxes around them are thin, and along no edge that a modeller
 // draws.
 const Vec3 kRay(1, 0.00137, 0.00211);
@@ -30,6 +32,28 @@ Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kin
   const double above = kAbove * box_.diagonal().norm();
   for (const collision::Triangle& t : surface.triangles)
     buried_.push_back(inside((x[t[0]] + x[t[1]] + x[t[2]]) / 3 + above * collision::face_normal(t, x)));
+}
+
+Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, std::span<const Vec3> x,
+             std::span<const std::uint8_t> on_border, std::span<const Solid> below)
+    : surfaces_(surfaces), number_(number), kind_(Kind::layer), x_(x), on_border_(on_border) {
+  const collision::Surface& surface = surfaces.surface(number);
+  for (const collision::Triangle& t : surface.triangles)
+    for (const Index v : t) box_.extend(x[v]);
+  double outward = 0;  // area that faces outward less that which faces inward [m²]
+  for (const collision::Triangle& t : surface.triangles) {
+    const Vec3 centre = (x[t[0]] + x[t[1]] + x[t[2]]) / 3;
+    Vec3 away = (centre - box_.center()).stableNormalized();
+    double nearest = std::numeric_limits<double>::infinity();
+    for (const Solid& body : below) {
+      const Exit exit = body.exit(centre);
+      if (std::abs(exit.height) >= nearest) continue;
+      nearest = std::abs(exit.height);
+      away = exit.normal;
+    }
+    outward += 0.5 * (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]).dot(away);
+  }
+  if (outward < 0) outer_ = -1;
 }
 
 bool Solid::reaches(const Vec3& p, double distance) const {
@@ -54,7 +78,7 @@ std::vector<Solid::Hit> Solid::hits(const Vec3& p, const Vec3& way) const {
     const double along = n.dot(way);
     if (along == 0) continue;
     const double at = n.dot(a - p) / along;
-    if (at > 0 && at <= 1) found.push_back({at, along > 0 ? -1 : 1});
+    if (at > 0 && at <= 1) found.push_back({at, along > 0 ? -outer_ : outer_});
   }
   std::ranges::stable_sort(found, {}, &Hit::at);
   return found;
@@ -62,13 +86,27 @@ std::vector<Solid::Hit> Solid::hits(const Vec3& p, const Vec3& way) const {
 
 bool Solid::inside(const Vec3& p) const {
   if (kind_ == Kind::floor) return normal_.dot(p - place_) < 0;
+  if (kind_ == Kind::layer) return exit_of_layer(p).height < 0;
   if (!box_.contains(p)) return false;
   int turns = 0;
   for (const Hit& hit : hits(p, 1.01 * box_.diagonal().norm() * kRay)) turns += hit.turn;
   return turns < 0;
 }
 
+// What has the border as its nearest point is beside the cloth, and so outside.
+Solid::Exit Solid::exit_of_layer(const Vec3& p) const {
+  const collision::SurfacePoint point = collision::nearest_point(p, surfaces_, number_, x_);
+  const Vec3 place = p - point.height * point.normal;
+  bool beside = true;
+  for (std::size_t c = 0; c < 3; ++c)
+    beside = beside && (point.weights[c] <= kOnCorner || on_border_[point.face[c]] != 0);
+  if (!beside) return {place, outer_ * point.normal, outer_ * point.height};
+  const Vec3 arm = p - place;
+  return {place, arm.isZero() ? Vec3(outer_ * point.normal) : arm.normalized(), arm.norm()};
+}
+
 Solid::Exit Solid::exit(const Vec3& p) const {
+  if (kind_ == Kind::layer) return exit_of_layer(p);
   if (kind_ == Kind::floor) {
     const double height = normal_.dot(p - place_);
     return {p - height * normal_, normal_, height};
@@ -101,6 +139,11 @@ double Solid::way_out(const Vec3& p, const Vec3& d) const {
   const double length = 1.01 * box_.diagonal().norm();
   int depth = 0, least = 0;
   const std::vector<Hit> found = hits(p, length * d);
+  if (kind_ == Kind::layer) {
+    for (const Hit& hit : found)
+      if (hit.turn < 0) return length * hit.at;
+    return std::numeric_limits<double>::infinity();
+  }
   for (const Hit& hit : found) least -= hit.turn;
   depth = least;  // shells around p: all that the ray leaves more often than it enters
   for (const Hit& hit : found) {

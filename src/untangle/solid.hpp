@@ -11,11 +11,16 @@
 
 namespace weft::untangle {
 
-/// A body of closed shells, which may cross each other, or all that is below a plane. Does not move.
+/// A body of closed shells, which may cross each other, or all that is below a plane, or behind cloth that is worn:
+/// what that has as its nearest point, and not its border. Does not move.
 class Solid {
  public:
   /// Body `number` of the broad phase, which must outlive it, at x [m].
   Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kind, std::span<const Vec3> x);
+  /// Cloth that is worn over what others have inside, or around its own middle where there are none: its outer side is
+  /// the one that faces away from that, on the whole. `on_border`: per vertex; must outlive it.
+  Solid(const collision::BroadPhase& surfaces, std::size_t number, std::span<const Vec3> x,
+        std::span<const std::uint8_t> on_border, std::span<const Solid> below);
 
   std::size_t number() const { return number_; }
   /// Whether p is near enough to be inside, or within `distance` [m] of it.
@@ -29,7 +34,7 @@ class Solid {
     double height;       ///< of p above it [m], negative inside
   };
   Exit exit(const Vec3& p) const;
-  /// How far from p, inside, it is along the unit direction d until the body ends [m].
+  /// How far from p, inside, it is along the unit direction d until the body ends [m]; infinite where it does not.
   double way_out(const Vec3& p, const Vec3& d) const;
   /// Whether the straight way between these goes through its surface.
   bool meets(const Vec3& p, const Vec3& q) const { return kind_ != Kind::floor && !hits(p, q - p).empty(); }
@@ -43,6 +48,7 @@ class Solid {
     int turn;   // +1 into the body, −1 out of it
   };
   std::vector<Hit> hits(const Vec3& p, const Vec3& way) const;
+  Exit exit_of_layer(const Vec3& p) const;
 
   const collision::BroadPhase& surfaces_;
   std::size_t number_;
@@ -51,6 +57,8 @@ class Solid {
   Box3 box_;
   Vec3 normal_ = Vec3::UnitZ(), place_ = Vec3::Zero();  // of a floor
   std::vector<std::uint8_t> buried_;                    // per triangle: another shell hides it
+  std::span<const std::uint8_t> on_border_;             // of a layer, per vertex
+  int outer_ = 1;                                       // of a layer: −1 where its back is its outer side
 };
 
 }  // namespace weft::untangle

@@ -49,6 +49,9 @@ class Untangling {
       const bool solid = fabric.kinds[b] == Kind::solid || fabric.kinds[b] == Kind::floor;
       if (solid && options.obstacles) solids_.emplace_back(finder_.surfaces(), b, fabric.kinds[b], x);
     }
+    const std::vector<Solid> bodies = solids_;
+    for (std::size_t b = 0; b < fabric.bodies.size(); ++b)
+      if (fabric.kinds[b] == Kind::layer) solids_.emplace_back(finder_.surfaces(), b, x, fabric.on_border, bodies);
     double sum = 0;
     std::size_t count = 0;
     for (const Fabric::Link& link : fabric.links) {

@@ -55,6 +55,16 @@ const std::vector<Malformed> kMalformed = {
      "(TOML_MAX_NESTED_VALUES)\n"},
 
     // Keys.
+    {"OverUnknown", "[[cloth]]\nname = 'shirt'\n[[cloth]]\nname = 'coat'\nover = ['shirt', 'shrt']\n",
+     "s.toml:5:8: cloth.coat.over: expected the name of a cloth, got \"shrt\"; did you mean shirt?\n"},
+    {"OverNumber", "[[cloth]]\nname = 'coat'\nover = ['coat', 3]\n",
+     "s.toml:3:17: cloth.coat.over: expected a text or an array of texts, got 3\n"},
+    {"OverItself", "[[cloth]]\nname = 'coat'\nover = 'coat'\n",
+     "s.toml:3:8: cloth.coat.over: expected cloth that is put on before this one, got \"coat\", which it is itself\n"},
+    {"OverInACircle",
+     "[[cloth]]\nname = 'a'\nover = 'c'\n[[cloth]]\nname = 'b'\nover = 'a'\n[[cloth]]\nname = 'c'\nover = 'b'\n",
+     "s.toml:3:8: cloth.a.over: expected cloth that is put on before this one, got \"c\", which is worn over this "
+     "one\n"},
     {"UnknownTable", kFloor + "[phisics]\n", "s.toml:2:2: phisics: unknown key; did you mean physics?\n"},
     {"MisspeltKey", kFloor + "[time]\nduraton = 3\n",
      "s.toml:3:1: time.duraton: unknown key; did you mean duration?\n"},

@@ -113,6 +113,7 @@ TEST_F(EveryKey, OfAClothFillsItsMember) {
   EXPECT_EQ(cloth.look.roughness, 0.17);
   EXPECT_EQ(cloth.look.thread_spacing, 0.018);
   EXPECT_FALSE(cloth.look.visible);
+  EXPECT_EQ(scene_.cloths[1].over, std::vector<std::string>{scene_.cloths[0].name});
 }
 
 TEST_F(EveryKey, OfACharacterFillsItsMember) {
@@ -221,7 +222,7 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
   EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
   EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
-  EXPECT_EQ(scene_.obstacles[7].line, 150) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].line, 151) << "where the scene names its file";
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 

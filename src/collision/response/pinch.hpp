@@ -47,6 +47,11 @@ class PinchedPairs {
   /// Whether two features with these vertices are of such cloth and its obstacle.
   bool concern(const std::array<Index, 4>& vertices) const;
   void add(const CornerPair& pair) { origins_.emplace(key(pair), Origin{}); }
+  /// One whose origin is known.
+  void add(const Key& key, const Origin& origin) {
+    origins_.emplace(key, origin);
+    list_particles();
+  }
 
   // `surfaces`: of all bodies, by number; positions lie inside of the bounds of its last refit.
 

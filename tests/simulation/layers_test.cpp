@@ -1,0 +1,135 @@
+// Cloth worn over cloth: put on one after the other, and outside of what it is worn over.
+#include "scene/layers.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "simulation/saved_state.hpp"
+#include "support/intersections.hpp"
+#include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// A tube around z as text of an OBJ file, `ellipse` times wider along x than round; flipped it faces its axis.
+std::string tube(double radius, double height, double ellipse = 1, bool flipped = false) {
+  constexpr int kAround = 28, kUp = 9;
+  std::string text;
+  for (int j = 0; j < kUp; ++j) {
+    for (int i = 0; i < kAround; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kAround;
+      text += fmt::format("v {:.6f} {:.6f} {:.6f}\n", radius * ellipse * std::cos(angle),
+                          radius / ellipse * std::sin(angle), height * (static_cast<double>(j) / (kUp - 1) - 0.5));
+    }
+  }
+  for (int j = 0; j + 1 < kUp; ++j) {
+    for (int i = 0; i < kAround; ++i) {
+      const int a = j * kAround + i + 1, b = j * kAround + (i + 1) % kAround + 1, c = a + kAround, d = b + kAround;
+      text += flipped ? fmt::format("f {} {} {}\nf {} {} {}\n", d, b, a, c, d, a)
+                      : fmt::format("f {} {} {}\nf {} {} {}\n", a, b, d, a, d, c);
+    }
+  }
+  return text;
+}
+
+/// How often the way outward from p, away from the z axis, goes through a surface.
+int times_through(const Vec3& p, const std::vector<std::array<Index, 3>>& triangles, const std::vector<Vec3>& x) {
+  const Vec3 way = 10 * Vec3(p.x(), p.y(), 0).normalized();
+  int times = 0;
+  for (const auto& [a, b, c] : triangles) {
+    const double u = way.dot((x[b] - p).cross(x[c] - p)), v = way.dot((x[c] - p).cross(x[a] - p)),
+                 w = way.dot((x[a] - p).cross(x[b] - p));
+    const Vec3 n = (x[b] - x[a]).cross(x[c] - x[a]);
+    const double at = n.dot(x[a] - p) / n.dot(way);
+    times += ((u > 0 && v > 0 && w > 0) || (u < 0 && v < 0 && w < 0)) && at > 0;
+  }
+  return times;
+}
+
+class Layers : public support::TestFolder {
+ protected:
+  void SetUp() override {
+    TestFolder::SetUp();
+    support::write_bytes(folder_ / "vest.obj", tube(0.165, 0.5));
+    support::write_bytes(folder_ / "shirt.obj", tube(0.160, 0.45));
+    support::write_bytes(folder_ / "coat.obj", tube(0.175, 0.4, 1.12, true));
+  }
+
+  /// The coat first in the file and last to be put on. It crosses the vest, which the shirt is inside of.
+  scene::Scene dressed(const std::string& time) const {
+    const auto cloth = [&](const std::string& name, const std::string& over) {
+      return "[[cloth]]\nname = '" + name + "'\nshape = 'mesh'\nfile = '" + (folder_ / (name + ".obj")).string() +
+             "'\nmaterial = { thickness = 0.004 }\n" + over;
+    };
+    return support::scene_of_text(
+        "[time]\nduration = 0.4\n" + time + cloth("coat", "over = 'shirt'\n") + cloth("vest", "") +
+        cloth("shirt", "over = ['vest']\n") +
+        "[[obstacle]]\nname = 'body'\nshape = 'cylinder'\nradius = 0.15\nheight = 0.9\nsegments = 28\n");
+  }
+};
+
+TEST_F(Layers, ThatCrossOrLieTheWrongWayAroundGetOutsideOfWhatTheyAreWornOver) {
+  for (const char* time : {"", "preroll = 0.36\n"}) {
+    const scene::Scene scene = dressed(time);
+    Simulation simulation(scene);
+    ASSERT_TRUE(simulation.run_preroll());
+    for (int frame = 0; frame < 4; ++frame) {
+      const frame::SnapshotPtr now = simulation.snapshot();
+      EXPECT_EQ(support::judge(support::objects_of(*now)).pairs.size(), 0U) << time << "frame " << frame;
+      for (const auto& [inner, outer] : {std::pair{1, 2}, std::pair{2, 0}, std::pair{1, 0}}) {
+        int inside = 0;
+        for (const Vec3& p : now->states[outer].positions)
+          inside += times_through(p, now->surfaces[inner]->triangles, now->states[inner].positions) % 2;
+        EXPECT_EQ(inside, 0) << time << "frame " << frame << ", " << outer << " over " << inner;
+      }
+      simulation.advance();
+    }
+  }
+}
+
+TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
+  const scene::Scene scene = dressed("preroll = 0.36\n");
+  const std::vector<scene::Layer> layers = scene::list_layers(scene);
+  ASSERT_EQ(layers.size(), 3U);
+  EXPECT_EQ(layers[1].first_frame, -6);
+  EXPECT_EQ(layers[1].dressed, (std::vector<std::size_t>{1, 2}));
+  EXPECT_EQ(layers[2].cloths, std::vector<std::size_t>{0});
+  // The vest falls as it does alone until the shirt comes.
+  scene::Scene alone = scene;
+  alone.cloths = {scene.cloths[1]};
+  Simulation one(alone), three(scene);
+  const std::size_t vest = alone.cloths.empty() ? 0 : one.particles();
+  for (int frame = 0; frame < 3; ++frame) {
+    one.advance(), three.advance();
+    EXPECT_EQ(three.state().positions.size(), vest);
+    EXPECT_EQ(one.snapshot()->states[0].positions, three.snapshot()->states[1].positions) << frame;
+  }
+  three.advance();
+  EXPECT_EQ(three.state().positions.size(), 2 * vest);
+}
+
+TEST_F(Layers, SavedInThePrerollGoOnAsIfNothingHadBeen) {
+  const testing::Continued run = testing::continue_runs(dressed("preroll = 0.36\n"), {10, {2, 3, 6}});
+  EXPECT_EQ(run.difference, "");
+}
+
+TEST_F(Layers, ShareTheTimeInWhichCharactersStandStill) {
+  const scene::Scene scene = support::scene_of_text(
+      "[time]\npreroll = 3\n[[character]]\nname = 'she'\nsource = 'mannequin'\ndressing = 2\nblend = 1\n"
+      "[[cloth]]\nname = 'a'\nover = 'b'\n[[cloth]]\nname = 'b'\n");
+  EXPECT_EQ(scene::list_layers(scene)[1].first_frame, -50);
+}
+
+TEST(LayersOfAScene, WithoutOrderAreOne) {
+  const std::vector<scene::Layer> layers =
+      scene::list_layers(support::scene_of_text("[[cloth]]\nname = 'a'\n[[cloth]]\nname = 'b'\n"));
+  ASSERT_EQ(layers.size(), 1U);
+  EXPECT_EQ(layers[0].cloths.size(), 2U);
+}
+
+}  // namespace
+}  // namespace weft::simulation
