@@ -127,6 +127,7 @@ void StepLoop::untangle() {
 }
 
 void StepLoop::advance(double t_t0, double t_t1, FrameReport& report) {
+  if (cloth_.masses().empty()) return;  // bodies alone are shown
   problem_.forget();
   if (collisions_) collisions_->forget();
   progress_.control ? advance_controlled(t_t0, t_t1, report) : advance_equally(t_t0, t_t1, report);

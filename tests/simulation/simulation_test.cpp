@@ -339,6 +339,18 @@ TEST(Simulation, NeedlesSwingAsASingleRowOfCells) {
   }
 }
 
+// To look at a character or a camera before there is cloth. It was refused: no mass, no mean.
+TEST(Simulation, BodiesAloneMove) {
+  Simulation simulation(support::scene_of_text(
+      "[time]\nduration = 0.2\n[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n"
+      "keys = [{ time = 0, position = [0, 0, 1] }, { time = 0.2, position = [1, 0, 1] }]\n"));
+  const double before = simulation.snapshot()->states[0].positions[0].x();
+  FrameReport report;
+  while (report.time < 0.2 - 1e-9) report = simulation.advance();
+  EXPECT_NEAR(simulation.snapshot()->states[0].positions[0].x(), before + 1, 1e-12);
+  EXPECT_EQ(report.newton_iterations, 0);
+}
+
 TEST(Simulation, StepThatCannotBeSolvedFailsWithItsFrameAndKeepsTheLastGoodOne) {
   Simulation simulation(torn_sheet());
   for (int k = 1; k <= 3; ++k) simulation.advance();
