@@ -108,7 +108,7 @@ struct Look {
   std::optional<Vec3> back_color;  ///< cloth: the other side; a paler `color` where absent
   double roughness = 0.6;
   double thread_spacing = 0.0006;  ///< of the drawn weave [m]; cloth only; 0 draws none
-  bool checker = false;           ///< floors only
+  bool checker = false;            ///< floors only
   bool visible = true;
 };
 
@@ -187,7 +187,7 @@ struct Cloth {
   std::filesystem::path file;                    ///< of a mesh or sewing pattern; absolute after checking
   double scale = 1;                              ///< of a mesh: metres per unit of the file
   double edge_length = 0.02;                     ///< of the mesh of a pattern [m]
-  std::string wearer;        ///< character that a pattern is put on; empty: the only one
+  std::string wearer;                            ///< character that a pattern is put on; empty: the only one
   double sewing = 1;         ///< time in which a pattern goes from its start to its own measures [s]
   int line = 0, column = 0;  ///< where the scene names it, for errors of its file
   Pose pose;                 ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y

@@ -143,6 +143,7 @@ TEST(Rules, EachKeyOfAVariantChangesTheSceneAndItsHash) {
                                                              : "";
       std::string text = list + " = [{ name = 'x', " + table.selector + " = '" + variant.name + "'" + file + " }]\n";
       if (list == "light") text += "cloth = [{ name = 'c' }]\n";
+      if (list == "cloth") text += "character = [{ name = 'another text', source = 'mannequin' }]\n";  // as its wearer
       const auto defaults = table.make();
       table.find(table.selector)->set(defaults.get(), variant.name);
       for (const Rule& rule : variant.rules) {

@@ -10,6 +10,7 @@
 #include "environment/track.hpp"
 #include "simulation/scenes.hpp"
 #include "support/intersections.hpp"
+#include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::simulation {
@@ -341,9 +342,9 @@ TEST(Simulation, NeedlesSwingAsASingleRowOfCells) {
 
 // To look at a character or a camera before there is cloth. It was refused: no mass, no mean.
 TEST(Simulation, BodiesAloneMove) {
-  Simulation simulation(support::scene_of_text(
-      "[time]\nduration = 0.2\n[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n"
-      "keys = [{ time = 0, position = [0, 0, 1] }, { time = 0.2, position = [1, 0, 1] }]\n"));
+  Simulation simulation(
+      support::scene_of_text("[time]\nduration = 0.2\n[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n"
+                             "keys = [{ time = 0, position = [0, 0, 1] }, { time = 0.2, position = [1, 0, 1] }]\n"));
   const double before = simulation.snapshot()->states[0].positions[0].x();
   FrameReport report;
   while (report.time < 0.2 - 1e-9) report = simulation.advance();
