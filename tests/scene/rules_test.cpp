@@ -53,7 +53,7 @@ LoadResult load_here(const std::string& text, const std::vector<std::string>& ov
 /// TOML text of a value that the rule allows and that is not its default `now`.
 std::string another_value(const Rule& rule, const Value& now) {
   if (rule.type == Type::boolean) return std::get<bool>(now) ? "false" : "true";
-  if (rule.type == Type::text) return "\"another text\"";
+  if (rule.type == Type::text) return "\"another_text\"";
   if (rule.type == Type::choice) {
     return "\"" + (rule.choices.back() == std::get<std::string>(now) ? rule.choices.front() : rule.choices.back()) +
            "\"";
@@ -143,7 +143,7 @@ TEST(Rules, EachKeyOfAVariantChangesTheSceneAndItsHash) {
                                                              : "";
       std::string text = list + " = [{ name = 'x', " + table.selector + " = '" + variant.name + "'" + file + " }]\n";
       if (list == "light") text += "cloth = [{ name = 'c' }]\n";
-      if (list == "cloth") text += "character = [{ name = 'another text', source = 'mannequin' }]\n";  // as its wearer
+      if (list == "cloth") text += "character = [{ name = 'another_text', source = 'mannequin' }]\n";  // as its wearer
       const auto defaults = table.make();
       table.find(table.selector)->set(defaults.get(), variant.name);
       for (const Rule& rule : variant.rules) {
