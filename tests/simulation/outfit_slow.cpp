@@ -1,0 +1,24 @@
+// Sewn garments over sewn garments.
+#include <gtest/gtest.h>
+
+#include "support/scene_runs.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// The gallery's outfit with coarser meshes: each layer is sewn over the one before in its share of the preroll.
+TEST(Outfit, HasNoIntersectionsAndIsSewn) {
+  const auto frames =
+      support::run_scene(support::scene_of(std::filesystem::path(WEFT_SOURCE_DIR) / "scenes/gallery/outfit.toml",
+                                           {"cloth.trousers.edge_length=0.022", "cloth.shirt.edge_length=0.022",
+                                            "cloth.jacket.edge_length=0.022", "time.duration=0.6"}));
+  ASSERT_EQ(frames.size(), 16u);
+  for (const support::MeasuredFrame& frame : frames) {
+    EXPECT_EQ(frame.pairs, 0u) << frame.report.frame << ": " << frame.between;
+    // Before it is sewn a garment is far from its pattern: the loops of panels around a part are wider by a third.
+    EXPECT_LT(frame.report.max_strain, 0.3) << frame.report.frame;
+  }
+}
+
+}  // namespace
+}  // namespace weft::simulation
