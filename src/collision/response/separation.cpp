@@ -2,11 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
-#include <cstdlib>
 #include <limits>
 
 #include "core/parallel.hpp"
+
 namespace weft::collision {
 namespace {
 
@@ -235,9 +234,6 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
     if (!changed) round_ = kHalfRounds;
     look_again(step);
   }
-  if (getenv("TR"))
-    fprintf(stderr, "ENF first %d rounds %d goes_on %d pairs %d\n", step.report.corrected_pairs, round_, (int)goes_on,
-            0);
   step.report.separated = true;
   return step.report;
 }
