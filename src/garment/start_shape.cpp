@@ -1,11 +1,12 @@
 #include "garment/start_shape.hpp"
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <set>
+
+#include "garment/joined_places.hpp"
 
 namespace weft::garment {
 namespace {
@@ -56,29 +57,10 @@ void smooth(const std::vector<std::vector<Index>>& neighbours, const std::vector
 }  // namespace
 
 std::vector<Vec2> lay_together(std::span<const LaidPanel> panels, std::size_t vertices) {
-  // Minimise Σ ‖(x_i − x_j) − (p_i − p_j)‖² over the sides of all triangles, and kAnchor Σ ‖x_i − p_i‖² over their
-  // corners.
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::MatrixX2d right = Eigen::MatrixX2d::Zero(static_cast<Eigen::Index>(vertices), 2);
+  JoinedPlaces<2> places(vertices, kAnchor);
   for (const LaidPanel& panel : panels)
-    for (std::size_t t = 0; t < panel.triangles.size(); ++t)
-      for (std::size_t k = 0; k < 3; ++k) {
-        const Index i = panel.triangles[t][k], j = panel.triangles[t][(k + 1) % 3];
-        const Vec2 &p = panel.corners[t][k], &q = panel.corners[t][(k + 1) % 3];
-        entries.emplace_back(i, i, 1 + kAnchor);
-        entries.emplace_back(j, j, 1);
-        entries.emplace_back(i, j, -1);
-        entries.emplace_back(j, i, -1);
-        right.row(i) += (p - q + kAnchor * p).transpose();
-        right.row(j) -= (p - q).transpose();
-      }
-  Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(vertices), static_cast<Eigen::Index>(vertices));
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-  const Eigen::MatrixX2d x = solver.solve(right);
-  std::vector<Vec2> plane(vertices);
-  for (std::size_t v = 0; v < vertices; ++v) plane[v] = x.row(static_cast<Eigen::Index>(v)).transpose();
-  return plane;
+    for (std::size_t t = 0; t < panel.triangles.size(); ++t) places.add(panel.triangles[t], panel.corners[t]);
+  return places.solve();
 }
 
 std::vector<Vec3> inflate(std::span<const LaidPanel> panels, std::span<const Vec2> plane, double depth) {

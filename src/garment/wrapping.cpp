@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -11,6 +10,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "garment/joined_places.hpp"
 #include "mesh/geometry.hpp"
 
 namespace weft::garment {
@@ -272,28 +272,9 @@ std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<con
 
 std::vector<Vec3> join_in_space(std::span<const mesh::Triangle> triangles, std::span<const std::array<Vec3, 3>> corners,
                                 std::size_t vertices, double spacing) {
-  // As lay_together(), with a pull of each vertex to its place that is felt over kBendOver.
-  const double anchor = spacing * spacing / (kBendOver * kBendOver);
-  std::vector<Eigen::Triplet<double>> entries;
-  Eigen::MatrixX3d right = Eigen::MatrixX3d::Zero(static_cast<Eigen::Index>(vertices), 3);
-  for (std::size_t t = 0; t < triangles.size(); ++t)
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index i = triangles[t][k], j = triangles[t][(k + 1) % 3];
-      const Vec3 &p = corners[t][k], &q = corners[t][(k + 1) % 3];
-      entries.emplace_back(i, i, 1 + anchor);
-      entries.emplace_back(j, j, 1);
-      entries.emplace_back(i, j, -1);
-      entries.emplace_back(j, i, -1);
-      right.row(i) += (p - q + anchor * p).transpose();
-      right.row(j) -= (p - q).transpose();
-    }
-  Eigen::SparseMatrix<double> matrix(static_cast<Eigen::Index>(vertices), static_cast<Eigen::Index>(vertices));
-  matrix.setFromTriplets(entries.begin(), entries.end());
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> solver(matrix);
-  const Eigen::MatrixX3d solved = solver.solve(right);
-  std::vector<Vec3> x(vertices);
-  for (std::size_t v = 0; v < vertices; ++v) x[v] = solved.row(static_cast<Eigen::Index>(v)).transpose();
-  return x;
+  JoinedPlaces<3> places(vertices, spacing * spacing / (kBendOver * kBendOver));  // a pull that is felt over kBendOver
+  for (std::size_t t = 0; t < triangles.size(); ++t) places.add(triangles[t], corners[t]);
+  return places.solve();
 }
 
 void clear_of_skin(const Wearer& wearer, std::span<const mesh::Triangle> triangles, double clearance,

@@ -114,14 +114,8 @@ class Wrapping : public support::TestFolder {
   }
 };
 
-std::string vest() {
-  std::string text = kVest;
-  for (std::size_t at; (at = text.find("shoulder top right")) != std::string::npos;) text.replace(at, 18, "top right");
-  return text;
-}
-
 TEST_F(Wrapping, ASleeveStartsAtItsHoleAroundTheArmWithItsFrontOutside) {
-  const Garment garment = sew_text(vest());
+  const Garment garment = sew_text(kVest);
   const std::vector<Vec3>& x = garment.sheet.rest;
   double nearest = 1, farthest = 0;
   for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
@@ -143,7 +137,7 @@ TEST_F(Wrapping, ASleeveStartsAtItsHoleAroundTheArmWithItsFrontOutside) {
 }
 
 TEST_F(Wrapping, RingsWiderThanTheBodyStandOffIt) {
-  std::string wide = vest();
+  std::string wide = kVest;
   for (std::size_t at; (at = wide.find("0.26")) != std::string::npos;) wide.replace(at, 4, "0.40");
   const Garment garment = sew_text(wide);
   const std::vector<Index>& hem = garment.edges.at("front.hem");
@@ -168,10 +162,10 @@ TEST_F(Wrapping, MirrorImagesHaveTheOtherSide) {
 
 TEST_F(Wrapping, ClosuresAreTiesBetweenEdgesThatStayApart) {
   const std::string seam = "[[seam]]\na = \"front.right\"\nb = \"back.right\"\n";
-  std::string buttoned = vest();
+  std::string buttoned = kVest;
   buttoned.replace(buttoned.find(seam), seam.size(),
                    "[[seam]]\na = \"front.right\"\nb = \"back.right\"\nbuttons = 3\nopen = 2\n");
-  const Garment sewn = sew_text(vest()), closed = sew_text(buttoned);
+  const Garment sewn = sew_text(kVest), closed = sew_text(buttoned);
   EXPECT_EQ(closed.sheet.rest.size(), sewn.sheet.rest.size() + 26);  // 0.5 m by 20 mm on the other side
   ASSERT_EQ(closed.sheet.ties.size(), 3U);
   EXPECT_TRUE(sewn.sheet.ties.empty());
@@ -184,9 +178,9 @@ TEST_F(Wrapping, ClosuresAreTiesBetweenEdgesThatStayApart) {
 }
 
 TEST_F(Wrapping, AStifferPanelIsStifferAlone) {
-  std::string fused = vest();
+  std::string fused = kVest;
   fused.replace(fused.find("name = \"sleeve\""), 15, "name = \"sleeve\"\nfabric = { stretch = 3, bend = 8 }");
-  EXPECT_TRUE(sew_text(vest()).sheet.reinforcements.empty());
+  EXPECT_TRUE(sew_text(kVest).sheet.reinforcements.empty());
   const Garment garment = sew_text(fused);
   for (std::size_t t = 0; t < garment.sheet.triangles.size(); ++t) {
     EXPECT_EQ(garment.sheet.reinforcements[t].stretch, garment.panel_of[t] == 2 ? 3 : 1);

@@ -7,30 +7,15 @@
 #include <numbers>
 
 #include "environment/environment.hpp"
+#include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::simulation {
 namespace {
 
-// A tube skirt of two rectangles, 0.33 m wide each, with an elastic band at the top.
-const char* const kTube = R"(
-depth = 0.14
-[[panel]]
-name = "front"
-path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
-edges = "hem right top left"
-[[panel]]
-name = "back"
-side = "back"
-path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
-edges = "hem right top left"
-[[seam]]
-a = "front.left"
-b = "back.left"
-[[seam]]
-a = "front.right"
-b = "back.right"
+// With an elastic band at the top.
+const std::string kSkirt = testing::kTube + R"(
 [[elastic]]
 edge = "front.top"
 ratio = 0.85
@@ -44,7 +29,7 @@ edge = "front.hem"
 class Garments : public support::TestFolder {
  protected:
   scene::Scene dressed(const std::string& more) {
-    support::write_bytes(folder_ / "tube.toml", kTube);
+    support::write_bytes(folder_ / "tube.toml", kSkirt);
     return support::scene_of_text("[[cloth]]\nname = 'tube'\nshape = 'pattern'\nfile = '" +
                                   (folder_ / "tube.toml").string() +
                                   "'\nedge_length = 0.03\nsewing = 0.6\nposition = [0, 0, 0.1]\n" + more);

@@ -251,24 +251,7 @@ TEST(SavedStates, KeepTheBoundOfEnergy) {
 class SavedGarment : public support::TestFolder {};
 
 TEST_F(SavedGarment, IsSewnOnInThePrerollAndAfter) {
-  support::write_bytes(folder_ / "tube.toml", R"(
-depth = 0.14
-[[panel]]
-name = "front"
-path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
-edges = "hem right top left"
-[[panel]]
-name = "back"
-side = "back"
-path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
-edges = "hem right top left"
-[[seam]]
-a = "front.left"
-b = "back.left"
-[[seam]]
-a = "front.right"
-b = "back.right"
-[[elastic]]
+  support::write_bytes(folder_ / "tube.toml", testing::kTube + R"([[elastic]]
 edge = "front.top"
 ratio = 0.85
 )");
@@ -283,27 +266,9 @@ ratio = 0.85
 
 // Open from 0.12 s on, closed again from 0.24 s on: states before, between, while it closes, and after.
 TEST_F(SavedGarment, KnowsWhetherItsZipIsOpen) {
-  support::write_bytes(folder_ / "tube.toml", R"(
-depth = 0.14
-[[panel]]
-name = "front"
-path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
-edges = "hem right top left"
-[[panel]]
-name = "back"
-side = "back"
-path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
-edges = "hem right top left"
-fabric = { stretch = 2, bend = 3, density = 1.5 }
-[[seam]]
-a = "front.left"
-b = "back.left"
-[[seam]]
-a = "front.right"
-b = "back.right"
-open = 0.12
-closed = 0.24
-)");
+  std::string text = testing::kTube + "open = 0.12\nclosed = 0.24\n";
+  text.insert(text.find("path", text.find("side")), "fabric = { stretch = 2, bend = 3, density = 1.5 }\n");
+  support::write_bytes(folder_ / "tube.toml", text);
   const scene::Scene scene = support::scene_of_text(
       "[[cloth]]\nname = 'tube'\nshape = 'pattern'\nfile = '" + (folder_ / "tube.toml").string() +
       "'\nedge_length = 0.05\nsewing = 0.2\n[time]\nduration = 0.6\npreroll = 0.2\n");

@@ -1,6 +1,7 @@
 // Small scenes made in the test, without a file.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "frame/frame_snapshot.hpp"
@@ -51,5 +52,25 @@ inline scene::Obstacle obstacle(const char* name, scene::Shape shape, const Vec3
   made.pose.position = position;
   return made;
 }
+
+/// A tube skirt of two rectangles, 0.33 m wide each, as a pattern. What is added belongs to its last seam.
+inline const std::string kTube = R"(
+depth = 0.14
+[[panel]]
+name = "front"
+path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
+edges = "hem right top left"
+[[panel]]
+name = "back"
+side = "back"
+path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
+edges = "hem right top left"
+[[seam]]
+a = "front.left"
+b = "back.left"
+[[seam]]
+a = "front.right"
+b = "back.right"
+)";
 
 }  // namespace weft::simulation::testing

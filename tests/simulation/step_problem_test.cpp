@@ -231,24 +231,7 @@ TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {
 class SewnProblem : public support::TestFolder {};
 
 TEST_F(SewnProblem, ForgetsWhatItKnewOfClothThatIsSewnOn) {
-  support::write_bytes(folder_ / "tube.toml", R"(
-depth = 0.14
-[[panel]]
-name = "front"
-path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
-edges = "hem right top left"
-[[panel]]
-name = "back"
-side = "back"
-path = "M -0.165 0 L 0.165 0 L 0.165 0.3 L -0.165 0.3 Z"
-edges = "hem right top left"
-[[seam]]
-a = "front.left"
-b = "back.left"
-[[seam]]
-a = "front.right"
-b = "back.right"
-)");
+  support::write_bytes(folder_ / "tube.toml", testing::kTube);
   const scene::Scene scene =
       support::scene_of_text("[[cloth]]\nname = 'tube'\nshape = 'pattern'\nfile = '" +
                              (folder_ / "tube.toml").string() + "'\nedge_length = 0.1\nsewing = 0.5\n");
