@@ -17,6 +17,8 @@ namespace {
 
 // Least distance from the skin at the start, by the gap of the pattern.
 constexpr double kClearance = 0.6;
+// Longest edge that becomes a point, by the spacing.
+constexpr double kPoint = 0.25;
 // Particles of one garment at most.
 constexpr double kMaxParticles = 1e6;
 
@@ -54,7 +56,11 @@ class Sewing {
   double length(std::size_t panel, std::size_t edge) const {
     return Arclength(pattern_.panels[panel].edges[edge].curves).length();
   }
-  int segments_for(double length) const { return std::max(1, static_cast<int>(std::lround(length / spacing_))); }
+  // Edges that are much shorter than those of the mesh become points: slivers beside them would be as stiff as they are
+  // short.
+  int segments_for(double length) const {
+    return length < kPoint * spacing_ ? 0 : std::max(1, static_cast<int>(std::lround(length / spacing_)));
+  }
 
   // As many segments on both sides of a seam.
   void count_segments() {
@@ -260,7 +266,7 @@ class Sewing {
     for (const Seam& seam : pattern_.seams) {
       if (seam.closure()) continue;
       const SewnSeam& sewn = garment_.seams[s++];
-      if (seam.allowance == 0) continue;
+      if (seam.allowance == 0 || sewn.vertices.size() < 2) continue;
       // Between the two sides, where one is eased in.
       const double mean = 0.5 * (sewn.length_a + sewn.length_b);
       mesh::Band band{.vertices = sewn.vertices, .lengths = {}, .allowance = seam.allowance};

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "garment/specification.hpp"
 #include "garment/svg.hpp"
 #include "garment/triangulation.hpp"
 #include "scene/document.hpp"
@@ -314,6 +315,16 @@ const scene::Table& pattern_rules() {
   return kTable;
 }
 
+void Pattern::scale_by(double factor) {
+  depth *= factor;
+  for (Panel& panel : panels) {
+    if (panel.position) *panel.position *= factor;
+    for (PanelEdge& edge : panel.edges)
+      for (Curve& curve : edge.curves)
+        for (Vec2& p : curve.control) p *= factor;
+  }
+}
+
 std::pair<std::size_t, std::size_t> Pattern::find(const std::string& name) const {
   for (std::size_t p = 0; p < panels.size(); ++p)
     for (std::size_t e = 0; e < panels[p].edges.size(); ++e)
@@ -326,11 +337,16 @@ ReadPattern read_pattern(const std::filesystem::path& file) {
   ReadPattern read;
   std::vector<std::string> in_drawings;
   read.pattern.file = file;
-  if (const auto text = scene::read_file(file, findings))
-    if (const auto document = scene::parse(*text, findings)) {
+  if (const auto text = scene::read_file(file, findings)) {
+    bool parsed = false;
+    if (file.extension() == ".json") {
+      parsed = read_specification(*text, findings, read.pattern);
+    } else if (const auto document = scene::parse(*text, findings)) {
       scene::Reader(findings, file.parent_path()).read(*document, pattern_rules(), &read.pattern, "");
-      check(read.pattern, findings, in_drawings);
+      parsed = true;
     }
+    if (parsed) check(read.pattern, findings, in_drawings);
+  }
   scene::LoadResult result;
   result.file = file;
   result.mistakes = findings.take_mistakes();

@@ -83,6 +83,8 @@ struct Pattern {
 
   /// Whether panels start bent around parts of a wearer; else they lie before and behind it.
   bool wraps() const;
+  /// Another size: outlines, and where panels start; seams and hems stay as they are.
+  void scale_by(double factor);
   /// The edge named "panel.edge": indices of panel and edge. The name exists in a checked pattern.
   std::pair<std::size_t, std::size_t> find(const std::string& name) const;
 };
@@ -98,7 +100,8 @@ struct ReadPattern {
   bool only_in_drawings = false;  ///< they are all in drawings
 };
 
-/// Reads and checks a pattern file (TOML) and the drawings that it names. Never throws for what they can hold.
+/// Reads and checks a pattern file and the drawings that it names: TOML, or JSON as in garment/specification.hpp. Never
+/// throws for what they can hold.
 ReadPattern read_pattern(const std::filesystem::path& file);
 
 /// The same for use. Throws Error with all mistakes after `where`, which names what refers to the file: scene_invalid,

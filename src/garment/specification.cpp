@@ -1,0 +1,450 @@
+#include "garment/specification.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <optional>
+#include <set>
+
+#include "garment/triangulation.hpp"
+
+namespace weft::garment {
+namespace {
+
+using nlohmann::json;
+using scene::Findings;
+
+// Coordinates from here on are damage.
+constexpr double kMaxCoordinate = 1e5;
+constexpr double kDefaultUnits = 100;  // to the metre
+// Height of the origin of the forerunner's body, between pelvis and chest, above its floor [m].
+constexpr double kOldOrigin = 1.12;
+// Lowest panel of a pattern that is measured from the floor [m]: trousers end below the heel before they are worn.
+constexpr double kBelowFloor = -0.2;
+// Least height above the floor that they start at [m].
+constexpr double kClear = 0.02;
+constexpr int kPointsPerCurve = 8;
+
+/// One side of a panel; coordinates are those of the panel [m].
+struct SpecEdge {
+  Vec2 start, end;
+  std::vector<Vec2> control;          // of a Bézier curve, if any
+  double radius = 0;                  // of an arc, if not 0
+  bool large = false, right = false;  // as in SVG, y upward
+  bool has_length() const { return (end - start).norm() > 1e-9; }
+};
+
+/// A stitch from one edge to another.
+struct SpecStitch {
+  std::array<std::size_t, 2> panel, edge;
+};
+
+struct SpecPanel {
+  std::string name, words;  // words: label and name, in small letters
+  std::vector<SpecEdge> edges;
+  Mat3 rotation = Mat3::Identity();
+  Vec3 translation{0, 0, 0};  // [m]
+  // What follows from these.
+  std::vector<std::vector<Vec2>> points;  // along each edge
+  bool mirrored = false;                  // drawn as seen from within
+  Vec3 outward{0, 0, 1};
+  Vec3 middle{0, 0, 0};  // in space
+  Around around = Around::torso;
+  int steps = -1;  // of a limb: stitches to the trunk
+
+  Vec3 in_space(const Vec2& p) const { return rotation * Vec3(p.x(), p.y(), 0) + translation; }
+  bool limb() const { return around >= Around::left_arm; }
+};
+
+/// SVG path data of a panel whose points are moved by `map`.
+std::string path_of(const SpecPanel& panel, const Eigen::Affine2d& map) {
+  std::string path;
+  const bool flips = map.linear().determinant() < 0;
+  const auto text = [&](const Vec2& p) {
+    const Vec2 q = map * p;
+    return fmt::format(" {} {}", q.x(), q.y());
+  };
+  for (const SpecEdge& edge : panel.edges) {
+    if (!edge.has_length()) continue;
+    if (path.empty()) path = "M" + text(edge.start);
+    if (edge.radius > 0)
+      path += fmt::format(" A {0} {0} 0 {1:d} {2:d}", edge.radius, edge.large, edge.right != flips);
+    else
+      path += edge.control.empty() ? " L" : edge.control.size() == 1 ? " Q" : " C";
+    for (const Vec2& p : edge.control) path += text(p);
+    path += text(edge.end);
+  }
+  return path + " Z";
+}
+
+class Reader {
+ public:
+  Reader(const std::string& text, Findings& findings) : text_(text), findings_(findings) {}
+
+  bool read(Pattern& pattern) {
+    json root;
+    try {
+      root = json::parse(text_);
+    } catch (const json::parse_error& error) {
+      const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text_.size()));
+      const int line = 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
+      findings_.report("", {line, 1, {}}, "expected JSON, got what is none near here");
+      return false;
+    }
+    const json* panels = member(member(&root, "pattern", ""), "panels", "pattern");
+    if (panels == nullptr) return false;
+    read_properties(root);
+    if (!panels->is_object() || panels->empty()) mistake("pattern.panels", "expected panels by name, got none");
+    for (const auto& [name, panel] : panels->items()) read_panel(name, panel);
+    read_stitches(root["pattern"]);
+    if (wrong_) return false;
+    for (SpecPanel& panel : panels_) look_at(panel);
+    find_parts();
+    write(pattern);
+    return true;
+  }
+
+ private:
+  void mistake(const std::string& key, const std::string& text) {
+    wrong_ = true;
+    findings_.report(key, text);
+  }
+  const json* member(const json* of, const char* name, const std::string& path) {
+    if (of == nullptr) return nullptr;
+    if (of->is_object() && of->contains(name)) return &(*of)[name];
+    mistake(path, fmt::format("expected \"{}\" of a specification of GarmentCode, got none", name));
+    return nullptr;
+  }
+  /// Numbers of a list with so many; nothing, and a mistake, where it is none.
+  std::optional<std::vector<double>> numbers(const json& value, std::size_t count, const std::string& key) {
+    std::vector<double> list;
+    if (value.is_array())
+      for (const json& each : value)
+        if (each.is_number() && std::abs(each.get<double>()) < kMaxCoordinate) list.push_back(each.get<double>());
+    if (value.is_array() && list.size() == count && value.size() == count) return list;
+    mistake(key,
+            fmt::format("expected {} numbers below {:g}, got {}", count, kMaxCoordinate, value.dump().substr(0, 40)));
+    return std::nullopt;
+  }
+
+  void read_properties(const json& root) {
+    if (!root.contains("properties") || !root["properties"].is_object()) return;
+    const json& properties = root["properties"];
+    if (const auto units = properties.find("units_in_meter"); units != properties.end()) {
+      if (!units->is_number() || !(units->get<double>() > 0))
+        return mistake("properties.units_in_meter", "expected a number > 0, got " + units->dump().substr(0, 40));
+      unit_ = 1 / units->get<double>();
+    }
+    absolute_ = properties.value("curvature_coords", json("relative")) == "absolute";
+  }
+
+  void read_panel(const std::string& name, const json& panel) {
+    const std::string path = "pattern.panels." + name;
+    if (const std::size_t at = text_.find("\"" + name + "\""); at != std::string::npos) {
+      const std::size_t line_start = text_.rfind('\n', at) + 1;
+      const auto begin = text_.begin();
+      findings_.saw(path, {1 + static_cast<int>(std::count(begin, begin + static_cast<std::ptrdiff_t>(at), '\n')),
+                           static_cast<int>(at - line_start) + 1,
+                           {}});
+    }
+    SpecPanel result;
+    result.name = name;
+    result.words = name;
+    if (panel.is_object() && panel.contains("label") && panel["label"].is_string())
+      result.words += " " + panel["label"].get<std::string>();
+    std::ranges::transform(result.words, result.words.begin(), [](unsigned char c) { return std::tolower(c); });
+    const json *vertices = member(&panel, "vertices", path), *edges = member(&panel, "edges", path);
+    if (vertices == nullptr || edges == nullptr || !vertices->is_array() || !edges->is_array() || edges->empty())
+      return mistake(path, "expected lists of vertices and edges, got other things");
+    std::vector<Vec2> points;
+    for (std::size_t i = 0; i < vertices->size(); ++i)
+      if (const auto p = numbers((*vertices)[i], 2, fmt::format("{}.vertices.{}", path, i)))
+        points.emplace_back(unit_ * (*p)[0], unit_ * (*p)[1]);
+    for (std::size_t i = 0; i < edges->size() && !wrong_; ++i)
+      read_edge((*edges)[i], points, fmt::format("{}.edges.{}", path, i), result.edges);
+    if (panel.contains("translation"))
+      if (const auto t = numbers(panel["translation"], 3, path + ".translation"))
+        result.translation = unit_ * Vec3((*t)[0], (*t)[1], (*t)[2]);
+    if (panel.contains("rotation"))
+      if (const auto r = numbers(panel["rotation"], 3, path + ".rotation")) {
+        constexpr double kDegree = std::numbers::pi / 180;
+        result.rotation =
+            (Eigen::AngleAxisd(kDegree * (*r)[2], Vec3::UnitZ()) * Eigen::AngleAxisd(kDegree * (*r)[1], Vec3::UnitY()) *
+             Eigen::AngleAxisd(kDegree * (*r)[0], Vec3::UnitX()))
+                .toRotationMatrix();
+      }
+    panels_.push_back(std::move(result));
+  }
+
+  void read_edge(const json& value, const std::vector<Vec2>& vertices, const std::string& key,
+                 std::vector<SpecEdge>& edges) {
+    const json* ends = member(&value, "endpoints", key);
+    if (ends == nullptr) return;
+    const auto numbers_of_ends = numbers(*ends, 2, key + ".endpoints");
+    if (!numbers_of_ends) return;
+    SpecEdge edge;
+    for (const int k : {0, 1}) {
+      const double number = (*numbers_of_ends)[static_cast<std::size_t>(k)];
+      if (!(number >= 0) || number >= static_cast<double>(vertices.size()) || number != std::floor(number))
+        return mistake(key + ".endpoints",
+                       fmt::format("expected numbers of vertices below {}, got {:g}", vertices.size(), number));
+      (k == 0 ? edge.start : edge.end) = vertices[static_cast<std::size_t>(number)];
+    }
+    if (!edges.empty() && edges.back().end != edge.start)
+      return mistake(key + ".endpoints", "expected edges one after the other around the panel, got a gap before this");
+    if (value.contains("curvature")) bend(value["curvature"], key + ".curvature", edge);
+    edges.push_back(std::move(edge));
+  }
+
+  /// A point beside an edge: along it and to its left, both in its lengths.
+  Vec2 beside(const SpecEdge& edge, const std::vector<double>& p) const {
+    if (absolute_) return {unit_ * p[0], unit_ * p[1]};
+    const Vec2 along = edge.end - edge.start;
+    return edge.start + p[0] * along + p[1] * Vec2(-along.y(), along.x());
+  }
+
+  void bend(const json& curvature, const std::string& key, SpecEdge& edge) {
+    if (curvature.is_array()) {  // of the forerunner: quadratic
+      old_ = true;
+      if (const auto p = numbers(curvature, 2, key)) edge.control.push_back(beside(edge, *p));
+      return;
+    }
+    const json *type = member(&curvature, "type", key), *params = member(&curvature, "params", key);
+    if (type == nullptr || params == nullptr) return;
+    const std::size_t count = *type == "quadratic" ? 1 : *type == "cubic" ? 2 : 0;
+    if (*type == "circle") {
+      const auto p = numbers(*params, 3, key + ".params");
+      if (!p) return;
+      edge.radius = unit_ * (*p)[0];
+      edge.large = (*p)[1] != 0, edge.right = (*p)[2] != 0;
+      if (!(edge.radius > 0)) mistake(key + ".params", fmt::format("expected a radius > 0, got {:g}", (*p)[0]));
+    } else if (count == 0) {
+      mistake(key + ".type", "expected quadratic, cubic or circle, got " + type->dump().substr(0, 40));
+    } else if (!params->is_array() || params->size() != count) {
+      mistake(key + ".params", fmt::format("expected {} control point{}, got {}", count, count == 1 ? "" : "s",
+                                           params->dump().substr(0, 40)));
+    } else {
+      for (const json& each : *params)
+        if (const auto p = numbers(each, 2, key + ".params")) edge.control.push_back(beside(edge, *p));
+    }
+  }
+
+  void read_stitches(const json& pattern) {
+    if (!pattern.contains("stitches")) return;
+    const json& stitches = pattern["stitches"];
+    for (std::size_t i = 0; i < stitches.size(); ++i) {
+      const std::string key = fmt::format("pattern.stitches.{}", i);
+      const json& value = stitches[i];
+      if (!value.is_array() || value.size() < 2) {
+        mistake(key, "expected two edges, got " + value.dump().substr(0, 40));
+        continue;
+      }
+      if (value.size() > 2 && value[2] == "right_wrong") {
+        mistake(key, "expected right sides together, got right_wrong, which turns a panel over");
+        continue;
+      }
+      SpecStitch stitch;
+      bool found = true;
+      for (const std::size_t k : {0, 1}) found &= find_edge(value[k], key, stitch.panel[k], stitch.edge[k]);
+      if (found) stitches_.push_back(stitch);
+    }
+  }
+  bool find_edge(const json& side, const std::string& key, std::size_t& panel, std::size_t& edge) {
+    const bool named = side.is_object() && side.contains("panel") && side["panel"].is_string() &&
+                       side.contains("edge") && side["edge"].is_number_unsigned();
+    if (!named) {
+      mistake(key, "expected panel and edge, got " + side.dump().substr(0, 40));
+      return false;
+    }
+    const auto name = side["panel"].get<std::string>();
+    edge = side["edge"].get<std::size_t>();
+    panel = static_cast<std::size_t>(std::ranges::find(panels_, name, &SpecPanel::name) - panels_.begin());
+    if (panel < panels_.size() && edge < panels_[panel].edges.size()) return true;
+    if (!wrong_) mistake(key, fmt::format("expected an edge of a panel, got {} of \"{}\"", edge, name));
+    return false;
+  }
+
+  /// Points, front and middle of a panel. Around its front edges run counter-clockwise.
+  static void look_at(SpecPanel& panel) {
+    std::vector<Vec2> around;
+    for (const SpecEdge& edge : panel.edges) {
+      auto& points = panel.points.emplace_back();
+      SpecPanel alone;
+      alone.edges = {edge, {edge.end, edge.start, {}, 0, false, false}};
+      const ParsedPath path =
+          edge.has_length() ? parse_path(path_of(alone, Eigen::Affine2d::Identity())) : ParsedPath{};
+      for (std::size_t c = 0; c + 1 < path.outline.size(); ++c)  // without the way back
+        for (int k = 0; k < kPointsPerCurve; ++k) points.push_back(path.outline[c].at(double(k) / kPointsPerCurve));
+      if (points.empty()) points.push_back(edge.start);
+      around.insert(around.end(), points.begin(), points.end());
+    }
+    panel.mirrored = polygon_area(around) < 0;
+    // −0 would be an angle of −180° behind.
+    panel.outward = panel.rotation.col(2) * (panel.mirrored ? -1 : 1) + Vec3::Zero();
+    Vec2 low = around[0], high = around[0];
+    for (const Vec2& p : around) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    panel.middle = panel.in_space(0.5 * (low + high));
+  }
+
+  bool says(const SpecPanel& panel, std::initializer_list<const char*> words) const {
+    return std::ranges::any_of(words, [&](const char* w) { return panel.words.find(w) != std::string::npos; });
+  }
+  /// A leg's front and back are sewn together at its inside; those of the trunk are not.
+  bool has_inseam(std::size_t p) const {
+    const SpecPanel& panel = panels_[p];
+    double inner = std::numeric_limits<double>::infinity(), outer = 0, low = inner, high = -inner;
+    for (const auto& points : panel.points)
+      for (const Vec2& each : points) {
+        const Vec3 x = panel.in_space(each);
+        if (x.x() * panel.middle.x() < -1e-3) return false;  // goes across the middle
+        inner = std::min(inner, std::abs(x.x())), outer = std::max(outer, std::abs(x.x()));
+        low = std::min(low, x.y()), high = std::max(high, x.y());
+      }
+    return std::ranges::any_of(stitches_, [&](const SpecStitch& stitch) {
+      for (const std::size_t k : {0, 1}) {
+        const SpecPanel& other = panels_[stitch.panel[1 - k]];
+        if (stitch.panel[k] != p || stitch.panel[1 - k] == p) continue;
+        if (other.middle.x() * panel.middle.x() <= 0 || other.outward.z() * panel.outward.z() >= 0) continue;
+        const auto& points = panel.points[stitch.edge[k]];
+        const Vec3 x = panel.in_space(points[points.size() / 2]);
+        if (std::abs(x.x()) < inner + 0.35 * (outer - inner) && x.y() < low + 0.6 * (high - low)) return true;
+      }
+      return false;
+    });
+  }
+
+  void find_parts() {
+    for (std::size_t p = 0; p < panels_.size(); ++p) {
+      SpecPanel& panel = panels_[p];
+      const bool left = panel.middle.x() > 0;
+      const bool trousers = says(panel, {"pant", "trouser"});
+      if (!trousers && says(panel, {"sleeve", "sl_", " arm", "cuff"}))
+        panel.around = left ? Around::left_arm : Around::right_arm;
+      else if (trousers || has_inseam(p))
+        panel.around = left ? Around::left_leg : Around::right_leg;
+      else if (says(panel, {"hood"}))
+        panel.around = Around::head;
+      else if (says(panel, {"collar", "turtle"}))
+        panel.around = Around::neck;
+    }
+    // How far along a limb.
+    for (int step = 0; step < static_cast<int>(panels_.size()); ++step)
+      for (const SpecStitch& stitch : stitches_)
+        for (const std::size_t k : {0, 1}) {
+          SpecPanel& panel = panels_[stitch.panel[k]];
+          const SpecPanel& other = panels_[stitch.panel[1 - k]];
+          if (panel.limb() && panel.steps < 0 && (other.limb() ? step > 0 && other.steps == step - 1 : step == 0))
+            panel.steps = step;
+        }
+  }
+
+  /// Of an arm: the way to the trunk among the sides of the drawing, which may lie in any way.
+  Vec2 up_arm(std::size_t p) const {
+    const SpecPanel& panel = panels_[p];
+    Vec2 cap(0, 0);
+    double count = 0;
+    for (const SpecStitch& stitch : stitches_)
+      for (const std::size_t k : {0, 1}) {
+        const SpecPanel& other = panels_[stitch.panel[1 - k]];
+        if (stitch.panel[k] != p || (other.limb() && other.steps >= panel.steps)) continue;
+        for (const Vec2& x : panel.points[stitch.edge[k]]) cap += x, ++count;
+      }
+    if (count == 0) return {0, 1};
+    cap /= count;
+    Vec2 low = panel.points[0][0], high = low;
+    for (const auto& points : panel.points)
+      for (const Vec2& x : points) low = low.cwiseMin(x), high = high.cwiseMax(x);
+    const Vec2 way = (cap - 0.5 * (low + high)).cwiseQuotient((high - low).cwiseMax(1e-9));
+    return std::abs(way.x()) > std::abs(way.y()) ? Vec2(way.x() > 0 ? 1 : -1, 0) : Vec2(0, way.y() > 0 ? 1 : -1);
+  }
+
+  /// From a panel's drawing to one as worn, seen from outside.
+  Eigen::Affine2d as_worn(std::size_t p) const {
+    const SpecPanel& panel = panels_[p];
+    const Vec2 mirror(panel.mirrored ? -1 : 1, 1);
+    const bool arm = panel.around == Around::left_arm || panel.around == Around::right_arm;
+    Vec2 up(0, 1);
+    if (arm)
+      up = up_arm(p).cwiseProduct(mirror);
+    else if (const Vec2 height(mirror.x() * panel.rotation(1, 0), panel.rotation(1, 1)); height.norm() > 0.1)
+      up = height.normalized();
+    Eigen::Matrix2d turn;
+    turn << up.y(), -up.x(), up.x(), up.y();
+    Eigen::Affine2d map = Eigen::Affine2d::Identity();
+    map.linear() = turn * mirror.asDiagonal();
+    return map;
+  }
+
+  void write(Pattern& pattern) const {
+    constexpr double kDegree = std::numbers::pi / 180;
+    double lowest = std::numeric_limits<double>::infinity();
+    for (const SpecPanel& panel : panels_)
+      for (const auto& points : panel.points)
+        for (const Vec2& p : points) lowest = std::min(lowest, panel.in_space(p).y());
+    // Trousers that end below the floor hang lower there than they are worn.
+    const double floor = old_ || lowest < kBelowFloor ? -kOldOrigin : std::min(0.0, lowest - kClear);
+    for (std::size_t p = 0; p < panels_.size(); ++p) {
+      const SpecPanel& of = panels_[p];
+      findings_.add_entry("panel", "pattern.panels." + of.name);
+      Panel panel;
+      panel.name = of.name;
+      panel.around = of.around;
+      const bool arm = of.around == Around::left_arm || of.around == Around::right_arm;
+      // Those of limbs are before and behind.
+      const bool sideways = std::abs(of.outward.z()) < 0.5;
+      double angle = std::atan2(of.outward.x(), of.outward.z());
+      if (of.limb() && !sideways) angle = of.outward.z() > 0 ? 0 : std::numbers::pi;
+      if (std::hypot(of.outward.x(), of.outward.z()) < 0.1) angle = std::atan2(of.middle.x(), of.middle.z());
+      panel.angle = std::round(angle / kDegree * 1e6) * 1e-6;
+      Eigen::Affine2d map = as_worn(p);
+      const Vec3 across(std::cos(angle), 0, -std::sin(angle));
+      panel.position = Vec2(across.dot(of.translation), of.translation.y() - floor);
+      if (of.limb()) {
+        // The middle of a limb's lower end lies along its axis.
+        double low = std::numeric_limits<double>::infinity();
+        std::vector<Vec2> points;
+        for (const auto& each : of.points)
+          for (const Vec2& x : each) points.emplace_back(map * x), low = std::min(low, points.back().y());
+        double left = std::numeric_limits<double>::infinity(), right = -left;
+        for (const Vec2& x : points)
+          if (x.y() < low + 0.02) left = std::min(left, x.x()), right = std::max(right, x.x());
+        map.pretranslate(Vec2(-0.5 * (left + right), 0));
+        panel.position->x() = 0;
+      }
+      // Along arms and at the neck bodies differ more than patterns say.
+      if (arm || of.around == Around::neck) panel.position.reset();
+      panel.path = path_of(of, map);
+      for (std::size_t e = 0; e < of.edges.size(); ++e)
+        if (of.edges[e].has_length()) panel.edge_names += fmt::format("{} ", e);
+      pattern.panels.push_back(std::move(panel));
+    }
+    for (std::size_t s = 0; s < stitches_.size(); ++s) {
+      const auto& [p, e] = stitches_[s];
+      if (!panels_[p[0]].edges[e[0]].has_length() || !panels_[p[1]].edges[e[1]].has_length()) continue;
+      findings_.add_entry("seam", fmt::format("pattern.stitches.{}", s));
+      Seam& seam = pattern.seams.emplace_back();
+      seam.a = fmt::format("{}.{}", panels_[p[0]].name, e[0]);
+      seam.b = fmt::format("{}.{}", panels_[p[1]].name, e[1]);
+    }
+  }
+
+  const std::string& text_;
+  Findings& findings_;
+  double unit_ = 1 / kDefaultUnits;  // [m]
+  bool absolute_ = false, old_ = false, wrong_ = false;
+  std::vector<SpecPanel> panels_;
+  std::vector<SpecStitch> stitches_;
+};
+
+}  // namespace
+
+bool read_specification(const std::string& text, Findings& findings, Pattern& pattern) {
+  return Reader(text, findings).read(pattern);
+}
+
+}  // namespace weft::garment

@@ -1,0 +1,224 @@
+// Patterns of GarmentCode as garments.
+#include "garment/specification.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "environment/environment.hpp"
+#include "garment/garment.hpp"
+#include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::garment {
+namespace {
+
+// A skirt, a trouser leg and a sleeve. Fronts run counter-clockwise, backs clockwise, as there. The sleeve lies along
+// its drawing's x axis, its cap to the left.
+const char* const kSpecification = R"({
+  "pattern": {
+    "panels": {
+      "skirt_front": { "translation": [-30, 40, 25], "rotation": [0, 0, 0],
+        "vertices": [[0, 0], [60, 0], [60, 50], [0, 50]],
+        "edges": [
+          { "endpoints": [0, 1], "curvature": { "type": "quadratic", "params": [[0.5, -0.1]] } },
+          { "endpoints": [1, 2] },
+          { "endpoints": [2, 3], "curvature": { "type": "circle", "params": [60, 0, 0] } },
+          { "endpoints": [3, 0] } ] },
+      "skirt_back": { "translation": [-30, 40, -20], "rotation": [0, 0, 0],
+        "vertices": [[0, 0], [0, 50], [60, 50], [60, 0]],
+        "edges": [
+          { "endpoints": [0, 1] }, { "endpoints": [1, 2] }, { "endpoints": [2, 3] },
+          { "endpoints": [3, 0], "curvature": { "type": "cubic", "params": [[0.3, 0.1], [0.7, 0.1]] } } ] },
+      "left_sleeve_f": { "translation": [50, 110, 17], "rotation": [0, 0, -50], "label": "arm",
+        "vertices": [[0, 0], [-30, 0], [-24, -20], [0, -20]],
+        "edges": [ { "endpoints": [0, 1] }, { "endpoints": [1, 2] }, { "endpoints": [2, 3] },
+          { "endpoints": [3, 0] } ] }
+    },
+    "stitches": [
+      [ { "panel": "skirt_front", "edge": 1 }, { "panel": "skirt_back", "edge": 2 } ],
+      [ { "panel": "skirt_front", "edge": 3 }, { "panel": "skirt_back", "edge": 0 } ],
+      [ { "panel": "left_sleeve_f", "edge": 1 }, { "panel": "skirt_front", "edge": 2 } ]
+    ]
+  },
+  "properties": { "curvature_coords": "relative", "units_in_meter": 100 }
+})";
+
+// The inside of a leg is sewn front to back.
+const char* const kLegs = R"({ "pattern": { "panels": {
+  "a": { "translation": [0, 10, 20], "vertices": [[2, 0], [24, 0], [26, 80], [2, 80]],
+    "edges": [ { "endpoints": [0, 1] }, { "endpoints": [1, 2] }, { "endpoints": [2, 3] }, { "endpoints": [3, 0] } ] },
+  "b": { "translation": [0, 10, -20], "vertices": [[2, 0], [2, 80], [26, 80], [24, 0]],
+    "edges": [ { "endpoints": [0, 1] }, { "endpoints": [1, 2] }, { "endpoints": [2, 3] }, { "endpoints": [3, 0] } ] } },
+  "stitches": [
+    [ { "panel": "a", "edge": 1 }, { "panel": "b", "edge": 2 } ],
+    [ { "panel": "a", "edge": 3 }, { "panel": "b", "edge": 0 } ] ] } })";
+
+double length_of(const Pattern& pattern, const std::string& edge) {
+  const auto [p, e] = pattern.find(edge);
+  return Arclength(pattern.panels[p].edges[e].curves).length();
+}
+
+class Specification : public support::TestFolder {
+ protected:
+  ReadPattern read(const std::string& text) {
+    support::write_bytes(folder_ / "a_specification.json", text);
+    return read_pattern(folder_ / "a_specification.json");
+  }
+  static std::string changed(std::string text, const std::string& from, const std::string& to) {
+    const std::size_t at = text.find(from);
+    EXPECT_NE(at, std::string::npos) << from;
+    return text.replace(at, from.size(), to);
+  }
+};
+
+TEST_F(Specification, HasOutlinesInMetresSeenFromOutside) {
+  const ReadPattern read = this->read(kSpecification);
+  ASSERT_TRUE(read.mistakes.empty()) << read.mistakes[0];
+  const Pattern& pattern = read.pattern;
+  ASSERT_EQ(pattern.panels.size(), 3U);  // in the order of their names
+  EXPECT_TRUE(pattern.wraps());
+  EXPECT_NEAR(length_of(pattern, "skirt_front.1"), 0.5, 1e-12);
+  // A parabola 30 mm deep, of which 256 chords are measured: s/w = ½√(1+q²) + asinh(q)/(2q), q = 4h/w.
+  const double q = 4 * 0.03 / 0.6;
+  EXPECT_NEAR(length_of(pattern, "skirt_front.0"), 0.3 * (std::sqrt(1 + q * q) + std::asinh(q) / q), 1e-6);
+  // 60° of a circle of 0.6 m; arcs as cubic curves are off by 3e-4 of the radius at most.
+  EXPECT_NEAR(length_of(pattern, "skirt_front.2"), 0.6 * std::numbers::pi / 3, 2e-4);
+  // Without "right" the arc runs clockwise, which the top of the front going to the left lies below.
+  const auto& top = pattern.panels[2].edges[pattern.find("skirt_front.2").second].curves[0];
+  EXPECT_LT(top.at(0.5).y(), 0.5);
+  for (const Seam& seam : pattern.seams) EXPECT_FALSE(seam.closure());
+  EXPECT_EQ(pattern.seams[0].a, "skirt_front.1");
+  EXPECT_EQ(pattern.seams[0].b, "skirt_back.2");
+  // Seen from behind its left is where it lies to the wearer's left.
+  const Panel &back = pattern.panels[1], &front = pattern.panels[2];
+  EXPECT_EQ(back.angle, 180);
+  EXPECT_EQ(front.angle, 0);
+  EXPECT_LT((*front.position - Vec2(-0.3, 0.4)).norm(), 1e-12);
+  EXPECT_LT((*back.position - Vec2(0.3, 0.4)).norm(), 1e-12);
+  double low = 0, high = 0;
+  for (const PanelEdge& edge : back.edges)
+    for (const Curve& curve : edge.curves)
+      low = std::min(low, curve.start().x()), high = std::max(high, curve.start().x());
+  EXPECT_NEAR(low, -0.6, 1e-12);
+  EXPECT_NEAR(high, 0, 1e-12);
+}
+
+TEST_F(Specification, LimbsLieAlongTheirAxesWithTheTrunkAbove) {
+  const Pattern pattern = read(kSpecification).pattern;
+  const Panel& sleeve = pattern.panels[0];
+  EXPECT_EQ(sleeve.around, Around::left_arm);
+  EXPECT_FALSE(sleeve.position);
+  const auto [p, cuff] = pattern.find("left_sleeve_f.3");
+  const Curve& wrist = sleeve.edges[cuff].curves[0];
+  EXPECT_NEAR(wrist.start().y(), wrist.end().y(), 1e-12);
+  EXPECT_NEAR(wrist.start().x() + wrist.end().x(), 0, 1e-12);
+  const Curve& cap = sleeve.edges[pattern.find("left_sleeve_f.1").second].curves[0];
+  EXPECT_GT(std::min(cap.start().y(), cap.end().y()), wrist.start().y() + 0.2);
+
+  const Pattern legs = read(kLegs).pattern;
+  EXPECT_EQ(legs.panels[0].around, Around::left_leg);
+  EXPECT_EQ(legs.panels[1].around, Around::left_leg);
+  EXPECT_LT((*legs.panels[0].position - Vec2(0, 0.1)).norm(), 1e-12);
+  // Halves of a skirt have that seam with the other half.
+  const Pattern skirt =
+      read(changed(kLegs, R"("b": { "translation": [0, 10, -20])", R"("b": { "translation": [-28, 10, -20])")).pattern;
+  EXPECT_EQ(skirt.panels[0].around, Around::torso);
+}
+
+// The forerunner of GarmentCode: other units, quadratic curves as lists, heights from within the body.
+TEST_F(Specification, OfTheForerunnerStandsOnTheFloorToo) {
+  std::string old = changed(kSpecification, R"({ "type": "quadratic", "params": [[0.5, -0.1]] })", "[0.5, -0.1]");
+  old = changed(old, R"("units_in_meter": 100)", R"("units_in_meter": 200)");
+  const ReadPattern read = this->read(old);
+  ASSERT_TRUE(read.mistakes.empty()) << read.mistakes[0];
+  EXPECT_NEAR(length_of(read.pattern, "skirt_front.1"), 0.25, 1e-12);
+  EXPECT_NEAR(read.pattern.panels[2].position->y(), 0.2 + 1.12, 1e-12);
+}
+
+TEST_F(Specification, IsSewnAroundTheWearer) {
+  support::write_bytes(folder_ / "a_specification.json", kSpecification);
+  scene::Scene scene = support::scene_of_text(
+      "[[character]]\nname = 'model'\nsource = 'mannequin'\nstance = 'rest'\nblend = 1\nedge_length = 0.05\n"
+      "[[cloth]]\nname = 'skirt'\nshape = 'pattern'\nfile = '" +
+      (folder_ / "a_specification.json").string() + "'\nedge_length = 0.04\n");
+  const std::string cap = R"([ { "panel": "left_sleeve_f", "edge": 1 }, { "panel": "skirt_front", "edge": 2 } ])";
+  const std::string closed = R"([ { "panel": "left_sleeve_f", "edge": 0 }, { "panel": "left_sleeve_f", "edge": 2 } ])";
+  support::write_bytes(folder_ / "a_specification.json", changed(kSpecification, cap, closed));
+  support::expect_error(ExitCode::scene_invalid,
+                        "panel left_sleeve_f: expected a position, or a seam to a panel that has one",
+                        [&] { environment::Environment made(scene); });
+
+  std::string alone = changed(kSpecification, ",\n      " + cap, "");
+  const std::size_t begin = alone.find(",\n      \"left_sleeve_f\""), end = alone.find("\n    },\n    \"stitches\"");
+  alone.erase(begin, end - begin);
+  support::write_bytes(folder_ / "a_specification.json", alone);
+  const auto spans = [&] {
+    const environment::Environment made(scene);
+    Box3 box;
+    for (const Vec3& x : made.cloths[0].start) box.extend(x);
+    return box;
+  };
+  // The hem 40 cm above the floor, curved by 3; joining its panels moves it by some more.
+  const Box3 box = spans();
+  EXPECT_NEAR(box.min().z(), 0.40, 0.05);
+  EXPECT_NEAR(box.max().z(), 0.90, 0.05);
+  EXPECT_LT(box.min().y(), -0.1);  // before and behind
+  EXPECT_GT(box.max().y(), 0.1);
+  scene.cloths[0].scale = 1.2;
+  EXPECT_NEAR(spans().max().z(), 1.2 * box.max().z(), 0.03);
+}
+
+// Slivers beside an edge of 2 mm would be as stiff as they are short.
+TEST_F(Specification, EdgesShorterThanTheMeshBecomePoints) {
+  const std::string with_corner = changed(
+      changed(changed(kLegs, "[26, 80], [2, 80]]", "[26, 80], [2, 80], [2, 79.8]]"), R"({ "endpoints": [3, 0] } ] },
+  "b")",
+              R"({ "endpoints": [3, 4] }, { "endpoints": [4, 0] } ] },
+  "b")"),
+      R"("edge": 3 }, { "panel": "b")", R"("edge": 4 }, { "panel": "b")");
+  const ReadPattern read = this->read(with_corner);
+  ASSERT_TRUE(read.mistakes.empty()) << read.mistakes[0];
+  const FlatMesh sharp = mesh_of(read.pattern.panels[0], {8, 26, 8, 0, 26}, 0.03);
+  double shortest = 1;
+  for (const mesh::Triangle& t : sharp.triangles)
+    for (std::size_t k = 0; k < 3; ++k)
+      shortest = std::min(shortest, (sharp.points[static_cast<std::size_t>(t[k])] -
+                                     sharp.points[static_cast<std::size_t>(t[(k + 1) % 3])])
+                                        .norm());
+  EXPECT_GT(shortest, 0.01);
+}
+
+TEST_F(Specification, MistakesNameWhatTheyAreAbout) {
+  const auto first = [&](const std::string& text) {
+    const ReadPattern read = this->read(text);
+    const std::string line = read.mistakes.empty() ? "none" : read.mistakes[0];
+    const std::size_t at = line.find(".json:");
+    return at == std::string::npos ? line : line.substr(at + 6);
+  };
+  EXPECT_EQ(first("{\n\"pattern\": }"), "2:1: expected JSON, got what is none near here");
+  EXPECT_EQ(first("{}"), "1:1: expected \"pattern\" of a specification of GarmentCode, got none");
+  EXPECT_EQ(first(R"({"pattern": {"panels": {}}})"), "1:1: pattern.panels: expected panels by name, got none");
+  EXPECT_EQ(first(changed(kSpecification, "[60, 0]", "[60, \"0\"]")),
+            "4:7: pattern.panels.skirt_front.vertices.1: expected 2 numbers below 100000, got [60,\"0\"]");
+  EXPECT_EQ(first(changed(kSpecification, "\"endpoints\": [1, 2]", "\"endpoints\": [1, 7]")),
+            "4:7: pattern.panels.skirt_front.edges.1.endpoints: expected numbers of vertices below 4, got 7");
+  EXPECT_EQ(
+      first(changed(kSpecification, "\"endpoints\": [1, 2]", "\"endpoints\": [2, 1]")),
+      "4:7: pattern.panels.skirt_front.edges.1.endpoints: expected edges one after the other around the panel, got "
+      "a gap before this");
+  EXPECT_EQ(first(changed(kSpecification, "quadratic", "spline")),
+            "4:7: pattern.panels.skirt_front.edges.0.curvature.type: expected quadratic, cubic or circle, got "
+            "\"spline\"");
+  EXPECT_EQ(
+      first(changed(kSpecification, R"("skirt_back", "edge": 2 } ])", R"("skirt_back", "edge": 2 }, "right_wrong" ])")),
+      "1:1: pattern.stitches.0: expected right sides together, got right_wrong, which turns a panel over");
+  EXPECT_EQ(first(changed(kSpecification, R"("skirt_back", "edge": 2)", R"("skirt_back", "edge": 4)")),
+            "1:1: pattern.stitches.0: expected an edge of a panel, got 4 of \"skirt_back\"");
+  EXPECT_EQ(first(changed(kSpecification, R"("skirt_back", "edge": 2)", R"("skirt_back", "edge": 0)")),
+            "1:1: pattern.stitches.1.b: expected each edge in one seam, got \"skirt_back.0\" again");
+}
+
+}  // namespace
+}  // namespace weft::garment
