@@ -54,11 +54,22 @@ std::size_t join_vertices(Soup& soup) {
   return joined;
 }
 
+/// UVs of the triangles that make_topology() makes, also after vertices have been joined: equal places give the same.
+std::vector<std::array<Vec2, 3>> corners_of(const Soup& soup) {
+  std::vector<std::array<Vec2, 3>> corners;
+  if (std::ranges::none_of(soup.uv, [](const Vec2& uv) { return uv.allFinite(); })) return corners;
+  std::size_t removed = 0;
+  for (const mesh::Triangle& t : make_topology(soup, removed).triangles)
+    corners.push_back({soup.uv[t[0]], soup.uv[t[1]], soup.uv[t[2]]});
+  return corners;
+}
+
 }  // namespace
 
-LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& where) {
+LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& where,
+                     const std::string& object) {
   const Source source{file, where};
-  Soup soup = from_bytes(source.read([&] { return to_bytes(read_soup(file)); }));
+  Soup soup = from_bytes(source.read([&] { return to_bytes(read_soup(file, object)); }));
   if (soup.triangles.empty() && soup.quads.empty()) source.fail("expected faces, got none");
   for (Vec3& x : soup.positions) {
     x *= scale;
@@ -69,6 +80,7 @@ LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std:
   }
 
   LoadedMesh result;
+  result.uv = corners_of(soup);
   result.joined_vertices = join_vertices(soup);
   result.mesh.topology = make_topology(soup, result.removed_triangles);
   if (result.mesh.topology.triangles.empty()) source.fail("expected faces with an area, got none");

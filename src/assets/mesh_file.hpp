@@ -1,9 +1,11 @@
 // Static meshes from files, through assimp.
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "assets/source.hpp"
 #include "mesh/mesh.hpp"
@@ -12,16 +14,20 @@ namespace weft::assets {
 
 /// A mesh and what was done to it.
 struct LoadedMesh {
-  mesh::Mesh mesh;                    ///< metres; no uv. Quads stay quads if the file holds nothing else
+  mesh::Mesh mesh;  ///< metres; no uv. Quads stay quads if the file holds nothing else
+  /// Of the corners of each triangle, as the file has it, v upward: islands of one vertex differ. NaN where a part of
+  /// the file has none; empty where all have none.
+  std::vector<std::array<Vec2, 3>> uv;
   std::size_t removed_triangles = 0;  ///< without area: a corner named twice, or all corners on a line
   std::size_t joined_vertices = 0;    ///< copies at the same place, as made by seams of texture or normals
 };
 
-/// Reads every surface of the file (OBJ, PLY, STL, glTF and what else assimp knows), all meshes merged with the
-/// transforms of their nodes, in the bind pose where the file is animated. Positions are multiplied by `scale` (metres
-/// per unit of the file). Points and lines are ignored; equal positions become one vertex, so that a closed body is
-/// watertight. `where` names what refers to the file, such as "scenes/a.toml:12:8: obstacle.chair". Throws
-/// Error(asset_unreadable) with `where`, the file and assimp's own words.
-LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& where);
+/// Reads every surface of the file, or those named `object` (OBJ, PLY, STL, glTF and what else assimp knows), all
+/// meshes merged with the transforms of their nodes, in the bind pose where the file is animated. Positions are
+/// multiplied by `scale` (metres per unit of the file). Points and lines are ignored; equal positions become one
+/// vertex, so that a closed body is watertight. `where` names what refers to the file, such as "scenes/a.toml:12:8:
+/// obstacle.chair". Throws Error(asset_unreadable) with `where`, the file and assimp's own words.
+LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& where,
+                     const std::string& object = {});
 
 }  // namespace weft::assets

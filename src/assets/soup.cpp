@@ -12,6 +12,7 @@
 #include <iterator>
 #include <limits>
 #include <optional>
+#include <set>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -28,6 +29,7 @@ using Transform = Eigen::Matrix4d;
 /// Faces flatter than this (area by longest side squared) count as having no area: their normal is rounding noise of
 /// the single precision that assimp reads with.
 constexpr double kFlatFace = 1e-7;
+constexpr double kNoUv = std::numeric_limits<double>::quiet_NaN();
 
 bool has_area(const mesh::Triangle& t, const std::vector<Vec3>& x) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return x[t[k]]; };
@@ -52,6 +54,8 @@ void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
     const aiVector3D& x = part.mVertices[v];
     const Eigen::Vector4d world = to_world * Eigen::Vector4d(x.x, x.y, x.z, 1);
     soup.positions.push_back(world.head<3>());
+    soup.uv.emplace_back(kNoUv, kNoUv);
+    if (part.HasTextureCoords(0)) soup.uv.back() = {part.mTextureCoords[0][v].x, part.mTextureCoords[0][v].y};
   }
   // A mirroring transform turns faces inside out; reverse them to keep their outside.
   const bool mirrored = to_world.topLeftCorner<3, 3>().determinant() < 0;
@@ -116,7 +120,7 @@ void append_face(Soup& soup, std::span<const Index> corners) {
   }
 }
 
-Soup read_soup(const std::filesystem::path& file) {
+Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   Assimp::Importer importer;
   const std::optional<std::string> ply = shielded_ply(file);
   const aiScene* scene =
@@ -124,18 +128,30 @@ Soup read_soup(const std::filesystem::path& file) {
           : importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
   if (scene == nullptr || scene->mRootNode == nullptr) throw std::runtime_error(importer.GetErrorString());
   Soup soup;
+  std::set<std::string> names;
   // The walk keeps its own stack: files can nest nodes deeper than ours is.
   const aiNode* root = scene->mRootNode;
   std::vector<std::pair<const aiNode*, Transform>> stack{{root, to_eigen(root->mTransformation)}};
   while (!stack.empty()) {
     const auto [node, to_world] = stack.back();
     stack.pop_back();
-    for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) append_mesh(soup, *scene->mMeshes[m], to_world);
+    for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) {
+      const aiMesh& part = *scene->mMeshes[m];
+      names.insert({node->mName.C_Str(), part.mName.C_Str()});
+      if (object.empty() || object == node->mName.C_Str() || object == part.mName.C_Str())
+        append_mesh(soup, part, to_world);
+    }
     for (unsigned c = node->mNumChildren; c-- > 0;) {
       const aiNode* child = node->mChildren[c];
       // The reader of RAW files leaves gaps.
       if (child != nullptr) stack.emplace_back(child, to_world * to_eigen(child->mTransformation));
     }
+  }
+  if (!object.empty() && soup.positions.empty()) {
+    names.erase("");
+    throw std::runtime_error(
+        fmt::format("expected a mesh or node named \"{}\", got {}", object,
+                    names.empty() ? "none with a name" : fmt::format("{}", fmt::join(names, ", "))));
   }
   return soup;
 }
@@ -156,6 +172,7 @@ mesh::Topology make_topology(const Soup& soup, std::size_t& removed_triangles) {
 std::string to_bytes(const Soup& soup) {
   std::string bytes;
   put(bytes, soup.positions);
+  put(bytes, soup.uv);
   put(bytes, soup.triangles);
   put(bytes, soup.quads);
   return bytes;
@@ -164,6 +181,7 @@ std::string to_bytes(const Soup& soup) {
 Soup from_bytes(std::string_view bytes) {
   Soup soup;
   take(bytes, soup.positions);
+  take(bytes, soup.uv);
   take(bytes, soup.triangles);
   take(bytes, soup.quads);
   return soup;

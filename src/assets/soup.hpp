@@ -16,14 +16,16 @@ namespace weft::assets {
 /// Triangles and quads over vertices that may repeat; all indices are in range.
 struct Soup {
   std::vector<Vec3> positions;  ///< in the unit of the file
+  std::vector<Vec2> uv;         ///< per position, v upward; NaN where its mesh has none
   std::vector<mesh::Triangle> triangles;
   std::vector<mesh::Quad> quads;
 };
 
-/// Reads all meshes of a file with the transforms of their nodes. Larger polygons are triangulated, points and lines
-/// ignored. Throws std::runtime_error with assimp's words. Damaged files can crash assimp or keep it busy for ever:
+/// Reads the meshes of a file with the transforms of their nodes, those that are named `object`, or whose node is, or
+/// all where that is empty. Larger polygons are triangulated, points and lines ignored. Throws std::runtime_error with
+/// assimp's words, or with the names that there are. Damaged files can crash assimp or keep it busy for ever:
 /// call it through run_isolated.
-Soup read_soup(const std::filesystem::path& file);
+Soup read_soup(const std::filesystem::path& file, const std::string& object = {});
 
 /// Appends a polygon of the soup's vertices; one of more than four corners is triangulated.
 void append_face(Soup& soup, std::span<const Index> corners);

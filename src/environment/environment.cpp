@@ -16,6 +16,7 @@
 #include "core/parallel.hpp"
 #include "environment/acting.hpp"
 #include "garment/garment.hpp"
+#include "garment/uv_rest.hpp"
 #include "mesh/caps.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/quads.hpp"
@@ -106,7 +107,8 @@ void check_parts(const scene::Cloth& cloth, const ClothObject& object, const std
 /// are in fractions across and up.
 void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
                  ClothObject& object) {
-  const garment::Pattern pattern = garment::load_pattern(cloth.file, where);
+  garment::Pattern pattern = garment::load_pattern(cloth.file, where);
+  pattern.scale_by(cloth.scale);
   const garment::Wearer* wearer = pattern.wraps() ? &wearers.of(cloth, where) : nullptr;
   garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);
   const Box3 box = mesh::bounding_box(garment.sheet.rest);
@@ -125,8 +127,9 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
 }
 
 /// The triangles of a cloth's file. Throws Error(asset_unreadable) where they are no sheet.
-mesh::Mesh load_sheet(const scene::Cloth& cloth, const std::string& where) {
-  mesh::Mesh mesh = assets::load_mesh(cloth.file, cloth.scale, where).mesh;
+assets::LoadedMesh load_sheet(const scene::Cloth& cloth, const std::string& where) {
+  assets::LoadedMesh loaded = assets::load_mesh(cloth.file, cloth.scale, where, cloth.object);
+  mesh::Mesh& mesh = loaded.mesh;
   mesh.topology.quads.clear();
   const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
   if (!report.manifold())
@@ -135,7 +138,65 @@ mesh::Mesh load_sheet(const scene::Cloth& cloth, const std::string& where) {
         "{}: mesh file {}: expected edges of one or two triangles that face the same way, got {} of more and {} "
         "that face both ways",
         where, cloth.file.string(), report.non_manifold.size(), report.misoriented.size());
-  return mesh;
+  return loaded;
+}
+
+/// Whether panels that UVs are make a cloth; says what is chosen and why, warns of what does not fit, and refuses what
+/// the scene asks for where there is no such thing.
+bool takes_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std::string& where, ClothObject& object) {
+  constexpr double kMostUnusable = 0.1;  // share of the area
+  const std::string in_file = fmt::format("{}: mesh file {}", where, cloth.file.string());
+  const bool asked = cloth.rest == scene::ClothRest::uv;
+  if (rest.islands == 0) {
+    if (asked)
+      throw Error(ExitCode::asset_unreadable, "{}: expected texture coordinates (UVs) for rest = \"uv\", got none",
+                  in_file);
+    object.rest_from = "the mesh: it has no UVs";
+    return false;
+  }
+  if (asked && rest.unusable_area > kMostUnusable)
+    throw Error(ExitCode::asset_unreadable,
+                "{}: expected UVs in which triangles have an area, for rest = \"uv\", got {} of {} without, {:.0f} % "
+                "of the surface",
+                in_file, rest.unusable, rest.material.size(), 100 * rest.unusable_area);
+  const bool takes = asked || (cloth.rest == scene::ClothRest::automatic && rest.like_panels());
+  object.rest_from = fmt::format("{}{}: {}", takes ? "UVs" : "the mesh",
+                                 cloth.rest != scene::ClothRest::automatic ? ""
+                                 : takes                                   ? ", which fit it as panels do"
+                                                                           : ", which its UVs do not fit as panels do",
+                                 rest.describe());
+  if (!takes) return false;
+  constexpr double kFarOff = 0.25;  // cloth that was draped is off its panels by less
+  if (!rest.like_panels())
+    object.warnings.push_back(
+        fmt::format("{}: its UVs may not be the pattern that it was sewn from: {}; rest = \"mesh\" takes its own shape",
+                    in_file, rest.describe()));
+  else if (rest.most_stretch > kFarOff && cloth.sewing == 0)
+    object.warnings.push_back(fmt::format("{}: it is far off its UVs: {}; sewing = 1 lets it go there in a second",
+                                          in_file, rest.describe()));
+  if (rest.unusable > 0)
+    object.warnings.push_back(fmt::format("{}: {} of {} triangles have no area in its UVs and keep that of the mesh",
+                                          in_file, rest.unusable, rest.material.size()));
+  return true;
+}
+
+/// Cloth from a file: its start is the mesh, its shape at rest that too, or the flat panels that its UVs are.
+void use_mesh_file(const scene::Cloth& cloth, const std::string& where, ClothObject& object) {
+  assets::LoadedMesh loaded = load_sheet(cloth, where);
+  garment::UvRest rest;
+  if (cloth.rest != scene::ClothRest::mesh) rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale);
+  if (cloth.rest == scene::ClothRest::mesh) object.rest_from = "the mesh: the scene says so";
+  const bool panels = cloth.rest != scene::ClothRest::mesh && takes_uv(cloth, rest, where, object);
+  use_triangles(std::move(loaded.mesh), object);
+  if (panels) {
+    object.sheet.material = std::move(rest.material);
+    object.sheet.sewn = true;
+    object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
+    for (std::size_t t = object.sheet.triangles.size(); t-- > 0;)
+      for (std::size_t k = 0; k < 3; ++k)
+        object.mesh.uv[static_cast<std::size_t>(object.sheet.triangles[t][k])] = object.sheet.material[t][k];
+  }
+  check_parts(cloth, object, where);
 }
 
 // How many times the least height of a cloth's triangles, or the least spacing of its quads, the longest edge may be
@@ -206,8 +267,7 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wea
       use_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::crossed), object);
       break;
     case scene::ClothShape::mesh:
-      use_triangles(load_sheet(cloth, where), object);
-      check_parts(cloth, object, where);
+      use_mesh_file(cloth, where, object);
       break;
     case scene::ClothShape::pattern:
       use_pattern(scene, cloth, where, wearers, object);
@@ -355,7 +415,10 @@ mesh::Grid grid_of(const scene::Cloth& cloth) {
 
 Environment::Environment(const scene::Scene& scene) {
   Wearers wearers(scene);
-  for (const scene::Cloth& cloth : scene.cloths) cloths.push_back(make_cloth(scene, cloth, wearers));
+  for (const scene::Cloth& cloth : scene.cloths) {
+    cloths.push_back(make_cloth(scene, cloth, wearers));
+    for (const std::string& warning : cloths.back().warnings) log::warn(warning);
+  }
   for (const scene::Obstacle& obstacle : scene.obstacles) {
     bodies.push_back(make_obstacle(scene, obstacle));
     movers_.push_back(std::make_shared<const Mover>(Track(obstacle.motion, obstacle.pose)));

@@ -136,6 +136,8 @@ void check_cloths(const Scene& scene, Findings& findings) {
                       fmt::format("expected at most {} in all cloths together, got {}", kMaxParticles, particles));
     }
     check_wearer(scene, cloth, path, findings);
+    if (cloth.rest == ClothRest::mesh && cloth.uv_scale)
+      findings.report(path + ".uv_scale", "expected none beside rest = \"mesh\", got one");
     for (std::size_t p = 0; p < cloth.pins.size(); ++p) {
       check_pin(scene, cloth, cloth.pins[p], findings.entry(path + ".pin", p), findings);
     }

@@ -128,16 +128,30 @@ void cloth_shape_rows(TableBuilder<Cloth>& rows) {
                                    "of the particles' spacing along weft and warp: the last one, times the first; each "
                                    "is the same multiple of the one before")
                            .single_fills_all());
-  rows.variant("mesh", Rows()
-                           .plain(Type::file, "file", &Cloth::file,
-                                  "mesh file of the rest shape, flat or not, with its weft along x; relative paths "
-                                  "start at the scene's folder")
-                           .need(Need::required)
-                           .number("scale", &Cloth::scale, above(0, 1e6), "", "factor on all lengths of the file"));
+  rows.variant("mesh",
+               Rows()
+                   .plain(Type::file, "file", &Cloth::file,
+                          "mesh file, which the cloth starts as; relative paths start at the scene's folder")
+                   .need(Need::required)
+                   .number("scale", &Cloth::scale, above(0, 1e6), "", "factor on all lengths of the file")
+                   .plain(Type::text, "object", &Cloth::object, "name of the mesh, or its node, in the file")
+                   .by_default("all that the file holds")
+                   .choice("rest", &Cloth::rest, {"auto", "mesh", "uv"},
+                           "shape at rest: that of the mesh, with its weft along x, or of its UVs, the flat "
+                           "panels that it was sewn from; auto takes UVs that fit the mesh as panels do")
+                   .vector("uv_scale", &Cloth::uv_scale, {"u", "v"}, above(0, 1e6), "m", "length of a unit of the UVs")
+                   .single_fills_all()
+                   .by_default("measured against the mesh")
+                   .number("sewing", &Cloth::sewing, within(0, 1000), "s",
+                           "time in which it goes, without weight, from the mesh to the measures of its UVs")
+                   .by_default("0"));
   rows.variant("pattern", Rows()
                               .plain(Type::file, "file", &Cloth::file,
-                                     "sewing pattern (TOML); relative paths start at the scene's folder")
+                                     "sewing pattern (TOML), or a specification of GarmentCode (JSON); relative paths "
+                                     "start at the scene's folder")
                               .need(Need::required)
+                              .number("scale", &Cloth::scale, above(0, 1000), "",
+                                      "factor on all lengths of the pattern, heights of its panels among them")
                               .number("edge_length", &Cloth::edge_length, within(1e-4, 10), "m", "of the mesh")
                               .plain(Type::text, "wearer", &Cloth::wearer,
                                      "character that panels are bent around whose pattern names its parts")
@@ -151,8 +165,14 @@ const Table& cloth_rules() {
       TableBuilder<Cloth>("A sheet of cloth: a rectangle, the shape of a mesh file, or sewn from a pattern.")
           .plain(Type::name, "name", &Cloth::name, "unlike that of any other object")
           .need(Need::required)
-          .choice("shape", &Cloth::shape, {"quads", "aligned_triangles", "crossed_triangles", "mesh", "pattern"},
-                  "a rectangle of quads or of triangles, the triangles of a mesh file, or a sewing pattern")
+          .choice_by(
+              "shape", {"quads", "aligned_triangles", "crossed_triangles", "mesh", "pattern"},
+              "a rectangle of quads or of triangles, the triangles of a mesh file, or a sewing pattern",
+              [](Cloth& c) { return static_cast<std::size_t>(c.shape); },
+              [](Cloth& c, std::size_t index) {
+                c.shape = static_cast<ClothShape>(index);
+                if (c.shape == ClothShape::mesh) c.sewing = 0;  // it was sewn elsewhere
+              })
           .selects()
           .with(cloth_shape_rows)
           .with([](auto& rows) {

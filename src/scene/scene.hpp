@@ -177,6 +177,7 @@ struct Weight : ClothPart {
 
 enum class ClothStart { as_given, untangle };
 enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern };
+enum class ClothRest { automatic, mesh, uv };
 
 struct Cloth {
   std::string name;
@@ -185,14 +186,17 @@ struct Cloth {
   int particles_weft = 41, particles_warp = 41;  ///< likewise; crossed triangles have one more in each cell
   Vec2 grading{1, 1};                            ///< likewise: last spacing of particles over the first
   std::filesystem::path file;                    ///< of a mesh or sewing pattern; absolute after checking
-  double scale = 1;                              ///< of a mesh: metres per unit of the file
-  double edge_length = 0.02;                     ///< of the mesh of a pattern [m]
-  std::string wearer;                            ///< character that a pattern is put on; empty: the only one
-  double sewing = 1;         ///< time in which a pattern goes from its start to its own measures [s]
-  int line = 0, column = 0;  ///< where the scene names it, for errors of its file
-  Pose pose;                 ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
-  Vec3 velocity{0, 0, 0};    ///< at the start [m/s]
-  Vec2 start_scale{1, 1};    ///< lengths along weft and warp at the start, times those at rest
+  double scale = 1;    ///< of a mesh: metres per unit of the file; of a pattern: factor on its lengths
+  std::string object;  ///< of a mesh: name of what the file has it as; empty: all that it holds
+  ClothRest rest = ClothRest::automatic;  ///< what the shape at rest of a mesh is taken from
+  std::optional<Vec2> uv_scale;           ///< metres per unit of its UVs; absent: measured against the mesh
+  double edge_length = 0.02;              ///< of the mesh of a pattern [m]
+  std::string wearer;                     ///< character that a pattern is put on; empty: the only one
+  double sewing = 1;                      ///< time in which what has flat panels goes to their measures [s]
+  int line = 0, column = 0;               ///< where the scene names it, for errors of its file
+  Pose pose;               ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
+  Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
+  Vec2 start_scale{1, 1};  ///< lengths along weft and warp at the start, times those at rest
   ClothStart start = ClothStart::as_given;  ///< where it touches or crosses something
   std::vector<std::string> over;            ///< cloths that are put on before it, and stay inside of it
   double start_noise = 0;                   ///< most that a particle is off its place at the start, along each axis [m]

@@ -21,8 +21,9 @@ constexpr double kRounding = 1e-9;
 bool is_alone(const scene::Scene& scene) {
   const auto moves = [](const auto& track) { return track.keys.size() > 1; };
   for (const scene::Cloth& cloth : scene.cloths) {
-    if (cloth.shape == scene::ClothShape::pattern) return false;  // sewing drives it
-    if (!cloth.over.empty()) return false;                        // comes later
+    const bool sewn = cloth.shape == scene::ClothShape::pattern || cloth.shape == scene::ClothShape::mesh;
+    if (sewn && cloth.sewing > 0) return false;  // that drives it
+    if (!cloth.over.empty()) return false;       // comes later
     for (const scene::Pin& pin : cloth.pins)
       if (moves(pin.motion) || !pin.follow.empty()) return false;
   }

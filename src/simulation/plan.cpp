@@ -5,6 +5,7 @@
 #include <array>
 
 #include "environment/acting.hpp"
+#include "environment/environment.hpp"
 #include "scene/layers.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
@@ -108,10 +109,23 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
                        "no obstacle moves"));
 }
 
+// Only the files of meshes tell what their shape at rest is.
+void plan_rest_shapes(const Scene& scene, std::vector<PlanItem>& items) {
+  environment::Wearers wearers(scene);
+  for (const Cloth& cloth : scene.cloths)
+    if (cloth.shape == scene::ClothShape::mesh)
+      items.push_back({fmt::format("preparation: rest shape of {}", cloth.name), true,
+                       environment::make_cloth(scene, cloth, wearers).rest_from});
+}
+
 void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {
+  plan_rest_shapes(scene, items);
   items.push_back(of_cloths(
-      "preparation: sewing", scene, [](const Cloth& c) { return c.shape == scene::ClothShape::pattern; },
-      "no cloth is sewn from a pattern"));
+      "preparation: sewing", scene,
+      [](const Cloth& c) {
+        return c.shape == scene::ClothShape::pattern || (c.shape == scene::ClothShape::mesh && c.sewing > 0);
+      },
+      "no cloth is sewn from flat panels"));
   items.push_back(of_cloths(
       "preparation: untangling", scene, [](const Cloth& c) { return untangles(c); }, "every cloth starts as given"));
   const int frames = scene.preroll_frames();

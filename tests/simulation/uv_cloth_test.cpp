@@ -1,0 +1,105 @@
+// Garments from mesh files whose UVs are their patterns.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+
+#include "environment/environment.hpp"
+#include "simulation/scenes.hpp"
+#include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Seven pleats of a sheet of 0.28 m by 0.12 m, standing 45° against each other, of two islands that meet in the middle:
+// the right one is drawn from behind, elsewhere.
+constexpr int kWide = 28, kHigh = 12;
+constexpr double kCell = 0.01;
+
+class UvCloth : public support::TestFolder {
+ protected:
+  void write_sheet(bool with_uv) const {
+    std::ofstream out(folder_ / "pleats.obj");
+    out.precision(12);
+    out << "o pleats\n";
+    double x = 0, z = 0;
+    for (int i = 0; i <= kWide; ++i) {
+      for (int j = 0; j <= kHigh; ++j) out << "v " << x << ' ' << kCell * j << ' ' << z << '\n';
+      const double slope = i / 2 % 2 == 0 ? 1 : -1;
+      x += std::sqrt(0.5) * kCell, z += slope * std::sqrt(0.5) * kCell;
+    }
+    for (const bool right : {false, true})
+      for (int i = 0; i <= kWide / 2; ++i)
+        for (int j = 0; j <= kHigh; ++j)
+          out << "vt " << (right ? 2 - kCell * i : kCell * i) << ' ' << kCell * j << '\n';
+    for (int i = 0; i < kWide; ++i)
+      for (int j = 0; j < kHigh; ++j) {
+        const bool right = i >= kWide / 2;
+        const auto corner = [&](int column, int row) {
+          const int v = 1 + row + (kHigh + 1) * column;
+          const int vt = right ? v + kHigh + 1 : v;  // the middle has two
+          return with_uv ? fmt::format(" {}/{}", v, vt) : fmt::format(" {}", v);
+        };
+        out << 'f' << corner(i, j) << corner(i + 1, j) << corner(i + 1, j + 1) << '\n';
+        out << 'f' << corner(i, j) << corner(i + 1, j + 1) << corner(i, j + 1) << '\n';
+      }
+  }
+  scene::Scene scene(const std::string& keys) const {
+    return support::scene_of_text(
+        "[time]\nduration = 1\n[physics]\ngravity = [0, 0, 0]\nair_density = 0\n[contact]\nself = false\n"
+        "[[cloth]]\nname = 'pleats'\nshape = 'mesh'\nmaterial = { fabric = 'cotton', bend_friction = 0 }\nfile = '" +
+        (folder_ / "pleats.obj").string() + "'\n" + keys);
+  }
+  /// Width across the pleats at the end [m].
+  double width(const std::string& keys) const {
+    Simulation simulation(scene(keys));
+    for (int k = 0; k < 25; ++k) simulation.advance();
+    double low = 1, high = -1;
+    for (const Vec3& x : testing::sheet_of(simulation.snapshot()))
+      low = std::min(low, x.x()), high = std::max(high, x.x());
+    return high - low;
+  }
+};
+
+TEST_F(UvCloth, PleatsOpenWhereTheUvsAreAFlatSheetAndStayWhereTheMeshIsItsShape) {
+  write_sheet(true);
+  const double pleated = std::sqrt(0.5) * kCell * kWide, flat = kCell * kWide;
+  EXPECT_NEAR(width("rest = 'mesh'\n"), pleated, 0.01 * pleated);
+  const double opened = width("");  // found by itself
+  EXPECT_GT(opened, pleated + 0.7 * (flat - pleated));
+  EXPECT_LT(opened, 1.01 * flat);
+}
+
+TEST_F(UvCloth, IslandsThatMeetAreOneCloth) {
+  write_sheet(true);
+  const environment::Environment made(scene("rest = 'uv'\n"));
+  const environment::ClothObject& cloth = made.cloths[0];
+  EXPECT_EQ(cloth.start.size(), std::size_t{(kWide + 1) * (kHigh + 1)});
+  EXPECT_TRUE(cloth.sheet.sewn);
+  EXPECT_NE(cloth.rest_from.find("UVs: 2 islands, 1 unit = 1 m (metres)"), std::string::npos) << cloth.rest_from;
+  EXPECT_TRUE(cloth.warnings.empty());
+  // To the single precision of files in assimp.
+  for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t)
+    EXPECT_NEAR(mesh::rest_area(cloth.sheet, t), 0.5 * kCell * kCell, 1e-6 * kCell) << t;
+}
+
+TEST_F(UvCloth, WhatDoesNotFitIsSaid) {
+  write_sheet(true);
+  const auto first_warning = [&](const std::string& keys) {
+    const environment::Environment made(scene(keys));
+    return made.cloths[0].warnings.empty() ? made.cloths[0].rest_from : made.cloths[0].warnings[0];
+  };
+  EXPECT_NE(first_warning("rest = 'uv'\nuv_scale = 2\n").find("may not be the pattern"), std::string::npos);
+  EXPECT_NE(first_warning("uv_scale = 2\n").find("the mesh, which its UVs do not fit"), std::string::npos);
+  support::expect_error(ExitCode::asset_unreadable, "expected a mesh or node named \"sheet\", got pleats",
+                        [&] { environment::Environment made(scene("object = 'sheet'\n")); });
+  EXPECT_EQ(first_warning("object = 'pleats'\nrest = 'mesh'\n"), "the mesh: the scene says so");
+  write_sheet(false);
+  EXPECT_EQ(first_warning(""), "the mesh: it has no UVs");
+  support::expect_error(ExitCode::asset_unreadable, "expected texture coordinates (UVs) for rest = \"uv\", got none",
+                        [&] { environment::Environment made(scene("rest = 'uv'\n")); });
+}
+
+}  // namespace
+}  // namespace weft::simulation
