@@ -20,7 +20,7 @@ name = "sheet"
 size = [1.0, 1.0]
 particles = [64, 64]           # 4,096
 position = [0.003, 0.002, 0.45]  # off the middle, so that no symmetry holds folds up
-material = { fabric = "cotton", friction = 0.3 }
+material = { fabric = "canvas", friction = 0.3 }
 
 [cloth.look]
 color = [0.20, 0.42, 0.52]

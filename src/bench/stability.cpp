@@ -113,8 +113,8 @@ Outcome try_scene(const scene::Scene& scene, int frames, const EnergyLimit& limi
 
 namespace {
 
-// A square sheet of cotton that hangs from two corners [m].
-constexpr double kWidth = 0.5;
+// A square sheet that hangs from two corners [m, kg/m²].
+constexpr double kWidth = 0.5, kDensity = 0.2;
 constexpr int kParticles = 11;
 
 scene::Scene swing(scene::Integrator integrator, double stiffness, double step) {
@@ -128,6 +128,8 @@ scene::Scene swing(scene::Integrator integrator, double stiffness, double step) 
   cloth.size = {kWidth, kWidth};
   cloth.particles_weft = cloth.particles_warp = kParticles;
   cloth.material.stretch_weft = cloth.material.stretch_warp = stiffness;
+  cloth.material.density = kDensity;
+  cloth.material.max_stretch = 0;  // the axis of the map is all that resists
   scene::Pin left, right;
   left.low = left.high = {0, 1};
   right.low = right.high = {1, 1};
@@ -144,7 +146,7 @@ double swing_period() {
 
 double stiffest_period(double stiffness) {
   const double spacing = kWidth / (kParticles - 1);
-  return std::numbers::pi * spacing * std::sqrt(scene::Material{}.density / stiffness);
+  return std::numbers::pi * spacing * std::sqrt(kDensity / stiffness);
 }
 
 std::vector<MapCell> stability_map(const std::function<void(const MapCell&)>& each) {

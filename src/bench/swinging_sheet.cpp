@@ -27,7 +27,9 @@ rotation = [45, 0, 0]
 # Smooth forces: waves that steps of a few milliseconds follow and viscosity takes away, too stiff to buckle in folds
 # that tell one method from another, no dry friction of bending.
 [cloth.material]
+density = 0.2
 stretch = 200
+max_stretch = 0
 shear = 60
 bend = 1e-3
 stretch_viscosity = 0.2

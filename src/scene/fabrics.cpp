@@ -1,32 +1,42 @@
 #include "scene/fabrics.hpp"
 
 #include <array>
-#include <iterator>
+#include <cmath>
 
-// Conversions. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
-//   bending     1 gf·cm²/cm    = 9.807e-5 N·m
+// Units. KES (Kawabata, "The Standardization and Analysis of Hand Evaluation", 2nd ed., 1980):
+//   bending     1 gf·cm²/cm    = 98.07 µN·m; 2HB in gf·cm/cm = 9.807 mN
 //   shear       1 gf/(cm·deg)  = 56.2 N/m per radian; our mu is twice the shear modulus
-//   extension   EMT is the strain at 500 gf/cm = 490.3 N/m, so the secant stiffness is 490.3 N/m / EMT
+//   extension   EMT is the strain at 500 gf/cm = 490.3 N/m; its linearity LT is 2 / (n + 1) where force goes by eⁿ
 // FAST (Minazio, "FAST – Fabric Assurance by Simple Testing", Int. J. Clothing Sci. Tech. 7(2/3), 1995):
-//   bending     B = 9.81e-6 W c³ µN·m, W in g/m², c the bending length in mm
 //   shear       G = 123 / EB5 N/m, EB5 the bias extension in percent
-//   extension   E100 is the strain at 100 gf/cm = 98.07 N/m
-// Cantilever rule (Peirce, "The 'Handle' of Cloth as a Measurable Quantity", J. Textile Inst. 21, 1930): a strip that
-// overhangs by two bending lengths c droops to 41.5°, and B = density * g * c³.
-// Drape coefficients (Cusick's test): where no measured bending was at hand B was first taken from one, treating the
-// overhang as a strip. A whole disc folds and is much stiffer: simulated (tests/validation/cusick_slow.cpp), silk came
-// to 65 and leather to 87 %, and the B of both is now a quarter of that, chosen so that the simulated drape is in the
-// band. Cotton, simulated 87 %, was left as it is, a firm sheeting. The bands of silk, cotton and denim are the
-// calibration targets of ZOZO's ppf-contact-solver; that of leather is measured (see its note).
+//   extension   E5, E20 and E100 are the strains at 4.9, 19.6 and 98.07 N/m
 //
-// How far the sources go: only denim and leather rest on published measurements that we have read, in the table and the
-// abstract named in their notes. No published figures stand behind cotton, silk and jersey, and none that is reviewed
-// behind wool. Kawabata, Minazio and Peirce are cited for the methods, not for figures of any fabric.
+// From measurements to a Material, for all fabrics:
+//   stretch      the secant up to 19.6 N/m, as loads of worn and hanging cloth are. Force goes by e²: LT is then 2/3,
+//                where 0.50 to 0.60 (suitings) and 0.66 to 0.78 (denims) were measured, and the secant 98.07 N/m / EMT.
+//   max_stretch  such that force at the mean EMT of weft and warp is the 490 N/m measured there, by `stretch` and the
+//                law of forces/stretch_limit.hpp, whose threads take 4 kN/m at the limit.
+//   shear        2 G
+//   bend         √(weft · warp): bending is isotropic here
+//   bend_friction   HB
+//   Rounded to two digits, since none of them is known so well.
+//
+// What was not measured is estimated by fibre, weave and weight:
+//   bend         130 µN·m (density / 1 kg/m²)^1.35: within 13 % the medians of 251 fabrics in nine classes of weight
+//                from 30 to 490 g/m², by cantilever (data set of Feng et al., "Learning-Based Bending Stiffness
+//                Parameter Estimation by a Drape Tester", 2022). A fabric of more or less hand than usual takes another
+//                quantile of its class (Hand). Warp over weft is 1.4 there in the median.
+//   hysteresis   cotton 50, wool 25, filaments 18 1/m; measured: 53 and 43 of broadcloth and denim, 25 of a tropical,
+//                19 and 18 of polyesters
+//   shear        cotton 65, wool 26, filaments and knits 30 N/m; measured of plain weaves: 65, 24 to 26, 30. What has
+//                no threads: an isotropic sheet with Poisson's ratio 0.3
+//   extension    weaves 8 and 5 % along weft and warp (measured: 5 to 13, 4 to 10), knits 60 and 25 %, others 12 % and
+//                linear, since nothing is crimped
+//   thickness    2.2 mm for 1 kg/m²; measured: 1.7 to 4
 //
 // Chosen by us for every fabric: friction (cloth on cloth is usually given as 0.2 to 0.6), contact thickness (several
-// times the fabric's own, which is below what contact can resolve), drag, and the damping of bending: a viscosity, and
-// what KES calls hysteresis, the dry friction between yarns. Stretch and shear have none: implicit Euler already damps
-// them like a viscosity of half a time step times the stiffness.
+// times the fabric's own, which is below what contact can resolve), drag, and the viscosity of bending. Stretch and
+// shear have none: implicit Euler already damps them like a viscosity of half a time step times the stiffness.
 
 namespace weft::scene {
 
@@ -34,62 +44,281 @@ namespace {
 
 // Bending viscosity over bending stiffness [s]: yarns rubbing on each other damp a fold within about this time.
 constexpr double kBendingTime = 0.1;
-// Bending friction over bending stiffness [1/m], the curvature that a fold may keep for ever: a radius of 25 cm. KES
-// figures of woven fabrics, with 2HB about half of B in gf·cm, are several times that.
-constexpr double kResidualCurvature = 4;
 
-struct Figures {
-  double density, stretch_weft, stretch_warp, shear, bend, thickness, friction;
+enum class Fibre { cotton, wool, filament };
+enum class Weave { woven, knitted, none };
+/// How stiff for its weight: the quantile of the measured fabrics, 10, 25, 50, 75 and 90 %.
+enum class Hand { limp, soft, usual, firm, stiff };
+
+using Measured = std::optional<double>;
+using Pair = std::optional<std::pair<double, double>>;
+
+/// A fabric as it is published; what is left out is estimated.
+struct Row {
+  const char* name;
+  const char* what;
+  const char* source;
+  Figure density;  // [g/m²]
+  Fibre fibre = Fibre::cotton;
+  Hand hand = Hand::usual;
+  Weave weave = Weave::woven;
+  Measured thickness = {};   // [mm]
+  Pair extension = {};       // EMT of weft and warp [%]
+  Measured shear = {};       // G [N/m]
+  Pair bend = {};            // B of weft and warp, or twice what is given for both together [µN·m]
+  Measured hysteresis = {};  // HB / B [1/m]
+  Pair drape = {};           // least and most [%]
+  double contact = 2;        // contact thickness [mm]
+  double friction = 0.3;
 };
 
-Fabric fabric(const char* name, const Figures& figures, const char* note) {
+constexpr const char* kMatsudaira =
+    "Matsudaira et al., J. Textile Eng. 61(6), 2015, tables 1 and 2, as transcribed in 3fold-motion-engine";
+constexpr const char* kNone = "none found: all estimated";
+
+// Order as in the documents: cotton and its kin, wool, filaments, others.
+constexpr Row kRows[] = {
+    {.name = "cotton",
+     .what = "light plain weave",
+     .source =
+         "Penava et al., 2014, tables 1 and 3, as transcribed in Codim-IPC; drape: one plain weave with 18.5 to 32 "
+         "picks/cm, VaT 2018(1), and Gan et al., 1991",
+     .density = {150},
+     .thickness = 0.318,
+     .extension = {{12.3, 4.7}},
+     .shear = 65,
+     .drape = {{48, 72}}},
+    {.name = "poplin",
+     .what = "cotton broadcloth",
+     .source = kMatsudaira,
+     .density = {124},
+     .thickness = 0.497,
+     .bend = {{11.6, 11.6}},
+     .hysteresis = 53,
+     .drape = {{82.9, 82.9}}},
+    {.name = "denim",
+     .what = "12 oz cotton twill",
+     .source = "KES of six denims, J. Textiles 2016, 4614168, table 5, without weights: EMT 4.7 to 5.7 %, G 1.5 to 3.4 "
+               "gf/(cm·deg); their B, 14 to 22 µN·m, is that of light ones",
+     .density = {400, true},
+     .hand = Hand::firm,
+     .thickness = 1.0,
+     .extension = {{5.2, 5.2}},
+     .shear = 129,
+     .hysteresis = 43,
+     .drape = {{70, 90}},
+     .contact = 2.5,
+     .friction = 0.45},
+    {.name = "canvas",
+     .what = "cotton duck",
+     .source = "weight and thickness in Codim-IPC, which names no source",
+     .density = {294},
+     .hand = Hand::stiff,
+     .thickness = 0.53,
+     .contact = 2.5,
+     .friction = 0.4},
+    {.name = "linen", .what = "shirt weight plain weave", .source = kNone, .density = {170, true}, .hand = Hand::firm},
+    {.name = "jersey",
+     .what = "single jersey knit",
+     .source = "drape: jerseys of 25 cm, VaT 2018(1), which 30 cm would lower",
+     .density = {180, true},
+     .hand = Hand::limp,
+     .weave = Weave::knitted,
+     .drape = {{18, 31}},
+     .friction = 0.35},
+    {.name = "wool",
+     .what = "tropical, a light plain worsted",
+     .source = "Matsudaira et al., as poplin; extension and shear of another, 168 g/m², from a student's FAST report "
+               "(bartleby.com, 2014): E100 5.9 and 4.6 %, B 5.0 and 5.6 µN·m",
+     .density = {163},
+     .fibre = Fibre::wool,
+     .thickness = 0.407,
+     .extension = {{13.1, 10.3}},
+     .shear = 26,
+     .bend = {{6.6, 6.6}},
+     .hysteresis = 25,
+     .drape = {{49.8, 49.8}},
+     .friction = 0.35},
+    {.name = "suiting",
+     .what = "worsted wool for suits",
+     .source = "Penava et al., as cotton; inside of the band of Fan, Yu & Hunter, 2004, table 1.12",
+     .density = {235},
+     .fibre = Fibre::wool,
+     .thickness = 0.568,
+     .extension = {{10.7, 4.0}},
+     .shear = 24,
+     .drape = {{40, 70}},
+     .friction = 0.35},
+    {.name = "felt",
+     .what = "pressed wool, 1 mm",
+     .source = kNone,
+     .density = {250, true},
+     .fibre = Fibre::wool,
+     .hand = Hand::stiff,
+     .weave = Weave::none,
+     .contact = 3,
+     .friction = 0.5},
+    {.name = "silk",
+     .what = "light dress silk",
+     .source = "weight and thickness in Codim-IPC, which names no source; drape: target of ZOZO's ppf-contact-solver",
+     .density = {83},
+     .fibre = Fibre::filament,
+     .hand = Hand::limp,
+     .thickness = 0.18,
+     .drape = {{20, 40}},
+     .contact = 1,
+     .friction = 0.2},
+    {.name = "satin",
+     .what = "five-thread satin",
+     .source = "weight and drape of those of 186 to 304 g/m², VaT 2018(1)",
+     .density = {186},
+     .fibre = Fibre::filament,
+     .hand = Hand::soft,
+     .drape = {{43, 70}},
+     .friction = 0.2},
+    {.name = "chiffon",
+     .what = "sheer plain weave, 8 momme",
+     .source = kNone,
+     .density = {35, true},
+     .fibre = Fibre::filament,
+     .hand = Hand::soft,
+     .contact = 1,
+     .friction = 0.25},
+    {.name = "polyester",
+     .what = "tropical, plain weave",
+     .source = kMatsudaira,
+     .density = {117},
+     .fibre = Fibre::filament,
+     .thickness = 0.340,
+     .bend = {{7.6, 7.6}},
+     .hysteresis = 19,
+     .drape = {{50.7, 50.7}},
+     .friction = 0.25},
+    {.name = "faille",
+     .what = "fluid ribbed polyester",
+     .source = kMatsudaira,
+     .density = {104},
+     .fibre = Fibre::filament,
+     .thickness = 0.226,
+     .bend = {{1.9, 1.9}},
+     .hysteresis = 18,
+     .drape = {{28.3, 28.3}},
+     .contact = 1,
+     .friction = 0.25},
+    {.name = "ripstop",
+     .what = "nylon of flags and parachutes",
+     .source = "weight and thickness: specification of nylon 7020 II",
+     .density = {54},
+     .fibre = Fibre::filament,
+     .hand = Hand::firm,
+     .thickness = 0.10,
+     .contact = 1,
+     .friction = 0.2},
+    {.name = "leather",
+     .what = "sheep garment leather",
+     .source = "thickness and drape: Memon et al., Materials 14(16) 4553, 2021",
+     .density = {500, true},
+     .fibre = Fibre::filament,
+     .hand = Hand::soft,
+     .weave = Weave::none,
+     .thickness = 0.80,
+     .drape = {{47.4, 69.9}},
+     .contact = 3,
+     .friction = 0.5},
+};
+
+double two_digits(double value) {
+  const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
+  // Divided where that is exact, so that 0.015 is the number that a scene would write.
+  return unit < 1 ? std::round(value / unit) / std::round(1 / unit) : std::round(value / unit) * unit;
+}
+
+template <class Value>
+constexpr Figure known_or(const std::optional<Value>& measured, double unit, double estimate) {
+  return measured ? Figure{*measured * unit, false} : Figure{estimate, true};
+}
+constexpr std::pair<Measured, Measured> both(const Pair& pair) {
+  if (!pair) return {};
+  return {pair->first, pair->second};
+}
+
+double estimated_bend(const Row& row) {
+  // 10, 25, 75 and 90 % of a class of weight over its median, about the mean of the nine.
+  constexpr std::array kQuantiles{0.3, 0.55, 1.0, 1.5, 2.3};
+  return kQuantiles[static_cast<std::size_t>(row.hand)] * 130e-6 * std::pow(1e-3 * row.density.value, 1.35);
+}
+
+double estimated_hysteresis(const Row& row) {
+  return row.fibre == Fibre::cotton ? 50 : row.fibre == Fibre::wool ? 25 : 18;
+}
+
+std::pair<double, double> estimated_extension(const Row& row) {
+  if (row.weave == Weave::none) return {0.12, 0.12};
+  return row.weave == Weave::woven ? std::pair{0.08, 0.05} : std::pair{0.60, 0.25};
+}
+
+// Up to the worn load. Threads are crimped and stretch the less the more they are pulled; what has none is linear.
+double secant(Weave weave, double extension) {
+  return (weave == Weave::none ? kExtensionLoad : std::sqrt(kExtensionLoad * kWornLoad)) / extension;
+}
+
+double estimated_shear(const Row& row) {
+  if (row.weave == Weave::none) return secant(row.weave, estimated_extension(row).first) / (2 * (1 + 0.3));
+  if (row.weave == Weave::knitted) return 30;
+  return row.fibre == Fibre::cotton ? 65 : row.fibre == Fibre::wool ? 26 : 30;
+}
+
+Measurements measurements(const Row& row) {
+  const auto [extension_weft, extension_warp] = estimated_extension(row);
+  const double bend = estimated_bend(row), skew = row.weave == Weave::woven ? std::sqrt(1.4) : 1;
+  Measurements m;
+  m.density = {1e-3 * row.density.value, row.density.estimated};
+  m.thickness = known_or(row.thickness, 1e-3, 2.2e-3 * m.density.value);
+  m.extension_weft = known_or(both(row.extension).first, 0.01, extension_weft);
+  m.extension_warp = known_or(both(row.extension).second, 0.01, extension_warp);
+  m.shear = known_or(row.shear, 1, estimated_shear(row));
+  m.bend_weft = known_or(both(row.bend).first, 1e-6, bend / skew);
+  m.bend_warp = known_or(both(row.bend).second, 1e-6, bend * skew);
+  m.hysteresis = known_or(row.hysteresis, 1, estimated_hysteresis(row));
+  if (row.drape) m.drape = {0.01 * row.drape->first, 0.01 * row.drape->second};
+  return m;
+}
+
+// The limit to stretch with which force at `extension` is that of KES: what `stretch` leaves of it locking threads
+// take.
+double limit_to_stretch(Weave weave, double extension) {
+  constexpr double kOnset = 0.7, kTension = 4e3;  // forces::Lock
+  const double rest = kExtensionLoad - secant(weave, extension) * extension;
+  return extension / (kOnset + (1 - kOnset) * std::cbrt(rest / kTension));
+}
+
+Fabric fabric(const Row& row) {
+  const Measurements m = measurements(row);
+  const double bend = std::sqrt(m.bend_weft.value * m.bend_warp.value);
   Material material;
-  material.fabric = name;
-  material.density = figures.density;
-  material.stretch_weft = figures.stretch_weft;
-  material.stretch_warp = figures.stretch_warp;
-  material.shear = figures.shear;
-  material.bend = figures.bend;
-  material.bend_viscosity = kBendingTime * figures.bend;
-  material.bend_friction = kResidualCurvature * figures.bend;
-  material.thickness = figures.thickness;
-  material.friction = figures.friction;
-  return {material, note};
+  material.fabric = row.name;
+  material.density = m.density.value;
+  material.stretch_weft = two_digits(secant(row.weave, m.extension_weft.value));
+  material.stretch_warp = two_digits(secant(row.weave, m.extension_warp.value));
+  material.max_stretch =
+      two_digits(limit_to_stretch(row.weave, 0.5 * (m.extension_weft.value + m.extension_warp.value)));
+  material.shear = two_digits(2 * m.shear.value);
+  material.bend = two_digits(bend);
+  material.bend_viscosity = two_digits(kBendingTime * bend);
+  material.bend_friction = two_digits(m.hysteresis.value * bend);
+  material.thickness = 1e-3 * row.contact;
+  material.friction = row.friction;
+  return {material, m, row.what, row.source};
 }
 
 }  // namespace
 
 std::span<const Fabric> fabrics() {
-  // Order: density [kg/m²], stretch weft, warp [N/m], shear mu [N/m], bend B [N·m], contact thickness [m], friction.
-  static const std::array kFabrics = {
-      Fabric{
-          Material{},
-          "firm plain sheeting; bending length 29 mm, where 20 mm would drape by 60 to 76 %; stretch at the lower end "
-          "of woven fabrics (1e3 to 1e4 N/m), which keeps time steps cheap; all chosen by us"},
-      fabric("silk", {0.07, 2000, 2000, 40, 1e-6, 0.001, 0.2},
-             "light dress silk; bending length 11 mm for a simulated drape coefficient of 20 to 40 %; the rest chosen "
-             "by us"),
-      fabric(
-          "wool", {0.22, 1700, 2100, 80, 1.2e-5, 0.002, 0.35},
-          "worsted suiting, bending length 18 mm; stretch 98.07 N/m at E100 of 5.9 and 4.6 %, measured on one wool of "
-          "168 g/m² in a student's FAST report (Fabric Assurance by Simple Testing, bartleby.com, 2014; not reviewed); "
-          "that wool has B of 5.0e-6 and 5.6e-6 N·m and G of 26 N/m, and our heavier one, chosen by us, twice the "
-          "bending and 1.5 times the shear"),
-      fabric(
-          "denim", {0.4, 5000, 5000, 250, 6e-5, 0.0025, 0.45},
-          "shear inside the KES range of six denims, 1.5 to 3.4 gf/(cm·deg) = 84 to 191 N/m (Regenerated "
-          "Cellulose-Based Denim Fabric for Tropical Regions, J. Textiles 2016, 4614168, Table 5); their bending, 0.14 "
-          "to 0.23 gf·cm²/cm = 1.4e-5 to 2.2e-5 N·m, is that of light denim and ours is three times it for a drape "
-          "coefficient of 70 to 90 %; their EMT of 4.7 to 5.7 % gives 8600 to 10400 N/m, and we took half for cheaper "
-          "time steps; density chosen by us"),
-      fabric(
-          "leather", {0.5, 4000, 4000, 600, 2.5e-5, 0.003, 0.5},
-          "sheep garment leather 0.64 to 0.96 mm thick with a drape coefficient of 47 to 70 % (Memon et al., Study on "
-          "Effect of Leather Rigidity and Thickness on Drapability of Sheep Garment Leather, Materials 14(16) 4553, "
-          "2021), bending length 17 mm for a simulated one of that; the rest chosen by us"),
-      fabric("jersey", {0.18, 200, 300, 60, 5e-6, 0.002, 0.35},
-             "single jersey knit: a tenth of the stiffness of woven fabrics; bending length 14 mm; all chosen by us"),
-  };
+  static const std::vector<Fabric> kFabrics = [] {
+    std::vector<Fabric> made;
+    for (const Row& row : kRows) made.push_back(fabric(row));
+    return made;
+  }();
   return kFabrics;
 }
 

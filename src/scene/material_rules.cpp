@@ -1,16 +1,33 @@
 #include "scene/material_rules.hpp"
 
+#include <fmt/format.h>
+
 #include "scene/fabrics.hpp"
 #include "scene/table_builder.hpp"
 
 namespace weft::scene {
+
+namespace {
+
+// "named fabric ...; bending measured: poplin, wool; estimated from weight, fibre and weave: cotton, ..."
+std::string fabric_documentation() {
+  std::vector<std::string> measured, estimated;
+  for (const Fabric& fabric : fabrics())
+    (fabric.measured.bend_weft.estimated ? estimated : measured).push_back(fabric.material.fabric);
+  return fmt::format(
+      "named fabric that gives every number not written here; bending is measured of {}, of the others estimated from "
+      "weight, fibre and weave",
+      fmt::join(measured, ", "));
+}
+
+}  // namespace
 
 const Table& material_rules() {
   const std::string of_fabric = "that of the fabric";
   static const Table kTable =
       TableBuilder<Material>("The fabric, by name, by numbers, or by name with some numbers of its own.")
           .choice_by(
-              "fabric", fabric_names(), "named fabric that gives every number not written here",
+              "fabric", fabric_names(), fabric_documentation(),
               [](Material& m) { return static_cast<std::size_t>(find_fabric(m.fabric) - fabrics().data()); },
               [](Material& m, std::size_t index) { m = fabrics()[index].material; })
           .number("density", &Material::density, above(0, 1e5), "kg/m²", "mass of a square metre")

@@ -87,17 +87,17 @@ struct Contact {
 /// A fabric in continuum units (seed, "Elastic Model").
 struct Material {
   std::string fabric = "cotton";  ///< the named fabric that the numbers started from
-  double density = 0.2;           ///< [kg/m²]
-  double stretch_weft = 1000;     ///< k1 [N/m]
-  double stretch_warp = 1000;     ///< k2 [N/m]
-  double shear = 100;             ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
-  double bend = 5e-5;             ///< B [N·m]
-  double max_stretch = 0;         ///< extension at which threads lock; 0: never
+  double density = 0.15;          ///< [kg/m²]
+  double stretch_weft = 800;      ///< k1 [N/m]
+  double stretch_warp = 2100;     ///< k2 [N/m]
+  double shear = 130;             ///< mu [N/m]; the shear modulus of linear elasticity is mu / 2
+  double bend = 1e-5;             ///< B [N·m]
+  double max_stretch = 0.1;       ///< extension at which threads lock; 0: never
   double max_shear = 0;           ///< angle off square at which they lock [degrees]; 0: never
   double stretch_viscosity = 0;   ///< stress per strain rate, weft and warp [N·s/m]
   double shear_viscosity = 0;     ///< [N·s/m]
-  double bend_viscosity = 5e-6;   ///< [N·m·s]
-  double bend_friction = 2e-4;    ///< moment per width that a change of curvature must overcome [N]
+  double bend_viscosity = 1e-6;   ///< [N·m·s]
+  double bend_friction = 5e-4;    ///< moment per width that a change of curvature must overcome [N]
   double thickness = 0.002;       ///< distance that contact keeps between two layers [m]
   double friction = 0.3;          ///< Coulomb coefficient; of a pair: the geometric mean of both
   double drag = 1.0;              ///< air resistance coefficient of the normal motion; 0 for none

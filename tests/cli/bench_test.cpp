@@ -65,7 +65,9 @@ TEST(Stability, WhatCannotBeSolvedIsRefusedWithItsReason) {
 
 TEST(Stability, MoreEnergyThanDrivesItIsUnbounded) {
   const ExtremeCase& jump = case_named("pin_jumps");
-  EXPECT_EQ(try_scene(support::scene_of_text(jump.text), 10, {.driven = 1e-3}).verdict, Verdict::unbounded);
+  // Without a limit to stretch, of which the run would tell.
+  const scene::Scene scene = support::scene_of_text(jump.text, {"cloth.sheet.material.max_stretch=0"});
+  EXPECT_EQ(try_scene(scene, 10, {.driven = 1e-3}).verdict, Verdict::unbounded);
 }
 
 TEST(Stability, PeriodsAreThoseOfAPlateAndOfAChain) {

@@ -106,13 +106,36 @@ std::string exit_codes(const fs::path& root) {
 
 std::string fabrics() {
   std::string table =
-      "| fabric | density kg/m² | stretch weft, warp N/m | shear μ N/m | bending B N·m | contact thickness m | "
-      "friction "
-      "|\n|---|---|---|---|---|---|---|\n";
+      "| fabric | | density kg/m² | stretch weft, warp N/m | max_stretch | shear μ N/m | bending B N·m | its friction "
+      "N "
+      "| contact thickness m | friction |\n|---|---|---|---|---|---|---|---|---|---|\n";
   for (const scene::Fabric& fabric : scene::fabrics()) {
     const scene::Material& m = fabric.material;
-    table += fmt::format("| {} | {} | {}, {} | {} | {:.2g} | {} | {} |\n", m.fabric, m.density, m.stretch_weft,
-                         m.stretch_warp, m.shear, m.bend, m.thickness, m.friction);
+    table += fmt::format("| {} | {} | {} | {}, {} | {} | {} | {:.2g} | {:.2g} | {} | {} |\n", m.fabric, fabric.what,
+                         m.density, m.stretch_weft, m.stretch_warp, m.max_stretch, m.shear, m.bend, m.bend_friction,
+                         m.thickness, m.friction);
+  }
+  return table;
+}
+
+// What is estimated has a ~.
+std::string fabric_measurements() {
+  std::string table =
+      "| fabric | g/m² | extension at 490 N/m, weft, warp % | shear G N/m | B weft, warp µN·m | HB/B 1/m | mm | drape "
+      "% | "
+      "source |\n|---|---|---|---|---|---|---|---|---|\n";
+  const auto text = [](const scene::Figure& figure, double unit) {
+    return fmt::format("{}{:.3g}", figure.estimated ? "~" : "", unit * figure.value);
+  };
+  for (const scene::Fabric& fabric : scene::fabrics()) {
+    const scene::Measurements& m = fabric.measured;
+    std::string drape;
+    if (m.drape) drape = fmt::format("{:.3g}", 100 * m.drape->first);
+    if (m.drape && m.drape->second > m.drape->first) drape += fmt::format(" to {:.3g}", 100 * m.drape->second);
+    table += fmt::format("| {} | {} | {}, {} | {} | {}, {} | {} | {} | {} | {} |\n", fabric.material.fabric,
+                         text(m.density, 1e3), text(m.extension_weft, 100), text(m.extension_warp, 100),
+                         text(m.shear, 1), text(m.bend_weft, 1e6), text(m.bend_warp, 1e6), text(m.hysteresis, 1),
+                         text(m.thickness, 1e3), drape, fabric.source);
   }
   return table;
 }
@@ -195,6 +218,7 @@ std::string print(const fs::path& root, const fs::path& file, const std::string&
   if (name == "options") return options();
   if (name == "exit codes") return exit_codes(root);
   if (name == "fabrics") return fabrics();
+  if (name == "fabric measurements") return fabric_measurements();
   if (name == "modules") return modules(root);
   if (name == "scene keys") return scene_keys();
   if (name == "pattern keys") return pattern_keys();

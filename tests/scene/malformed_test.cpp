@@ -190,8 +190,8 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:2:8: cloth.0.name: expected a name of letters, digits, _ and -, starting with a letter, at most 64 long, "
      "got \"../band\"\n"},
     {"UnknownFabric", "[[cloth]]\nname = 'band'\n[cloth.material]\nfabric = 'coton'\n",
-     "s.toml:4:10: cloth.band.material.fabric: expected cotton, silk, wool, denim, leather or jersey, got \"coton\"; "
-     "did you mean cotton?\n"},
+     "s.toml:4:10: cloth.band.material.fabric: expected cotton, poplin, denim, canvas, linen, jersey, wool, suiting, "
+     "felt, silk, satin, chiffon, polyester, faille, ripstop or leather, got \"coton\"; did you mean cotton?\n"},
     {"UnknownShape", "[[obstacle]]\nname = 'b'\nshape = 'shpere'\nradius = 1\n",
      "s.toml:3:9: obstacle.b.shape: expected sphere, box, cone, torus, cylinder, half_pipe, plane or mesh, got "
      "\"shpere\"; did you mean sphere?\n"},

@@ -302,22 +302,35 @@ TEST(Fabrics, GiveTheNumbersThatASceneLeavesOut) {
 }
 
 TEST(Fabrics, TheDefaultIsCotton) {
-  EXPECT_EQ(fabrics().front().material.fabric, "cotton");
-  EXPECT_EQ(load_good("cloth = [{ name = 'a' }]\n").cloths[0].material.density, Material{}.density);
+  const Material& cotton = fabrics().front().material;
+  const Material none;
+  EXPECT_EQ(cotton.fabric, "cotton");
+  for (double Material::*figure :
+       {&Material::density, &Material::stretch_weft, &Material::stretch_warp, &Material::shear, &Material::bend,
+        &Material::max_stretch, &Material::max_shear, &Material::bend_viscosity, &Material::bend_friction,
+        &Material::thickness, &Material::friction, &Material::drag})
+    EXPECT_EQ(cotton.*figure, none.*figure);
 }
 
-TEST(Fabrics, HaveTheBendingLengthsThatTheirNotesState) {
-  // c = (B / (density g))^(1/3) [mm]; the notes round to 1 mm.
-  const auto bending_length = [](const char* name) {
-    const Material& m = find_fabric(name)->material;
-    return 1000 * std::cbrt(m.bend / (m.density * 9.81));
-  };
-  EXPECT_NEAR(bending_length("cotton"), 29, 0.5);
-  EXPECT_NEAR(bending_length("silk"), 11, 0.5);
-  EXPECT_NEAR(bending_length("wool"), 18, 0.5);
-  EXPECT_NEAR(bending_length("denim"), 25, 0.5);
-  EXPECT_NEAR(bending_length("leather"), 17, 0.5);
-  EXPECT_NEAR(bending_length("jersey"), 14, 0.5);
+TEST(Fabrics, AreMadeOfWhatWasMeasured) {
+  const Fabric& poplin = *find_fabric("poplin");
+  EXPECT_FALSE(poplin.measured.bend_weft.estimated);
+  EXPECT_TRUE(poplin.measured.shear.estimated);
+  // 0.118 gf·cm²/cm and 2HB of 0.124 gf·cm/cm; materials have two digits.
+  EXPECT_NEAR(poplin.material.bend, 0.118 * 9.807e-5, 0.05 * 1.2e-5);
+  EXPECT_NEAR(poplin.material.bend_friction, 0.5 * 0.124 * 9.807e-3, 0.05 * 6e-4);
+  // A wool whose FAST E20, at 19.6 N/m, is 1.87 % both ways: 1048 N/m.
+  const Material& wool = find_fabric("wool")->material;
+  EXPECT_NEAR(std::sqrt(wool.stretch_weft * wool.stretch_warp), 1048, 0.25 * 1048);
+}
+
+TEST(Fabrics, EstimateBendingFromWeight) {
+  // 130 µN·m (density / 1 kg/m²)^1.35.
+  const Measurements suiting = find_fabric("suiting")->measured, cotton = find_fabric("cotton")->measured;
+  EXPECT_TRUE(cotton.bend_weft.estimated);
+  EXPECT_NEAR(std::sqrt(cotton.bend_weft.value * cotton.bend_warp.value), 10.0e-6, 0.1e-6);
+  EXPECT_NEAR(std::sqrt(suiting.bend_weft.value * suiting.bend_warp.value), 18.4e-6, 0.2e-6);
+  EXPECT_NEAR(suiting.bend_warp.value / suiting.bend_weft.value, 1.4, 1e-12);
 }
 
 TEST(Pins, HoldTheParticlesOnTheirBoundsDespiteRounding) {

@@ -248,10 +248,10 @@ TEST_P(PinchedCloth, StaysApartFromClothAndIsApartFromAllOnceThereIsRoom) {
     std::ranges::copy_if(report.warnings, std::back_inserter(pinches), is_of_pinch);
   }
   EXPECT_GT(pinched, 0);
-  // Once no shorter step finds room they are as long as ever: 1.0 to 1.7 times as many as without a pinch, with threads
+  // Once no shorter step finds room they are as long as ever: 1.0 to 2.1 times as many as without a pinch, with threads
   // that lock too. Counted anew below steps that are short already the halvings made them 6 and 470 times as many.
   const double without = (scene.frame_count() - 1) * std::ceil(1 / scene.time.fps / scene.time.step - 1e-9);
-  EXPECT_LT(steps, 2 * without);
+  EXPECT_LT(steps, 3 * without);
   ASSERT_FALSE(pinches.empty());
   for (const std::string& text : pinches) {
     EXPECT_EQ(text.rfind("frame ", 0), 0u) << text;

@@ -13,7 +13,20 @@ namespace weft::simulation::testing {
 inline constexpr scene::Integrator kIntegrators[] = {scene::Integrator::implicit_euler,
                                                      scene::Integrator::implicit_midpoint, scene::Integrator::bdf2};
 
-/// A square sheet, flat at the given height, with nothing around it: no air, no contact.
+/// Of no fabric: what is pinned to it stays when fabrics are measured anew.
+inline scene::Material test_material() {
+  scene::Material material;
+  material.density = 0.2;
+  material.stretch_weft = material.stretch_warp = 1000;
+  material.shear = 100;
+  material.bend = 5e-5;
+  material.bend_viscosity = 5e-6;
+  material.bend_friction = 2e-4;
+  material.max_stretch = 0;
+  return material;
+}
+
+/// A square sheet of the test material, flat at the given height, with nothing around it: no air, no contact.
 inline scene::Scene sheet_alone(double size, int particles, double height) {
   scene::Scene scene;
   scene.name = "test";
@@ -25,6 +38,7 @@ inline scene::Scene sheet_alone(double size, int particles, double height) {
   cloth.size = {size, size};
   cloth.particles_weft = cloth.particles_warp = particles;
   cloth.pose.position = {0, 0, height};
+  cloth.material = test_material();
   scene.cloths.push_back(cloth);
   return scene;
 }

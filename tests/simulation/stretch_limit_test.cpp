@@ -66,8 +66,8 @@ TEST(StretchLimitInAScene, IsKeptWhereABallStrikesAHangingSheet) {
   std::vector<std::string> said;
   EXPECT_LT(largest_share(support::scene_of_text(kImpact), said), 1.1);
   EXPECT_TRUE(said.empty());
-  // Where the limit is far away the same sheet is stretched by 10.8 %.
-  EXPECT_GT(9 * largest_share(support::scene_of_text(kImpact, {"cloth.sheet.material.max_stretch=9"}), said), 0.09);
+  // Where the limit is far away the same sheet is stretched by 7.9 %, 1.6 times the limit.
+  EXPECT_GT(9 * largest_share(support::scene_of_text(kImpact, {"cloth.sheet.material.max_stretch=9"}), said), 0.07);
 }
 
 TEST(StretchLimitInAScene, GoesOnFromASavedState) {
