@@ -15,8 +15,8 @@ struct Curve {
   std::string color;
   Marker marker = Marker::circle;
   bool dashed = false;
-  std::vector<Vec2> points;  ///< those that are not positive are left out
-  bool line = true;          ///< from point to point; else markers alone
+  std::vector<Vec2> points = {};  ///< those that are not positive are left out
+  bool line = true;               ///< from point to point; else markers alone
 };
 
 struct Panel {

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "bench/accuracy_report.hpp"
+#include "bench/fabrics.hpp"
 #include "bench/report.hpp"
 #include "bench/speed_report.hpp"
 #include "bench/stability.hpp"
@@ -260,6 +261,23 @@ ExitCode bench_speed(const BenchOptions& options, const std::filesystem::path& f
   return any ? ExitCode::ok : ExitCode::simulation_failed;
 }
 
+ExitCode bench_fabrics(const BenchOptions& options, const std::filesystem::path& folder) {
+  PathLedger paths;
+  check_outputs(paths, options, folder, {"fabrics.md", "fabrics.csv", "fabrics.svg"});
+  RunProgress progress("fabrics");
+  std::vector<bench::FabricRun> runs;
+  for (const scene::Fabric& fabric : scene::fabrics()) {
+    runs.push_back(bench::test_fabric(fabric, folder));
+    progress(static_cast<double>(runs.size()) / static_cast<double>(scene::fabrics().size()),
+             fmt::format("{}: drapes by {:.1f} %", fabric.material.fabric, 100 * runs.back().mean_drape()));
+  }
+  write_file(folder / "fabrics.csv", bench::csv(bench::fabrics_table(runs)));
+  write_file(folder / "fabrics.svg", bench::fabrics_svg(runs));
+  write_file(folder / "fabrics.md", bench::fabrics_markdown(runs, "fabrics.svg"));
+  fmt::print("{}written to {}\n", bench::conclusion(runs), (folder / "fabrics.md").string());
+  return ExitCode::ok;
+}
+
 }  // namespace
 
 ExitCode bench(const BenchOptions& options) {
@@ -271,6 +289,8 @@ ExitCode bench(const BenchOptions& options) {
       return bench_accuracy(options, folder);
     case BenchOptions::Kind::speed:
       return bench_speed(options, folder);
+    case BenchOptions::Kind::fabrics:
+      return bench_fabrics(options, folder);
   }
   return ExitCode::internal;
 }

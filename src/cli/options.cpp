@@ -15,7 +15,8 @@ constexpr int kMaxThreads = 1024;
 
 constexpr std::array kBenches{Choice<BenchOptions::Kind>{"stability", BenchOptions::Kind::stability},
                               Choice<BenchOptions::Kind>{"accuracy", BenchOptions::Kind::accuracy},
-                              Choice<BenchOptions::Kind>{"speed", BenchOptions::Kind::speed}};
+                              Choice<BenchOptions::Kind>{"speed", BenchOptions::Kind::speed},
+                              Choice<BenchOptions::Kind>{"fabrics", BenchOptions::Kind::fabrics}};
 constexpr std::array kQualities{Choice<render::Quality>{"draft", render::Quality::draft},
                                 Choice<render::Quality>{"preview", render::Quality::preview},
                                 Choice<render::Quality>{"final", render::Quality::final}};
@@ -254,13 +255,13 @@ struct Parser {
   }
 
   void add_bench() {
-    CLI::App& command = *app.add_subcommand("bench", "Measure: stability, error against run time, or speed");
+    CLI::App& command = *app.add_subcommand("bench", "Measure: stability, error against run time, speed, or fabrics");
     command
         .add_option_function<std::string>(
             "WHAT", [this](const std::string& text) { bench.kind = parse_choice("WHAT", text, kBenches); },
             "stability: what comes of stiff and extreme scenes; accuracy: error against run time of a scene; speed: "
-            "time "
-            "by stage, iterations and memory over sizes, threads and steps")
+            "time by stage, iterations and memory over sizes, threads and steps; fabrics: drape, bending and extension "
+            "against what was published")
         ->required()
         ->type_name("");
     command
@@ -453,8 +454,11 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   }
   const std::string name = parser.selected()->get_name();
   const bool has_scene = !parser.bench.scene.empty() || !parser.bench.overrides.empty();
-  if (name == "bench" && parser.bench.kind == BenchOptions::Kind::stability && has_scene)
-    throw Error(ExitCode::usage, "weft bench stability: expected no SCENE and no --set, its scenes are its own");
+  const bool own_scenes =
+      parser.bench.kind == BenchOptions::Kind::stability || parser.bench.kind == BenchOptions::Kind::fabrics;
+  if (name == "bench" && own_scenes && has_scene)
+    throw Error(ExitCode::usage, "weft bench {}: expected no SCENE and no --set, its scenes are its own",
+                parser.bench.kind == BenchOptions::Kind::fabrics ? "fabrics" : "stability");
   if (name == "bench" && parser.bench.kind != BenchOptions::Kind::speed && !parser.option_of_speed.empty())
     throw Error(ExitCode::usage, "weft bench: {} is for weft bench speed", parser.option_of_speed);
   if (name == "run") return parser.run;

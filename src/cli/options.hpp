@@ -82,7 +82,7 @@ struct DoctorOptions {
 };
 
 struct BenchOptions {
-  enum class Kind { stability, accuracy, speed };
+  enum class Kind { stability, accuracy, speed, fabrics };
   Kind kind = Kind::stability;
   std::filesystem::path scene;         ///< of accuracy and speed; empty: one that is built in
   std::vector<std::string> overrides;  ///< of --set

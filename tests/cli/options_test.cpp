@@ -141,7 +141,8 @@ TEST(Options, OfSpeedAreListsAndForSpeedAlone) {
                           "before, got ") +
                   wrong);
   EXPECT_EQ(refusal({"bench", "accuracy", "--steps", "1,2"}), "weft bench: --steps is for weft bench speed");
-  EXPECT_EQ(refusal({"bench", "sped"}), "WHAT: expected stability or accuracy or speed, got sped; did you mean speed?");
+  EXPECT_EQ(refusal({"bench", "sped"}),
+            "WHAT: expected stability or accuracy or speed or fabrics, got sped; did you mean speed?");
 }
 
 TEST(Options, HelpOfEachCommandShowsItsOptionsAndAnExample) {
