@@ -89,6 +89,24 @@ VertexMask vertices_of(const Character& character, std::span<const Index> nodes,
   return held_by(character, [&](Index node) { return std::ranges::find(joints, joint_of[node]) != joints.end(); });
 }
 
+std::vector<Limb> limbs_of(const Character& character, std::span<const Index> nodes) {
+  static const std::vector<std::string> kArm{"UpperArm", "LowerArm", "Hand"},
+      kLeg{"UpperLeg", "LowerLeg", "Foot", "Toes"};
+  std::vector<Limb> limbs(character.mesh.positions.size(), Limb::trunk);
+  const auto mark = [&](Limb limb, const std::string& side, const std::vector<std::string>& names) {
+    std::vector<Index> joints;
+    for (const std::string& name : names) joints.push_back(joint_number(side + name));
+    const VertexMask mask = vertices_of(character, nodes, joints);
+    for (std::size_t v = 0; v < limbs.size(); ++v)
+      if (mask[v] != 0) limbs[v] = limb;
+  };
+  mark(Limb::left_arm, "Left", kArm);
+  mark(Limb::right_arm, "Right", kArm);
+  mark(Limb::left_leg, "Left", kLeg);
+  mark(Limb::right_leg, "Right", kLeg);
+  return limbs;
+}
+
 VertexMask vertices_below(const Character& character, Index node) {
   std::vector<bool> below(character.nodes.size(), false);
   for (std::size_t n = 0; n < below.size(); ++n) {

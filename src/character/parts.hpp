@@ -25,6 +25,10 @@ std::vector<Index> joints_of_part(const std::string& name);
 /// below it, up to the next joint. `nodes`: of each of joint_names(), −1 where there is none.
 VertexMask vertices_of(const Character& character, std::span<const Index> nodes, std::span<const Index> joints);
 
+/// Of each vertex the limb that holds at least half of it; head and torso are one, and what no limb holds.
+enum class Limb : Index { trunk, left_arm, right_arm, left_leg, right_leg };
+std::vector<Limb> limbs_of(const Character& character, std::span<const Index> nodes);
+
 /// Those that are held for at least half by a node and all below it.
 VertexMask vertices_below(const Character& character, Index node);
 

@@ -7,13 +7,17 @@
 namespace weft::collision {
 
 void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
-                 std::span<const Patch> patches) {
+                 std::span<const Patch> patches, std::span<const Index> limbs) {
   const auto first_triangle = static_cast<Index>(triangles_.size()), first_vertex = static_cast<Index>(body_of_.size());
   for (Triangle t : triangles) {
     for (Index& corner : t) corner += first_vertex;
     triangles_.push_back(t);
   }
   body_of_.insert(body_of_.end(), vertex_count, traits_.size());
+  if (limbs.empty())
+    limb_of_.insert(limb_of_.end(), vertex_count, 0);
+  else
+    limb_of_.insert(limb_of_.end(), limbs.begin(), limbs.end());
   skin_of_.insert(skin_of_.end(), vertex_count, skins_.size());
   skins_.push_back({traits_.size(), traits.thickness, traits.friction});
   for (const Patch& patch : patches) {

@@ -43,9 +43,9 @@ class Bodies {
   Bodies& operator=(Bodies&&) = default;
 
   /// `triangles`: by vertex number within the body, from 0 to vertex_count − 1. Of patches that share vertices the last
-  /// counts.
+  /// counts. `limbs`: of each vertex the limb that it is of, from 0; empty: one.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
-           std::span<const Patch> patches = {});
+           std::span<const Patch> patches = {}, std::span<const Index> limbs = {});
 
   std::size_t size() const { return traits_.size(); }
   const BodyTraits& operator[](std::size_t body) const { return traits_[body]; }
@@ -59,6 +59,9 @@ class Bodies {
   Index vertex_count() const { return static_cast<Index>(body_of_.size()); }
   const std::vector<std::size_t>& body_of_vertices() const { return body_of_; }
   std::size_t body_of(Index vertex) const { return body_of_[vertex]; }
+
+  /// Of each vertex, numbered within its body. Limbs of a body may come to lie against each other, and in each other.
+  const std::vector<Index>& limb_of_vertices() const { return limb_of_; }
 
   /// What vertices are covered with; without patches one for each body, in their order.
   const std::vector<Skin>& skins() const { return skins_; }
@@ -78,6 +81,7 @@ class Bodies {
   std::vector<Triangle> triangles_;
   std::vector<Surface> surfaces_;
   std::vector<std::size_t> body_of_;  // per vertex
+  std::vector<Index> limb_of_;
   std::vector<Skin> skins_;
   std::vector<std::size_t> skin_of_;  // per vertex
   std::size_t deformable_ = 0;

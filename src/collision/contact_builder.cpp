@@ -23,8 +23,8 @@ constexpr double kEndOfEdge = 0.1;
 // Speed at which cloth is pushed out of an obstacle that it was pinched into [m/s]: out of 5 mm within a frame, and not
 // enough to hop over 2 mm.
 constexpr double kHealingSpeed = 0.2;
-// Share of the stiffness of a contact that does so: it has nothing to stop, and full stiffness between two obstacles
-// clamps the cloth and costs twice the Newton iterations.
+// Share of the stiffness of a contact that does so where there is no room: full stiffness between two obstacles clamps
+// the cloth and costs twice the Newton iterations. Where there is room it has to lift what hangs on the cloth.
 constexpr double kHealingShare = 0.05;
 
 // By what a contact is stiffer for each time but one that its cloth was pushed away in the step before, and how often
@@ -97,8 +97,10 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
   std::ranges::sort(in_contact_);
 }
 
-void ContactBuilder::add_pinched(const FeaturePair& pair, const StepMotion& motion, ContactResponse& response) const {
-  auto contact = build(pair, kHealingShare, pair.distance + kHealingSpeed * motion.h, motion);
+void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotion& motion,
+                                 ContactResponse& response) const {
+  const double share = push.has_room ? 1 : kHealingShare;
+  auto contact = build(push.way, share, push.way.distance + kHealingSpeed * motion.h, motion);
   if (!contact) return;
   contact->full_range = kNoLimit;  // no stiffer as it is deeper
   response.add(*contact, motion.x_t0);

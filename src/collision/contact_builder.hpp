@@ -60,9 +60,9 @@ class ContactBuilder {
   void add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
            ContactResponse& response);
 
-  /// Adds the contact of pinched cloth and its obstacle, which has nothing to stop: it pushes softly, at no more than
-  /// the speed of healing, to the side that the cloth belongs to.
-  void add_pinched(const FeaturePair& pair, const StepMotion& motion, ContactResponse& response) const;
+  /// Adds the contact of pinched cloth and its obstacle, which pushes to the side that the cloth belongs to, at no more
+  /// than the speed of healing: softly while there is no room, which is nothing to clamp cloth for, else as others do.
+  void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
   /// Adds contacts of the closest features of two triangles that would meet; false if these push with all their
   /// stiffness already. On the first piece of a way what is closer than the range without being pushed is only kept

@@ -34,7 +34,7 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       builder_(bodies_, parameters.contact, masses),
       response_(parameters.response, {masses.begin(), masses.end()}),
       failures_(masses.size()),
-      pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()),
+      pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices(), bodies_.limb_of_vertices()),
       carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
   const double reach = candidates_.reach();
   if (parameters.search.coherence)
@@ -98,7 +98,7 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
 
 void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& motion) {
   const StepMotion from_start{x_t0_, x_t0_, motion.x_t1, motion.h};
-  for (const FeaturePair& push : pinched_pushes_) builder_.add_pinched(push, from_start, response_);
+  for (const PinchedPairs::Push& push : pinched_pushes_) builder_.add_pinched(push, from_start, response_);
   builder_.add(near, pinched_, motion, response_);
 }
 

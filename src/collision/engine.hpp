@@ -122,13 +122,13 @@ class Engine {
   PinchedPairs pinched_;
   CarriedStarts carried_;
 
-  double step_ = 0;                          // h [s]
-  std::span<const Vec3> x_t0_;               // where the step began
-  std::vector<FeaturePair> pinched_pushes_;  // back out of obstacles, of the step
-  std::vector<CornerPair> pushed_;           // pairs that were pushed apart in it
-  std::vector<Proximity> proximities_;       // at the start of the step
-  std::vector<Proximity> near_bend_;         // where its way last bent
-  std::span<const CornerPair> failing_;      // of the last call of apart()
+  double step_ = 0;                                 // h [s]
+  std::span<const Vec3> x_t0_;                      // where the step began
+  std::vector<PinchedPairs::Push> pinched_pushes_;  // back out of obstacles, of the step
+  std::vector<CornerPair> pushed_;                  // pairs that were pushed apart in it
+  std::vector<Proximity> proximities_;              // at the start of the step
+  std::vector<Proximity> near_bend_;                // where its way last bent
+  std::span<const CornerPair> failing_;             // of the last call of apart()
 };
 
 }  // namespace weft::collision

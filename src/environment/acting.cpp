@@ -19,6 +19,7 @@
 #include "core/error.hpp"
 #include "core/nearest.hpp"
 #include "environment/plausibility.hpp"
+#include "mesh/topology.hpp"
 #include "scene/sequence_files.hpp"
 
 namespace weft::environment {
@@ -398,14 +399,7 @@ Standing stand_as(const Cast& cast, const Source& source, const std::string& /*w
     auto& joint = standing.joints.emplace_back();
     if (node >= 0) joint = placed.position + placed.rotation * globals[node].translation();
   }
-  const auto limb = [&](const std::string& side, const std::vector<std::string>& names) {
-    std::vector<Index> joints;
-    for (const std::string& name : names) joints.push_back(character::joint_number(side + name));
-    return character::vertices_of(character, nodes, joints);
-  };
-  const std::vector<std::string> arm{"UpperArm", "LowerArm", "Hand"}, leg{"UpperLeg", "LowerLeg", "Foot", "Toes"};
-  standing.left_arm = limb("Left", arm), standing.right_arm = limb("Right", arm);
-  standing.left_leg = limb("Left", leg), standing.right_leg = limb("Right", leg);
+  standing.limbs = character::limbs_of(character, nodes);
   return standing;
 }
 
@@ -430,6 +424,10 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
                     cast.where, clip.name, gap));
   std::vector<Part> parts = parts_of(cast, source, following, body);
   const std::size_t vertices = body.character.mesh.positions.size();
+  std::vector<Index> limbs;
+  for (const character::Limb limb : character::limbs_of(
+           body.character, joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source)))
+    limbs.push_back(static_cast<Index>(limb));
   const character::Pose start = performance.at(begin_of(cast.scene));
   for (const FollowingPin& pin : following) follow(cast, pin, parts, start, vertices, body.character);
   const KeyTimes times = key_times(cast, character::key_rate(clip));
@@ -442,7 +440,7 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   mesh::Mesh mesh = std::move(body.character.mesh);
   mesh.positions.resize(vertices);
   keys.at(0, mesh.positions);
-  return {std::move(mesh), std::move(keys), std::move(parts), std::move(body.warnings)};
+  return {std::move(mesh), std::move(keys), std::move(parts), std::move(limbs), std::move(body.warnings)};
 }
 
 Actor act(const Cast& cast, const scene::MeshSequence& source, std::span<const FollowingPin> following) {
@@ -454,7 +452,8 @@ Actor act(const Cast& cast, const scene::MeshSequence& source, std::span<const F
   KeyFrames keys = sample(cast, key_times(cast, source.fps), vertices,
                           [&](double t, std::vector<Vec3>& x) { files.at(character::clip_time(cast.timing(), t), x); });
   keys.at(0, loaded.mesh.positions);
-  return {std::move(loaded.mesh), std::move(keys), {}, {}};
+  std::vector<Index> limbs = mesh::components(loaded.mesh.topology.triangles, vertices);
+  return {std::move(loaded.mesh), std::move(keys), {}, std::move(limbs), {}};
 }
 
 KeyFrameCount count(const Cast& cast, const KeyTimes& times, std::size_t vertices) {

@@ -32,9 +32,10 @@ struct FollowingPin {
 
 /// A body that moves by key frames of its vertices, made before the simulation starts.
 struct Actor {
-  mesh::Mesh mesh;          ///< in the world at time 0
-  KeyFrames keys;           ///< of its vertices and then, of what has bones, of the places of all following pins
-  std::vector<Part> parts;  ///< those of the scene, and those that its pins follow
+  mesh::Mesh mesh;           ///< in the world at time 0
+  KeyFrames keys;            ///< of its vertices and then, of what has bones, of the places of all following pins
+  std::vector<Part> parts;   ///< those of the scene, and those that its pins follow
+  std::vector<Index> limbs;  ///< that each vertex of the mesh is of, from 0
   std::vector<std::string> warnings;
 };
 
@@ -47,7 +48,7 @@ Actor make_actor(const scene::Scene& scene, const scene::Character& character,
 struct Standing {
   mesh::Mesh mesh;                          ///< in the world [m]
   std::vector<std::optional<Vec3>> joints;  ///< of joint_names(), likewise; none: not known
-  character::VertexMask left_arm, right_arm, left_leg, right_leg;
+  std::vector<character::Limb> limbs;       ///< of the mesh
 };
 
 /// Reads the files of a character, once more than make_actor, which needs the garment. Throws as it does, and

@@ -385,6 +385,7 @@ BodyObject make_character(const scene::Character& character, const Actor& actor)
   object.friction = character.friction;
   object.look = character.look;
   object.parts = actor.parts;
+  object.limbs = actor.limbs;
   object.colliding = colliding_triangles(actor.mesh, actor.parts);
   // What is left out whole does not collide.
   if (object.colliding.empty() && !std::ranges::all_of(actor.parts, &Part::collide)) object.collide = false;

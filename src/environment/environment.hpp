@@ -48,7 +48,8 @@ struct BodyObject {
   bool infinite_floor = false;
   double friction = 0.3;
   scene::Look look;
-  std::vector<Part> parts;  ///< of characters
+  std::vector<Part> parts;   ///< of characters
+  std::vector<Index> limbs;  ///< likewise, of each vertex, from 0: they may come to lie in each other
   /// Of what has bones: a cloth and a pin of it that follows, and the first vertex that Environment::vertex() has for
   /// the particles of the pin, behind those of the mesh.
   struct Follower {

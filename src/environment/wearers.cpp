@@ -46,15 +46,22 @@ garment::Wearer make_wearer(const Standing& standing, const Vec3& up, const std:
   const Eigen::Isometry3d to_own = wearer.to_world.inverse();
   for (const Vec3& x : standing.mesh.positions) wearer.skin.push_back(to_own * x);
   wearer.triangles = standing.mesh.topology.triangles;
-  wearer.regions.assign(wearer.skin.size(), garment::Region::trunk);
-  const auto mark = [&](const character::VertexMask& mask, garment::Region region) {
-    for (std::size_t v = 0; v < mask.size(); ++v)
-      if (mask[v] != 0) wearer.regions[v] = region;
+  const auto region_of = [](character::Limb limb) {
+    switch (limb) {
+      case character::Limb::left_arm:
+        return garment::Region::left_arm;
+      case character::Limb::right_arm:
+        return garment::Region::right_arm;
+      case character::Limb::left_leg:
+        return garment::Region::left_leg;
+      case character::Limb::right_leg:
+        return garment::Region::right_leg;
+      case character::Limb::trunk:
+        break;
+    }
+    return garment::Region::trunk;
   };
-  mark(standing.left_arm, garment::Region::left_arm);
-  mark(standing.right_arm, garment::Region::right_arm);
-  mark(standing.left_leg, garment::Region::left_leg);
-  mark(standing.right_leg, garment::Region::right_leg);
+  for (const character::Limb limb : standing.limbs) wearer.regions.push_back(region_of(limb));
   const auto limb = [&](const std::string& side, const std::array<const char*, 3>& names) {
     std::optional<garment::Limb> joints(std::in_place);
     for (std::size_t k = 0; k < names.size(); ++k) {

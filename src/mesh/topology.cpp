@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <tuple>
 
+#include "core/disjoint_sets.hpp"
+
 namespace weft::mesh {
 namespace {
 
@@ -83,6 +85,21 @@ TopologyReport inspect(std::span<const Triangle> triangles, std::size_t vertex_c
     if (count == 2 && first->forward == (first + 1)->forward) report.misoriented.push_back(edge);
   });
   return report;
+}
+
+std::vector<Index> components(std::span<const Triangle> triangles, std::size_t vertex_count) {
+  DisjointSets sets(vertex_count);
+  for (const Triangle& t : triangles) {
+    sets.join(t[0], t[1]);
+    sets.join(t[0], t[2]);
+  }
+  std::vector<Index> numbers(vertex_count);
+  Index count = 0;
+  for (std::size_t v = 0; v < vertex_count; ++v) {
+    const auto root = static_cast<std::size_t>(sets.root(static_cast<Index>(v)));
+    numbers[v] = root == v ? count++ : numbers[root];
+  }
+  return numbers;
 }
 
 }  // namespace weft::mesh

@@ -46,4 +46,7 @@ struct TopologyReport {
 /// Checks any index list; edges are judged among the triangles that are neither out of range nor degenerate.
 TopologyReport inspect(std::span<const Triangle> triangles, std::size_t vertex_count);
 
+/// Of each vertex the number of the component that it hangs together with, in the order of their first vertices.
+std::vector<Index> components(std::span<const Triangle> triangles, std::size_t vertex_count);
+
 }  // namespace weft::mesh

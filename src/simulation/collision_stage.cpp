@@ -96,7 +96,7 @@ collision::Bodies make_bodies(const scene::Scene& scene, const environment::Envi
     for (const environment::Part& part : body.parts)
       if (part.is_patch()) patches.push_back({part.vertices, part.thickness, part.friction.value_or(body.friction)});
     bodies.add(body.colliding_triangles(), static_cast<Index>(body.mesh.positions.size()),
-               {.friction = body.friction, .moving = body.moving, .rigid = !body.character}, patches);
+               {.friction = body.friction, .moving = body.moving, .rigid = !body.character}, patches, body.limbs);
   }
   return bodies;
 }
@@ -302,10 +302,15 @@ void CollisionStage::take_over(const CollisionStage& before, std::span<const std
   };
   for (const auto& [key, origin] : before.engine_.exempted().origins()) {
     const std::size_t cloth = old_bodies.body_of(key.cloth[0]);
-    collision::PinchedPairs::Key moved{key.cloth, here(key.body)};
-    for (Index& v : moved.cloth)
-      v += bodies.surfaces()[here(cloth)].first_vertex - old_bodies.surfaces()[cloth].first_vertex;
-    engine_.exempt(moved, origin);
+    collision::PinchedPairs::Key moved{key.cloth, here(key.body), key.limb};
+    const auto move = [&](collision::Triangle& triangle, std::size_t body) {
+      for (Index& v : triangle)
+        v += bodies.surfaces()[here(body)].first_vertex - old_bodies.surfaces()[body].first_vertex;
+    };
+    move(moved.cloth, cloth);
+    collision::PinchedPairs::Origin of_faces = origin;
+    for (collision::Triangle& face : of_faces.faces) move(face, key.body);
+    engine_.exempt(moved, of_faces);
   }
 }
 

@@ -92,5 +92,24 @@ TEST(Parts, BelongToWhateverHoldsHalf) {
   EXPECT_EQ(vertices_of(body, nodes, joints_of_part("LeftHand")), (VertexMask{0, 1, 0}));
 }
 
+TEST(Parts, LimbsAreArmsAndLegsAndTheRestIsTrunk) {
+  const Character body = make_mannequin({.edge_length = 0.03});
+  const std::vector<Index> nodes = find_joints(body.nodes);
+  const std::vector<Limb> limbs = limbs_of(body, nodes);
+  const VertexMask arms = vertices_of(body, nodes, joints_of_part("arms")),
+                   legs = vertices_of(body, nodes, joints_of_part("legs"));
+  for (std::size_t v = 0; v < limbs.size(); ++v) {
+    const bool left = body.mesh.positions[v].x() > 0;
+    const Limb expected = arms[v] != 0   ? left ? Limb::left_arm : Limb::right_arm
+                          : legs[v] != 0 ? left ? Limb::left_leg : Limb::right_leg
+                                         : Limb::trunk;
+    // In the crotch both legs hold half of the skin.
+    const bool between = limbs[v] == Limb::trunk && legs[v] != 0 && std::abs(body.mesh.positions[v].x()) < 0.02;
+    if (!between) {
+      EXPECT_EQ(limbs[v], expected) << v << " at " << body.mesh.positions[v].transpose();
+    }
+  }
+}
+
 }  // namespace
 }  // namespace weft::character

@@ -26,7 +26,7 @@ struct Scene {
       for (const Vec3& corner : {Vec3(0, 0, z), Vec3(0.1, 0, z), Vec3(0, 0.1, z)}) x_t0.push_back(corner);
     x_t1 = x_t0;
     for (std::size_t v = 6; v < 9; ++v) x_t1[v].z() += 0.0004;  // the obstacle rises
-    pinched = PinchedPairs(6, bodies.body_of_vertices());
+    pinched = PinchedPairs(6, bodies.body_of_vertices(), bodies.limb_of_vertices());
   }
 
   StepMotion motion() const { return {x_t0, x_t0, x_t1, kH}; }
@@ -182,16 +182,19 @@ TEST(ContactBuilder, PinchedClothAndItsObstacleAreLeftOut) {
   EXPECT_EQ(contacts[0].particles[0], 3);
 }
 
-// A pinched particle 2 mm deep is pushed out at 0.2 m/s, with a twentieth of the stiffness.
-TEST(ContactBuilder, PinchedClothIsPushedBackSoftlyAndSlowly) {
+// A pinched particle 2 mm deep is pushed out at 0.2 m/s, with a twentieth of the stiffness where there is no room.
+TEST(ContactBuilder, PinchedClothIsPushedBackSlowlyAndWithoutRoomSoftly) {
   const Scene scene;
   const ContactBuilder builder(scene.bodies, {.stiffness = 1e6}, scene.masses);
   ContactResponse response(ResponseForm::springs, scene.masses);
   response.begin_step(kH);
-  builder.add_pinched({{0, 6, 7, 8}, {1, -0.5, -0.3, -0.2}, -Vec3::UnitZ(), -0.002}, scene.motion(), response);
-  ASSERT_EQ(response.springs().size(), 1U);
-  EXPECT_DOUBLE_EQ(response.springs()[0].range, -0.002 + 0.2 * kH);
+  for (const bool has_room : {false, true})
+    builder.add_pinched({{{0, 6, 7, 8}, {1, -0.5, -0.3, -0.2}, -Vec3::UnitZ(), -0.002}, has_room}, scene.motion(),
+                        response);
+  ASSERT_EQ(response.springs().size(), 2U);
+  for (const auto& spring : response.springs()) EXPECT_DOUBLE_EQ(spring.range, -0.002 + 0.2 * kH);
   EXPECT_DOUBLE_EQ(response.springs()[0].stiffness, 0.05e6);
+  EXPECT_DOUBLE_EQ(response.springs()[1].stiffness, 1e6);
 }
 
 TEST(ContactBuilder, WhatWouldMeetBecomesAContactOnceAtTheDistanceThatItHas) {

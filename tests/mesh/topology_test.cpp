@@ -50,6 +50,11 @@ TEST(Edges, WithThreeTrianglesAreReportedAndKeepTheFirstTwo) {
   EXPECT_EQ(set.edges[0].triangles, (Pair{0, 1}));
 }
 
+TEST(Components, AreNumberedInTheOrderOfTheirFirstVertices) {
+  const std::vector<Triangle> triangles{{5, 3, 6}, {0, 2, 7}, {3, 6, 8}};
+  EXPECT_EQ(components(triangles, 9), (std::vector<Index>{0, 1, 0, 2, 3, 2, 2, 0, 2}));
+}
+
 TEST(Inspection, CallsATetrahedronWatertightAndASquareMerelyManifold) {
   EXPECT_TRUE(support::watertight(inspect(kTetrahedron, 4)));
   const TopologyReport square = inspect(kSquare, 4);

@@ -17,6 +17,9 @@ constexpr double kTie = 1e-9;
 constexpr double kNoDirection = 1e-10;
 // Cosine of the angle up to which a face looks the same way as another.
 constexpr double kSameWay = 0.5;
+// How far a ray begins beside its point [m], and goes [m].
+constexpr double kOffGrid = 1e-7;
+constexpr double kFar = 1e3;
 
 ClosestPoints closest(const Vec3& p, const Triangle& t, std::span<const Vec3> x) {
   return closest_vertex_face(p, x[t[0]], x[t[1]], x[t[2]]);
@@ -89,10 +92,13 @@ SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, s
 }
 
 SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
-                           const Vec3& towards) {
+                           const Vec3& towards, const CountsFace& counts) {
   const Surface& all = broad_phase.surface(surface);
   const auto triangle = [&](Index number) -> const Triangle& { return all.triangles[number - all.first_triangle]; };
-  const auto distance_sq = [&](Index number) { return closest(p, triangle(number), x).distance_sq; };
+  const auto distance_sq = [&](Index number) {
+    if (counts && !counts(triangle(number))) return std::numeric_limits<double>::infinity();
+    return closest(p, triangle(number), x).distance_sq;
+  };
   std::vector<Index> numbers;
   if (!towards.isZero())
     broad_phase.nearest_triangles(
@@ -106,6 +112,25 @@ SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::si
   std::vector<Triangle> nearest;
   for (const Index number : numbers) nearest.push_back(triangle(number));
   return nearest_point(p, nearest, x);
+}
+
+bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase, std::size_t surface,
+               std::span<const Vec3> x) {
+  Eigen::Index axis = 0;
+  towards.cwiseAbs().maxCoeff(&axis);
+  // Beside the edges and corners that bodies have at round coordinates, where a ray would count twice or not at all.
+  const Vec3 from = p + kOffGrid * Vec3(0.918, 0.637, 0.781);
+  Vec3 to = from;
+  to[axis] += towards[axis] < 0 ? -kFar : kFar;
+  const Surface& all = broad_phase.surface(surface);
+  std::vector<Index> numbers;
+  broad_phase.triangles_in_box(surface, from.cwiseMin(to), from.cwiseMax(to), numbers);
+  int let_out = 0;
+  for (const Index number : numbers) {
+    const Triangle& face = all.triangles[number - all.first_triangle];
+    if (pierce(from, to, face, x)) let_out += face_normal(face, x).dot(to - from) > 0 ? 1 : -1;
+  }
+  return let_out > 0;
 }
 
 std::vector<Triangle> triangles_near(const Triangle& triangle, const BroadPhase& broad_phase, std::size_t surface,

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <optional>
 #include <span>
 #include <vector>
@@ -26,10 +27,18 @@ struct SurfacePoint {
 SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, std::span<const Vec3> x);
 
 /// Of a surface of the broad phase, at x [m] inside of the bounds of its last refit: the same bits as of all its
-/// triangles (unless a chain of a thousand of them spans kAsNear, each kTie from the next). Faces whose normal points
-/// less than 60 degrees away from `towards` are looked at alone, where there are any; zero for all.
+/// triangles (unless a chain of a thousand of them spans kAsNear, each kTie from the next). Only faces of which
+/// `counts` is true, if given; and of these, where there are any, those whose normal points less than 60 degrees away
+/// from `towards`; zero for all.
+using CountsFace = std::function<bool(const Triangle& face)>;
 SurfacePoint nearest_point(const Vec3& p, const BroadPhase& broad_phase, std::size_t surface, std::span<const Vec3> x,
-                           const Vec3& towards = Vec3::Zero());
+                           const Vec3& towards = Vec3::Zero(), const CountsFace& counts = nullptr);
+
+/// Whether a point is inside of a surface of the broad phase, which may cross itself: more faces let out the ray from
+/// it along the axis nearest to `towards` than let it in. Of an open surface: behind it. At x [m] inside of the bounds
+/// of the last refit.
+bool is_inside(const Vec3& p, const Vec3& towards, const BroadPhase& broad_phase, std::size_t surface,
+               std::span<const Vec3> x);
 
 /// Triangles of a surface of the broad phase, in their order, whose boxes come closer to that of `triangle` than
 /// `reach` [m], at x [m] inside of the bounds of the last refit.

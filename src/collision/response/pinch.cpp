@@ -1,45 +1,47 @@
 #include "collision/response/pinch.hpp"
 
 #include <algorithm>
+#include <functional>
 
-#include "collision/proximity/surface_point.hpp"
 #include "core/archive.hpp"
 
 namespace weft::collision {
 namespace {
 
-// The faces of an obstacle that a certificate has to be looked for against: others are apart by their boxes.
-std::vector<Triangle> faces_near(const Triangle& cloth, const BroadPhase& surfaces, std::size_t obstacle,
-                                 std::span<const Vec3> x) {
-  return triangles_near(cloth, surfaces, obstacle, x, kFloor);
-}
-
-bool is_apart(const Triangle& cloth, const BroadPhase& surfaces, std::size_t obstacle, std::span<const Vec3> x) {
-  return std::ranges::all_of(faces_near(cloth, surfaces, obstacle, x), [&](const Triangle& face) {
-    return find_certificate({cloth, face}, x, x).has_value();
-  });
-}
-
-// Where triangle and obstacle cross: pushed along the normals of the faces crossed.
-void append_crossings(const Triangle& cloth, int side, const BroadPhase& surfaces, std::size_t obstacle,
-                      std::span<const Vec3> x, std::vector<FeaturePair>& pushes) {
-  for (const Triangle& face : faces_near(cloth, surfaces, obstacle, x)) {
-    const auto weights = find_crossing(cloth, face, x);
-    if (!weights) continue;
-    pushes.push_back({{cloth[0], cloth[1], cloth[2], face[0]},
-                      {(*weights)[0], (*weights)[1], (*weights)[2], -1},
-                      side * face_normal(face, x),
-                      0});
-  }
+// Which way what came upon p faces now.
+Vec3 outward(const Vec3& p, std::span<const Triangle> faces, std::span<const Vec3> x) {
+  return face_normal(nearest_point(p, faces, x).face, x);
 }
 
 }  // namespace
+
+// Those that a certificate has to be looked for against: others are apart by their boxes.
+std::vector<Triangle> PinchedPairs::faces_near(const Key& key, const BroadPhase& surfaces,
+                                               std::span<const Vec3> x) const {
+  std::vector<Triangle> faces = triangles_near(key.cloth, surfaces, key.body, x, kFloor);
+  std::erase_if(faces, std::not_fn(is_of(key.limb)));
+  return faces;
+}
+
+bool PinchedPairs::is_apart(const Key& key, const BroadPhase& surfaces, std::span<const Vec3> x) const {
+  return std::ranges::all_of(faces_near(key, surfaces, x), [&](const Triangle& face) {
+    return find_certificate({key.cloth, face}, x, x).has_value();
+  });
+}
+
+// Where a hand is in a hip the way out of it leads into that.
+bool PinchedPairs::has_room(const Vec3& place, const Vec3& outward, const BroadPhase& surfaces,
+                            std::span<const Vec3> x) const {
+  for (std::size_t surface = 0; surface < surfaces.size(); ++surface)
+    if (is_obstacle(surfaces.surface(surface)) && is_inside(place, outward, surfaces, surface, x)) return false;
+  return true;
+}
 
 bool PinchedPairs::concern(const std::array<Index, 4>& vertices) const {
   if (origins_.empty()) return false;
   for (Index particle : vertices)
     for (Index other : vertices)
-      if (touches(particle, body_of_[other])) return true;
+      if (particles_.contains({particle, body_of_[other], limb_of_[other]})) return true;
   return false;
 }
 
@@ -47,23 +49,18 @@ void PinchedPairs::list_particles() {
   particles_.clear();
   for (const auto& [key, origin] : origins_) {
     for (Index particle : key.cloth) {
-      Origin& of_particle = particles_[{particle, key.body}];
+      Origin& of_particle = particles_[{particle, key.body, key.limb}];
       of_particle.side = origin.side;
-      of_particle.outward += origin.outward;
+      of_particle.faces.insert(of_particle.faces.end(), origin.faces.begin(), origin.faces.end());
     }
   }
-  for (auto& [place, origin] : particles_) origin.outward.normalize();
 }
 
 void PinchedPairs::note_origins(const BroadPhase& surfaces, std::span<const Vec3> x_t0) {
   for (auto& [key, origin] : origins_) {
     if (origin.side != 0) continue;
-    for (Index particle : key.cloth) {
-      const SurfacePoint near = nearest_point(x_t0[particle], surfaces, key.body, x_t0);
-      origin.side = near.height < 0 ? -1 : 1;
-      origin.outward += near.normal;
-    }
-    origin.outward.normalize();
+    const Vec3& corner = x_t0[key.cloth[0]];
+    origin.side = nearest_point(corner, surfaces, key.body, x_t0, Vec3::Zero(), is_of(key.limb)).height < 0 ? -1 : 1;
   }
   list_particles();
 }
@@ -72,32 +69,48 @@ void PinchedPairs::release(const BroadPhase& surfaces, std::span<const Vec3> x) 
   const std::size_t before = origins_.size();
   std::erase_if(origins_, [&](const auto& pinched) {
     const auto& [key, origin] = pinched;
-    return is_apart(key.cloth, surfaces, key.body, x) &&
-           origin.side * nearest_point(x[key.cloth[0]], surfaces, key.body, x).height > 0;
+    return is_apart(key, surfaces, x) &&
+           origin.side * nearest_point(x[key.cloth[0]], surfaces, key.body, x, Vec3::Zero(), is_of(key.limb)).height >
+               0;
   });
   if (origins_.size() != before) list_particles();
 }
 
-std::vector<FeaturePair> PinchedPairs::find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x,
-                                                   double reach) const {
-  std::vector<FeaturePair> pushes;
-  std::map<std::pair<Index, std::size_t>, bool> is_back;
-  for (const auto& [place, origin] : particles_) {
-    const auto& [particle, body] = place;
-    SurfacePoint near = nearest_point(x[particle], surfaces, body, x);
-    is_back[place] = origin.side * near.height > 0;
+std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x,
+                                                          double reach) const {
+  std::vector<Push> pushes;
+  std::map<Corner, bool> is_back;
+  for (const auto& [corner, origin] : particles_) {
+    const auto& [particle, body, limb] = corner;
+    const Vec3& p = x[particle];
+    SurfacePoint near = nearest_point(p, surfaces, body, x, Vec3::Zero(), is_of(limb));
+    is_back[corner] = origin.side * near.height > 0;
     // The way out through another face may be shorter, and lead to the wrong side of what pinches.
-    if (!is_back[place]) near = nearest_point(x[particle], surfaces, body, x, origin.outward);
-    if (origin.side * near.height >= reach) continue;
-    pushes.push_back({{particle, near.face[0], near.face[1], near.face[2]},
-                      {1, -near.weights[0], -near.weights[1], -near.weights[2]},
-                      origin.side * near.normal,
-                      origin.side * near.height});
+    if (!is_back[corner]) near = nearest_point(p, surfaces, body, x, outward(p, origin.faces, x), is_of(limb));
+    const double height = origin.side * near.height;
+    if (height >= reach) continue;
+    const Vec3 way = origin.side * near.normal;
+    pushes.push_back({{{particle, near.face[0], near.face[1], near.face[2]},
+                       {1, -near.weights[0], -near.weights[1], -near.weights[2]},
+                       way,
+                       height},
+                      has_room(p + (reach - height) * way, way, surfaces, x)});
   }
   for (const auto& [key, origin] : origins_) {
-    const auto back = [&, body = key.body](Index v) { return is_back.at({v, body}); };
-    if (std::all_of(key.cloth.begin(), key.cloth.end(), back))
-      append_crossings(key.cloth, origin.side, surfaces, key.body, x, pushes);
+    const auto back = [&, &key = key](Index v) { return is_back.at({v, key.body, key.limb}); };
+    if (!std::all_of(key.cloth.begin(), key.cloth.end(), back)) continue;
+    for (const Triangle& face : faces_near(key, surfaces, x)) {
+      const auto weights = find_crossing(key.cloth, face, x);
+      if (!weights) continue;
+      Vec3 place = Vec3::Zero();
+      for (std::size_t k = 0; k < 3; ++k) place += (*weights)[k] * x[key.cloth[k]];
+      const Vec3 way = origin.side * face_normal(face, x);
+      pushes.push_back({{{key.cloth[0], key.cloth[1], key.cloth[2], face[0]},
+                         {(*weights)[0], (*weights)[1], (*weights)[2], -1},
+                         way,
+                         0},
+                        has_room(place + reach * way, way, surfaces, x)});
+    }
   }
   return pushes;
 }
@@ -107,11 +120,17 @@ void PinchedPairs::serialize(Archive& archive) {
   std::vector<std::pair<Key, Origin>> pinched(origins_.begin(), origins_.end());
   serialize_each(archive, pinched, [&](auto& pair) {
     auto& [key, origin] = pair;
-    serialize_values(archive, key.cloth, key.body, origin.side, origin.outward);
+    serialize_values(archive, key.cloth, key.body, key.limb, origin.side);
+    serialize_plain(archive, origin.faces);
     if constexpr (Archive::kReads) {
+      const auto is_of_body = [&, body = key.body](const Triangle& face) {
+        return std::ranges::all_of(face, [&](Index v) {
+          return v >= first_obstacle_ && v < static_cast<Index>(body_of_.size()) && body_of_[v] == body;
+        });
+      };
       const auto is_particle = [&](Index v) { return v >= 0 && v < first_obstacle_; };
       require(std::ranges::all_of(key.cloth, is_particle) && key.body > body_of_[first_obstacle_ - 1] &&
-                  key.body <= body_of_.back(),
+                  key.body <= body_of_.back() && !origin.faces.empty() && std::ranges::all_of(origin.faces, is_of_body),
               "pinched triangles of a cloth and an obstacle");
     }
   });

@@ -137,6 +137,35 @@ TEST(TrianglesNear, AreThoseWhoseBoxesAreWithinReachInTheirOrder) {
 }
 
 // An edge from below goes through the middle of a face: half way along the edge, wherever the face is cut.
+TEST(IsInside, CountsWhatLetsOutOverWhatLetsInSoThatPartsMayOverlap) {
+  // Two boxes that have [-0.1, 0.1] in common along x, as one surface, and another below.
+  testing::TestMesh both = as_test_mesh(mesh::make_box(Vec3(0.4, 0.2, 0.2), 0, 2));
+  const testing::TestMesh box = both;
+  const auto count = static_cast<Index>(box.x.size());
+  for (Vec3& p : both.x) p.x() -= 0.1;
+  for (const Vec3& p : box.x) both.x.emplace_back(p + Vec3(0.1, 0, 0));
+  for (const auto& t : box.triangles) both.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+  testing::TestMesh below = box;
+  for (Vec3& p : below.x) p.z() -= 0.3;
+  const Fitted scene({both, below}, 1, 0, 0);
+  std::mt19937 generator(7);
+  int inside = 0;
+  for (int i = 0; i < 1000; ++i) {
+    const Vec3 p = 0.35 * random_vec(generator), towards = random_vec(generator);
+    const bool expected = std::abs(p.x()) < 0.3 && std::abs(p.y()) < 0.1 && std::abs(p.z()) < 0.1;
+    EXPECT_EQ(is_inside(p, towards, scene.broad_phase, 0, scene.x), expected) << p.transpose();
+    inside += expected ? 1 : 0;
+  }
+  EXPECT_GT(inside, 20);
+}
+
+TEST(NearestPoint, OfSomeFacesAloneIsThatOfThese) {
+  const Fitted scene({as_test_mesh(mesh::make_box(Vec3(0.2, 0.2, 0.2), 0, 1))}, 1, 0, 0);
+  const auto looks_up = [&](const Triangle& face) { return face_normal(face, scene.x).z() > 0.5; };
+  const SurfacePoint found = nearest_point({0.09, 0, -0.02}, scene.broad_phase, 0, scene.x, Vec3::Zero(), looks_up);
+  EXPECT_NEAR(found.height, -0.12, 1e-15);
+}
+
 TEST(FindCrossing, TellsWhereOnTheFirstTriangleAndNothingForTrianglesApart) {
   const std::vector<Vec3> x{{0, 0, -1}, {0, 0, 3}, {5, 0, 9}, {-1, -1, 0}, {2, -1, 0}, {-1, 2, 0}};
   const auto weights = find_crossing({0, 1, 2}, {3, 4, 5}, x);

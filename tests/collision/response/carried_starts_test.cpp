@@ -51,7 +51,7 @@ TEST_P(BeforeATurningBlade, OneObstacleAloneLeavesClothRoom) {
   const std::vector<Triangle> triangles{{0, 1, 2}, {3, 4, 5}, {6, 7, 8}};
   Separation separation(triangles, {});
   separation.watch(std::vector<TrianglePair>{{0, 1}, {0, 2}, {1, 2}}, x_t0_);
-  PinchedPairs pinched(6, {0, 0, 0, 1, 1, 1, 2, 2, 2});
+  PinchedPairs pinched(6, {0, 0, 0, 1, 1, 1, 2, 2, 2}, std::vector<Index>(9, 0));
   const std::vector<std::uint8_t> movable{1, 1, 1, 1, 1, 1, 0, 0, 0};
   ASSERT_FALSE(separation.find_failing(x_t0_, x_t1_, nullptr, &carried_).empty());
   const SeparationReport report = separation.enforce(x_t0_, x_t1_, movable, &pinched, &carried_);

@@ -29,10 +29,13 @@ class PinchedTriangle : public ::testing::Test {
     broad_phase_ = BroadPhase(surfaces_, x_);
     std::vector<std::size_t> body_of;
     for (std::size_t b = 0; b < surfaces_.size(); ++b) body_of.insert(body_of.end(), surfaces_[b].vertex_count, b);
-    pinched_ = PinchedPairs(3, body_of);
+    pinched_ = PinchedPairs(3, body_of, std::vector<Index>(body_of.size(), 0));
   }
 
-  CornerPair with(std::size_t body) const { return {scene_.triangles[0], surfaces_[body].triangles[0]}; }
+  /// The cloth with the nearest face of a box.
+  CornerPair with(std::size_t body) const {
+    return {scene_.triangles[0], nearest_point(x_[0], surfaces_[body].triangles, x_).face};
+  }
   void move_cloth_to(double z) {
     for (int v = 0; v < 3; ++v) x_[v][2] = z;
     for (std::size_t b = 0; b < surfaces_.size(); ++b) broad_phase_.refit(b, x_, x_, 0.001);
@@ -53,15 +56,40 @@ TEST_F(PinchedTriangle, IsPushedBackToTheSideThatItCameFrom) {
   EXPECT_FALSE(pinched_.holds(with(2)));
   // Nearer to the bottom than to the top where it came from.
   move_cloth_to(-0.07);
-  const std::vector<FeaturePair> pushes = pinched_.find_pushes(broad_phase_, x_, 0.003);
+  const std::vector<PinchedPairs::Push> pushes = pinched_.find_pushes(broad_phase_, x_, 0.003);
   ASSERT_EQ(pushes.size(), 3U);
-  for (const FeaturePair& push : pushes) {
+  for (const auto& [push, has_room] : pushes) {
+    EXPECT_TRUE(has_room);
     EXPECT_LT((push.normal - Vec3::UnitZ()).norm(), 1e-12);
     EXPECT_NEAR(push.distance, -0.17, 1e-12);
     Vec3 difference = Vec3::Zero();
     for (int k = 0; k < 4; ++k) difference += push.weights[k] * x_[push.vertices[k]];
     EXPECT_LT((difference - push.distance * push.normal).norm(), 1e-12);
   }
+}
+
+// What came upon it is turned on its side since, so that the ways out of the box are others.
+TEST_F(PinchedTriangle, IsPushedThroughTheFaceThatCameUponItHoweverThatHasTurned) {
+  pinched_.add(with(1));
+  pinched_.note_origins(broad_phase_, x_);
+  for (Index v = surfaces_[1].first_vertex; v < surfaces_[1].first_vertex + surfaces_[1].vertex_count; ++v)
+    x_[v] = Vec3(x_[v].z(), x_[v].y(), -x_[v].x());
+  move_cloth_to(0.09);
+  const std::vector<PinchedPairs::Push> pushes = pinched_.find_pushes(broad_phase_, x_, 0.003);
+  ASSERT_EQ(pushes.size(), 3U);
+  for (const auto& [push, has_room] : pushes) EXPECT_LT((push.normal - Vec3::UnitX()).norm(), 1e-12);
+}
+
+// The box above comes down into the one below: then the way up is no way out.
+TEST_F(PinchedTriangle, HasNoRoomWhereTheWayBackLeadsIntoAnotherObstacle) {
+  pinched_.add(with(1));
+  pinched_.note_origins(broad_phase_, x_);
+  for (Index v = surfaces_[2].first_vertex; v < surfaces_[2].first_vertex + surfaces_[2].vertex_count; ++v)
+    x_[v].z() -= 0.06;
+  move_cloth_to(0.09);
+  const std::vector<PinchedPairs::Push> pushes = pinched_.find_pushes(broad_phase_, x_, 0.003);
+  ASSERT_EQ(pushes.size(), 3U);
+  for (const auto& [push, has_room] : pushes) EXPECT_FALSE(has_room);
 }
 
 TEST_F(PinchedTriangle, IsLetGoOnlyWhereItIsApartAndOnItsSide) {
@@ -89,7 +117,7 @@ TEST_F(PinchedTriangle, IsPushedOffACornerThatSticksThroughIt) {
   x_[0] = {0.12, 0.06, 0}, x_[1] = {0.06, 0.12, 0}, x_[2] = {0.13, 0.13, 0};
   move_cloth_to(0.095);
   std::size_t crossings = 0;
-  for (const FeaturePair& push : pinched_.find_pushes(broad_phase_, x_, 0.003)) {
+  for (const auto& [push, has_room] : pinched_.find_pushes(broad_phase_, x_, 0.003)) {
     if (push.weights[3] != -1) continue;  // of a particle
     ++crossings;
     EXPECT_EQ(push.distance, 0);
