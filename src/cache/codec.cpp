@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -88,8 +89,73 @@ void serialize(Archive& archive, frame::Stage& stage) {
   serialize_finite(archive, stage.heat_max);
 }
 
+/// Pictures of all surfaces, each once; paints name them by number.
+using Textures = std::vector<std::shared_ptr<const frame::Texture>>;
+
+Textures textures_of(const Surfaces& surfaces) {
+  Textures list;
+  const auto add = [&](const frame::Appearance& look) {
+    if (look.paint.texture && std::ranges::find(list, look.paint.texture) == list.end())
+      list.push_back(look.paint.texture);
+  };
+  for (const auto& surface : surfaces.surfaces) {
+    add(surface->appearance);
+    for (const frame::SurfacePart& part : surface->parts) add(part.appearance);
+  }
+  return list;
+}
+
 template <class Archive>
-void serialize(Archive& archive, frame::Surface& surface) {
+void serialize(Archive& archive, Textures& textures) {
+  constexpr std::size_t kLeastTexture = 16;  // [bytes]
+  serialize_each(
+      archive, textures,
+      [&](std::shared_ptr<const frame::Texture>& pointer) {
+        frame::Texture texture = pointer ? *pointer : frame::Texture{};
+        serialize_values(archive, texture.width, texture.height);
+        serialize_plain(archive, texture.rgba);
+        constexpr int kMost = 1 << 15;  // pixels of a side
+        const bool sized = texture.width > 0 && texture.height > 0 && texture.width < kMost && texture.height < kMost;
+        if (!sized || texture.rgba.size() != 4 * static_cast<std::size_t>(texture.width) * texture.height)
+          throw std::runtime_error("a picture has not its size");
+        // Paints that are written are known by the picture that they have.
+        if constexpr (kReading<Archive>) pointer = std::make_shared<const frame::Texture>(std::move(texture));
+      },
+      kLeastTexture);
+}
+
+template <class Archive>
+void serialize(Archive& archive, frame::Paint& paint, const Textures& textures) {
+  std::int32_t number = -1;
+  if constexpr (!kReading<Archive>) {
+    const auto found = std::ranges::find(textures, paint.texture);
+    if (found != textures.end()) number = static_cast<std::int32_t>(found - textures.begin());
+  }
+  archive.value(number);
+  if (number < -1 || number >= static_cast<std::int32_t>(textures.size()))
+    throw std::runtime_error("a picture is not there");
+  if (number >= 0) paint.texture = textures[static_cast<std::size_t>(number)];
+  for (double& entry : paint.texture_from_uv.reshaped()) serialize_finite(archive, entry);
+  serialize_byte(archive, paint.wrap_u, frame::Paint::Wrap::once);
+  serialize_byte(archive, paint.wrap_v, frame::Paint::Wrap::once);
+  serialize_byte(archive, paint.alpha, frame::Paint::Alpha::cutout);
+}
+
+template <class Archive>
+void serialize(Archive& archive, frame::Appearance& look, const Textures& textures) {
+  serialize_finite(archive, look.color);
+  serialize_finite(archive, look.back_color);
+  serialize_finite(archive, look.roughness);
+  serialize_finite(archive, look.thread_spacing);
+  serialize_flag(archive, look.checker);
+  serialize(archive, look.paint, textures);
+  serialize_flag(archive, look.back_painted);
+  serialize_finite(archive, look.back_paleness);
+}
+
+template <class Archive>
+void serialize(Archive& archive, frame::Surface& surface, const Textures& textures) {
+  constexpr std::size_t kLeastPart = 100;  // [bytes]
   serialize_plain(archive, surface.name);
   serialize_byte(archive, surface.kind, frame::ObjectKind::character);
   serialize_flag(archive, surface.visible);
@@ -98,11 +164,16 @@ void serialize(Archive& archive, frame::Surface& surface) {
   serialize_plain(archive, surface.quads);
   serialize_plain(archive, surface.uv);
   serialize_finite(archive, surface.crease_angle);
-  serialize_finite(archive, surface.appearance.color);
-  serialize_finite(archive, surface.appearance.back_color);
-  serialize_finite(archive, surface.appearance.roughness);
-  serialize_finite(archive, surface.appearance.thread_spacing);
-  serialize_flag(archive, surface.appearance.checker);
+  serialize(archive, surface.appearance, textures);
+  serialize_each(
+      archive, surface.parts,
+      [&](frame::SurfacePart& part) {
+        serialize_plain(archive, part.name);
+        serialize(archive, part.appearance, textures);
+      },
+      kLeastPart);
+  serialize_plain(archive, surface.part_of_triangle);
+  serialize_plain(archive, surface.paint_uv);
 }
 
 template <class Archive>
@@ -111,6 +182,11 @@ void serialize(Archive& archive, frame::Camera& camera) {
   serialize_finite(archive, camera.position);
   serialize_finite(archive, camera.target);
   serialize_finite(archive, camera.field_of_view);
+  serialize_byte(archive, camera.kind, frame::Camera::Kind::track);
+  serialize_each(
+      archive, camera.subjects, [&](std::string& name) { serialize_plain(archive, name); }, sizeof(std::size_t));
+  for (double* number : {&camera.azimuth, &camera.elevation, &camera.margin, &camera.smoothing})
+    serialize_finite(archive, *number);
 }
 
 template <class Archive>
@@ -153,7 +229,7 @@ struct FrameHead {
 
 template <class Archive>
 void serialize(Archive& archive, FrameHead& head) {
-  constexpr std::size_t kLeastCamera = 64, kLeastLight = 129;  // [bytes], without a name
+  constexpr std::size_t kLeastCamera = 105, kLeastLight = 129;  // [bytes], without a name
   serialize_finite(archive, head.time);
   serialize_each(
       archive, head.cameras, [&](frame::Camera& camera) { serialize(archive, camera); }, kLeastCamera);
@@ -175,6 +251,15 @@ void check(const frame::Surface& surface, std::size_t vertices) {
       for (const Index vertex : face)
         if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertices) broken("a face has a vertex that is not there");
   };
+  if (!surface.part_of_triangle.empty() && surface.part_of_triangle.size() != surface.triangles.size())
+    broken("there is not one part per triangle");
+  for (const std::int32_t part : surface.part_of_triangle)
+    if (part < 0 || static_cast<std::size_t>(part) >= surface.parts.size()) broken("a part is not there");
+  if (!surface.paint_uv.empty() && surface.paint_uv.size() != surface.triangles.size())
+    broken("there is not one place of paint per triangle");
+  for (const auto& corners : surface.paint_uv)
+    for (const Vec2& uv : corners)
+      if (!uv.allFinite()) broken("a place of paint is not finite");
   inside(surface.triangles);
   inside(surface.quads);
 }
@@ -191,10 +276,12 @@ std::string encode_surfaces(const Surfaces& surfaces) {
   ByteWriter writer;
   frame::Stage stage = *surfaces.stage;
   serialize(writer, stage);
+  Textures textures = textures_of(surfaces);
+  serialize(writer, textures);
   writer.size(surfaces.surfaces);
   for (const auto& pointer : surfaces.surfaces) {
     frame::Surface surface = *pointer;
-    serialize(writer, surface);
+    serialize(writer, surface, textures);
   }
   for (std::vector<Vec3> positions : surfaces.positions) {
     writer.size(positions);
@@ -204,13 +291,15 @@ std::string encode_surfaces(const Surfaces& surfaces) {
 }
 
 Surfaces decode_surfaces(std::string_view payload) {
-  constexpr std::size_t kLeastSurface = 116;  // [bytes], without name, faces and uv
+  constexpr std::size_t kLeastSurface = 200;  // [bytes], without name, faces and uv
   ByteReader reader{payload};
   frame::Stage stage;
   serialize(reader, stage);
+  Textures textures;
+  serialize(reader, textures);
   std::vector<frame::Surface> list;
   serialize_each(
-      reader, list, [&](frame::Surface& surface) { serialize(reader, surface); }, kLeastSurface);
+      reader, list, [&](frame::Surface& surface) { serialize(reader, surface, textures); }, kLeastSurface);
   Surfaces surfaces{std::make_shared<const frame::Stage>(stage), {}, {}};
   for (frame::Surface& surface : list) {
     std::vector<Vec3>& positions = surfaces.positions.emplace_back();

@@ -1,6 +1,8 @@
 // A body of bones and skin, and the motions that it knows. From a file or made by us, it is the same.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -64,6 +66,23 @@ struct Clip {
   std::vector<MorphChannel> morphs;
 };
 
+/// How a material of a file looks.
+struct Material {
+  enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< once: nothing beyond the edge
+  std::string name;
+  Vec3 color{0.8, 0.8, 0.8};  ///< linear; what a picture is multiplied by
+  std::string picture;        ///< bytes of a PNG or JPEG file; empty: none
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  bool cutout = false;  ///< what is transparent in the picture is a hole
+};
+
+/// Materials and pictures on the triangles of a mesh.
+struct Coloring {
+  std::vector<Material> materials;
+  std::vector<Index> material_of_triangle;  ///< per triangle; empty where the file has no colours
+  std::vector<std::array<Vec2, 3>> uv;      ///< per triangle: (u, v) of its corners, from the lower left of the picture
+};
+
 /// Lengths in metres, axes of the scene's up axis.
 struct Character {
   std::vector<Node> nodes;
@@ -74,6 +93,7 @@ struct Character {
   std::vector<MorphTarget> morphs;
   std::vector<std::string> materials;     ///< names in the file
   std::vector<Index> material_of_vertex;  ///< per vertex; empty where there are none
+  Coloring coloring;
   std::vector<Clip> clips;
 };
 

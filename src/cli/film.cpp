@@ -26,7 +26,13 @@ class Film {
  public:
   Film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted, const std::atomic<bool>& stop,
        Progress& progress, EventLog& log)
-      : parts_(parts), made_(made), wanted_(wanted), stop_(stop), progress_(progress), log_(log) {
+      : parts_(parts),
+        made_(made),
+        wanted_(wanted),
+        stop_(stop),
+        progress_(progress),
+        log_(log),
+        camera_(parts.camera) {
     result_.frames.resize(made.count());
   }
 
@@ -50,30 +56,64 @@ class Film {
   void make_frames() noexcept {
     try {
       const std::unique_ptr<FrameSource> source = open_source();
-      // The first one costs little more, so even a run that is stopped at once has a picture.
-      for (int frame = made_.begin; frame <= wanted_.last(); frame += made_.step) {
-        if (frame > made_.begin && stop_) {
-          result_.interrupted = true;
-          break;
-        }
-        MadeFrame made = source->next();  // simulated, or read
-        if (parts_.look) parts_.look(made);
-        if (parts_.store) parts_.store->keep(made);  // so that it is not simulated again
-        for (const std::string& warning : made.report.warnings) log::warn(warning);
-        record(frame).report = std::move(made.report);
-        if (++made_so_far_ == 1) first_frame_ = source->first_frame();
-        progress_.advance(Stage::simulate);
-        if (!wanted_.contains(frame)) {
-          log_.write("frame_done", frame_json(record(frame)));
-        } else if (!snapshots_.push(std::move(made.snapshot))) {
-          break;
-        }
+      const bool found_beforehand = camera_ && source->show_all(*camera_);
+      if (found_beforehand) camera_->find();
+      if (camera_ && !found_beforehand) {
+        make_then_hand_on(*source);
+      } else {
+        make_frames(*source, false);
       }
-      if (parts_.store) parts_.store->keep_last_state();
       snapshots_.close();
     } catch (...) {
       snapshots_.close(std::current_exception());
     }
+  }
+
+  /// Hands on what is wanted, or only shows all to the camera.
+  void make_frames(FrameSource& source, bool only_show) {
+    const int last = only_show ? made_.last() : wanted_.last();
+    // The first one costs little more, so even a run that is stopped at once has a picture.
+    for (int frame = made_.begin; frame <= last; frame += made_.step) {
+      if (frame > made_.begin && stop_) {
+        result_.interrupted = true;
+        break;
+      }
+      MadeFrame made = source.next();  // simulated, or read
+      if (parts_.look) parts_.look(made);
+      if (parts_.store) parts_.store->keep(made);  // so that it is not simulated again
+      for (const std::string& warning : made.report.warnings) log::warn(warning);
+      record(frame).report = std::move(made.report);
+      ++made_so_far_;
+      progress_.advance(Stage::simulate);
+      if (only_show) camera_->see(*made.snapshot);
+      if (!wanted_.contains(frame)) {
+        log_.write("frame_done", frame_json(record(frame)));
+      } else if (!only_show && !snapshots_.push(std::move(made.snapshot))) {
+        break;
+      }
+    }
+    if (parts_.store) parts_.store->keep_last_state();
+  }
+
+  /// The camera sees all frames before the first is drawn. Whatever ends the making, what was made is handed on.
+  void make_then_hand_on(FrameSource& source) {
+    std::exception_ptr failure;
+    try {
+      make_frames(source, true);
+    } catch (...) {
+      failure = std::current_exception();
+    }
+    camera_->find();
+    const bool stopped = result_.interrupted;
+    for (int frame = wanted_.begin; frame <= wanted_.last() && frame < made_.begin + made_so_far_;
+         frame += wanted_.step) {
+      if (stop_ && !stopped && frame > wanted_.begin) {
+        result_.interrupted = true;
+        break;
+      }
+      if (!snapshots_.push(parts_.store->stored(frame))) break;
+    }
+    if (failure) std::rethrow_exception(failure);
   }
 
   void draw_frames() noexcept {
@@ -83,7 +123,7 @@ class Film {
       while (frame::SnapshotPtr snapshot = snapshots_.pop().value_or(nullptr)) {
         DrawnFrame drawn{snapshot, {}};
         if (painter) {
-          if (first_frame_) painter->frame_on(*std::exchange(first_frame_, nullptr));
+          if (camera_) painter->look_through(*std::exchange(camera_, std::nullopt));
           drawn.image = painter->draw(*snapshot);
           record(snapshot->frame).render = painter->last_time();
         }
@@ -146,8 +186,8 @@ class Film {
   EventLog& log_;
   BoundedQueue<frame::SnapshotPtr> snapshots_{kQueueLength};
   BoundedQueue<DrawnFrame> pictures_{kQueueLength};
-  frame::SnapshotPtr first_frame_;  // from the making to the drawing thread, before the first snapshot
-  int made_so_far_ = 0;             // by the making thread; read after it has ended
+  std::optional<render::CameraPath> camera_;  // from the making to the drawing thread, before the first snapshot
+  int made_so_far_ = 0;                       // by the making thread; read after it has ended
   FilmResult result_;
 };
 

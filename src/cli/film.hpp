@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -26,7 +27,10 @@ struct FilmParts {
   std::function<std::unique_ptr<FrameSource>()> open_source;
   std::function<std::unique_ptr<FramePainter>()> open_painter;  ///< empty: nothing is drawn
   std::function<std::unique_ptr<FrameWriter>(const std::string& painter_description)> open_writer;  ///< likewise
-  Store* store = nullptr;                           ///< keeps what is simulated
+  Store* store = nullptr;  ///< keeps what is simulated
+  /// One that is found from all frames, where the scene does not place it. Frames that are made are then drawn, from
+  /// the store, when the last of them is there.
+  std::optional<render::CameraPath> camera = std::nullopt;
   std::filesystem::path meshes;                     ///< folder; empty: none
   std::function<void(const MadeFrame&)> look = {};  ///< at each frame that is made, in order; may be empty
 };
@@ -42,8 +46,8 @@ struct FilmResult {
   bool finished_output = false;  ///< what was written is whole, under its final name
 };
 
-/// Goes through the frames that the source makes until the last of `wanted`, `stop`, or a failure; `made` has all of
-/// `wanted`. Whatever ends it, the frames that were written are finished and kept if the writer itself works. Never
+/// Goes through the frames that the source makes until the last of `wanted`, or of `made` where the camera has to see
+/// them, `stop`, or a failure; `made` has all of `wanted`. Whatever ends it, the frames that were written are finished and kept if the writer itself works. Never
 /// throws for a failure of a stage: see `failure`.
 FilmResult make_film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted,
                      const std::atomic<bool>& stop, Progress& progress, EventLog& log);

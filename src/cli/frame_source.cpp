@@ -18,7 +18,7 @@ SceneSource::SceneSource(const scene::Scene& scene, Store& store, const std::ato
 
 MadeFrame SceneSource::next() {
   MadeFrame frame = store_.resumes() && next_ <= store_.start().frame ? read_stored() : simulate();
-  if (next_++ == 0) first_frame_ = frame.snapshot;
+  ++next_;
   return frame;
 }
 
@@ -66,6 +66,11 @@ void SceneSource::run_preroll() {
     return !stop_;
   });
   if (!whole) throw Error(ExitCode::interrupted, "interrupted before frame 0");
+}
+
+bool CacheSource::show_all(render::CameraPath& camera) const {
+  for (const int frame : reader_.frames()) camera.see(*reader_.snapshot(frame));
+  return true;
 }
 
 MadeFrame CacheSource::next() {

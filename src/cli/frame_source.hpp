@@ -9,6 +9,7 @@
 #include "cli/frame_range.hpp"
 #include "cli/store.hpp"
 #include "core/progress.hpp"
+#include "render/camera_path.hpp"
 #include "scene/scene.hpp"
 #include "simulation/simulation.hpp"
 #include "simulation/snapshots.hpp"
@@ -21,8 +22,8 @@ class FrameSource {
   virtual ~FrameSource() = default;
   /// Throws where it cannot go on.
   virtual MadeFrame next() = 0;
-  /// Frame 0, once next() was called: automatic framing looks at it whichever frames are drawn.
-  virtual frame::SnapshotPtr first_frame() const { return nullptr; }
+  /// Shows the camera all frames of the run, whichever next() yields; false where they have to be made first.
+  virtual bool show_all(render::CameraPath&) const { return false; }
   virtual std::vector<frame::ObjectInfo> objects() const { return {}; }
 };
 
@@ -33,7 +34,6 @@ class SceneSource : public FrameSource {
   SceneSource(const scene::Scene& scene, Store& store, const std::atomic<bool>& stop, Progress& progress);
 
   MadeFrame next() override;
-  frame::SnapshotPtr first_frame() const override { return first_frame_; }
   std::vector<frame::ObjectInfo> objects() const override { return store_.objects(); }
 
  private:
@@ -48,22 +48,20 @@ class SceneSource : public FrameSource {
   Progress& progress_;
   std::unique_ptr<simulation::Simulation> simulation_;
   std::optional<simulation::Looks> looks_;  // of the scene, where frames of the store have others
-  frame::SnapshotPtr first_frame_;
   int next_ = 0;
 };
 
 class CacheSource : public FrameSource {
  public:
   CacheSource(const cache::Reader& reader, const FrameRange& frames)
-      : reader_(reader), first_frame_(reader.snapshot(0)), next_(frames.begin), step_(frames.step) {}
+      : reader_(reader), next_(frames.begin), step_(frames.step) {}
 
   MadeFrame next() override;
-  frame::SnapshotPtr first_frame() const override { return first_frame_; }
+  bool show_all(render::CameraPath& camera) const override;
   std::vector<frame::ObjectInfo> objects() const override { return reader_.manifest().objects; }
 
  private:
   const cache::Reader& reader_;
-  const frame::SnapshotPtr first_frame_;
   int next_, step_;
 };
 

@@ -31,16 +31,23 @@ using Kind = OutputTarget::Kind;
 /// What is made and where it goes.
 struct FilmPlan {
   cache::Manifest scene;
-  std::string scene_text;  ///< the effective scene
-  FrameRange made;         ///< by the source
-  FrameRange wanted;       ///< of those: drawn, or written as meshes
-  int simulated = 0;       ///< frames that are, those before frame 0 too; 0 where frames are only read
-  bool whole_film = true;  ///< else a part, beside which other commands may put theirs
+  std::string scene_text;     ///< the effective scene
+  FrameRange made;            ///< by the source
+  FrameRange wanted;          ///< of those: drawn, or written as meshes
+  int simulated = 0;          ///< frames that are, those before frame 0 too; 0 where frames are only read
+  bool whole_film = true;     ///< else a part, beside which other commands may put theirs
+  bool finds_camera = false;  ///< from all frames, before the first is drawn
   OutputTarget target;
   render::Settings settings;
   std::vector<std::string> objects;  ///< names
 
   bool draws() const { return target.kind != Kind::none; }
+
+  /// Also what is not wanted: a camera that is found from all frames shows the same in any range of them.
+  void make_all(const scene::Scene& of) {
+    made = {0, of.frame_count(), 1};
+    simulated = of.preroll_frames() + made.count();
+  }
 
   /// Beside the output: the checked scene with every default filled in.
   fs::path effective_scene_file() const {
@@ -48,6 +55,12 @@ struct FilmPlan {
     return file.parent_path() / ((target.kind == Kind::video ? file.stem().string() : scene.scene) + ".effective.toml");
   }
 };
+
+bool finds_camera(const scene::Scene& scene, const std::string& name) {
+  for (const scene::Camera& camera : scene.cameras)
+    if (name.empty() || camera.name == name) return camera.kind != scene::CameraKind::placed;
+  return true;
+}
 
 FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {
   FilmPlan plan;
@@ -57,6 +70,7 @@ FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {
   plan.wanted = resolve_frames(options.frames, scene.frame_count());
   plan.made = {0, plan.wanted.last() + 1, 1};
   plan.simulated = scene.preroll_frames() + plan.made.count();
+  plan.finds_camera = finds_camera(scene, plan.settings.camera);
   for (const scene::Cloth& cloth : scene.cloths) plan.objects.push_back(cloth.name);
   for (const scene::Obstacle& obstacle : scene.obstacles) plan.objects.push_back(obstacle.name);
   for (const scene::Character& character : scene.characters) plan.objects.push_back(character.name);
@@ -70,6 +84,7 @@ FilmPlan plan_of(const cache::Reader& reader, const RunOptions& options) {
   if (!options.common.camera.empty()) check_camera(plan.scene.cameras, options.common.camera);
   plan.settings = render_settings({plan.scene.width, plan.scene.height}, plan.scene.camera, options.common);
   plan.wanted = plan.made = cached_frames(reader, options.frames);
+  plan.finds_camera = render::CameraPath::is_found(*reader.snapshot(0), plan.settings.camera);
   plan.whole_film = !options.frames.begin && !options.frames.end;
   plan.target = parse_output(options.output, plan.scene.scene);
   for (const frame::ObjectInfo& object : plan.scene.objects) plan.objects.push_back(object.name);
@@ -160,6 +175,7 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
                           describe_pictures(plan.scene, plan.settings, gl)});
     };
   }
+  if (plan.draws() && plan.finds_camera) parts.camera.emplace(plan.settings.camera, plan.settings.aspect());
   parts.meshes = options_.meshes;
   const int drawn = plan.draws() ? plan.wanted.count() : 0;
   progress_.emplace(options_.common.progress, StageCounts{plan.simulated, drawn, drawn});
@@ -300,6 +316,7 @@ ExitCode run(const RunOptions& options) {
   const scene::Scene scene = load_scene(options.common);
   FilmPlan plan = plan_of(scene, options);
   plan.target = parse_output(options.output, scene.name);
+  if (plan.finds_camera) plan.make_all(scene);
   PathLedger paths;
   add_inputs(paths, scene);
   add_outputs(paths, plan, options);
@@ -313,7 +330,8 @@ ExitCode run(const RunOptions& options) {
   }
   if (!options.resume) paths.check_absent(overwrite);
   paths.check_writable();
-  Store store(cache, Store::Need::helpful, plan.scene, plan.scene_text);
+  // Pictures whose camera is found are drawn from there.
+  Store store(cache, plan.finds_camera ? Store::Need::required : Store::Need::helpful, plan.scene, plan.scene_text);
   if (options.resume) {
     store.find_start();
     paths.check_absent(overwrite, store.outputs());

@@ -48,19 +48,20 @@ ExitCode sheet(const SheetOptions& options) {
   const WallTimer timer;
   set_thread_count(options.common.threads);
   const std::unique_ptr<Stills> stills = open_stills(options.common);
-  render::Settings settings = stills->settings();
-  const PictureSize size = options.common.size.value_or(small_size(settings));
-  settings.width = size.width;
-  settings.height = size.height;
+  stills->set_size(options.common.size.value_or(small_size(stills->settings())));
+  const render::Settings& settings = stills->settings();
   const std::vector<int> frames = evenly_spaced(stills->frames(), options.count);
   const auto file = still_file(*stills, options.output, stills->scene().scene + ".sheet.png", options.common.overwrite);
   {
     const auto count = static_cast<int>(frames.size());
     Progress progress(options.common.progress, {stills->cost(frames.back()), count, 1});
+    std::vector<frame::SnapshotPtr> snapshots;
+    for (const int k : frames) snapshots.push_back(stills->at(k, progress));
     const std::unique_ptr<FramePainter> painter = make_gl_painter(settings);
+    painter->look_through(stills->camera());
     std::vector<image::SheetPicture> pictures;
-    for (const int k : frames) {
-      const frame::SnapshotPtr snapshot = stills->at(k, progress);
+    for (const frame::SnapshotPtr& snapshot : snapshots) {
+      const int k = snapshot->frame;
       pictures.push_back(
           {painter->draw(*snapshot), fmt::format("frame {}", k), fmt::format("{:.2f} s", snapshot->time)});
       progress.advance(Stage::draw);

@@ -24,7 +24,7 @@ class GlPainter : public FramePainter {
  public:
   explicit GlPainter(const render::Settings& settings) : renderer_(settings) {}
 
-  void frame_on(const frame::FrameSnapshot& snapshot) override { renderer_.frame_on(snapshot); }
+  void look_through(render::CameraPath path) override { renderer_.look_through(std::move(path)); }
 
   image::Image draw(const frame::FrameSnapshot& snapshot) override {
     image::Image image = renderer_.draw(snapshot);

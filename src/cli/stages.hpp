@@ -20,8 +20,8 @@ namespace weft::cli {
 class FramePainter {
  public:
   virtual ~FramePainter() = default;
-  /// What automatic framing looks at; without it, at the first frame that is drawn.
-  virtual void frame_on(const frame::FrameSnapshot&) {}
+  /// Takes cameras that were found; without them, what is not placed is found from the first frame that is drawn.
+  virtual void look_through(render::CameraPath) {}
   virtual image::Image draw(const frame::FrameSnapshot& snapshot) = 0;
   virtual StageTime last_time() const = 0;
   virtual std::string description() const = 0;

@@ -28,10 +28,6 @@ constexpr double kWorthATurn = 1.25;
 constexpr double kMarkWidth = 1.5 / 360;  // of an outline, in heights of the picture
 constexpr std::array<std::uint8_t, 3> kMark{225, 20, 40};
 
-double aspect_of(const render::Settings& settings) {
-  return static_cast<double>(settings.width) / settings.height;
-}
-
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   return snapshot.stage ? snapshot.stage->up : Vec3::UnitZ();
 }
@@ -128,7 +124,7 @@ void outline(image::Image& image, const frame::FrameSnapshot& snapshot, const fr
 std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, const render::Settings& settings,
                                             FramePainter& painter) {
   const frame::FrameSnapshot& snapshot = *start.snapshot;
-  const double aspect = aspect_of(settings);
+  const double aspect = settings.aspect();
   std::vector<image::SheetPicture> pictures;
   const auto add = [&](const frame::Camera& camera, std::string left, std::string right) {
     frame::FrameSnapshot copy = snapshot;
@@ -136,8 +132,7 @@ std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, 
     pictures.push_back({painter.draw(copy), std::move(left), std::move(right)});
     outline(pictures.back().image, snapshot, camera, start.places);
   };
-  const frame::Camera* named = render::find_camera(snapshot, settings.camera);
-  add(named ? *named : render::frame_subjects(snapshot, up_of(snapshot), aspect), "the start", "");
+  add(render::camera_of(snapshot, settings.camera, aspect), "the start", "");
   for (std::size_t p = 0; p < std::min(start.places.size(), kCloseUps); ++p) {
     const MeetingPlace& place = start.places[p];
     add(look_at(snapshot, place, aspect), place.a == place.b ? place.a + " itself" : place.a + " and " + place.b,

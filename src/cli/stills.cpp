@@ -2,6 +2,7 @@
 
 #include <numeric>
 #include <optional>
+#include <utility>
 
 #include "cache/reader.hpp"
 #include "cli/scene_input.hpp"
@@ -31,6 +32,7 @@ class SceneStills : public Stills {
       check_signals();
       simulation_->advance();
       progress.advance(Stage::simulate);
+      show(*simulation_->snapshot());
     }
     return simulation_->snapshot();
   }
@@ -45,6 +47,7 @@ class SceneStills : public Stills {
     };
     simulation_->run_preroll(proceed);
     progress.advance(Stage::simulate);
+    show(*simulation_->snapshot());
   }
 
   void check_signals() const {
@@ -74,15 +77,35 @@ class CacheStills : public Stills {
   int cost(int) const override { return 0; }
   frame::SnapshotPtr at(int frame, Progress&) override {
     if (signals_.requested()) throw Error(ExitCode::interrupted, "interrupted at frame {}; no picture", frame);
+    if (!std::exchange(shown_, true) && render::CameraPath::is_found(*reader_.snapshot(frame), settings_.camera))
+      for (const int each : frames_) show(*reader_.snapshot(each));
     return reader_.snapshot(frame);
   }
 
  private:
   const StopSignals signals_;
   const cache::Reader reader_;
+  bool shown_ = false;  // all frames, to the camera
 };
 
 }  // namespace
+
+void Stills::show(const frame::FrameSnapshot& snapshot) {
+  if (!render::CameraPath::is_found(snapshot, settings_.camera)) return;
+  if (!camera_) camera_.emplace(settings_.camera, settings_.aspect());
+  camera_->see(snapshot);
+}
+
+render::CameraPath Stills::camera() {
+  if (!camera_) return {settings_.camera, settings_.aspect()};
+  camera_->find();
+  return *camera_;
+}
+
+void Stills::set_size(const PictureSize& size) {
+  settings_.width = size.width;
+  settings_.height = size.height;
+}
 
 std::unique_ptr<Stills> open_stills(const SceneOptions& options) {
   if (std::filesystem::is_directory(options.scene)) return std::make_unique<CacheStills>(options);

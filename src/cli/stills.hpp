@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -30,11 +31,22 @@ class Stills {
   virtual int cost(int last) const = 0;
   /// To be called with ascending numbers. Throws Error(interrupted) once SIGINT or the like asked for it.
   virtual frame::SnapshotPtr at(int frame, Progress& progress) = 0;
+  /// The camera, once all frames that are wanted were had: it has seen those of the cache, or those that were
+  /// simulated.
+  render::CameraPath camera();
+  /// In place of that of the scene; before the first frame.
+  void set_size(const PictureSize& size);
 
  protected:
+  /// In their order.
+  void show(const frame::FrameSnapshot& snapshot);
+
   cache::Manifest scene_;
   render::Settings settings_;
   std::vector<int> frames_;
+
+ private:
+  std::optional<render::CameraPath> camera_;
 };
 
 /// Reads what `options.scene` names: a scene, or the folder of a cache. Throws as load_scene() and cache::Reader do.

@@ -142,6 +142,11 @@ void Store::keep(const MadeFrame& frame) {
   if (simulation_) save_if_cheap(*simulation_, last_);
 }
 
+frame::SnapshotPtr Store::stored(int frame) {
+  if (!now_reader_) now_reader_ = std::make_unique<cache::Reader>(folder(), cache::Looks::any);
+  return now_reader_->snapshot(frame);
+}
+
 void Store::keep_last_state() {
   try {
     if (simulation_) save(*simulation_, last_);

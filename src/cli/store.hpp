@@ -66,6 +66,8 @@ class Store {
   void open(std::vector<frame::ObjectInfo> objects);
   /// Keeps what is fresh, and now and then the state of the simulation.
   void keep(const MadeFrame& frame);
+  /// A frame that was kept, or read from the earlier run, again.
+  frame::SnapshotPtr stored(int frame);
   /// That of the last frame. An earlier one is there where this one cannot be kept.
   void keep_last_state();
   /// Keeps the state where that has cost little so far for the work that it saves.
@@ -91,7 +93,8 @@ class Store {
   cache::Manifest manifest_;
   const std::string scene_text_;
   cache::Lock lock_;
-  std::unique_ptr<cache::Reader> reader_;
+  std::unique_ptr<cache::Reader> reader_;      // of the earlier run
+  std::unique_ptr<cache::Reader> now_reader_;  // of this one
   cache::SolverState start_;
   std::unique_ptr<cache::Writer> writer_;
   std::string state_;  // kept for its memory

@@ -31,13 +31,13 @@ struct Choice {
 /// The first of the frames that tell most.
 Choice most_salient(Stills& stills, const std::vector<int>& frames, Progress& progress) {
   const render::Settings& settings = stills.settings();
-  const double aspect = static_cast<double>(settings.width) / settings.height;
   Choice best;
   frame::SnapshotPtr previous;
   for (const int k : frames) {
     const frame::SnapshotPtr snapshot = stills.at(k, progress);
     const double seconds = previous ? (k - previous->frame) / stills.scene().fps : 0;
-    const render::Saliency saliency = render::saliency_of(*snapshot, previous.get(), seconds, settings.camera, aspect);
+    const render::Saliency saliency =
+        render::saliency_of(*snapshot, previous.get(), seconds, settings.camera, settings.aspect());
     if (!best.snapshot || saliency.score() > best.saliency.score()) best = {snapshot, saliency};
     previous = snapshot;
   }
@@ -93,6 +93,7 @@ ExitCode thumbnail(const ThumbnailOptions& options) {
         options.frame ? Choice{stills->at(*options.frame, progress), {}} : most_salient(*stills, frames, progress);
     const frame::FrameSnapshot& snapshot = *choice.snapshot;
     const std::unique_ptr<FramePainter> painter = make_gl_painter(stills->settings());
+    painter->look_through(stills->camera());
     const image::Image image = painter->draw(snapshot);
     progress.advance(Stage::draw);
     const Metadata about = describe_pictures(stills->scene(), stills->settings(), painter->description());

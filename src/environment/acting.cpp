@@ -440,7 +440,11 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   mesh::Mesh mesh = std::move(body.character.mesh);
   mesh.positions.resize(vertices);
   keys.at(0, mesh.positions);
-  return {std::move(mesh), std::move(keys), std::move(parts), std::move(limbs), std::move(body.warnings)};
+  std::shared_ptr<const character::Coloring> coloring;
+  if (!body.character.coloring.material_of_triangle.empty())
+    coloring = std::make_shared<const character::Coloring>(std::move(body.character.coloring));
+  return {std::move(mesh),  std::move(keys),          std::move(parts),
+          std::move(limbs), std::move(body.warnings), std::move(coloring)};
 }
 
 Actor act(const Cast& cast, const scene::MeshSequence& source, std::span<const FollowingPin> following) {

@@ -1,6 +1,7 @@
 // From a character of the scene to its key frames.
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
@@ -37,6 +38,7 @@ struct Actor {
   std::vector<Part> parts;   ///< those of the scene, and those that its pins follow
   std::vector<Index> limbs;  ///< that each vertex of the mesh is of, from 0
   std::vector<std::string> warnings;
+  std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< of its file, where that has some
 };
 
 /// Reads the files of a character and stores its key frames from time 0 to the end of the scene. Throws

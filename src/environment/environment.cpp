@@ -120,10 +120,20 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   object.mesh.positions = garment.sheet.rest;
   object.mesh.uv = std::move(garment.uv);
   object.edges = std::move(garment.edges);
+  for (const garment::Panel& panel : pattern.panels) object.panels.push_back(panel.name);
+  object.panel_of = std::move(garment.panel_of);
+  object.paint_uv = garment.sheet.material;
   if (wearer == nullptr) object.mesh = turned_up(std::move(object.mesh), scene.up);
   object.sheet = std::move(garment.sheet);
   object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
   check_parts(cloth, object, where);
+  for (const scene::PanelPaint& panel : cloth.look.panels)
+    if (std::ranges::find(object.panels, panel.name) == object.panels.end()) {
+      const std::string nearest = nearest_name(panel.name, object.panels);
+      throw Error(ExitCode::scene_invalid, "{}.look.panel: expected a panel of its pattern, such as {}, got \"{}\"{}",
+                  where, object.panels.front(), panel.name,
+                  nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
+    }
 }
 
 /// The triangles of a cloth's file. Throws Error(asset_unreadable) where they are no sheet.
@@ -386,6 +396,7 @@ BodyObject make_character(const scene::Character& character, const Actor& actor)
   object.look = character.look;
   object.parts = actor.parts;
   object.limbs = actor.limbs;
+  object.coloring = actor.coloring;
   object.colliding = colliding_triangles(actor.mesh, actor.parts);
   // What is left out whole does not collide.
   if (object.colliding.empty() && !std::ranges::all_of(actor.parts, &Part::collide)) object.collide = false;

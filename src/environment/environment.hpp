@@ -1,6 +1,8 @@
 // All objects of a scene (seed, Fig. 1): topology, geometry, how cloth starts, and where its bodies are at any time.
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <map>
 #include <memory>
 #include <span>
@@ -8,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "character/character.hpp"
 #include "core/types.hpp"
 #include "environment/acting.hpp"
 #include "environment/key_frames.hpp"
@@ -27,6 +30,9 @@ struct ClothObject {
   mesh::Mesh mesh;              ///< rest shape in the world pose of the start; uv: weft and warp from its corner
   std::vector<Vec2> fractions;  ///< place of each particle in fractions of the rest size along weft and warp
   std::map<std::string, std::vector<Index>> edges;  ///< of a pattern, by "panel.edge": particles
+  std::vector<std::string> panels;                  ///< of a pattern: names
+  std::vector<std::int32_t> panel_of;               ///< of a pattern, per triangle: into panels
+  std::vector<std::array<Vec2, 3>> paint_uv;  ///< of a pattern, per triangle: corners along the grain of the panel [m]
   /// Least distance between particles of a grid [m]; of triangles √2 times the least height, which is the same for the
   /// two halves of a square.
   double spacing = 0;
@@ -48,7 +54,8 @@ struct BodyObject {
   bool infinite_floor = false;
   double friction = 0.3;
   scene::Look look;
-  std::vector<Part> parts;   ///< of characters
+  std::shared_ptr<const character::Coloring> coloring;  ///< of characters whose file has some; else null
+  std::vector<Part> parts;                              ///< of characters
   std::vector<Index> limbs;  ///< likewise, of each vertex, from 0: they may come to lie in each other
   /// Of what has bones: a cloth and a pin of it that follows, and the first vertex that Environment::vertex() has for
   /// the particles of the pin, behind those of the mesh.

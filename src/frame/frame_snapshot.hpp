@@ -1,7 +1,9 @@
 // What one frame shows: the only thing that the renderer, the mesh writer and the frame cache ever see.
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -12,6 +14,23 @@ namespace weft::frame {
 
 enum class ObjectKind { cloth, obstacle, character };
 
+/// A picture to lay on surfaces: rows from the top, R G B A bytes a pixel, colours in sRGB, alpha not multiplied in.
+struct Texture {
+  int width = 0, height = 0;  ///< pixels, from 1
+  std::vector<std::uint8_t> rgba;
+};
+
+/// A picture on a surface and how it is laid there.
+struct Paint {
+  enum class Wrap { repeat, clamp, mirror, once };  ///< once: nothing beyond the edge
+  enum class Alpha { ignored, over_color, cutout };
+  std::shared_ptr<const Texture> texture;
+  /// From the surface's (u, v, 1) to the picture: 0 to 1 from left to right and from the bottom to the top.
+  Eigen::Matrix<double, 2, 3> texture_from_uv = Eigen::Matrix<double, 2, 3>::Identity();
+  Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
+  Alpha alpha = Alpha::ignored;  ///< cutout: transparent parts are holes
+};
+
 /// How a surface looks. Colours are sRGB, 0 to 1.
 struct Appearance {
   Vec3 color{0.8, 0.8, 0.8};
@@ -19,6 +38,15 @@ struct Appearance {
   double roughness = 0.6;          ///< 0 mirror-like to 1 matte
   double thread_spacing = 0;       ///< distance of two threads of the drawn weave [m]; 0 draws none
   bool checker = false;            ///< faint grid of 0.5 m tiles on the floor, to give scale
+  Paint paint;                     ///< its picture is multiplied by `color`, but where that shows through it
+  bool back_painted = true;        ///< the back shows the picture too, paler by `back_paleness`; else back_color
+  double back_paleness = 0;        ///< 0: as the front, 1: white
+};
+
+/// Triangles of a surface with colours of their own: a panel of a garment, a material of a character's file.
+struct SurfacePart {
+  std::string name;
+  Appearance appearance;  ///< of which roughness, threads and checker are those of the surface
 };
 
 /// The part of an object that stays the same over a run; shared by all its snapshots.
@@ -32,7 +60,21 @@ struct Surface {
   std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; empty if it has none
   double crease_angle = 30;  ///< degrees; sharper edges are drawn hard (180: all smooth, as for cloth)
   Appearance appearance;
+  std::vector<SurfacePart> parts;              ///< empty: all triangles look as `appearance` says
+  std::vector<std::int32_t> part_of_triangle;  ///< per triangle, into parts; empty where there are none
+  /// Per triangle: where its corners lie in what the paints go by, such as metres along the grain of a panel. Empty:
+  /// `uv` of the vertices.
+  std::vector<std::array<Vec2, 3>> paint_uv;
 };
+
+/// Whether pictures lie on a surface, or its parts differ in colour.
+inline bool is_painted(const Surface& surface) {
+  const Appearance& own = surface.appearance;
+  return own.paint.texture || std::ranges::any_of(surface.parts, [&](const SurfacePart& part) {
+           const Appearance& look = part.appearance;
+           return look.paint.texture || look.color != own.color || look.back_color != own.back_color;
+         });
+}
 
 /// The part that changes from frame to frame.
 struct SurfaceState {
@@ -45,7 +87,17 @@ struct Camera {
   std::string name;
   Vec3 position{0, -3, 1.5};  ///< [m]
   Vec3 target{0, 0, 0.5};     ///< point in the middle of the picture [m]
-  double field_of_view = 35;  ///< vertical, degrees
+  double field_of_view = 35;  ///< vertical, degrees; 0: to be found
+
+  /// Placed as above, or found from all frames of a run: standing so that all of it is in view; going along with its
+  /// subjects, at one distance or as close as they allow; standing at `position` and turning after them.
+  enum class Kind { placed, whole, follow, close, track };
+  Kind kind = Kind::placed;
+  std::vector<std::string> subjects = {};  ///< names of surfaces; empty: the characters, else the cloths; whole: all
+  double azimuth = 33;                     ///< of the eye at this moment, from the front to the right, degrees
+  double elevation = 17;                   ///< above the subjects, degrees
+  double margin = 0.14;                    ///< share of each half picture left free around the subjects
+  double smoothing = 0.5;                  ///< of the ways of subjects and eye [s]
 };
 
 /// A light at one moment. Sun: parallel light from `direction`. Spot: from `position` toward `target`.

@@ -6,6 +6,7 @@
 
 #include "frame/frame_snapshot.hpp"
 #include "image/image.hpp"
+#include "render/camera_path.hpp"
 
 namespace weft::render {
 
@@ -16,8 +17,10 @@ struct Settings {
   int width = 1280, height = 720;  ///< pixels
   Quality quality = Quality::final;
   Backend backend = Backend::automatic;
-  std::string camera;  ///< by name; empty: the first, or automatic framing
+  std::string camera;  ///< by name; empty: the first, or one that has all of the run in view
   int threads = 0;     ///< of the software rasteriser; 0: its own choice
+
+  double aspect() const { return static_cast<double>(width) / height; }
 };
 
 /// Time one picture took.
@@ -34,8 +37,8 @@ class Renderer {
   Renderer(const Renderer&) = delete;
   Renderer& operator=(const Renderer&) = delete;
 
-  /// Automatic framing looks at the first snapshot it is given and then stays; call frame_on to choose another.
-  void frame_on(const frame::FrameSnapshot& snapshot);
+  /// Takes the cameras that were found of a run. Without them what is not placed is found from the first frame drawn.
+  void look_through(CameraPath path);
   image::Image draw(const frame::FrameSnapshot& snapshot);
   DrawTimes last_times() const;
 

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "render/camera_path.hpp"
 #include "render/framing.hpp"
 #include "render/view.hpp"
 
@@ -75,8 +76,7 @@ class Cells {
 
 double coverage(const frame::FrameSnapshot& snapshot, const std::string& camera_name, double aspect) {
   const Vec3 up = snapshot.stage ? snapshot.stage->up : Vec3::UnitZ();
-  const frame::Camera* named = find_camera(snapshot, camera_name);
-  const frame::Camera camera = named ? *named : frame_subjects(snapshot, up, aspect);
+  const frame::Camera camera = camera_of(snapshot, camera_name, aspect);
   const View view = make_view(camera, up, aspect, subject_bounds(snapshot), find_floor(snapshot, up));
   Cells cells(view, aspect);
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i)

@@ -141,7 +141,7 @@ const Table& character_rules() {
                   "Coulomb coefficient; of a pair, the geometric mean of both")
           .plain(Type::boolean, "collide", &Character::collide, "false lets cloth pass through it")
           .list(Type::list, "part", &Character::parts, part_rules())
-          .table("look", &Character::look, obstacle_look_rules())
+          .table("look", &Character::look, character_look_rules())
           .not_simulated()
           .build();
   return kTable;

@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <exception>
 #include <limits>
 
 #include "core/grading.hpp"
+#include "image/picture.hpp"
 #include "scene/layers.hpp"
 #include "scene/reader.hpp"
 #include "scene/sequence_files.hpp"
@@ -21,6 +23,13 @@ template <class Entries>
 std::vector<std::string> names_of(const Entries& entries) {
   std::vector<std::string> names;
   for (const auto& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
+std::vector<std::string> names_of_all(const Scene& scene) {
+  std::vector<std::string> names = names_of(scene.cloths);
+  for (const std::string& name : names_of(scene.obstacles)) names.push_back(name);
+  for (const std::string& name : names_of(scene.characters)) names.push_back(name);
   return names;
 }
 
@@ -93,9 +102,7 @@ void check_wearer(const Scene& scene, const Cloth& cloth, const std::string& pat
 }
 
 void check_friction_pairs(const Scene& scene, Findings& findings) {
-  std::vector<std::string> names = names_of(scene.cloths);
-  for (const std::string& name : names_of(scene.obstacles)) names.push_back(name);
-  for (const std::string& name : names_of(scene.characters)) names.push_back(name);
+  const std::vector<std::string> names = names_of_all(scene);
   for (std::size_t i = 0; i < scene.contact.pairs.size(); ++i) {
     const FrictionPair& pair = scene.contact.pairs[i];
     const std::string path = fmt::format("contact.pair.{}", i);
@@ -125,6 +132,28 @@ void check_layers(const Scene& scene, Findings& findings) {
   }
 }
 
+/// Reads the picture, so that what is wrong with it shows with all other mistakes.
+void check_image(const Paint& paint, const std::string& path, Findings& findings) {
+  const std::string key = path + ".image";
+  if (!paint.image || !findings.has(key) || findings.faulty(key)) return;
+  try {
+    image::read_picture(*paint.image);
+  } catch (const std::exception& error) {
+    findings.report(key, fmt::format("expected a picture (PNG or JPEG), got {}: {}", in_quotes(paint.image->string()),
+                                     error.what()));
+  }
+}
+
+void check_look(const Cloth& cloth, const std::string& path, Findings& findings) {
+  check_image(cloth.look, path + ".look", findings);
+  for (std::size_t p = 0; p < cloth.look.panels.size(); ++p) {
+    const std::string& entry = findings.entry(path + ".look.panel", p);
+    check_image(cloth.look.panels[p], entry, findings);
+    if (cloth.shape != ClothShape::pattern)
+      findings.report(entry, "expected none of a cloth that is sewn from no pattern");
+  }
+}
+
 void check_cloths(const Scene& scene, Findings& findings) {
   long particles = 0;
   for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
@@ -138,6 +167,7 @@ void check_cloths(const Scene& scene, Findings& findings) {
     check_wearer(scene, cloth, path, findings);
     if (cloth.rest == ClothRest::mesh && cloth.uv_scale)
       findings.report(path + ".uv_scale", "expected none beside rest = \"mesh\", got one");
+    check_look(cloth, path, findings);
     for (std::size_t p = 0; p < cloth.pins.size(); ++p) {
       check_pin(scene, cloth, cloth.pins[p], findings.entry(path + ".pin", p), findings);
     }
@@ -200,10 +230,14 @@ void check_characters(const Scene& scene, Findings& findings) {
 }
 
 void check_cameras(const Scene& scene, Findings& findings) {
+  const std::vector<std::string> objects = names_of_all(scene);
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     const Camera& camera = scene.cameras[i];
     const std::string& path = findings.entry("camera", i);
     check_times(camera.keys, path, findings);
+    for (const std::string& name : camera.subjects)
+      check_reference(name, objects, "a cloth, obstacle or character", path + ".subject", findings);
+    if (camera.kind != CameraKind::placed) continue;
     for (std::size_t k = 0; k < camera.keys.size(); ++k) {
       if (camera.keys[k].position != camera.keys[k].target) continue;
       const std::string in_key = fmt::format("{}.keys.{}", path, k);

@@ -22,4 +22,19 @@ const Table& obstacle_look_rules() {
   return kTable;
 }
 
+const Table& character_look_rules() {
+  static const Table kTable =
+      TableBuilder<Look>("How the character is drawn.")
+          .color("color", &Look::color, "of the surface")
+          .when_given([](Look& look) { look.as_file = false; })
+          .plain(Type::boolean, "as_file", &Look::as_file,
+                 "colors and pictures are those of the character's file, where it has some")
+          .by_default("true where no color is given")
+          .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
+          .plain(Type::boolean, "checker", &Look::checker, "of floors; nothing is drawn of it here")
+          .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture; it still collides")
+          .build();
+  return kTable;
+}
+
 }  // namespace weft::scene

@@ -41,7 +41,8 @@ void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_o
   rotation_rows(rows, pose, otherwise);
 }
 
-/// Look of what is not cloth.
+/// Looks of what is not cloth.
 const Table& obstacle_look_rules();
+const Table& character_look_rules();
 
 }  // namespace weft::scene

@@ -80,15 +80,47 @@ const Table& solver_rules() {
   return kTable;
 }
 
+/// Keys of a cloth's look that its panels can have each for itself.
+template <class Painted>
+void paint_rows(TableBuilder<Painted>& rows) {
+  rows.color("color", &Painted::color, "of the side from which weft x warp points to the viewer")
+      .color("back_color", &Painted::back_color, "of the other side")
+      .by_default("a paler front, with its picture")
+      .plain(Type::file, "image", &Painted::image,
+             "picture (PNG, JPEG) that lies along the grain; relative paths start at the scene's folder")
+      .by_default("none")
+      .number("image_width", &Painted::image_width, within(1e-3, 1000), "m",
+              "of one tile of it along weft; along warp its shape decides")
+      .vector("image_offset", &Painted::image_offset, kWeftWarp, within(-1000, 1000), "m",
+              "of the lower left corner of a tile, in the coordinates of the sheet or panel")
+      .number("image_rotation", &Painted::image_rotation, within(-360, 360), "degrees",
+              "of the picture, counter-clockwise about that corner")
+      .plain(Type::boolean, "image_repeat", &Painted::image_repeat, "false lays one tile, with color around it")
+      .plain(Type::boolean, "cutout", &Painted::cutout,
+             "what the picture leaves transparent is a hole, as in lace; else color shows there");
+}
+
+const Table& panel_look_rules() {
+  static const Table kTable =
+      TableBuilder<PanelPaint>("How a panel of a pattern is drawn; what it leaves out is that of the cloth.")
+          .plain(Type::text, "name", &PanelPaint::name, "of the panel")
+          .need(Need::required)
+          .with(paint_rows<PanelPaint>)
+          .build();
+  return kTable;
+}
+
 const Table& cloth_look_rules() {
   static const Table kTable =
       TableBuilder<Look>("How the cloth is drawn.")
-          .color("color", &Look::color, "of the side from which weft x warp points to the viewer")
-          .color("back_color", &Look::back_color, "of the other side")
-          .by_default("a paler color")
+          .with(paint_rows<Look>)
           .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
           .number("thread_spacing", &Look::thread_spacing, within(0, 10), "m", "of the drawn weave; 0 draws none")
           .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture")
+          .list(Type::list, "panel", &Look::panels, panel_look_rules(),
+                [](Look& look, std::size_t) {
+                  look.panels.push_back({static_cast<const Paint&>(look), {}});
+                })
           .build();
   return kTable;
 }
@@ -317,23 +349,73 @@ const Table& camera_key_rules() {
   return kTable;
 }
 
+/// Keys of cameras that stand still or move by keys.
+void placed_camera_rows(TableBuilder<Camera>& rows) {
+  rows.vector("position", own(&CameraKey::position), kXyz, kPlace, "m", "of the eye")
+      .need(Need::here_or_in_first_key)
+      .written_if(stands_still<Camera>)
+      .vector("target", own(&CameraKey::target), kXyz, kPlace, "m", "point in the middle of the picture")
+      .need(Need::here_or_in_first_key)
+      .written_if(stands_still<Camera>)
+      .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
+      .written_if(stands_still<Camera>)
+      .choice("interpolation", &Camera::interpolation, kInterpolations, "between its keys")
+      .list(Type::keys, "keys", &Camera::keys, camera_key_rules(), go_on_from_key_before<Camera>)
+      .written_if(moves<Camera>);
+}
+
+/// What cameras that are found are told of their subject.
+void subject_rows(TableBuilder<Camera>& rows) {
+  rows.plain(Type::texts, "subject", &Camera::subjects, "names of cloths, obstacles and characters that it shows")
+      .by_default("of whole, all but floors without end; of the others the characters, else the cloths")
+      .number("margin", &Camera::margin, within(0, 0.9), "", "share of each half picture left free around them");
+}
+void smoothing_row(TableBuilder<Camera>& rows) {
+  rows.number("smoothing", &Camera::smoothing, within(0, 60), "s", "of the way that it takes; 0 follows every twitch");
+}
+
+/// Keys of cameras that look from a direction.
+void direction_rows(TableBuilder<Camera>& rows) {
+  rows.number("azimuth", &Camera::azimuth, within(-36000, 36000), "degrees",
+              "direction in which the eye is, from the front to the right")
+      .number("elevation", &Camera::elevation, within(-89, 89), "degrees", "of the eye above the subject")
+      .number("orbit", &Camera::orbit, within(-3600, 3600), "degrees/s", "in which it goes around, to the right")
+      .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
+      .by_default("30")
+      .with(subject_rows);
+}
+
 const Table& camera_rules() {
+  using Rows = TableBuilder<Camera>;
   static const Table kTable =
-      TableBuilder<Camera>("A camera, still or moved by key frames.")
+      Rows("A camera, still or moved by key frames, or found from all frames.")
           .starting_from({.name = {}, .keys = {CameraKey{}}})
           .plain(Type::name, "name", &Camera::name, "unlike that of any other camera")
           .need(Need::required)
-          .vector("position", own(&CameraKey::position), kXyz, kPlace, "m", "of the eye")
-          .need(Need::here_or_in_first_key)
-          .written_if(stands_still<Camera>)
-          .vector("target", own(&CameraKey::target), kXyz, kPlace, "m", "point in the middle of the picture")
-          .need(Need::here_or_in_first_key)
-          .written_if(stands_still<Camera>)
-          .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
-          .written_if(stands_still<Camera>)
-          .choice("interpolation", &Camera::interpolation, kInterpolations, "between its keys")
-          .list(Type::keys, "keys", &Camera::keys, camera_key_rules(), go_on_from_key_before<Camera>)
-          .written_if(moves<Camera>)
+          .choice_by(
+              "kind", {"placed", "whole", "follow", "close", "track"},
+              "placed by position and target, or found before drawing from all frames: so that all of the run is in "
+              "view; going along at one distance; as close as the subject allows; turning after it where it stands",
+              [](Camera& c) { return static_cast<std::size_t>(c.kind); },
+              [](Camera& c, std::size_t index) {
+                c.kind = static_cast<CameraKind>(index);
+                if (c.kind != CameraKind::placed) c.keys.front().field_of_view = kFoundFieldOfView;
+                if (c.kind == CameraKind::track) c.keys.front().field_of_view = 0;
+              })
+          .selects()
+          .variant("placed", Rows().with(placed_camera_rows))
+          .variant("whole", Rows().with(direction_rows))
+          .variant("follow", Rows().with(direction_rows).with(smoothing_row))
+          .variant("close", Rows().with(direction_rows).with(smoothing_row))
+          .variant("track",
+                   Rows()
+                       .vector("position", own(&CameraKey::position), kXyz, kPlace, "m", "of the eye")
+                       .need(Need::required)
+                       .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
+                       .by_default("as wide as the subject needs in all frames")
+                       .written_if([](Camera& c) { return c.keys.front().field_of_view > 0; })
+                       .with(subject_rows)
+                       .with(smoothing_row))
           .build();
   return kTable;
 }

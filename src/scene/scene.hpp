@@ -103,9 +103,26 @@ struct Material {
   double drag = 1.0;              ///< air resistance coefficient of the normal motion; 0 for none
 };
 
-struct Look {
-  Vec3 color{0.8, 0.8, 0.8};       ///< sRGB
-  std::optional<Vec3> back_color;  ///< cloth: the other side; a paler `color` where absent
+/// Colours of a cloth or of one of its panels, and a picture on it that lies along the grain.
+struct Paint {
+  Vec3 color{0.8, 0.8, 0.8};                   ///< sRGB
+  std::optional<Vec3> back_color;              ///< cloth: the other side; a paler front where absent
+  std::optional<std::filesystem::path> image;  ///< PNG or JPEG; absolute after checking
+  double image_width = 0.2;                    ///< of one tile along weft [m]; its height follows the picture's shape
+  Vec2 image_offset{0, 0};                     ///< of the lower left corner of a tile along weft and warp [m]
+  double image_rotation = 0;                   ///< about that corner, counter-clockwise [degrees]
+  bool image_repeat = true;                    ///< else one tile, and `color` around it
+  bool cutout = false;                         ///< what is transparent is a hole; else `color` shows there
+};
+
+/// A panel of a pattern with colours of its own.
+struct PanelPaint : Paint {
+  std::string name;
+};
+
+struct Look : Paint {
+  std::vector<PanelPaint> panels;  ///< of a pattern
+  bool as_file = true;             ///< characters: colours and pictures are those of the file, where it has some
   double roughness = 0.6;
   double thread_spacing = 0.0006;  ///< of the drawn weave [m]; cloth only; 0 draws none
   bool checker = false;            ///< floors only
@@ -346,10 +363,24 @@ struct CameraKey {
   double field_of_view = 35;                ///< vertical [degrees]
 };
 
+/// Placed by the scene, or found from all frames of a run.
+enum class CameraKind { placed, whole, follow, close, track };
+
+/// Of cameras that are found: a portrait lens, with little distortion.
+inline constexpr double kFoundFieldOfView = 30;  // [degrees]
+
 struct Camera {
   std::string name;
-  std::vector<CameraKey> keys;  ///< at least one; one: still
+  CameraKind kind = CameraKind::placed;
+  std::vector<CameraKey> keys;  ///< at least one; one: still. Found ones have one, for position and field of view
   Interpolation interpolation = Interpolation::cubic;
+  std::vector<std::string> subjects =
+      {};                  ///< objects that it shows; empty: the characters, else the cloths; whole: all
+  double azimuth = 33;     ///< of the eye, from the front to the right [degrees]
+  double elevation = 17;   ///< above the subject [degrees]
+  double orbit = 0;        ///< by which the azimuth grows [degrees/s]
+  double margin = 0.14;    ///< share of each half picture that is left free around the subject
+  double smoothing = 0.5;  ///< of the ways of the subject and the eye [s]
 };
 
 struct LightKey {

@@ -1,5 +1,16 @@
 #include "simulation/snapshots.hpp"
 
+#include <fmt/format.h>
+
+#include <exception>
+#include <numbers>
+#include <utility>
+
+#include "core/error.hpp"
+#include "core/log.hpp"
+#include "image/color.hpp"
+#include "image/picture.hpp"
+
 namespace weft::simulation {
 namespace {
 
@@ -14,22 +25,45 @@ constexpr double kBackPaleness = 0.35;
 
 frame::Appearance appearance(const scene::Look& look) {
   frame::Appearance result;
-  result.color = look.color;
-  result.back_color = look.back_color.value_or(look.color + kBackPaleness * (Vec3::Ones() - look.color));
   result.roughness = look.roughness;
   result.thread_spacing = look.thread_spacing;
   result.checker = look.checker;
   return result;
 }
 
-void dress(frame::Surface& surface, const scene::Look& look) {
-  surface.visible = look.visible;
-  surface.appearance = appearance(look);
-  if (surface.kind != frame::ObjectKind::cloth) surface.appearance.thread_spacing = 0;
+/// Lays a picture along weft and warp, or leaves colours alone.
+void lay_on(frame::Appearance& look, const scene::Paint& paint, Pictures& pictures) {
+  look.color = paint.color;
+  look.back_color = paint.back_color.value_or(paint.color + kBackPaleness * (Vec3::Ones() - paint.color));
+  look.back_painted = !paint.back_color;
+  look.back_paleness = kBackPaleness;
+  look.paint = {};
+  if (!paint.image) return;
+  look.paint.texture = pictures.of_file(*paint.image);
+  const double height = paint.image_width * look.paint.texture->height / look.paint.texture->width;
+  const Eigen::Matrix2d turned = Eigen::Rotation2Dd(-paint.image_rotation * std::numbers::pi / 180).toRotationMatrix();
+  const Eigen::Matrix2d to_tiles = Vec2(1 / paint.image_width, 1 / height).asDiagonal() * turned;
+  look.paint.texture_from_uv << to_tiles, -to_tiles * paint.image_offset;
+  look.paint.wrap_u = look.paint.wrap_v = paint.image_repeat ? frame::Paint::Wrap::repeat : frame::Paint::Wrap::once;
+  look.paint.alpha = paint.cutout ? frame::Paint::Alpha::cutout : frame::Paint::Alpha::over_color;
+  if (paint.cutout) look.color.setOnes();
 }
 
-std::shared_ptr<const frame::Surface> make_surface(const std::string& name, frame::ObjectKind kind,
-                                                   const mesh::Mesh& mesh, const scene::Look& look) {
+void dress(frame::Surface& surface, const scene::Look& look, Pictures& pictures) {
+  surface.visible = look.visible;
+  surface.appearance = appearance(look);
+  lay_on(surface.appearance, look, pictures);
+  if (surface.kind != frame::ObjectKind::cloth) surface.appearance.thread_spacing = 0;
+  // What a character's file says is in its parts already.
+  if (surface.kind == frame::ObjectKind::character && look.as_file) return;
+  for (frame::SurfacePart& part : surface.parts) {
+    part.appearance = surface.appearance;
+    for (const scene::PanelPaint& panel : look.panels)
+      if (panel.name == part.name) lay_on(part.appearance, panel, pictures);
+  }
+}
+
+std::shared_ptr<frame::Surface> make_surface(const std::string& name, frame::ObjectKind kind, const mesh::Mesh& mesh) {
   auto surface = std::make_shared<frame::Surface>();
   surface->name = name;
   surface->kind = kind;
@@ -37,7 +71,53 @@ std::shared_ptr<const frame::Surface> make_surface(const std::string& name, fram
   surface->quads = mesh.topology.quads;
   surface->uv = mesh.uv;
   if (kind == frame::ObjectKind::cloth) surface->crease_angle = 180;
-  dress(*surface, look);
+  return surface;
+}
+
+std::shared_ptr<const frame::Surface> make_cloth_surface(const environment::ClothObject& cloth, const scene::Look& look,
+                                                         Pictures& pictures) {
+  const auto surface = make_surface(cloth.name, frame::ObjectKind::cloth, cloth.mesh);
+  for (const std::string& panel : cloth.panels) surface->parts.push_back({panel, {}});
+  surface->part_of_triangle = cloth.panel_of;
+  surface->paint_uv = cloth.paint_uv;
+  dress(*surface, look, pictures);
+  return surface;
+}
+
+std::shared_ptr<const frame::Texture> texture_of(image::Picture picture) {
+  return std::make_shared<const frame::Texture>(frame::Texture{picture.width, picture.height, std::move(picture.rgba)});
+}
+
+/// A material of a file. A picture that cannot be decoded is left out with a warning.
+frame::SurfacePart part_of(const character::Material& material, const std::string& body) {
+  frame::SurfacePart part{material.name, {}};
+  part.appearance.color = part.appearance.back_color = image::srgb_from_linear(material.color);
+  if (material.picture.empty()) return part;
+  frame::Paint& paint = part.appearance.paint;
+  try {
+    paint.texture = texture_of(image::decode_picture(material.picture));
+  } catch (const std::exception& error) {
+    log::warn(
+        fmt::format("character.{}: material \"{}\": its picture is left out: {}", body, material.name, error.what()));
+  }
+  paint.wrap_u = static_cast<frame::Paint::Wrap>(material.wrap_u);
+  paint.wrap_v = static_cast<frame::Paint::Wrap>(material.wrap_v);
+  paint.alpha = material.cutout ? frame::Paint::Alpha::cutout : frame::Paint::Alpha::ignored;
+  return part;
+}
+
+std::shared_ptr<const frame::Surface> make_body_surface(const environment::BodyObject& body, Pictures& pictures) {
+  const auto surface =
+      make_surface(body.name, body.character ? frame::ObjectKind::character : frame::ObjectKind::obstacle, body.mesh);
+  surface->infinite_floor = body.infinite_floor;
+  if (body.character) surface->crease_angle = kCharacterCrease;
+  if (body.coloring && body.look.as_file) {
+    for (const character::Material& material : body.coloring->materials)
+      surface->parts.push_back(part_of(material, body.name));
+    surface->part_of_triangle = body.coloring->material_of_triangle;
+    surface->paint_uv = body.coloring->uv;
+  }
+  dress(*surface, body.look, pictures);
   return surface;
 }
 
@@ -84,13 +164,30 @@ environment::Spline<10> light_track(const scene::Light& light) {
 
 }  // namespace
 
+std::shared_ptr<const frame::Texture> Pictures::of_file(const std::filesystem::path& file) {
+  std::shared_ptr<const frame::Texture>& texture = known_[file];
+  if (texture) return texture;
+  try {
+    return texture = texture_of(image::read_picture(file));
+  } catch (const std::exception& error) {
+    throw Error(ExitCode::scene_invalid, "{}: expected a picture (PNG or JPEG): {}", file.string(), error.what());
+  }
+}
+
 Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
   for (const auto& cloth : scene.cloths) looks_[cloth.name] = cloth.look;
   for (const auto& obstacle : scene.obstacles) looks_[obstacle.name] = obstacle.look;
   for (const auto& character : scene.characters) looks_[character.name] = character.look;
   for (const scene::Camera& camera : scene.cameras) {
-    cameras_.push_back({.name = camera.name});
+    cameras_.push_back({.name = camera.name,
+                        .kind = static_cast<frame::Camera::Kind>(camera.kind),
+                        .subjects = camera.subjects,
+                        .azimuth = camera.azimuth,
+                        .elevation = camera.elevation,
+                        .margin = camera.margin,
+                        .smoothing = camera.smoothing});
     camera_tracks_.push_back(camera_track(camera));
+    orbits_.push_back(camera.orbit);
   }
   for (const scene::Light& light : scene.lights) {
     frame::Light result;
@@ -111,6 +208,7 @@ std::vector<frame::Camera> Looks::cameras_at(double time) const {
     cameras[c].position = value.segment<3>(0);
     cameras[c].target = value.segment<3>(3);
     cameras[c].field_of_view = value[6];
+    cameras[c].azimuth += orbits_[c] * time;
   }
   return cameras;
 }
@@ -142,23 +240,17 @@ frame::SnapshotPtr Looks::put_on(const frame::FrameSnapshot& snapshot) {
   return copy;
 }
 
-std::shared_ptr<const frame::Surface> Looks::dressed(const frame::Surface& surface) const {
+std::shared_ptr<const frame::Surface> Looks::dressed(const frame::Surface& surface) {
   auto copy = std::make_shared<frame::Surface>(surface);
-  dress(*copy, looks_.at(surface.name));
+  dress(*copy, looks_.at(surface.name), pictures_);
   return copy;
 }
 
 SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment) : looks_(scene) {
+  Pictures pictures;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c)
-    surfaces_.push_back(
-        make_surface(scene.cloths[c].name, frame::ObjectKind::cloth, environment.cloths[c].mesh, scene.cloths[c].look));
-  for (const environment::BodyObject& body : environment.bodies) {
-    const auto kind = body.character ? frame::ObjectKind::character : frame::ObjectKind::obstacle;
-    auto surface = std::make_shared<frame::Surface>(*make_surface(body.name, kind, body.mesh, body.look));
-    surface->infinite_floor = body.infinite_floor;
-    if (body.character) surface->crease_angle = kCharacterCrease;
-    surfaces_.push_back(std::move(surface));
-  }
+    surfaces_.push_back(make_cloth_surface(environment.cloths[c], scene.cloths[c].look, pictures));
+  for (const environment::BodyObject& body : environment.bodies) surfaces_.push_back(make_body_surface(body, pictures));
 }
 
 frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const environment::Environment& environment,

@@ -1,6 +1,7 @@
 // From the environment to what a frame shows.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <memory>
 #include <span>
@@ -14,6 +15,16 @@
 
 namespace weft::simulation {
 
+/// Pictures of files, each decoded once.
+class Pictures {
+ public:
+  /// Throws Error(scene_invalid) where the file cannot be read any more: scenes are checked for that.
+  std::shared_ptr<const frame::Texture> of_file(const std::filesystem::path& file);
+
+ private:
+  std::map<std::filesystem::path, std::shared_ptr<const frame::Texture>> known_;
+};
+
 /// What of a scene is drawn and not simulated: colours, surroundings, cameras and lights.
 class Looks {
  public:
@@ -25,11 +36,12 @@ class Looks {
   void surround(frame::FrameSnapshot& snapshot) const;
 
  private:
-  std::shared_ptr<const frame::Surface> dressed(const frame::Surface& surface) const;
+  std::shared_ptr<const frame::Surface> dressed(const frame::Surface& surface);
   std::vector<frame::Camera> cameras_at(double time) const;
   std::vector<frame::Light> lights_at(double time) const;
 
   std::map<std::string, scene::Look> looks_;  // by the name of the object
+  Pictures pictures_;
   std::shared_ptr<const frame::Stage> stage_;
   std::vector<std::shared_ptr<const frame::Surface>> surfaces_;  // dressed for the first snapshot, shared by the others
   std::vector<frame::Camera> cameras_;
@@ -37,6 +49,7 @@ class Looks {
   // Through their keys: position, target, field of view; direction, position, target, intensity.
   std::vector<environment::Spline<7>> camera_tracks_;
   std::vector<environment::Spline<10>> light_tracks_;
+  std::vector<double> orbits_;  // of the cameras [degrees/s]
 };
 
 /// Makes the snapshots of a run; what stays the same over the run is made once and shared.

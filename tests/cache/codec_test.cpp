@@ -27,6 +27,20 @@ T value_at(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
+void expect_same_paint(const frame::Appearance& a, const frame::Appearance& b) {
+  EXPECT_EQ(a.back_painted, b.back_painted);
+  EXPECT_EQ(a.back_paleness, b.back_paleness);
+  ASSERT_EQ(a.paint.texture == nullptr, b.paint.texture == nullptr);
+  if (!a.paint.texture) return;
+  EXPECT_EQ(a.paint.texture->width, b.paint.texture->width);
+  EXPECT_EQ(a.paint.texture->height, b.paint.texture->height);
+  EXPECT_EQ(a.paint.texture->rgba, b.paint.texture->rgba);
+  EXPECT_EQ(a.paint.texture_from_uv, b.paint.texture_from_uv);
+  EXPECT_EQ(a.paint.wrap_u, b.paint.wrap_u);
+  EXPECT_EQ(a.paint.wrap_v, b.paint.wrap_v);
+  EXPECT_EQ(a.paint.alpha, b.paint.alpha);
+}
+
 TEST(Codec, SurfacesComeBackAsTheyWere) {
   const Sample sample;
   const Surfaces read = decode_surfaces(encode_surfaces(surfaces_of(*sample.snapshot(0))));
@@ -52,6 +66,14 @@ TEST(Codec, SurfacesComeBackAsTheyWere) {
     EXPECT_EQ(a.appearance.roughness, b.appearance.roughness);
     EXPECT_EQ(a.appearance.thread_spacing, b.appearance.thread_spacing);
     EXPECT_EQ(a.appearance.checker, b.appearance.checker);
+    expect_same_paint(a.appearance, b.appearance);
+    ASSERT_EQ(a.parts.size(), b.parts.size());
+    for (std::size_t p = 0; p < a.parts.size(); ++p) {
+      EXPECT_EQ(a.parts[p].name, b.parts[p].name);
+      expect_same_paint(a.parts[p].appearance, b.parts[p].appearance);
+    }
+    EXPECT_EQ(a.part_of_triangle, b.part_of_triangle);
+    EXPECT_EQ(a.paint_uv, b.paint_uv);
   }
 }
 
@@ -74,6 +96,12 @@ TEST(Codec, FramesComeBackBitForBit) {
     EXPECT_EQ(a->cameras[0].position, b.cameras[0].position);
     EXPECT_EQ(a->cameras[0].target, b.cameras[0].target);
     EXPECT_EQ(a->cameras[0].field_of_view, b.cameras[0].field_of_view);
+    EXPECT_EQ(a->cameras[0].kind, b.cameras[0].kind);
+    EXPECT_EQ(a->cameras[0].subjects, b.cameras[0].subjects);
+    EXPECT_EQ(a->cameras[0].azimuth, b.cameras[0].azimuth);
+    EXPECT_EQ(a->cameras[0].elevation, b.cameras[0].elevation);
+    EXPECT_EQ(a->cameras[0].margin, b.cameras[0].margin);
+    EXPECT_EQ(a->cameras[0].smoothing, b.cameras[0].smoothing);
     ASSERT_EQ(b.lights.size(), 1u);
     EXPECT_EQ(a->lights[0].name, b.lights[0].name);
     EXPECT_EQ(a->lights[0].kind, b.lights[0].kind);

@@ -37,6 +37,15 @@ struct Sample {
     cloth.appearance.back_color = {0.9, 0.7, 0.5};
     cloth.appearance.roughness = 0.25;
     cloth.appearance.thread_spacing = 1e-3;
+    const auto picture = std::make_shared<const frame::Texture>(frame::Texture{2, 1, {1, 2, 3, 4, 5, 6, 7, 8}});
+    cloth.appearance.paint = {
+        picture, {}, frame::Paint::Wrap::once, frame::Paint::Wrap::mirror, frame::Paint::Alpha::over_color};
+    cloth.appearance.paint.texture_from_uv << 1, 2, 3, 4, 5, 6;
+    cloth.appearance.back_painted = false;
+    cloth.appearance.back_paleness = 0.125;
+    cloth.parts = {{"front", cloth.appearance}, {"back", {}}};
+    cloth.part_of_triangle = {1, 0};
+    cloth.paint_uv = {{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}, {Vec2(2, 0), Vec2(3, 1), Vec2(2, 1)}};
     frame::Surface floor;
     floor.name = "floor";
     floor.kind = frame::ObjectKind::obstacle;
@@ -62,6 +71,12 @@ struct Sample {
     floor.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
     snapshot->states = {cloth, floor};
     frame::Camera camera{"front", {0.1 * k, -3, 1}, {0, 0, 1.0 / 3}, 40};
+    camera.kind = frame::Camera::Kind::close;
+    camera.subjects = {"cloth", "floor"};
+    camera.azimuth = -10.5 * k;
+    camera.elevation = 5;
+    camera.margin = 0.25;
+    camera.smoothing = 0.75;
     snapshot->cameras = {camera, frame::Camera{}};
     frame::Light light;
     light.name = "lamp";

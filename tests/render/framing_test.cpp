@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "core/error.hpp"
+#include "render/camera_path.hpp"
 #include "render/snapshots.hpp"
 #include "render/view.hpp"
 
@@ -24,14 +25,21 @@ Vec2 extent(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, c
   return largest;
 }
 
+std::shared_ptr<frame::Stage> stage_with_up(const Vec3& up) {
+  auto stage = std::make_shared<frame::Stage>();
+  stage->up = up;
+  return stage;
+}
+
 TEST(Framing, EveryVertexIsInFrameAndTheTighterDirectionReachesTheMargin) {
   for (const Vec3& up : {Vec3(0, 0, 1), Vec3(0, 1, 0)}) {
     for (const double aspect : {16.0 / 9, 1.0, 0.5}) {
       frame::FrameSnapshot snapshot;
+      snapshot.stage = stage_with_up(up);
       add_floor(snapshot);
       add_sphere(snapshot, Vec3(3, 1, 0.5), 0.5, 12);
       add_square(snapshot, frame::ObjectKind::cloth, Vec3(-2, 0, 4), Vec3::UnitY(), Vec3::UnitX(), 1.5);
-      const Vec2 largest = extent(snapshot, frame_subjects(snapshot, up, aspect), up, aspect);
+      const Vec2 largest = extent(snapshot, camera_of(snapshot, "", aspect), up, aspect);
       // The margin is 14 percent of the half picture; the fit is exact, so only rounding is left.
       EXPECT_NEAR(largest.maxCoeff(), 0.86, 1e-9) << up.transpose() << " " << aspect;
     }
@@ -41,11 +49,12 @@ TEST(Framing, EveryVertexIsInFrameAndTheTighterDirectionReachesTheMargin) {
 TEST(Framing, LooksDownOnTheFloorFromTheFrontRight) {
   frame::FrameSnapshot snapshot;
   add_sphere(snapshot, Vec3::Zero(), 1, 8);
-  const frame::Camera z_up = frame_subjects(snapshot, Vec3::UnitZ(), 1.5);
+  const frame::Camera z_up = camera_of(snapshot, "", 1.5);
   EXPECT_LT(z_up.position.y(), 0);
   EXPECT_GT(z_up.position.z(), 0.5);
   EXPECT_GT(z_up.position.x(), 0);
-  const frame::Camera y_up = frame_subjects(snapshot, Vec3::UnitY(), 1.5);
+  snapshot.stage = stage_with_up(Vec3::UnitY());
+  const frame::Camera y_up = camera_of(snapshot, "", 1.5);
   EXPECT_GT(y_up.position.z(), 0);
   EXPECT_GT(y_up.position.y(), 0.5);
   EXPECT_GT(y_up.position.x(), 0);
@@ -53,11 +62,11 @@ TEST(Framing, LooksDownOnTheFloorFromTheFrontRight) {
 
 TEST(Framing, NothingOrOnePointStillGivesACamera) {
   frame::FrameSnapshot nothing;
-  const frame::Camera of_nothing = frame_subjects(nothing, Vec3::UnitZ(), 1.5);
+  const frame::Camera of_nothing = camera_of(nothing, "", 1.5);
   EXPECT_GT((of_nothing.position - of_nothing.target).norm(), 0.01);
   frame::FrameSnapshot point;
   add_surface(point, frame::ObjectKind::cloth, {Vec3(1, 2, 3)}, {});
-  const frame::Camera of_point = frame_subjects(point, Vec3::UnitZ(), 1.5);
+  const frame::Camera of_point = camera_of(point, "", 1.5);
   EXPECT_TRUE(of_point.position.allFinite());
   EXPECT_GT((of_point.position - of_point.target).norm(), 0.01);
 }

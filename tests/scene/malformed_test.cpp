@@ -41,6 +41,19 @@ const std::vector<Malformed> kMalformed = {
                  7),
      "s.toml: expected text, got binary data (byte 0 at offset 5)\n"},
     {"InvalidUtf8", "title = '\xc3\x28'\n", "s.toml:1:9: not TOML: Encountered invalid utf-8 sequence\n"},
+    // Pictures and cameras.
+    {"PictureThatIsNone", "[[cloth]]\nname = 'a'\nlook.image = '" WEFT_SOURCE_DIR "/tests/scene/triangle.obj'\n",
+     "s.toml:3:14: cloth.a.look.image: expected a picture (PNG or JPEG), got \"" WEFT_SOURCE_DIR
+     "/tests/scene/triangle.obj\": it begins like neither of them\n"},
+    {"PictureThatIsMissing", "[[cloth]]\nname = 'a'\nlook.image = '/none.png'\n",
+     "s.toml:3:14: cloth.a.look.image: expected a readable file, got \"/none.png\": there is no /none.png\n"},
+    {"PanelOfNoPattern", "[[cloth]]\nname = 'a'\nlook.panel = [{ name = 'front' }]\n",
+     "s.toml:3:15: cloth.a.look.panel.front: expected none of a cloth that is sewn from no pattern\n"},
+    {"SubjectThatIsNotThere", kBand + "[[camera]]\nname = 'c'\nkind = 'follow'\nsubject = 'bond'\n",
+     "s.toml:5:11: camera.c.subject: expected the name of a cloth, obstacle or character, got \"bond\"; did you mean "
+     "band?\n"},
+    {"TargetOfACameraThatIsFound", kBand + "[[camera]]\nname = 'c'\nkind = 'whole'\ntarget = [0, 0, 0]\n",
+     "s.toml:5:1: camera.c.target: unknown key of a whole; it belongs to placed\n"},
     {"SyntaxError", "[time\nfps = 24\n",
      "s.toml:1:6: not TOML: Error while parsing table header: expected ']', saw '\\n'\n"},
     {"DuplicateKey", kFloor + "[time]\nfps = 24\nfps = 25\n",

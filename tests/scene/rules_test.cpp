@@ -283,7 +283,7 @@ TEST(Schema, RefusesWhatTheLoaderRefuses) {
             "obstacle.0: none of the choices fits");
   EXPECT_EQ(violation("[render]\nsky_color = '#12'\n"), "render.sky_color: none of the choices fits");
   EXPECT_EQ(violation("camera = [{ name = '1', position = [1, 2, 3], target = [0, 0, 0] }]\n"),
-            "camera.0.name: wrong pattern");
+            "camera.0: none of the choices fits");
 }
 
 }  // namespace

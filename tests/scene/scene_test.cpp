@@ -24,9 +24,9 @@ class EveryKey : public testing::Test {
   const Scene& scene_ = result_.scene;
   void SetUp() override {
     ASSERT_EQ(result_.describe(), "");
-    ASSERT_EQ(scene_.cloths.size(), 2u);
+    ASSERT_EQ(scene_.cloths.size(), 3u);
     ASSERT_EQ(scene_.obstacles.size(), 8u);
-    ASSERT_EQ(scene_.cameras.size(), 2u);
+    ASSERT_EQ(scene_.cameras.size(), 4u);
     ASSERT_EQ(scene_.lights.size(), 2u);
   }
 };
@@ -117,7 +117,7 @@ TEST_F(EveryKey, OfAClothFillsItsMember) {
 }
 
 TEST_F(EveryKey, OfACharacterFillsItsMember) {
-  ASSERT_EQ(scene_.characters.size(), 3u);
+  ASSERT_EQ(scene_.characters.size(), 4u);
   const Character& character = scene_.characters[0];
   EXPECT_EQ(character.name, "dancer");
   const auto& file = std::get<CharacterFile>(character.source);
@@ -226,6 +226,27 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 
+TEST_F(EveryKey, OfPicturesFillsItsMemberAndPanelsHaveWhatTheyDoNotSayFromTheCloth) {
+  const Look& look = scene_.cloths.back().look;
+  EXPECT_EQ(look.image->filename(), "check.png");
+  EXPECT_TRUE(look.image->is_absolute());
+  EXPECT_EQ(look.image_width, 0.19);
+  EXPECT_EQ(look.image_offset, Vec2(0.01, -0.02));
+  EXPECT_EQ(look.image_rotation, 45);
+  EXPECT_FALSE(look.image_repeat);
+  EXPECT_TRUE(look.cutout);
+  ASSERT_EQ(look.panels.size(), 1u);
+  const PanelPaint& front = look.panels[0];
+  EXPECT_EQ(front.name, "front");
+  EXPECT_EQ(front.color, Vec3(0.2, 0.3, 0.4));
+  EXPECT_EQ(front.image, look.image);
+  EXPECT_EQ(front.image_width, 0.21);
+  EXPECT_EQ(front.image_rotation, 45);
+  EXPECT_FALSE(scene_.characters[0].look.as_file) << "a color that is given counts";
+  EXPECT_TRUE(scene_.characters[1].look.as_file);
+  EXPECT_TRUE(scene_.characters.back().look.as_file);
+}
+
 TEST_F(EveryKey, OfCamerasAndLightsFillsItsMember) {
   const Camera& still = scene_.cameras[0];
   ASSERT_EQ(still.keys.size(), 1u);
@@ -240,6 +261,19 @@ TEST_F(EveryKey, OfCamerasAndLightsFillsItsMember) {
   EXPECT_EQ(dolly.keys[1].position, Vec3(6, 0, 0));
   EXPECT_EQ(dolly.keys[1].target, Vec3(0, 2, 0));
   EXPECT_EQ(dolly.keys[1].field_of_view, 40);
+  const Camera& stalker = scene_.cameras[2];
+  EXPECT_EQ(stalker.kind, CameraKind::follow);
+  EXPECT_EQ(stalker.subjects, (std::vector<std::string>{"walker", "dress"}));
+  EXPECT_EQ(stalker.azimuth, -20);
+  EXPECT_EQ(stalker.elevation, 5);
+  EXPECT_EQ(stalker.orbit, 12);
+  EXPECT_EQ(stalker.keys[0].field_of_view, 26);
+  EXPECT_EQ(stalker.margin, 0.2);
+  EXPECT_EQ(stalker.smoothing, 0.8);
+  const Camera& guard = scene_.cameras[3];
+  EXPECT_EQ(guard.kind, CameraKind::track);
+  EXPECT_EQ(guard.keys[0].position, Vec3(2, -3, 1));
+  EXPECT_EQ(guard.keys[0].field_of_view, 0) << "to be found";
 
   const Light& sun = scene_.lights[0];
   EXPECT_FALSE(sun.spot);
