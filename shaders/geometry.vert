@@ -4,6 +4,11 @@ layout(location = 0) in vec3 position_world;
 layout(location = 1) in vec3 normal_world;
 layout(location = 2) in vec2 vertex_uv;
 layout(location = 3) in float heat;
+#ifdef PAINTED
+layout(location = 4) in vec2 vertex_place;
+uniform vec3 picture_u, picture_v;  // rows of the map to the picture
+out vec2 place;
+#endif
 out vec3 surface_normal_world;
 out vec2 surface_uv;
 out float surface_heat;
@@ -12,5 +17,8 @@ void main() {
   surface_normal_world = normal_world;
   surface_uv = vertex_uv;
   surface_heat = heat;
+#ifdef PAINTED
+  place = vec2(dot(picture_u, vec3(vertex_place, 1.0)), dot(picture_v, vec3(vertex_place, 1.0)));
+#endif
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);
 }

@@ -11,6 +11,9 @@ layout(binding = 8) uniform sampler2D distances_surfaces;
 layout(binding = 7) uniform sampler2D materials;  // a row for each surface: front colour, roughness; back colour, thread
                                                   // spacing; heat scale
 layout(binding = 6) uniform sampler2D heat_colors;
+#ifdef PAINTED
+layout(binding = 10) uniform sampler2D paints;  // geometry.frag
+#endif
 layout(location = 0) out vec4 color;
 
 // Microfacet highlight (GGX, Walter et al. 2007; visibility term by Hammon 2017), for reflectance f0 head-on.
@@ -79,6 +82,17 @@ void main() {
   bool front = seen.y - surface < 0.25;
   albedo = front ? front_roughness.rgb : back_spacing.rgb;
   vec3 behind = front ? back_spacing.rgb : front_roughness.rgb;
+#endif
+#ifdef PAINTED
+  vec4 paint = texelFetch(paints, pixel, 0);
+  if (paint.w > 0.5) {
+    albedo = paint.rgb * paint.rgb;
+#ifdef CLOTH
+    behind = albedo;
+#endif
+  }
+#endif
+#ifdef CLOTH
   float spacing = back_spacing.w;
   vec2 rest_uv = texelFetch(rest_uvs, pixel, 0).xy;
   if (spacing > 0.0) {

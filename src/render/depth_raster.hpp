@@ -10,8 +10,8 @@
 
 namespace weft::render {
 
-/// Calls write(index, covered, depth) for texels of a map of size x size, row by row, among them all whose centre the
-/// triangle covers. Its corners are in texels, with a depth that is linear over the map.
+/// Calls write(index, covered, depth, share_b, share_c) for texels of a map of size x size, row by row, among them all
+/// whose centre the triangle covers. Its corners are in texels, with a depth that is linear over the map.
 template <class Write>
 void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, int size,
                    const Write& write) {
@@ -35,7 +35,7 @@ void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eig
       const float step = static_cast<float>(x - x0), to_b = b_first + step * b_step, to_c = c_first + step * c_step;
       // A little outside counts as well, so that rounding leaves no gaps.
       const bool covered = std::min(std::min(to_b, to_c), 1 - to_b - to_c) >= -1e-5f;
-      write(y * size + x, covered, a.z() + to_b * depth_b + to_c * depth_c);
+      write(y * size + x, covered, a.z() + to_b * depth_b + to_c * depth_c, to_b, to_c);
     }
   }
 }

@@ -1,6 +1,42 @@
 #include "render/geometry_buffer.hpp"
 
+#include <algorithm>
+
+#include "image/color.hpp"
+
 namespace weft::render {
+namespace {
+
+/// How a look is laid: `laid` of geometry.frag.
+int laid(const frame::Appearance& look) {
+  if (!look.paint.texture) return 1;
+  switch (look.paint.alpha) {
+    case frame::Paint::Alpha::ignored:
+      return look.paint.wrap_u == frame::Paint::Wrap::once || look.paint.wrap_v == frame::Paint::Wrap::once ? 3 : 2;
+    case frame::Paint::Alpha::over_color:
+      return 3;
+    case frame::Paint::Alpha::cutout:
+      return 4;
+  }
+  return 1;
+}
+
+}  // namespace
+
+GeometryBuffer::Painting::PaintProgram::PaintProgram(const Gl& gl, const std::vector<std::string>& defines)
+    : program(gl, "geometry.vert", "geometry.frag", defines),
+      surface(program.uniform("surface")),
+      picture_u(program.uniform("picture_u")),
+      picture_v(program.uniform("picture_v")),
+      laid(program.uniform("laid")),
+      color(program.uniform("color")),
+      back_color(program.uniform("back_color")) {}
+
+GeometryBuffer::Painting::Painting(const Gl& gl, int width, int height)
+    : whole(gl, {"PAINTED"}),
+      with_holes(gl, {"PAINTED", "HOLES"}),
+      colors(make_texture(gl, GL_RGBA8, width, height, GL_NEAREST)),
+      paints(gl) {}
 
 GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
     : gl_(&gl),
@@ -36,29 +72,91 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorB
   gl_->Enable(GL_DEPTH_TEST);
   gl_->Enable(GL_STENCIL_TEST);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
-  program_.use();
+  const bool painted = std::ranges::any_of(surfaces, [](const SurfaceBuffers& each) { return each.painted(); });
+  if (painted != painted_) attach_paint(painted);
+  if (!painted_) program_.use();
   for (std::size_t i = 0; i < surfaces.size(); ++i) {
     set_class(surfaces[i].surface().kind == frame::ObjectKind::cloth ? PixelClass::cloth : PixelClass::solid);
-    gl_->Uniform1f(surface_, static_cast<float>(kFirstSurface + i));
+    const auto number = static_cast<float>(kFirstSurface + i);
     const bool cull = surfaces[i].hides_its_backs(eye);
     if (cull) gl_->Enable(GL_CULL_FACE);
-    surfaces[i].draw();
+    if (painted_) {
+      draw_painted(surfaces[i], number);
+    } else {
+      gl_->Uniform1f(surface_, number);
+      surfaces[i].draw();
+    }
     if (cull) gl_->Disable(GL_CULL_FACE);
   }
   if (floor) {
     set_class(PixelClass::floor);
+    program_.use();
     gl_->Uniform1f(surface_, kFloor);
     // From below one looks through the floor. Its normal is that of a plane, and it has no rest coordinates.
     gl_->Enable(GL_CULL_FACE);
-    for (const GLuint unused : {0, 1}) gl_->ColorMaski(unused, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    for (const GLuint unused : {0, 1, 3}) gl_->ColorMaski(unused, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
     floor->draw();
-    for (const GLuint unused : {0, 1}) gl_->ColorMaski(unused, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    for (const GLuint unused : {0, 1, 3}) gl_->ColorMaski(unused, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
     gl_->Disable(GL_CULL_FACE);
   }
   gl_->Disable(GL_STENCIL_TEST);
   gl_->BindTextureUnit(4, normal_heat_.name());
   gl_->BindTextureUnit(5, uv_.name());
   gl_->BindTextureUnit(8, seen_.name());
+  if (painted_) gl_->BindTextureUnit(10, painting_->colors.name());
+}
+
+/// A fourth colour buffer, as long as something is painted.
+void GeometryBuffer::attach_paint(bool painted) {
+  if (painted && !painting_) painting_.emplace(*gl_, width_, height_);
+  painted_ = painted;
+  gl_->NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT3, painted ? painting_->colors.name() : 0, 0);
+  const GLenum outputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3};
+  gl_->NamedFramebufferDrawBuffers(target_.name(), painted ? 4 : 3, outputs);
+  check_framebuffer(*gl_, target_, "painted geometry buffer");
+}
+
+/// All surfaces of a picture in which something is painted say of each pixel whether they are.
+void GeometryBuffer::draw_painted(const SurfaceBuffers& surface, float number) {
+  const auto use = [&](const Painting::PaintProgram& program, int laid) {
+    program.program.use();
+    gl_->Uniform1f(program.surface, number);
+    gl_->Uniform1i(program.laid, laid);
+  };
+  if (surface.painted() == nullptr) {
+    use(painting_->whole, 0);
+    return surface.draw();
+  }
+  for (const PaintedRange& range : surface.painted()->ranges) {
+    const frame::Appearance& look = *range.look;
+    const int how = laid(look);
+    const Painting::PaintProgram& program = how == 4 ? painting_->with_holes : painting_->whole;
+    use(program, how);
+    const Eigen::Vector3f color = image::linear_from_srgb(look.color).cast<float>();
+    const Eigen::Vector3f back = image::linear_from_srgb(look.back_color).cast<float>();
+    const bool is_cloth = surface.surface().kind == frame::ObjectKind::cloth;
+    const bool plain_back = is_cloth && (!look.paint.texture || !look.back_painted);
+    gl_->Uniform3fv(program.color, 1, color.data());
+    gl_->Uniform4f(program.back_color, back.x(), back.y(), back.z(),
+                   plain_back ? -1.0f : (is_cloth ? static_cast<float>(look.back_paleness) : 0.0f));
+    if (look.paint.texture) {
+      const Eigen::Matrix<float, 2, 3> map = look.paint.texture_from_uv.cast<float>();
+      gl_->Uniform3f(program.picture_u, map(0, 0), map(0, 1), map(0, 2));
+      gl_->Uniform3f(program.picture_v, map(1, 0), map(1, 1), map(1, 2));
+      gl_->BindTextureUnit(10, painting_->paints.of(look.paint).texture.name());
+    }
+    surface.draw(range);
+  }
+}
+
+std::vector<const Opacity*> GeometryBuffer::opacity_of(const PaintedMesh& mesh) {
+  std::vector<const Opacity*> list;
+  for (const PaintedRange& range : mesh.ranges) {
+    const bool cut = range.look->paint.texture && range.look->paint.alpha == frame::Paint::Alpha::cutout;
+    if (cut && !painting_) painting_.emplace(*gl_, width_, height_);
+    list.push_back(cut ? &*painting_->paints.of(range.look->paint).opacity : nullptr);
+  }
+  return list;
 }
 
 void GeometryBuffer::read_seen(std::vector<Seen>& seen) const {

@@ -1,10 +1,13 @@
 // What is seen at each pixel before any light: normal, heat, rest coordinates, distance and surface.
 #pragma once
 
+#include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "render/gl/program.hpp"
+#include "render/paints.hpp"
 #include "render/seen.hpp"
 #include "render/surface_buffers.hpp"
 
@@ -19,8 +22,13 @@ class GeometryBuffer {
   GeometryBuffer(const Gl& gl, int width, int height);
 
   /// Draws all surfaces and, where not null, the floor as seen from `eye`. `far` is the distance stored where nothing
-  /// is [m]. Leaves the results bound to units 4, 5 and 8.
+  /// is [m]. Leaves the results bound to units 4, 5 and 8, and where something is painted its colours to unit 10.
   void draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, const Vec3& eye, double far);
+
+  /// Whether what was drawn last has pictures on it, or parts of different colours.
+  bool painted() const { return painted_; }
+  /// Opacity of each painted range of a surface, as Holes takes it.
+  std::vector<const Opacity*> opacity_of(const PaintedMesh& mesh);
 
   /// Reads what each pixel shows, lowest row first.
   void read_seen(std::vector<Seen>& seen) const;
@@ -30,6 +38,21 @@ class GeometryBuffer {
 
  private:
   void set_class(PixelClass pixel_class) const;
+  void attach_paint(bool painted);
+  void draw_painted(const SurfaceBuffers& surface, float number);
+
+  /// What is only there once something is painted.
+  struct Painting {
+    struct PaintProgram {
+      Program program;
+      GLint surface, picture_u, picture_v, laid, color, back_color;
+      PaintProgram(const Gl& gl, const std::vector<std::string>& defines);
+    };
+    PaintProgram whole, with_holes;
+    Texture colors;
+    Paints paints;
+    Painting(const Gl& gl, int width, int height);
+  };
 
   const Gl* gl_;
   int width_, height_;
@@ -37,6 +60,8 @@ class GeometryBuffer {
   GLint surface_;
   Texture normal_heat_, uv_, seen_, depth_stencil_;
   Framebuffer target_;
+  std::optional<Painting> painting_;
+  bool painted_ = false;
 };
 
 }  // namespace weft::render

@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <type_traits>
 
 #include "render/depth_raster.hpp"
+#include "render/painted_mesh.hpp"
 
 namespace weft::render {
 namespace {
@@ -38,6 +40,40 @@ struct Edge {
     from_y = p.y;
   }
   float at(float x, float y) const { return along * (x - from_x) + across * (y - from_y); }
+};
+
+// Thresholds of the samples' opacity, in eighths: neighbours differ by much.
+constexpr int kThresholdOrder[] = {0, 4, 6, 2, 5, 1, 3, 7};
+
+/// The opacity of a triangle at places of the picture. What is linear over the triangle is, times 1 / distance, linear
+/// over the picture.
+class HoleTest {
+ public:
+  template <class Vertex>
+  HoleTest(const Opacity& opacity, const std::array<Vertex, 3>& corners, const std::array<Eigen::Vector2f, 3>& places)
+      : opacity_(&opacity), x_(corners[0].x), y_(corners[0].y) {
+    const auto over = [&](int i) -> Eigen::Vector2f { return corners[i].nearness * places[i]; };
+    first_ = over(0);
+    const float b_x = corners[1].x - x_, b_y = corners[1].y - y_, c_x = corners[2].x - x_, c_y = corners[2].y - y_;
+    const float area = b_x * c_y - c_x * b_y;
+    const Eigen::Vector2f b = over(1) - first_, c = over(2) - first_;
+    if (!(std::abs(area) > 0)) return;
+    along_x_ = (c_y * b - b_y * c) / area;
+    along_y_ = (b_x * c - c_x * b) / area;
+    // Texels for one pixel, by areas at the mean distance.
+    const Eigen::Vector2f q = (places[1] - places[0]).cwiseProduct(opacity.size()),
+                          r = (places[2] - places[0]).cwiseProduct(opacity.size());
+    footprint_ = std::sqrt(std::abs(q.x() * r.y() - q.y() * r.x()) / std::abs(area));
+  }
+
+  float opacity(float x, float y, float nearness) const {
+    return opacity_->at((first_ + (x - x_) * along_x_ + (y - y_) * along_y_) / nearness, footprint_);
+  }
+
+ private:
+  const Opacity* opacity_;
+  float x_, y_, footprint_ = 1;
+  Eigen::Vector2f first_, along_x_ = Eigen::Vector2f::Zero(), along_y_ = Eigen::Vector2f::Zero();
 };
 
 }  // namespace
@@ -103,26 +139,9 @@ Outlines::Vertex Outlines::to_picture(const Eigen::Vector4d& clip) const {
           static_cast<float>((0.5 + 0.5 * clip.y() * nearness) * height_), static_cast<float>(nearness)};
 }
 
-void Outlines::sample(const DrawnMesh& mesh, float surface, const View& view) {
-  clip_.clear();
-  vertices_.clear();
-  for (const Vec3& position : mesh.positions) {
-    clip_.push_back(view.clip_from_world * position.homogeneous());
-    vertices_.push_back(to_picture(clip_.back()));
-  }
-  for (const auto& [a, b, c] : mesh.triangles) {
-    if (std::min({clip_[a].w(), clip_[b].w(), clip_[c].w()}) >= view.near) {
-      sample(vertices_[a], vertices_[b], vertices_[c], surface);
-    } else {
-      clip_near({clip_[a], clip_[b], clip_[c]}, [&](const auto& p, const auto& q, const auto& r) {
-        sample(to_picture(p), to_picture(q), to_picture(r), surface);
-      });
-    }
-  }
-}
-
-/// Takes the triangle over where it is nearer than what the samples show.
-void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface) {
+/// Takes the triangle over where it is nearer than what the samples show, and `shows(x, y, nearness, sample)`.
+template <class Shows>
+void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface, const Shows& shows) {
   const auto [x_min, x_max] = std::minmax({a.x, b.x, c.x});
   const auto [y_min, y_max] = std::minmax({a.y, b.y, c.y});
   if (!(x_max >= 0 && y_max >= 0 && x_min < static_cast<float>(width_) && y_min < static_cast<float>(height_))) return;
@@ -176,13 +195,55 @@ void Outlines::sample(const Vertex& a, const Vertex& b, const Vertex& c, float s
           const float e0 = side * (corner[0] + edge_offsets[0][s]), e1 = side * (corner[1] + edge_offsets[1][s]);
           const float e2 = side * (corner[2] + edge_offsets[2][s]);
           const float near = std::min(std::max(corner_nearness + nearness_offsets[s], least), most);
-          const bool wins = (std::min(e0, std::min(e1, e2)) >= 0) & (near > samples.nearness[s]);
+          bool wins = (std::min(e0, std::min(e1, e2)) >= 0) & (near > samples.nearness[s]);
+          if constexpr (!std::is_same_v<Shows, Everything>)
+            wins = wins && shows(px + kOffsetX[s], py + kOffsetY[s], near, s);
           samples.nearness[s] = wins ? near : samples.nearness[s];
           samples.slope_x[s] = wins ? slope_x : samples.slope_x[s];
           samples.slope_y[s] = wins ? slope_y : samples.slope_y[s];
           samples.surface[s] = wins ? shown : samples.surface[s];
         }
       }
+    }
+  }
+}
+
+void Outlines::sample(const DrawnMesh& mesh, float surface, const View& view) {
+  clip_.clear();
+  vertices_.clear();
+  for (const Vec3& position : mesh.positions) {
+    clip_.push_back(view.clip_from_world * position.homogeneous());
+    vertices_.push_back(to_picture(clip_.back()));
+  }
+  if (mesh.holes) return sample_with_holes(mesh, surface, view);
+  for (const auto& [a, b, c] : mesh.triangles) {
+    if (std::min({clip_[a].w(), clip_[b].w(), clip_[c].w()}) >= view.near) {
+      sample(vertices_[a], vertices_[b], vertices_[c], surface);
+    } else {
+      clip_near({clip_[a], clip_[b], clip_[c]}, [&](const auto& p, const auto& q, const auto& r) {
+        sample(to_picture(p), to_picture(q), to_picture(r), surface);
+      });
+    }
+  }
+}
+
+/// Each sample has a threshold of its own: of an opacity between them so many show the surface.
+void Outlines::sample_with_holes(const DrawnMesh& mesh, float surface, const View& view) {
+  for (std::size_t r = 0; r < mesh.holes->ranges().size(); ++r) {
+    const PaintedRange& range = mesh.holes->ranges()[r];
+    const Opacity* opacity = mesh.holes->opacity(r);
+    for (const auto& [a, b, c] : mesh.triangles.subspan(range.first, range.count)) {
+      // What passes through the near plane has no holes there.
+      if (std::min({clip_[a].w(), clip_[b].w(), clip_[c].w()}) < view.near) continue;
+      if (opacity == nullptr) {
+        sample(vertices_[a], vertices_[b], vertices_[c], surface);
+        continue;
+      }
+      const HoleTest test(*opacity, std::array{vertices_[a], vertices_[b], vertices_[c]},
+                          {mesh.holes->place(r, a), mesh.holes->place(r, b), mesh.holes->place(r, c)});
+      sample(vertices_[a], vertices_[b], vertices_[c], surface, [&](float x, float y, float nearness, int s) {
+        return test.opacity(x, y, nearness) > (static_cast<float>(kThresholdOrder[s]) + 0.5f) / kSamples;
+      });
     }
   }
 }

@@ -46,7 +46,11 @@ class Outlines {
   void find(std::span<const Seen> seen, const PixelArea& area);
   void number();
   void sample(const DrawnMesh& mesh, float surface, const View& view);
-  void sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface);
+  /// Of triangles without holes all is shown.
+  struct Everything {};
+  template <class Shows = Everything>
+  void sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface, const Shows& shows = {});
+  void sample_with_holes(const DrawnMesh& mesh, float surface, const View& view);
   void sample_floor(const Floor& floor, const View& view);
   std::uint32_t resolve(std::size_t slot, std::span<const Seen> seen, const std::uint32_t* picture) const;
   Vertex to_picture(const Eigen::Vector4d& clip) const;

@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cstring>
+#include <deque>
 #include <optional>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
@@ -98,7 +100,7 @@ struct Renderer::Impl {
   QualitySettings quality;
   std::unique_ptr<Context> context;
   const Gl& gl;
-  std::optional<frame::Camera> automatic_camera;
+  std::optional<CameraPath> path;
   DrawTimes times;
 
   // GL objects; made and deleted with the context current.
@@ -129,8 +131,7 @@ struct Renderer::Impl {
   explicit Impl(const Settings& wanted);
   ~Impl();
 
-  double aspect() const { return static_cast<double>(settings.width) / settings.height; }
-  const frame::Camera& choose_camera(const frame::FrameSnapshot& snapshot);
+  frame::Camera choose_camera(const frame::FrameSnapshot& snapshot);
   void update_surfaces(const frame::FrameSnapshot& snapshot);
   void update_floor(const Plan& plan);
   void upload_frame(const Plan& plan);
@@ -180,10 +181,16 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot) {
   passes->surfaces = std::move(next);
 }
 
-const frame::Camera& Renderer::Impl::choose_camera(const frame::FrameSnapshot& snapshot) {
-  if (const frame::Camera* camera = find_camera(snapshot, settings.camera)) return *camera;
-  if (!automatic_camera) automatic_camera = frame_subjects(snapshot, up_of(snapshot), aspect());
-  return *automatic_camera;
+frame::Camera Renderer::Impl::choose_camera(const frame::FrameSnapshot& snapshot) {
+  if (const frame::Camera* camera = find_camera(snapshot, settings.camera);
+      camera && camera->kind == frame::Camera::Kind::placed)
+    return *camera;
+  if (!path) {
+    path.emplace(settings.camera, settings.aspect());
+    path->see(snapshot);
+    path->find();
+  }
+  return path->at(snapshot);
 }
 
 void Renderer::Impl::update_floor(const Plan& plan) {
@@ -209,19 +216,25 @@ void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double h
   // Of more lights the small picture does not know where they shine.
   std::vector<PixelArea> shaded_floor{{0, 0, settings.width, settings.height}};
   if (plan.lights.size() <= kSoftLights) shaded_floor = passes->soft_light.shaded_floor();
-  passes->shading.draw(materials, heat, light_set(plan.lights), plan.floor && plan.floor->look.checker, subjects,
-                       shaded_floor);
+  passes->shading.draw(materials, heat, light_set(plan.lights), plan.floor && plan.floor->look.checker,
+                       passes->geometry.painted(), subjects, shaded_floor);
 }
 
 /// Shadow maps, then what is seen, then its soft light at reduced size, then colours, then clean outlines.
 image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
-  const Plan plan = make_plan(snapshot, choose_camera(snapshot), aspect());
+  const Plan plan = make_plan(snapshot, choose_camera(snapshot), settings.aspect());
   update_surfaces(snapshot);
   update_floor(plan);
   upload_frame(plan);
   gl.Disable(GL_DITHER);
   std::vector<DrawnMesh> meshes;
-  for (const SurfaceBuffers& surface : passes->surfaces) meshes.push_back({surface.positions(), surface.triangles()});
+  std::deque<Holes> holes;
+  for (const SurfaceBuffers& surface : passes->surfaces) {
+    meshes.push_back({surface.positions(), surface.triangles()});
+    if (surface.painted() == nullptr) continue;
+    holes.emplace_back(*surface.painted(), passes->geometry.opacity_of(*surface.painted()));
+    if (holes.back().any()) meshes.back().holes = &holes.back();
+  }
   const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
 
   passes->shadows.draw(plan.lights, plan.caster_positions, meshes, plan.up, plan.exposure.direct);
@@ -241,9 +254,8 @@ image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
 Renderer::Renderer(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}
 Renderer::~Renderer() = default;
 
-void Renderer::frame_on(const frame::FrameSnapshot& snapshot) {
-  check(snapshot);
-  impl_->automatic_camera = frame_subjects(snapshot, up_of(snapshot), impl_->aspect());
+void Renderer::look_through(CameraPath path) {
+  impl_->path = std::move(path);
 }
 
 image::Image Renderer::draw(const frame::FrameSnapshot& snapshot) {

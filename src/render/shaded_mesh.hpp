@@ -34,10 +34,13 @@ bool is_closed(std::span<const Triangle> triangles);
 /// triangles without area.
 std::vector<Vec3> area_normals(std::span<const Triangle> triangles, std::span<const Vec3> positions);
 
+class Holes;
+
 /// One surface as it is drawn: world positions [m] and triangles of them.
 struct DrawnMesh {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
+  const Holes* holes = nullptr;  ///< null: none
 };
 
 /// A mesh in which a vertex on a crease appears once for each normal it has.

@@ -9,7 +9,7 @@ namespace weft::render {
 namespace {
 
 std::vector<std::string> shading_defines(const QualitySettings& quality, const LightSet& lights, bool full_shadows,
-                                         std::initializer_list<const char*> more = {}) {
+                                         const std::vector<const char*>& more = {}) {
   std::vector<std::string> defines = ShadowMaps::defines(quality, lights);
   defines.push_back("REDUCTION " + std::to_string(quality.soft_divisor));
   if (full_shadows) defines.push_back("FULL_SHADOWS");
@@ -101,11 +101,15 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
 // The first lights' shadows on the floor are as soft as the small picture has them. What a sun gives to open floor, and
 // how it fades out, changes so slowly over the picture that it may be interpolated; the edge of a spot or a checker
 // not.
-Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const LightSet& lights, bool checker)
+Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const LightSet& lights, bool checker,
+                            bool painted)
     : floor_on_grid(!lights.spots && !checker) {
   const bool many = lights.count > kSoftLights, crisp = quality.crisp_shadows || many;
-  cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, {"CLOTH"}));
-  solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp));
+  const std::vector<const char*> paint(painted ? 1 : 0, "PAINTED");
+  std::vector<const char*> cloth_paint = paint;
+  cloth_paint.push_back("CLOTH");
+  cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, cloth_paint));
+  solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, paint));
   const char* pattern = checker ? "CHECKER" : "PLAIN";
   shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, many, {pattern}));
   open_floor = floor_on_grid ? Program(gl, "open_floor.vert", "grid.frag", shading_defines(quality, lights, false))
@@ -113,11 +117,11 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
                                        shading_defines(quality, lights, false, {pattern, "OPEN"}));
 }
 
-const Shading::Programs& Shading::programs(const LightSet& lights, bool checker) {
-  const auto key = std::tuple(lights, checker);
+const Shading::Programs& Shading::programs(const LightSet& lights, bool checker, bool painted) {
+  const auto key = std::tuple(lights, checker, painted);
   const auto known = programs_.find(key);
-  return known != programs_.end() ? known->second
-                                  : programs_.emplace(key, Programs(*gl_, quality_, lights, checker)).first->second;
+  if (known != programs_.end()) return known->second;
+  return programs_.emplace(key, Programs(*gl_, quality_, lights, checker, painted)).first->second;
 }
 
 void Shading::upload_materials(std::span<const Material> materials, double heat_scale) {
@@ -156,8 +160,8 @@ void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
 }
 
 void Shading::draw(std::span<const Material> materials, double heat_scale, const LightSet& lights, bool checker,
-                   const PixelArea& subjects, std::span<const PixelArea> shaded_floor) {
-  const Programs& chosen = programs(lights, checker);
+                   bool painted, const PixelArea& subjects, std::span<const PixelArea> shaded_floor) {
+  const Programs& chosen = programs(lights, checker, painted);
   upload_materials(materials, heat_scale);
   gl_->BindTextureUnit(6, heat_colors_.name());
   gl_->BindTextureUnit(7, materials_.name());

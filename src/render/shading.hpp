@@ -19,12 +19,13 @@ class Shading {
 
   /// Looks of the surfaces in the order of their materials. `heat_scale`: 1 / hottest value, 0 for the surfaces' own
   /// colours; only cloth shows heat. `subjects` holds all of them; floor, checkered or not, is lit and open outside
-  /// `shaded_floor`. Expects the frame and light blocks, shadow maps, soft light and geometry bound.
+  /// `shaded_floor`. `painted`: the geometry buffer has colours of its own. Expects the frame and light blocks, shadow
+  /// maps, soft light and geometry bound.
   struct Material {
     frame::Appearance appearance;
     bool cloth = false;
   };
-  void draw(std::span<const Material> materials, double heat_scale, const LightSet& lights, bool checker,
+  void draw(std::span<const Material> materials, double heat_scale, const LightSet& lights, bool checker, bool painted,
             const PixelArea& subjects, std::span<const PixelArea> shaded_floor);
 
   /// Reads the picture: RGBA bytes in sRGB, lowest row first.
@@ -37,14 +38,14 @@ class Shading {
   struct Programs {
     Program cloth, solid, open_floor, shaded_floor;
     bool floor_on_grid;  // open_floor is lit at the corners of the grid
-    Programs(const Gl& gl, const QualitySettings& quality, const LightSet& lights, bool checker);
+    Programs(const Gl& gl, const QualitySettings& quality, const LightSet& lights, bool checker, bool painted);
   };
-  const Programs& programs(const LightSet& lights, bool checker);
+  const Programs& programs(const LightSet& lights, bool checker, bool painted);
 
   const Gl* gl_;
   int width_, height_;
   QualitySettings quality_;
-  std::map<std::tuple<LightSet, bool>, Programs> programs_;  // made when first needed
+  std::map<std::tuple<LightSet, bool, bool>, Programs> programs_;  // made when first needed
   Program backdrop_, areas_;
   Texture picture_, heat_colors_, materials_;
   Framebuffer target_;

@@ -1,8 +1,10 @@
 #include "render/shadow_maps.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "render/depth_raster.hpp"
+#include "render/painted_mesh.hpp"
 
 namespace weft::render {
 namespace {
@@ -12,6 +14,36 @@ constexpr int kBlock = 16;  // texels of a shadow map's side that share one rang
 // Widest filter, in texels: a penumbra may take this much to each side. Wider ones would need more taps to stay smooth.
 constexpr int filter_limit(int map_size) {
   return map_size / 24;
+}
+
+/// Of a mesh with holes: those texels are covered whose threshold its opacity there is above, which filters make an
+/// even shade. Its corners are in front of the light.
+template <class Write>
+void fill_with_holes(const DrawnMesh& mesh, std::span<const Eigen::Vector3f> places, int size, const Write& write) {
+  for (std::size_t r = 0; r < mesh.holes->ranges().size(); ++r) {
+    const PaintedRange& range = mesh.holes->ranges()[r];
+    const Opacity* opacity = mesh.holes->opacity(r);
+    for (const auto& [a, b, c] : mesh.triangles.subspan(range.first, range.count)) {
+      if (opacity == nullptr) {
+        fill_triangle(places[a], places[b], places[c], size, write);
+        continue;
+      }
+      const Eigen::Vector2f at_a = mesh.holes->place(r, a), along_b = mesh.holes->place(r, b) - at_a,
+                            along_c = mesh.holes->place(r, c) - at_a;
+      // Texels of the picture for one of the map, by their areas.
+      const Eigen::Vector2f texels_b = along_b.cwiseProduct(opacity->size()),
+                            texels_c = along_c.cwiseProduct(opacity->size());
+      const Eigen::Vector3f map_b = places[b] - places[a], map_c = places[c] - places[a];
+      const auto area = [](const auto& p, const auto& q) { return std::abs(p.x() * q.y() - p.y() * q.x()); };
+      const float footprint = std::sqrt(area(texels_b, texels_c) / std::max(area(map_b, map_c), 1e-6f));
+      fill_triangle(places[a], places[b], places[c], size,
+                    [&](int at, bool covered, float depth, float to_b, float to_c) {
+                      const bool here = covered && opacity->at(at_a + to_b * along_b + to_c * along_c, footprint) >
+                                                       threshold_at(at % size, at / size);
+                      write(at, here, depth, to_b, to_c);
+                    });
+    }
+  }
 }
 
 }  // namespace
@@ -75,7 +107,7 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
 void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world) {
   const int size = quality_.shadow_size;
   depths_.assign(static_cast<std::size_t>(size) * size, 1.0f);
-  const auto write = [depths = depths_.data()](int at, bool covered, float depth) {
+  const auto write = [depths = depths_.data()](int at, bool covered, float depth, float, float) {
     const float before = depths[at], nearer = std::min(before, depth);
     depths[at] = covered ? nearer : before;
   };
@@ -91,6 +123,10 @@ void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& cli
     for (const Vec3& position : mesh.positions) {
       clip.push_back(clip_from_world * position.homogeneous());
       places.push_back(place(clip.back()));
+    }
+    if (mesh.holes) {
+      fill_with_holes(mesh, places, size, write);
+      continue;
     }
     const auto in_front = [&](Index vertex) { return clip[vertex].z() >= -clip[vertex].w(); };
     for (const auto& [a, b, c] : mesh.triangles) {

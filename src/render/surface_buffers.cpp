@@ -1,11 +1,19 @@
 #include "render/surface_buffers.hpp"
 
+#include <algorithm>
 #include <cstddef>
 
 #include "core/error.hpp"
 
 namespace weft::render {
 namespace {
+
+/// Where pictures cut holes, backs are seen through them.
+bool has_holes(const frame::Surface& surface) {
+  const auto cuts = [](const frame::Appearance& look) { return look.paint.alpha == frame::Paint::Alpha::cutout; };
+  return cuts(surface.appearance) ||
+         std::ranges::any_of(surface.parts, [&](const frame::SurfacePart& part) { return cuts(part.appearance); });
+}
 
 struct DrawnVertex {
   Eigen::Vector3f position, normal;
@@ -34,10 +42,17 @@ void describe_vertices(const Gl& gl, const VertexArray& array, const Buffer& ver
 }  // namespace
 
 SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface)
-    : gl_(&gl), surface_(std::move(surface)), array_(gl), vertices_(gl), triangles_(gl) {
-  closed_ = surface_->kind != frame::ObjectKind::cloth && is_closed(surface_->triangles);
+    : gl_(&gl), surface_(std::move(surface)), array_(gl), vertices_(gl), triangles_(gl), places_(gl) {
+  closed_ = surface_->kind != frame::ObjectKind::cloth && !has_holes(*surface_) && is_closed(surface_->triangles);
   describe_vertices(gl, array_, vertices_);
   gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
+  if (!frame::is_painted(*surface_)) return;
+  painted_.emplace();
+  constexpr GLuint kPlace = 4, kBinding = 1;
+  gl.VertexArrayVertexBuffer(array_.name(), kBinding, places_.name(), 0, sizeof(Eigen::Vector2f));
+  gl.EnableVertexArrayAttrib(array_.name(), kPlace);
+  gl.VertexArrayAttribFormat(array_.name(), kPlace, 2, GL_FLOAT, GL_FALSE, 0);
+  gl.VertexArrayAttribBinding(array_.name(), kPlace, kBinding);
 }
 
 void SurfaceBuffers::update(const frame::SurfaceState& state) {
@@ -61,6 +76,7 @@ void SurfaceBuffers::update(const frame::SurfaceState& state) {
     outward_ = volume > 0;
   }
   mesh_ = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
+  if (painted_) painted_ = lay_paint(*surface_, mesh_);
   std::vector<DrawnVertex> vertices(mesh_.source.size());
   positions_.resize(vertices.size());
   const bool has_uv = surface_->uv.size() == vertex_count_, has_heat = state.heat.size() == vertex_count_;
@@ -73,6 +89,13 @@ void SurfaceBuffers::update(const frame::SurfaceState& state) {
   }
   upload<DrawnVertex>(*gl_, vertices_, vertices);
   upload<Triangle>(*gl_, triangles_, mesh_.triangles);
+  if (painted_) upload<Eigen::Vector2f>(*gl_, places_, painted_->places);
+}
+
+void SurfaceBuffers::draw(const PaintedRange& range) const {
+  gl_->BindVertexArray(array_.name());
+  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * range.count), GL_UNSIGNED_INT,
+                    reinterpret_cast<const void*>(range.first * sizeof(Triangle)));
 }
 
 void SurfaceBuffers::draw() const {

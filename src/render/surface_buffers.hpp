@@ -2,14 +2,17 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "frame/frame_snapshot.hpp"
 #include "render/gl/objects.hpp"
+#include "render/painted_mesh.hpp"
 #include "render/shaded_mesh.hpp"
 
 namespace weft::render {
 
-/// Attribute places, as in the shaders: 0 position, 1 normal, 2 rest (u,v), 3 heat.
+/// Attribute places, as in the shaders: 0 position, 1 normal, 2 rest (u,v), 3 heat; of what is painted 4 the place of
+/// the paint.
 class SurfaceBuffers {
  public:
   SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface);
@@ -19,6 +22,9 @@ class SurfaceBuffers {
   /// Takes over the positions of a frame. Throws Error(internal) where their number is not that of the surface.
   void update(const frame::SurfaceState& state);
   void draw() const;
+  void draw(const PaintedRange& range) const;
+  /// Null where nothing is painted.
+  const PaintedMesh* painted() const { return painted_ ? &*painted_ : nullptr; }
   /// Whether what is seen from `eye` is all front: a closed surface with its front outside, and the eye not near
   /// inside.
   bool hides_its_backs(const Vec3& eye) const { return outward_ && !bounds_.contains(eye); }
@@ -34,8 +40,9 @@ class SurfaceBuffers {
   bool mapped_ = false, closed_ = false, outward_ = false;
   Box3 bounds_;
   VertexArray array_;
-  Buffer vertices_, triangles_;
+  Buffer vertices_, triangles_, places_;
   ShadedMesh mesh_;
+  std::optional<PaintedMesh> painted_;
   std::vector<Vec3> positions_;
   frame::SurfaceState state_;  // of the last frame
 };

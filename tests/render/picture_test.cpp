@@ -356,7 +356,10 @@ TEST(Picture, SameSnapshotGivesSameBytesWhateverWasDrawnBefore) {
   const frame::FrameSnapshot snapshot = busy_scene();
   frame::FrameSnapshot other = facing_square(frame::ObjectKind::cloth, 0.3, kRed);
   Renderer first(settings()), second(settings());
-  second.frame_on(snapshot);
+  CameraPath path("", settings().aspect());
+  path.see(snapshot);
+  path.find();
+  second.look_through(path);
   second.draw(other);
   const image::Image a = first.draw(snapshot), b = second.draw(snapshot), c = first.draw(snapshot);
   EXPECT_EQ(a.rgb, b.rgb);

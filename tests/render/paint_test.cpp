@@ -1,0 +1,195 @@
+// Pictures on surfaces: where they lie, how they shrink, and what they leave open.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "image/color.hpp"
+#include "render/opacity.hpp"
+#include "render/painted_mesh.hpp"
+#include "render/renderer.hpp"
+#include "render/snapshots.hpp"
+
+namespace weft::render {
+namespace {
+
+using Alpha = frame::Paint::Alpha;
+constexpr int kWidth = 160, kHeight = 160;
+
+Settings settings(Quality quality = Quality::final) {
+  Settings result;
+  result.width = kWidth;
+  result.height = kHeight;
+  result.quality = quality;
+  return result;
+}
+
+/// Fields in rows from the top, each of `size` x `size` pixels: llvmpipe's filter reaches over one of them.
+std::shared_ptr<const frame::Texture> texture(int columns, int rows,
+                                              const std::vector<std::array<std::uint8_t, 4>>& fields, int size = 32) {
+  frame::Texture made{columns * size, rows * size, {}};
+  for (int y = 0; y < made.height; ++y) {
+    for (int x = 0; x < made.width; ++x) {
+      const auto& pixel = fields[static_cast<std::size_t>(y / size * columns + x / size)];
+      made.rgba.insert(made.rgba.end(), pixel.begin(), pixel.end());
+    }
+  }
+  return std::make_shared<const frame::Texture>(std::move(made));
+}
+
+constexpr std::array<std::uint8_t, 4> kRed{180, 20, 20, 255}, kGreen{20, 180, 20, 255}, kBlue{20, 20, 180, 255},
+    kWhite{180, 180, 180, 255}, kHole{180, 20, 20, 0};
+
+/// A square of 0.5 m seen and lit straight on, which fills 0.687 of the picture; u runs right and v up, in metres.
+frame::FrameSnapshot facing_square(frame::ObjectKind kind, std::shared_ptr<const frame::Texture> picture, Alpha alpha) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  frame::Surface& surface = add_square(snapshot, kind, Vec3::Zero(), -Vec3::UnitY(), Vec3::UnitX(), 0.25);
+  surface.uv = {{0, 0}, {0.5, 0}, {0.5, 0.5}, {0, 0.5}};
+  surface.appearance.color = alpha == Alpha::over_color ? Vec3(0.1, 0.1, 0.6) : Vec3(1, 1, 1);
+  surface.appearance.paint.texture = std::move(picture);
+  surface.appearance.paint.texture_from_uv << 2, 0, 0, 0, 2, 0;
+  surface.appearance.paint.alpha = alpha;
+  snapshot.cameras = {camera_at(Vec3(0, -1, 0), Vec3::Zero(), 40)};
+  snapshot.lights = {sun(Vec3::UnitY())};
+  return snapshot;
+}
+
+/// Whether a pixel, at shares of the picture from the left and the top, has about this colour.
+testing::AssertionResult shows(const image::Image& image, double x, double y, const std::array<std::uint8_t, 4>& color,
+                               double tolerance = 6) {
+  const std::uint8_t* pixel = image.pixel(static_cast<int>(x * kWidth), static_cast<int>(y * kHeight));
+  for (int channel = 0; channel < 3; ++channel)
+    if (std::abs(pixel[channel] - color[channel]) > tolerance)
+      return testing::AssertionFailure() << int(pixel[0]) << " " << int(pixel[1]) << " " << int(pixel[2]);
+  return testing::AssertionSuccess();
+}
+
+// Light of full strength, straight on: a surface comes out in its own colour (Picture.LitSurfaceHasItsOwnColor).
+TEST(Paint, LiesWithItsTopUpwardAndItsLeftToTheLeft) {
+  for (const auto kind : {frame::ObjectKind::cloth, frame::ObjectKind::character}) {
+    const auto snapshot = facing_square(kind, texture(2, 2, {kRed, kGreen, kBlue, kWhite}), Alpha::ignored);
+    const image::Image image = Renderer(settings()).draw(snapshot);
+    EXPECT_TRUE(shows(image, 0.33, 0.33, kRed));
+    EXPECT_TRUE(shows(image, 0.67, 0.33, kGreen));
+    EXPECT_TRUE(shows(image, 0.33, 0.67, kBlue));
+    EXPECT_TRUE(shows(image, 0.67, 0.67, kWhite));
+  }
+}
+
+TEST(Paint, RepeatsInMetresOrLiesOnceOnItsColor) {
+  auto snapshot = facing_square(frame::ObjectKind::cloth, texture(1, 2, {kRed, kGreen}), Alpha::over_color);
+  auto& paint = const_cast<frame::Surface&>(*snapshot.surfaces[0]).appearance.paint;
+  paint.texture_from_uv << 4, 0, 0, 0, 4, 0;  // tiles of 0.25 m: stripes of half of that
+  const image::Image tiled = Renderer(settings()).draw(snapshot);
+  const auto height = [](double v) { return 0.5 - 0.687 * (v - 0.5); };  // of a share of the square
+  EXPECT_TRUE(shows(tiled, 0.5, height(0.125), kGreen));
+  EXPECT_TRUE(shows(tiled, 0.5, height(0.375), kRed));
+  EXPECT_TRUE(shows(tiled, 0.5, height(0.625), kGreen));
+  EXPECT_TRUE(shows(tiled, 0.5, height(0.875), kRed));
+  paint.wrap_u = paint.wrap_v = frame::Paint::Wrap::once;
+  const image::Image once = Renderer(settings()).draw(snapshot);
+  EXPECT_TRUE(shows(once, 0.32, height(0.375), kRed));
+  EXPECT_TRUE(shows(once, 0.5, height(0.875), {26, 26, 153, 255}));
+}
+
+TEST(Paint, HolesShowWhatIsBehindThemInDrawingAndInShadow) {
+  for (const Quality quality : {Quality::draft, Quality::final}) {
+    auto snapshot = facing_square(frame::ObjectKind::cloth, texture(2, 1, {kHole, kRed}), Alpha::cutout);
+    // A white wall behind, in the light that comes through.
+    add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 0.5, 0), -Vec3::UnitY(), Vec3::UnitX(), 2)
+        .appearance.color = Vec3(0.7, 0.7, 0.7);
+    const image::Image image = Renderer(settings(quality)).draw(snapshot);
+    EXPECT_TRUE(shows(image, 0.67, 0.5, kRed));
+    EXPECT_TRUE(shows(image, 0.3, 0.5, kWhite)) << "the wall, lit through the hole";
+    // From the other side: the shadow of its right half alone lies on the wall. A metre is 0.82 of the picture there.
+    snapshot.cameras = {camera_at(Vec3(1.2, -1, 0), Vec3(0, 0.5, 0), 40)};
+    const frame::Camera& camera = snapshot.cameras[0];
+    const Vec3 forward = (camera.target - camera.position).normalized(), right = forward.cross(Vec3::UnitZ());
+    const auto across = [&](double x) {
+      const Vec3 to = Vec3(x, 0.5, 0) - camera.position;
+      return 0.5 + 0.5 * right.dot(to) / (forward.dot(to) * std::tan(20 * 3.14159265 / 180));
+    };
+    const image::Image aside = Renderer(settings(quality)).draw(snapshot);
+    EXPECT_TRUE(shows(aside, across(0.4), 0.5, kWhite, 40)) << "beside the square";
+    EXPECT_LT(aside.pixel(static_cast<int>(across(0.12) * kWidth), kHeight / 2)[1], 90) << "behind its threads";
+  }
+}
+
+TEST(Paint, HalfTransparentClothIsHalfSeenFromAfar) {
+  const std::array<std::uint8_t, 4> veil{180, 20, 20, 128};
+  auto snapshot = facing_square(frame::ObjectKind::cloth, texture(1, 1, {veil}), Alpha::cutout);
+  add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 3, 0), -Vec3::UnitY(), Vec3::UnitX(), 4).appearance.color =
+      Vec3(0.7, 0.7, 0.7);
+  const image::Image image = Renderer(settings()).draw(snapshot);
+  double red = 0, green = 0;
+  int count = 0;
+  for (int y = 60; y < 100; ++y) {
+    for (int x = 60; x < 100; ++x, ++count) {
+      red += image.pixel(x, y)[0];
+      green += image.pixel(x, y)[1];
+    }
+  }
+  // Half of the samples show the wall, of which the veil lets half of the light through: its level is somewhere below
+  // 180; red is more than green by half of 160, as eight samples and sixteen thresholds have it.
+  EXPECT_NEAR((red - green) / count, 80, 12);
+}
+
+TEST(Paint, HalfASizeKeepsTheMeanOfLightAtAnySize) {
+  frame::Texture checks{7, 5, {}};
+  double mean = 0;
+  for (int i = 0; i < 35; ++i) {
+    const auto level = static_cast<std::uint8_t>(37 * i % 256);
+    checks.rgba.insert(checks.rgba.end(), {level, level, level, 255});
+    mean += image::linear_from_srgb(level / 255.0) / 35;
+  }
+  MipLevel level = full_size(checks, false);
+  while (level.width > 1 || level.height > 1) level = half_of(level);
+  EXPECT_NEAR(level.texels[0].x(), mean, 1e-5);
+  EXPECT_NEAR(level.texels[0].w(), 1, 1e-5);
+}
+
+TEST(Paint, WhatIsTransparentGivesNoColorToWhatIsNot) {
+  const MipLevel half = half_of(full_size(*texture(2, 1, {{0, 255, 0, 0}, {255, 0, 0, 255}}, 1), false));
+  EXPECT_NEAR(half.texels[0].w(), 0.5, 1e-6);
+  EXPECT_NEAR(half.texels[0].x(), 0.5, 1e-6);
+  EXPECT_NEAR(half.texels[0].y(), 0, 1e-6);
+}
+
+TEST(Paint, VerticesAreSplitWhereCornersLieElsewhereAndTrianglesSortedByPart) {
+  frame::Surface surface;
+  surface.triangles = {{0, 1, 2}, {0, 2, 3}, {1, 4, 2}};
+  surface.parts.resize(2);
+  surface.part_of_triangle = {1, 0, 1};
+  surface.paint_uv = {
+      {Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}, {Vec2(5, 0), Vec2(6, 1), Vec2(5, 1)}, {Vec2(1, 0), Vec2(2, 0), Vec2(1, 1)}};
+  const std::vector<Vec3> positions = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {2, 0, 0}};
+  ShadedMesh mesh = shade(surface.triangles, CornerMap(surface.triangles, 5), positions, 180);
+  const PaintedMesh painted = lay_paint(surface, mesh);
+  ASSERT_EQ(painted.ranges.size(), 2u);
+  EXPECT_EQ(painted.ranges[0].look, &surface.parts[0].appearance);
+  EXPECT_EQ(painted.ranges[0].count, 1u);
+  EXPECT_EQ(painted.ranges[1].count, 2u);
+  EXPECT_EQ(mesh.source.size(), 7u) << "two vertices of the seam lie twice";
+  const std::size_t order[] = {1, 0, 2};
+  for (std::size_t t = 0; t < 3; ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Index drawn = mesh.triangles[t][k];
+      EXPECT_EQ(mesh.source[static_cast<std::size_t>(drawn)], surface.triangles[order[t]][k]);
+      EXPECT_EQ(painted.places[static_cast<std::size_t>(drawn)].cast<double>(), surface.paint_uv[order[t]][k]);
+    }
+  }
+}
+
+TEST(Paint, ThresholdsOfFourByFourNeighboursAreSpreadEvenly) {
+  std::vector<float> all;
+  for (int y = 5; y < 9; ++y)
+    for (int x = 3; x < 7; ++x) all.push_back(threshold_at(x, y));
+  std::sort(all.begin(), all.end());
+  for (int i = 0; i < 16; ++i) EXPECT_FLOAT_EQ(all[i], (2.0f * static_cast<float>(i) + 1) / 32);
+}
+
+}  // namespace
+}  // namespace weft::render
