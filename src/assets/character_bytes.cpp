@@ -26,6 +26,18 @@ void serialize(Archive& archive, character::Clip& clip) {
   });
 }
 
+template <class Archive>
+void serialize(Archive& archive, character::Coloring& coloring) {
+  serialize_each(archive, coloring.materials, [&](character::Material& material) {
+    serialize_plain(archive, material.name);
+    archive.value(material.color);
+    serialize_plain(archive, material.picture);
+    serialize_values(archive, material.wrap_u, material.wrap_v, material.cutout);
+  });
+  serialize_plain(archive, coloring.material_of_triangle);
+  serialize_plain(archive, coloring.uv);
+}
+
 /// Writing and reading are the same list of parts, so that they cannot differ.
 template <class Archive>
 void serialize(Archive& archive, ReadCharacter& read) {
@@ -48,6 +60,7 @@ void serialize(Archive& archive, ReadCharacter& read) {
   });
   serialize_each(archive, character.materials, [&](std::string& name) { serialize_plain(archive, name); });
   serialize_plain(archive, character.material_of_vertex);
+  serialize(archive, character.coloring);
   serialize_each(archive, character.clips, [&](character::Clip& clip) { serialize(archive, clip); });
   archive.value(read.metres_per_unit);
   archive.value(read.up);

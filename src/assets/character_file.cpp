@@ -21,7 +21,7 @@ ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh) {
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, !with_mesh);
   const aiScene* scene = importer.ReadFile(file.string(), 0);
   if (scene == nullptr || scene->mRootNode == nullptr) throw std::runtime_error(importer.GetErrorString());
-  return to_character(*scene);
+  return to_character(*scene, with_mesh ? file : std::filesystem::path());
 }
 
 /// Warnings of a file get its name; it is turned to the scene's axes and scaled to metres.

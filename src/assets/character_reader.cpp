@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "assets/clip_reader.hpp"
+#include "assets/material_reader.hpp"
 #include "assets/soup.hpp"
 #include "mesh/polygon.hpp"
 
@@ -73,7 +74,7 @@ using Weights = std::vector<character::Influence>;
 
 class CharacterReader {
  public:
-  explicit CharacterReader(const aiScene& scene) : scene_(scene) {}
+  CharacterReader(const aiScene& scene, const std::filesystem::path& file) : scene_(scene), file_(file) {}
 
   ReadCharacter read() {
     read_nodes();
@@ -86,8 +87,10 @@ class CharacterReader {
                                                character_.nodes[n].name, scene_.mNumMeshes, m));
         read_mesh(*scene_.mMeshes[m], static_cast<Index>(n));
       }
+    const Soup unjoined = soup_;
     join_vertices();
     make_faces();
+    color_faces(unjoined);
     for (const aiAnimation* animation : std::span(scene_.mAnimations, scene_.mNumAnimations))
       character_.clips.push_back(to_clip(*animation, targets_, read_.warnings));
     name_clips();
@@ -129,6 +132,7 @@ class CharacterReader {
         throw std::runtime_error(
             fmt::format("mesh \"{}\": expected finite coordinates, got others at vertex {}", name, v));
       materials_.push_back(mesh.mMaterialIndex < scene_.mNumMaterials ? static_cast<Index>(mesh.mMaterialIndex) : -1);
+      uv_.push_back(uv_of(mesh, v));
     }
     std::move(weights.begin(), weights.end(), std::back_inserter(weights_));
     read_faces(mesh, base, placing.linear().determinant() < 0);
@@ -320,6 +324,28 @@ class CharacterReader {
       read_.warnings.push_back(fmt::format("{} triangle{} without area left out", flat, flat == 1 ? "" : "s"));
   }
 
+  Vec2 uv_of(const aiMesh& mesh, unsigned v) const {
+    if (mesh.mMaterialIndex >= scene_.mNumMaterials) return Vec2::Zero();
+    unsigned channel = uv_channel(*scene_.mMaterials[mesh.mMaterialIndex]);
+    if (mesh.mTextureCoords[channel] == nullptr) channel = 0;
+    if (mesh.mTextureCoords[channel] == nullptr) return Vec2::Zero();
+    const Vec2 uv(mesh.mTextureCoords[channel][v].x, mesh.mTextureCoords[channel][v].y);
+    return uv.allFinite() ? uv : Vec2(Vec2::Zero());
+  }
+
+  /// Faces before joining, which makes the same triangles of them, tell their materials and texture coordinates.
+  void color_faces(const Soup& unjoined) {
+    if (file_.empty() || scene_.mNumMaterials == 0 || std::ranges::find(materials_, -1) != materials_.end()) return;
+    character::Coloring& coloring = character_.coloring;
+    coloring.materials = read_materials(scene_, file_, read_.warnings);
+    std::size_t flat = 0;
+    for (const mesh::Triangle& t : make_topology(unjoined, flat).triangles) {
+      coloring.material_of_triangle.push_back(materials_[t[0]]);
+      coloring.uv.push_back({uv_[t[0]], uv_[t[1]], uv_[t[2]]});
+    }
+    if (coloring.uv.size() != character_.mesh.topology.triangles.size()) coloring = {};
+  }
+
   /// A clip without a name is called by its number, from 1.
   void name_clips() {
     for (std::size_t c = 0; c < character_.clips.size(); ++c)
@@ -349,6 +375,7 @@ class CharacterReader {
   };
 
   const aiScene& scene_;
+  const std::filesystem::path& file_;
   ReadCharacter read_;
   character::Character& character_ = read_.character;
   std::vector<const aiNode*> nodes_;
@@ -356,6 +383,7 @@ class CharacterReader {
   Soup soup_;
   std::vector<Weights> weights_;  // of the vertices of the soup
   std::vector<Index> materials_;  // likewise; -1 where the file has none
+  std::vector<Vec2> uv_;          // likewise
   std::vector<Morph> morphs_;
   std::set<const aiMesh*> skinned_;  // that have been read
   ClipTargets targets_;
@@ -363,8 +391,8 @@ class CharacterReader {
 
 }  // namespace
 
-ReadCharacter to_character(const aiScene& scene) {
-  return CharacterReader(scene).read();
+ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file) {
+  return CharacterReader(scene, file).read();
 }
 
 }  // namespace weft::assets

@@ -3,6 +3,7 @@
 
 #include <assimp/scene.h>
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -23,8 +24,9 @@ struct ReadCharacter {
 /// Takes over nodes, meshes with their weights and morph targets, and animations. Bones of all meshes are merged into
 /// one list; a mesh without bones becomes one that a bone at its own node holds, once for each node that shows it.
 /// Throws std::runtime_error naming the part that cannot be used: indices out of range, numbers that are not finite,
-/// bones that no node belongs to, key times that run backwards.
-ReadCharacter to_character(const aiScene& scene);
+/// bones that no node belongs to, key times that run backwards. Pictures are looked for
+/// beside `file`; none where that is empty.
+ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file);
 
 /// The same as plain bytes, for the way between two processes of the same program, and back.
 std::string to_bytes(ReadCharacter& read);

@@ -1,8 +1,11 @@
 // What assimp gives, made by hand and spoilt part by part.
 #include "assets/character_reader.hpp"
 
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <limits>
 #include <memory>
 #include <stdexcept>
@@ -85,7 +88,7 @@ class Scenes : public testing::Test {
 
   /// Through bytes and back, as between processes.
   ReadCharacter read() {
-    ReadCharacter read = to_character(scene_);
+    ReadCharacter read = to_character(scene_, {});
     return character_from_bytes(to_bytes(read));
   }
   std::string refusal() {
@@ -244,8 +247,61 @@ TEST_F(Scenes, WithMorphTargetsAreBlendedByTheirChannels) {
   EXPECT_EQ(refusal(), "clip \"walk\", channel \"box*0\": expected one of 1 morph targets, got number 1");
 }
 
+TEST_F(Scenes, ColorsAndPicturesComeWithTheirPlacesForEachTriangle) {
+  const std::string png = "\x89PNG\r\n\x1a\nand so on";
+  auto* picture = new aiTexture;
+  picture->mHeight = 0;
+  picture->mWidth = static_cast<unsigned>(png.size());
+  picture->pcData = new aiTexel[png.size()];
+  std::copy(png.begin(), png.end(), reinterpret_cast<char*>(picture->pcData));
+  scene_.mTextures = new aiTexture* [1] { picture };
+  scene_.mNumTextures = 1;
+  auto *plain = new aiMaterial, *pictured = new aiMaterial;
+  const aiColor4D red(1, 0.25F, 0, 1);
+  plain->AddProperty(&red, 1, AI_MATKEY_BASE_COLOR);
+  const aiString inside("*0"), mask("MASK");
+  pictured->AddProperty(&inside, AI_MATKEY_TEXTURE(aiTextureType_DIFFUSE, 0));
+  pictured->AddProperty(&mask, AI_MATKEY_GLTF_ALPHAMODE);
+  const int mirror = aiTextureMapMode_Mirror;
+  pictured->AddProperty(&mirror, 1, AI_MATKEY_MAPPINGMODE_U(aiTextureType_DIFFUSE, 0));
+  scene_.mMaterials = new aiMaterial* [2] { plain, pictured };
+  scene_.mNumMaterials = 2;
+  leg_->mMaterialIndex = 0;
+  box_->mMaterialIndex = 1;
+  box_->mTextureCoords[0] = new aiVector3D[3]{{0.25F, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  box_->mNumUVComponents[0] = 2;
+
+  ReadCharacter got = to_character(scene_, "body.glb");
+  const character::Coloring coloring = character_from_bytes(to_bytes(got)).character.coloring;
+  ASSERT_EQ(coloring.materials.size(), 2u);
+  EXPECT_EQ(coloring.materials[0].color, Vec3(1, 0.25, 0));
+  EXPECT_EQ(coloring.materials[0].picture, "");
+  EXPECT_EQ(coloring.materials[1].picture, png);
+  EXPECT_TRUE(coloring.materials[1].cutout);
+  EXPECT_EQ(coloring.materials[1].wrap_u, character::Material::Wrap::mirror);
+  EXPECT_EQ(coloring.materials[1].wrap_v, character::Material::Wrap::repeat);
+  // The leg, then the crate at the root and at its own node.
+  EXPECT_EQ(coloring.material_of_triangle, (std::vector<Index>{0, 0, 1, 1}));
+  ASSERT_EQ(coloring.uv.size(), 4u);
+  for (const std::size_t t : {2, 3})
+    EXPECT_EQ(coloring.uv[t], (std::array<Vec2, 3>{Vec2(0.25, 0), Vec2(1, 0), Vec2(0, 1)}));
+  EXPECT_TRUE(read().character.coloring.materials.empty()) << "of a motion nothing is read";
+}
+
+TEST_F(Scenes, PicturesThatCannotBeHadAreLeftOutWithAWarning) {
+  auto* material = new aiMaterial;
+  const aiString outside("C:\\paint\\skin.tga");
+  material->AddProperty(&outside, AI_MATKEY_TEXTURE(aiTextureType_DIFFUSE, 0));
+  scene_.mMaterials = new aiMaterial* [1] { material };
+  scene_.mNumMaterials = 1;
+  const ReadCharacter got = to_character(scene_, "/nowhere/body.fbx");
+  ASSERT_EQ(got.warnings.size(), 1u);
+  EXPECT_EQ(got.warnings[0], "material \"\": picture \"C:\\paint\\skin.tga\" is left out: it is not there");
+  EXPECT_EQ(got.character.coloring.material_of_triangle.size(), 4u);
+}
+
 TEST_F(Scenes, CutShortBetweenProcessesAreRefused) {
-  ReadCharacter got = to_character(scene_);
+  ReadCharacter got = to_character(scene_, {});
   const std::string bytes = to_bytes(got);
   for (std::size_t length = 0; length < bytes.size(); length += 7)
     EXPECT_THROW(static_cast<void>(character_from_bytes(std::string_view(bytes).substr(0, length))),

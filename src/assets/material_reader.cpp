@@ -1,0 +1,144 @@
+#include "assets/material_reader.hpp"
+
+#include <assimp/GltfMaterial.h>
+#include <assimp/material.h>
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <system_error>
+
+namespace weft::assets {
+namespace {
+
+namespace fs = std::filesystem;
+using character::Material;
+
+/// Larger files are refused.
+constexpr std::uintmax_t kMaxPictureBytes = std::uintmax_t{64} << 20;
+
+/// The one that gives a surface its colour: physically based where there is one.
+std::optional<aiTextureType> picture_type(const aiMaterial& material) {
+  for (const aiTextureType type : {aiTextureType_BASE_COLOR, aiTextureType_DIFFUSE})
+    if (material.GetTextureCount(type) > 0) return type;
+  return std::nullopt;
+}
+
+Material::Wrap to_wrap(int mode) {
+  switch (mode) {
+    case aiTextureMapMode_Clamp:
+      return Material::Wrap::clamp;
+    case aiTextureMapMode_Mirror:
+      return Material::Wrap::mirror;
+    case aiTextureMapMode_Decal:
+      return Material::Wrap::once;
+    default:
+      return Material::Wrap::repeat;
+  }
+}
+
+bool is_picture(std::string_view bytes) {
+  return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff");
+}
+
+/// FBX and Collada name files of the machine on which they were made: as it is named, then the same name beside the
+/// file and in the folders that programs put pictures in.
+std::optional<fs::path> find_file(const std::string& named, const fs::path& file) {
+  std::string plain = named.starts_with("file://") ? named.substr(7) : named;
+  std::ranges::replace(plain, '\\', '/');
+  const fs::path folder = file.parent_path(), name = fs::path(plain).filename();
+  for (const fs::path& at : {folder / plain, folder / name, folder / "textures" / name, folder / file.stem() / name,
+                             folder / (file.stem().string() + ".fbm") / name, folder.parent_path() / "textures" / name,
+                             folder.parent_path() / "images" / name}) {
+    std::error_code error;
+    if (fs::is_regular_file(at, error)) return at;
+  }
+  return std::nullopt;
+}
+
+/// Bytes of a picture; empty, with the reason, where it cannot be had.
+std::string read_picture(const aiScene& scene, const aiString& named, const fs::path& file, std::string& reason) {
+  std::string bytes;
+  if (const aiTexture* inside = scene.GetEmbeddedTexture(named.C_Str())) {
+    if (inside->mHeight != 0) {
+      reason = "raw pixels are not read";
+      return {};
+    }
+    bytes.assign(reinterpret_cast<const char*>(inside->pcData), inside->mWidth);
+  } else {
+    const std::optional<fs::path> found = find_file(named.C_Str(), file);
+    std::error_code error;
+    if (!found) {
+      reason = "it is not there";
+      return {};
+    }
+    if (fs::file_size(*found, error) > kMaxPictureBytes) {
+      reason = fmt::format("expected at most {} bytes", kMaxPictureBytes);
+      return {};
+    }
+    std::ifstream in(*found, std::ios::binary);
+    bytes.assign(std::istreambuf_iterator<char>(in), {});
+  }
+  if (is_picture(bytes)) return bytes;
+  reason = "it is neither PNG nor JPEG";
+  return {};
+}
+
+Vec3 base_color(const aiMaterial& material) {
+  aiColor4D color;
+  if (material.Get(AI_MATKEY_BASE_COLOR, color) != AI_SUCCESS &&
+      material.Get(AI_MATKEY_COLOR_DIFFUSE, color) != AI_SUCCESS)
+    return Vec3::Constant(0.6);
+  const Vec3 rgb(color.r, color.g, color.b);
+  return rgb.allFinite() ? Vec3(rgb.cwiseMax(0).cwiseMin(1)) : Vec3(Vec3::Constant(0.6));
+}
+
+/// Whether transparent parts are holes: what the file says, else whether it names a picture for opacity.
+bool is_cutout(const aiMaterial& material) {
+  aiString mode;
+  if (material.Get(AI_MATKEY_GLTF_ALPHAMODE, mode) == AI_SUCCESS) return std::string_view(mode.C_Str()) != "OPAQUE";
+  return material.GetTextureCount(aiTextureType_OPACITY) > 0;
+}
+
+}  // namespace
+
+unsigned uv_channel(const aiMaterial& material) {
+  int channel = 0;
+  if (const auto type = picture_type(material)) material.Get(AI_MATKEY_UVWSRC(*type, 0), channel);
+  return channel < 0 || channel >= AI_MAX_NUMBER_OF_TEXTURECOORDS ? 0 : static_cast<unsigned>(channel);
+}
+
+std::vector<Material> read_materials(const aiScene& scene, const fs::path& file, std::vector<std::string>& warnings) {
+  std::vector<Material> materials;
+  for (const aiMaterial* from : std::span(scene.mMaterials, scene.mNumMaterials)) {
+    Material& material = materials.emplace_back();
+    material.name = from->GetName().C_Str();
+    material.color = base_color(*from);
+    const auto type = picture_type(*from);
+    if (!type) continue;
+    aiString named;
+    from->GetTexture(*type, 0, &named);
+    int wrap_u = aiTextureMapMode_Wrap, wrap_v = aiTextureMapMode_Wrap;
+    from->Get(AI_MATKEY_MAPPINGMODE_U(*type, 0), wrap_u);
+    from->Get(AI_MATKEY_MAPPINGMODE_V(*type, 0), wrap_v);
+    material.wrap_u = to_wrap(wrap_u);
+    material.wrap_v = to_wrap(wrap_v);
+    std::string reason;
+    material.picture = read_picture(scene, named, file, reason);
+    material.cutout = !material.picture.empty() && is_cutout(*from);
+    if (material.picture.empty())
+      warnings.push_back(
+          fmt::format("material \"{}\": picture \"{}\" is left out: {}", material.name, named.C_Str(), reason));
+    // Files often leave a dark or black colour behind a picture that stands for it.
+    else if (*type == aiTextureType_DIFFUSE)
+      material.color = Vec3::Ones();
+  }
+  return materials;
+}
+
+}  // namespace weft::assets
