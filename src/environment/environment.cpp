@@ -201,6 +201,7 @@ void use_mesh_file(const scene::Cloth& cloth, const std::string& where, ClothObj
   if (panels) {
     object.sheet.material = std::move(rest.material);
     object.sheet.sewn = true;
+    object.paint_uv = object.sheet.material;
     object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
     for (std::size_t t = object.sheet.triangles.size(); t-- > 0;)
       for (std::size_t k = 0; k < 3; ++k)

@@ -57,17 +57,18 @@ GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z(
   for (std::size_t s = 0; s < first.surfaces.size(); ++s) {
     const frame::Surface& surface = *first.surfaces[s];
     if (!surface.visible) continue;
-    objects_.push_back({s, turned(first.states[s].positions), {}});
+    const CutSurface cut = cut_at_seams(surface);
+    objects_.push_back({s, turned(first.states[s].positions, cut.vertex_of), cut.vertex_of, {}});
     document_["materials"].push_back(material_of(surface));
-    document_["meshes"].push_back(
-        {{"name", surface.name}, {"primitives", {primitive(surface, objects_.back().start)}}});
+    document_["meshes"].push_back({{"name", surface.name}, {"primitives", {primitive(cut, objects_.back().start)}}});
   }
 }
 
-std::vector<float> GltfFile::turned(const std::vector<Vec3>& positions) const {
+std::vector<float> GltfFile::turned(const std::vector<Vec3>& positions, const std::vector<Index>& vertices) const {
   std::vector<float> result;
-  result.reserve(3 * positions.size());
-  for (const Vec3& x : positions) {
+  result.reserve(3 * vertices.size());
+  for (const Index vertex : vertices) {
+    const Vec3& x = positions[static_cast<std::size_t>(vertex)];
     const Vec3 y_up = z_up_ ? Vec3(x.x(), x.z(), -x.y()) : x;
     for (int axis = 0; axis < 3; ++axis) result.push_back(static_cast<float>(y_up[axis]));
   }
@@ -114,7 +115,7 @@ int GltfFile::add_scalars(const std::vector<float>& values, bool with_bounds) {
   return static_cast<int>(document_["accessors"].size()) - 1;
 }
 
-json GltfFile::primitive(const frame::Surface& surface, const std::vector<float>& start) {
+json GltfFile::primitive(const CutSurface& surface, const std::vector<float>& start) {
   json attributes{{"POSITION", add_positions(start)}};
   json& accessors = document_["accessors"];
   if (!surface.uv.empty()) {
@@ -144,7 +145,7 @@ void GltfFile::add(const frame::FrameSnapshot& snapshot, double time) {
   times_.push_back(static_cast<float>(time));
   frames_.push_back(snapshot.frame);
   for (Object& object : objects_) {
-    std::vector<float> displacement = turned(snapshot.states[object.surface].positions);
+    std::vector<float> displacement = turned(snapshot.states[object.surface].positions, object.vertex_of);
     const bool moved = displacement != object.start;
     for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] -= object.start[i];
     object.targets.push_back(moved ? add_positions(displacement) : -1);

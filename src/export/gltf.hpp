@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "export/seams.hpp"
 #include "frame/frame_snapshot.hpp"
 
 namespace weft::exporter {
@@ -17,7 +18,7 @@ namespace weft::exporter {
 ///
 /// y is up in glTF: where z is up in the scene, (x, y, z) becomes (x, z, -y), which Blender turns back. Normals are
 /// left out: readers then take those of the faces as they are at any time, while given ones would need targets of
-/// their own.
+/// their own. Texture coordinates are weft and warp [m]; where panels meet at a seam each has vertices of its own.
 class GltfFile {
  public:
   /// Of the visible objects of the first frame.
@@ -32,16 +33,17 @@ class GltfFile {
  private:
   struct Object {
     std::size_t surface;
-    std::vector<float> start;  // as written
-    std::vector<int> targets;  // accessors, one per later frame; −1 where it is as in the first
+    std::vector<float> start;      // as written
+    std::vector<Index> vertex_of;  // of the surface, for each that is written
+    std::vector<int> targets;      // accessors, one per later frame; −1 where it is as in the first
   };
   int append(const void* data, std::size_t size, int target);
   int add_positions(const std::vector<float>& positions);
   int add_scalars(const std::vector<float>& values, bool with_bounds);
-  nlohmann::json primitive(const frame::Surface& surface, const std::vector<float>& start);
+  nlohmann::json primitive(const CutSurface& surface, const std::vector<float>& start);
   void add_targets(Object& object, nlohmann::json& mesh);
   void animate(const std::vector<int>& nodes, const std::string& name);
-  std::vector<float> turned(const std::vector<Vec3>& positions) const;
+  std::vector<float> turned(const std::vector<Vec3>& positions, const std::vector<Index>& vertices) const;
 
   bool z_up_;
   std::vector<Object> objects_;

@@ -137,6 +137,29 @@ TEST_F(Exported, ObjFilesHoldQuadsAndWeftAndWarpWithEveryDigit) {
   EXPECT_EQ(vertex, positions.size());
 }
 
+// Two panels that are sewn along their common edge; the right one is drawn elsewhere, on its own.
+TEST_F(Exported, PanelsAreApartInTextureCoordinatesAndOneInTheMesh) {
+  frame::Surface garment = *surfaces_[0];
+  garment.quads.clear();
+  garment.paint_uv = {{Vec2(0, 0), Vec2(0.1, 0), Vec2(0.1, 0.1)},
+                      {Vec2(0, 0), Vec2(0.1, 0.1), Vec2(0, 0.1)},
+                      {Vec2(0.5, 0.7), Vec2(0.6, 0.7), Vec2(0.6, 0.8)},
+                      {Vec2(0.5, 0.7), Vec2(0.6, 0.8), Vec2(0.5, 0.8)}};
+  surfaces_[0] = std::make_shared<frame::Surface>(garment);
+  for (const auto& [format, name] :
+       {std::pair(Format::obj, "cloth_00003.obj"), std::pair(Format::gltf, "flutter.glb")}) {
+    request_.folder = folder_ / name;
+    write(format, {3});
+    const assets::LoadedMesh loaded = assets::load_mesh(file(name), 1, "a test", "cloth");
+    EXPECT_EQ(loaded.mesh.positions.size(), 6U) << name;
+    EXPECT_EQ(loaded.mesh.topology.triangles.size(), 4U) << name;
+    ASSERT_EQ(loaded.uv.size(), 4U) << name;
+    for (std::size_t t = 0; t < 4; ++t)
+      for (std::size_t k = 0; k < 3; ++k)
+        EXPECT_LT((loaded.uv[t][k] - garment.paint_uv[t][k]).norm(), kSingle) << name << t;
+  }
+}
+
 template <class T>
 T take(std::string_view& bytes) {
   T value;

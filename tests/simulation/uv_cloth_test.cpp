@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include "environment/environment.hpp"
+#include "export/obj.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
 #include "support/test_folder.hpp"
@@ -99,6 +100,55 @@ TEST_F(UvCloth, WhatDoesNotFitIsSaid) {
   EXPECT_EQ(first_warning(""), "the mesh: it has no UVs");
   support::expect_error(ExitCode::asset_unreadable, "expected texture coordinates (UVs) for rest = \"uv\", got none",
                         [&] { environment::Environment made(scene("rest = 'uv'\n")); });
+}
+
+// A tube that is sewn and hangs on a post, written and read back: the pattern is what it was, and it hangs on as it
+// did.
+TEST_F(UvCloth, AGarmentThatIsExportedAndReadBackDrapesAsItDid) {
+  std::string pattern = testing::kTube + "allowance = 0\n";  // allowances are not in meshes
+  pattern.insert(pattern.rfind("[[seam]]"), "allowance = 0\n");
+  support::write_bytes(folder_ / "tube.toml", pattern);
+  const std::string post =
+      "[time]\nduration = 2\n[[obstacle]]\nname = 'post'\nshape = 'cone'\nradius = 0.16\nheight = 0.6\n"
+      "position = [0, 0, 0.2]\nsegments = 32\n[[cloth]]\nname = 'tube'\nmaterial = { fabric = 'silk' }\n";
+  const scene::Scene sewn =
+      support::scene_of_text(post + "shape = 'pattern'\nfile = '" + (folder_ / "tube.toml").string() +
+                             "'\nedge_length = 0.04\nsewing = 0.4\nposition = [0, 0, 0.05]\n");
+  constexpr int kExported = 25, kOn = 15;
+  Simulation simulation(sewn);
+  for (int k = 0; k < kExported; ++k) simulation.advance();
+  const frame::SnapshotPtr exported = simulation.snapshot();
+  exporter::write_obj(folder_ / "tube.obj", *exported->surfaces[0], exported->states[0].positions);
+  for (int k = 0; k < kOn; ++k) simulation.advance();
+  const std::vector<Vec3> went_on = testing::sheet_of(simulation.snapshot());
+
+  scene::Scene read =
+      support::scene_of_text(post + "shape = 'mesh'\nfile = '" + (folder_ / "tube.obj").string() + "'\n");
+  const environment::Environment made(read);
+  const environment::ClothObject& cloth = made.cloths[0];
+  EXPECT_NE(cloth.rest_from.find("UVs, which fit it as panels do: 2 islands, 1 unit = 1 m (metres)"), std::string::npos)
+      << cloth.rest_from;
+  double area = 0;
+  for (std::size_t t = 0; t < cloth.sheet.triangles.size(); ++t) area += mesh::rest_area(cloth.sheet, t);
+  EXPECT_NEAR(area, 2 * 0.33 * 0.3, 1e-6);  // to the single precision of files in assimp
+  // Vertices are numbered as faces name them, so places are compared: how far each particle is from where one was.
+  const auto off = [&] {
+    Simulation again(read);
+    for (int k = 0; k < kOn; ++k) again.advance();
+    double sum_sq = 0;
+    for (const Vec3& x : testing::sheet_of(again.snapshot())) {
+      double least_sq = 1;
+      for (const Vec3& y : went_on) least_sq = std::min(least_sq, (x - y).squaredNorm());
+      sum_sq += least_sq;
+    }
+    return std::sqrt(sum_sq / static_cast<double>(went_on.size()));
+  };
+  const double by_uv = off();
+  read.cloths[0].uv_scale = Vec2(1.1, 1.1);
+  const double too_large = off();
+  std::printf("off by %.2f mm, with UVs of another size by %.2f mm\n", 1e3 * by_uv, 1e3 * too_large);
+  EXPECT_LT(by_uv, 0.002);
+  EXPECT_GT(too_large, 3 * by_uv);
 }
 
 }  // namespace
