@@ -129,7 +129,7 @@ TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
   EXPECT_TRUE(paths.contains("up"));
   EXPECT_TRUE(paths.contains("cloth.c.material.bend_viscosity"));
   EXPECT_TRUE(paths.contains("obstacle.sphere.look.checker"));
-  EXPECT_TRUE(paths.contains("camera.v.field_of_view"));
+  EXPECT_TRUE(paths.contains("cloth.c.look.image_width"));
 }
 
 TEST(Rules, EachKeyOfAVariantChangesTheSceneAndItsHash) {
