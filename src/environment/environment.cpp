@@ -206,6 +206,7 @@ void use_mesh_file(const scene::Cloth& cloth, const std::string& where, ClothObj
     for (std::size_t t = object.sheet.triangles.size(); t-- > 0;)
       for (std::size_t k = 0; k < 3; ++k)
         object.mesh.uv[static_cast<std::size_t>(object.sheet.triangles[t][k])] = object.sheet.material[t][k];
+    object.paint_uv = object.sheet.material;
   }
   check_parts(cloth, object, where);
 }
