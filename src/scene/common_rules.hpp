@@ -45,4 +45,7 @@ void pose_rows(TableBuilder<S>& rows, Member pose, const std::string& position_o
 const Table& obstacle_look_rules();
 const Table& character_look_rules();
 
+/// What a key leaves out.
+inline const std::string kHeld = "that of the key before; of the first key, that of the thing itself";
+
 }  // namespace weft::scene

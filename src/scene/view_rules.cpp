@@ -1,0 +1,217 @@
+#include "scene/view_rules.hpp"
+
+#include "scene/common_rules.hpp"
+#include "scene/table_builder.hpp"
+
+namespace weft::scene {
+namespace {
+
+// A camera or light that stands still has one key, which its own values go into. With `keys`, the first of them starts
+// from these values and each later one from the key before.
+template <class S>
+void go_on_from_key_before(S& owner, std::size_t i) {
+  if (i == 0) return;
+  const auto last = owner.keys.back();
+  owner.keys.push_back(last);
+}
+template <class S>
+bool moves(S& owner) {
+  return owner.keys.size() > 1;
+}
+template <class S>
+bool stands_still(S& owner) {
+  return owner.keys.size() == 1;
+}
+/// Access to a member of the key that the own values of a camera or light go into.
+template <class Key, class Field>
+auto own(Field Key::*field) {
+  return [field](auto& owner) -> Field& { return owner.keys.front().*field; };
+}
+
+const Range kFieldOfView = within(1, 170);  // [degrees]
+const Range kIntensity = within(0, 1000);
+
+const Table& camera_key_rules() {
+  static const Table kTable =
+      TableBuilder<CameraKey>("A view at a time.")
+          .number("time", &CameraKey::time, kMoment, "s", "later than the key before")
+          .need(Need::required)
+          .vector("position", &CameraKey::position, kXyz, kPlace, "m", "of the eye")
+          .by_default(kHeld)
+          .vector("target", &CameraKey::target, kXyz, kPlace, "m", "point in the middle of the picture")
+          .by_default(kHeld)
+          .number("field_of_view", &CameraKey::field_of_view, kFieldOfView, "degrees", "vertical")
+          .by_default(kHeld)
+          .build();
+  return kTable;
+}
+
+/// Keys of cameras that stand still or move by keys.
+void placed_camera_rows(TableBuilder<Camera>& rows) {
+  rows.vector("position", own(&CameraKey::position), kXyz, kPlace, "m", "of the eye")
+      .need(Need::here_or_in_first_key)
+      .written_if(stands_still<Camera>)
+      .vector("target", own(&CameraKey::target), kXyz, kPlace, "m", "point in the middle of the picture")
+      .need(Need::here_or_in_first_key)
+      .written_if(stands_still<Camera>)
+      .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
+      .written_if(stands_still<Camera>)
+      .choice("interpolation", &Camera::interpolation, kInterpolations, "between its keys")
+      .list(Type::keys, "keys", &Camera::keys, camera_key_rules(), go_on_from_key_before<Camera>)
+      .written_if(moves<Camera>);
+}
+
+/// What cameras that are found are told of their subject.
+void subject_rows(TableBuilder<Camera>& rows) {
+  rows.plain(Type::texts, "subject", &Camera::subjects, "names of cloths, obstacles and characters that it shows")
+      .by_default("of whole, all but floors without end; of the others the characters, else the cloths")
+      .number("margin", &Camera::margin, within(0, 0.9), "", "share of each half picture left free around them");
+}
+void smoothing_row(TableBuilder<Camera>& rows) {
+  rows.number("smoothing", &Camera::smoothing, within(0, 60), "s", "of the way that it takes; 0 follows every twitch");
+}
+
+/// Keys of cameras that look from a direction.
+void direction_rows(TableBuilder<Camera>& rows) {
+  rows.number("azimuth", &Camera::azimuth, within(-36000, 36000), "degrees",
+              "direction in which the eye is, from the front to the right")
+      .number("elevation", &Camera::elevation, within(-89, 89), "degrees", "of the eye above the subject")
+      .number("orbit", &Camera::orbit, within(-3600, 3600), "degrees/s", "in which it goes around, to the right")
+      .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
+      .by_default("30")
+      .with(subject_rows);
+}
+
+/// What the keys of suns and spots have in common; `rows` adds the rest.
+Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
+  return TableBuilder<LightKey>("A light at a time.")
+      .number("time", &LightKey::time, kMoment, "s", "later than the key before")
+      .need(Need::required)
+      .with(rows)
+      .number("intensity", &LightKey::intensity, kIntensity, "", "1 lights a white surface that faces it to white")
+      .by_default(kHeld)
+      .build();
+}
+
+const Table& sun_key_rules() {
+  static const Table kTable = light_key_table([](auto& rows) {
+    rows.vector("direction", &LightKey::direction, kXyz, kPlace, "", "the way the light travels")
+        .nonzero()
+        .by_default(kHeld);
+  });
+  return kTable;
+}
+
+const Table& spot_key_rules() {
+  static const Table kTable = light_key_table([](auto& rows) {
+    rows.vector("position", &LightKey::position, kXyz, kPlace, "m", "of the lamp").by_default(kHeld);
+    rows.vector("target", &LightKey::target, kXyz, kPlace, "m", "point that it shines at").by_default(kHeld);
+  });
+  return kTable;
+}
+
+}  // namespace
+
+const Table& camera_rules() {
+  using Rows = TableBuilder<Camera>;
+  static const Table kTable =
+      Rows("A camera, still or moved by key frames, or found from all frames.")
+          .starting_from({.name = {}, .keys = {CameraKey{}}})
+          .plain(Type::name, "name", &Camera::name, "unlike that of any other camera")
+          .need(Need::required)
+          .choice_by(
+              "kind", {"placed", "whole", "follow", "close", "track"},
+              "placed by position and target, or found before drawing from all frames: so that all of the run is in "
+              "view; going along at one distance; as close as the subject allows; turning after it where it stands",
+              [](Camera& c) { return static_cast<std::size_t>(c.kind); },
+              [](Camera& c, std::size_t index) {
+                c.kind = static_cast<CameraKind>(index);
+                if (c.kind != CameraKind::placed) c.keys.front().field_of_view = kFoundFieldOfView;
+                if (c.kind == CameraKind::track) c.keys.front().field_of_view = 0;
+              })
+          .selects()
+          .variant("placed", Rows().with(placed_camera_rows))
+          .variant("whole", Rows().with(direction_rows))
+          .variant("follow", Rows().with(direction_rows).with(smoothing_row))
+          .variant("close", Rows().with(direction_rows).with(smoothing_row))
+          .variant("track",
+                   Rows()
+                       .vector("position", own(&CameraKey::position), kXyz, kPlace, "m", "of the eye")
+                       .need(Need::required)
+                       .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
+                       .by_default("as wide as the subject needs in all frames")
+                       .written_if([](Camera& c) { return c.keys.front().field_of_view > 0; })
+                       .with(subject_rows)
+                       .with(smoothing_row))
+          .build();
+  return kTable;
+}
+
+const Table& light_rules() {
+  using Rows = TableBuilder<Light>;
+  const auto keys_row = [](const Table& key_rules) {
+    return [&key_rules](Rows& rows) {
+      rows.list(Type::keys, "keys", &Light::keys, key_rules, go_on_from_key_before<Light>).written_if(moves<Light>);
+    };
+  };
+  static const Table kTable =
+      Rows("A light, still or moved by key frames.")
+          .starting_from({.name = {}, .color = {1, 1, 1}, .keys = {LightKey{}}})
+          .plain(Type::name, "name", &Light::name, "unlike that of any other light")
+          .need(Need::required)
+          .choice("kind", &Light::spot, {"sun", "spot"}, "parallel light, or light from one place")
+          .selects()
+          .color("color", &Light::color, "of the light")
+          .number("intensity", own(&LightKey::intensity), kIntensity, "",
+                  "1 lights a white surface that faces it to white")
+          .written_if(stands_still<Light>)
+          .number("softness", &Light::softness, within(0, 90), "degrees",
+                  "width of the source as seen from the scene; wider gives softer shadows")
+          .choice("interpolation", &Light::interpolation, kInterpolations, "between its keys")
+          .variant("sun",
+                   Rows()
+                       .vector("direction", own(&LightKey::direction), kXyz, kPlace, "", "the way the light travels")
+                       .nonzero()
+                       .by_default("[-0.4, -0.5, -1] where z is up, turned with the up axis")
+                       .written_if(stands_still<Light>)
+                       .with(keys_row(sun_key_rules())))
+          .variant("spot", Rows()
+                               .vector("position", own(&LightKey::position), kXyz, kPlace, "m", "of the lamp")
+                               .by_default("5 m up the up axis")
+                               .written_if(stands_still<Light>)
+                               .vector("target", own(&LightKey::target), kXyz, kPlace, "m", "point that it shines at")
+                               .written_if(stands_still<Light>)
+                               .number("cone_angle", &Light::cone_angle, within(1, 170), "degrees", "full opening")
+                               .with(keys_row(spot_key_rules())))
+          .build();
+  return kTable;
+}
+
+const Table& render_rules() {
+  static const Table kTable =
+      TableBuilder<Render>("The picture.")
+          .whole_number("width", &Render::width, within(16, 8192), "of the picture, in pixels")
+          .not_simulated()
+          .whole_number("height", &Render::height, within(16, 8192), "of the picture, in pixels")
+          .not_simulated()
+          .plain(Type::text, "camera", &Render::camera, "name of the camera that is looked through")
+          .by_default("the first camera; automatic framing where there is none")
+          .not_simulated()
+          .color("sky_color", &Render::sky_color, "of the light from above")
+          .by_default("the renderer's own")
+          .not_simulated()
+          .color("ground_color", &Render::ground_color, "of the light from below")
+          .by_default("the renderer's own")
+          .not_simulated()
+          .number("sky_intensity", &Render::sky_intensity, within(0, 100), "", "share of light from the sky")
+          .by_default("the renderer's own")
+          .not_simulated()
+          .choice("heat", &Render::heat, {"none", "strain", "speed"}, "quantity that colors the cloth")
+          .number("heat_max", &Render::heat_max, within(0, 1e6), "",
+                  "value at the hot end (strain: 1, speed: m/s); 0 follows each frame's largest")
+          .not_simulated()
+          .build();
+  return kTable;
+}
+
+}  // namespace weft::scene
