@@ -120,6 +120,7 @@ FilmResult play(Script& script, const FrameRange& wanted) {
                           return std::make_unique<Writer>(script);
                         },
                         nullptr,
+                        {},
                         {}};
   Progress progress(Progress::Style::none, {});
   EventLog log("");
