@@ -272,7 +272,7 @@ Measurements measurements(const Row& row) {
   const auto [extension_weft, extension_warp] = estimated_extension(row);
   const double bend = estimated_bend(row), skew = row.weave == Weave::woven ? std::sqrt(1.4) : 1;
   Measurements m;
-  m.density = {1e-3 * row.density.value, row.density.estimated};
+  m.density = {row.density.value / 1000, row.density.estimated};
   m.thickness = known_or(row.thickness, 1e-3, 2.2e-3 * m.density.value);
   m.extension_weft = known_or(both(row.extension).first, 0.01, extension_weft);
   m.extension_warp = known_or(both(row.extension).second, 0.01, extension_warp);
