@@ -26,4 +26,12 @@ FrameRange cached_frames(const cache::Reader& reader, FrameSelection selection) 
   return wanted;
 }
 
+void show_frames(const cache::Reader& reader, render::CameraPath& camera) {
+  const cache::Reader any(reader.folder(), cache::Looks::any);
+  for (const int frame : any.frames()) {
+    const cache::CachedFrame cached = any.read(frame);
+    if (cached.scene_hash == any.manifest().scene_hash) camera.see(*cached.snapshot);
+  }
+}
+
 }  // namespace weft::cli

@@ -47,8 +47,8 @@ struct FilmResult {
 };
 
 /// Goes through the frames that the source makes until the last of `wanted`, or of `made` where the camera has to see
-/// them, `stop`, or a failure; `made` has all of `wanted`. Whatever ends it, the frames that were written are finished and kept if the writer itself works. Never
-/// throws for a failure of a stage: see `failure`.
+/// them, `stop`, or a failure; `made` has all of `wanted`. Whatever ends it, the frames that were written are finished
+/// and kept if the writer itself works. Never throws for a failure of a stage: see `failure`.
 FilmResult make_film(const FilmParts& parts, const FrameRange& made, const FrameRange& wanted,
                      const std::atomic<bool>& stop, Progress& progress, EventLog& log);
 

@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "cli/cached_frames.hpp"
 #include "core/error.hpp"
 
 namespace weft::cli {
@@ -69,7 +70,7 @@ void SceneSource::run_preroll() {
 }
 
 bool CacheSource::show_all(render::CameraPath& camera) const {
-  for (const int frame : reader_.frames()) camera.see(*reader_.snapshot(frame));
+  show_frames(reader_, camera);
   return true;
 }
 

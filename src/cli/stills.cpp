@@ -2,9 +2,9 @@
 
 #include <numeric>
 #include <optional>
-#include <utility>
 
 #include "cache/reader.hpp"
+#include "cli/cached_frames.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/signals.hpp"
 #include "core/error.hpp"
@@ -77,15 +77,15 @@ class CacheStills : public Stills {
   int cost(int) const override { return 0; }
   frame::SnapshotPtr at(int frame, Progress&) override {
     if (signals_.requested()) throw Error(ExitCode::interrupted, "interrupted at frame {}; no picture", frame);
-    if (!std::exchange(shown_, true) && render::CameraPath::is_found(*reader_.snapshot(frame), settings_.camera))
-      for (const int each : frames_) show(*reader_.snapshot(each));
-    return reader_.snapshot(frame);
+    frame::SnapshotPtr snapshot = reader_.snapshot(frame);
+    if (!camera_ && render::CameraPath::is_found(*snapshot, settings_.camera))
+      show_frames(reader_, camera_.emplace(settings_.camera, settings_.aspect()));
+    return snapshot;
   }
 
  private:
   const StopSignals signals_;
   const cache::Reader reader_;
-  bool shown_ = false;  // all frames, to the camera
 };
 
 }  // namespace

@@ -44,9 +44,7 @@ class Stills {
   cache::Manifest scene_;
   render::Settings settings_;
   std::vector<int> frames_;
-
- private:
-  std::optional<render::CameraPath> camera_;
+  std::optional<render::CameraPath> camera_;  // where it is found
 };
 
 /// Reads what `options.scene` names: a scene, or the folder of a cache. Throws as load_scene() and cache::Reader do.

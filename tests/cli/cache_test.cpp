@@ -351,11 +351,14 @@ TEST_F(CachedRun, FullDiskEndsASimulationButOnlyTheCacheOfARun) {
   EXPECT_EQ(simulated.exit_code, 6);
   EXPECT_TRUE(contains(simulated.err, "cannot be written: File too large")) << simulated.err;
   // Pictures of a few kilobytes fit where states do not.
-  const Outcome run = limited({"run", "s.toml", "-o", std::string("p/") + kPictures}, 8000);
+  const std::string camera = "camera=[{name='v',position=[1,-1,1],target=[0,0,0.2]}]";
+  const Outcome run = limited({"run", "s.toml", "-o", std::string("p/") + kPictures, "--set", camera}, 8000);
   EXPECT_EQ(run.exit_code, 0) << run.err;
   EXPECT_TRUE(contains(run.err, "the run goes on, but")) << run.err;
   EXPECT_EQ(contents("p", ".png").size(), static_cast<std::size_t>(kFrames));
   EXPECT_FALSE(fs::exists(folder_ / "p/.s.weft-cache"));
+  // A camera that is found has the pictures drawn from the cache.
+  EXPECT_EQ(limited({"run", "s.toml", "-o", std::string("q/") + kPictures}, 3000).exit_code, 6);
 }
 
 }  // namespace

@@ -64,7 +64,9 @@ std::string other_value(const std::string& path, const scene::Rule& rule) {
   if (path.ends_with("interpolation")) return "linear";
   switch (rule.type) {
     case scene::Type::boolean:
-      return path.ends_with("visible") ? "false" : "true";
+      return path.ends_with("visible") || path.ends_with("image_repeat") ? "false" : "true";
+    case scene::Type::file:
+      return WEFT_SOURCE_DIR "/scenes/gallery/pictures/check.png";
     case scene::Type::choice:
       return rule.choices.back();
     case scene::Type::color:

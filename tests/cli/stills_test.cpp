@@ -40,8 +40,11 @@ TEST_F(Stills, FromACacheAreThoseFromTheScene) {
     const std::string name = fs::path(input).stem();
     expect_well({"sheet", input, "-o", name + "_sheet.png", "--count", "4"});
     expect_well({"thumbnail", input, "-o", name + "_chosen.png"});
-    expect_well({"thumbnail", input, "-o", name + "_7.png", "--frame", "7"});
   }
+  // The camera has all frames in view that there are: those up to the one that is asked for.
+  expect_well({"simulate", "s.toml", "--cache", "c_to_7", "--frames", ":8"});
+  expect_well({"thumbnail", "s.toml", "-o", "s_7.png", "--frame", "7"});
+  expect_well({"thumbnail", "c_to_7", "-o", "c_7.png", "--frame", "7"});
   EXPECT_EQ(pixels("s_sheet.png"), pixels("c_sheet.png"));
   EXPECT_EQ(pixels("s_chosen.png"), pixels("c_chosen.png"));
   EXPECT_EQ(pixels("s_7.png"), pixels("c_7.png"));
