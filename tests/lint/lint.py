@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Every source through clang, as the build compiles it (`syntax`), or through clang-tidy (`tidy`).
+"""Sources through clang as the build compiles them: those of src/ in clang-tidy (`tidy`), which also prints what the
+compiler warns of, those of tests/ as they are (`syntax`).
 
 usage: lint.py BUILD syntax|tidy [PART OF A PATH...]
 
@@ -19,8 +20,7 @@ TREE = pathlib.Path(__file__).resolve().parents[2]
 
 # Read once for all sources: a third of the time that clang takes without.
 PRECOMPILED = ["Eigen/Dense", "fmt/format.h", "algorithm", "filesystem", "functional", "map", "memory", "optional",
-               "string", "vector"]
-PRECOMPILED_FOR_TESTS = ["gtest/gtest.h", "fstream", "random", "sstream"]
+               "string", "vector", "gtest/gtest.h", "fstream", "random", "sstream"]
 
 # clang-tidy looks at all that is included, which is most of its work: it gets many sources as one. A name that is said
 # to be ambiguous then stands for two things in one module, of which a header declares one: one of them wants another.
@@ -30,7 +30,6 @@ CHUNKS = 2
 class Source:
     def __init__(self, entry):
         self.path = pathlib.Path(entry["file"])
-        self.root = self.path.relative_to(TREE).parts[0]
         self.flags = ["-Wno-unknown-warning-option"]  # those of GCC, but for outputs and its precompiled header
         words = iter(shlex.split(entry["command"])[1:])
         for word in words:
@@ -56,10 +55,9 @@ class Source:
         return [{f"{outer and outer[1]}::{name}" for name in found} for found in (names, used | names)]
 
 
-def precompile(build, root, flags):
-    header = build / f"lint_{root}.hpp"
-    names = PRECOMPILED + (PRECOMPILED_FOR_TESTS if root == "tests" else [])
-    header.write_text("".join(f"#include <{name}>\n" for name in names))
+def precompile(build, flags):
+    header = build / "lint.hpp"
+    header.write_text("".join(f"#include <{name}>\n" for name in PRECOMPILED))
     target = header.with_suffix(".pch")
     shared = [flag for flag in flags if not flag.startswith(("-DWEFT_", "-I"))]
     subprocess.run(["clang++-14", *shared, "-x", "c++-header", header, "-o", target], check=True)
@@ -67,9 +65,8 @@ def precompile(build, root, flags):
 
 
 def syntax_commands(build, sources):
-    headers = {root: precompile(build, root, next(s.flags for s in sources if s.root == root))
-               for root in {s.root for s in sources}}
-    return [["clang++-14", "-fsyntax-only", *s.flags, "-include-pch", headers[s.root], s.path] for s in sources]
+    header = precompile(build, sources[0].flags)
+    return [["clang++-14", "-fsyntax-only", *s.flags, "-include-pch", header, s.path] for s in sources]
 
 
 def tidy_commands(build, sources):
@@ -88,8 +85,8 @@ def tidy_commands(build, sources):
     for number, (chunk, _, _) in enumerate(chunks):
         file = build / f"lint_{number}.cpp"
         file.write_text("".join(f'#include "{source.path}"\n' for source in chunk))
-        # Of warnings `syntax` knows; one source may shadow what another has declared.
-        flags = dict.fromkeys(flag for source in chunk for flag in source.flags if not flag.startswith("-W"))
+        # One source may shadow what another has declared.
+        flags = dict.fromkeys(flag for source in chunk for flag in source.flags if flag != "-Wshadow")
         commands.append(["clang-tidy-14", "--quiet", file, "--", *flags])
     return commands
 
@@ -97,9 +94,9 @@ def tidy_commands(build, sources):
 def main():
     build, kind, patterns = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], sys.argv[3:]
     entries = {entry["file"]: entry for entry in json.loads((build / "compile_commands.json").read_text())}
-    roots = ("src", "tests") if kind == "syntax" else ("src",)
+    root = TREE / ("tests" if kind == "syntax" else "src")
     sources = [Source(entry) for name, entry in sorted(entries.items())
-               if name.endswith(".cpp") and any(pathlib.Path(name).is_relative_to(TREE / root) for root in roots)
+               if name.endswith(".cpp") and pathlib.Path(name).is_relative_to(root)
                and (not patterns or any(part in name for part in patterns))]
     commands = (syntax_commands if kind == "syntax" else tidy_commands)(build, sources)
 
