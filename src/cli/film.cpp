@@ -17,7 +17,7 @@ constexpr std::size_t kQueueLength = 4;
 
 struct DrawnFrame {
   frame::SnapshotPtr snapshot;
-  image::Image image;
+  Picture picture;
 };
 
 // A frame goes through make_frames(), draw_frames() and write_frames(), each in a thread of its own. Fields of a
@@ -124,7 +124,7 @@ class Film {
         DrawnFrame drawn{snapshot, {}};
         if (painter) {
           if (camera_) painter->look_through(*std::exchange(camera_, std::nullopt));
-          drawn.image = painter->draw(*snapshot);
+          drawn.picture = painter->draw(*snapshot);
           record(snapshot->frame).render = painter->last_time();
         }
         progress_.advance(Stage::draw);
@@ -143,7 +143,7 @@ class Film {
       while (const std::optional<DrawnFrame> drawn = next_picture()) {
         if (!writer && parts_.open_writer) writer = parts_.open_writer(result_.painter);
         FrameRecord& frame = record(drawn->snapshot->frame);
-        if (writer) frame.encode = timed([&] { writer->write(*drawn->snapshot, drawn->image); });
+        if (writer) frame.encode = timed([&] { writer->write(*drawn->snapshot, drawn->picture); });
         if (!parts_.meshes.empty()) frame.meshes = timed([&] { write_meshes(parts_.meshes, *drawn->snapshot); });
         frame.written = true;
         ++result_.written;

@@ -77,11 +77,12 @@ OutputTarget parse_output(const std::string& text, const std::string& scene_name
     }
     return {OutputTarget::Kind::video, text};
   }
-  if (ending == ".png") {
+  if (ending == ".png" || ending == ".exr") {
     (void)FramePattern(text);  // checked now, not at the first picture
     return {OutputTarget::Kind::images, text};
   }
-  throw Error(ExitCode::usage, "-o: expected a name ending in .mp4, or in .png with {{frame:05}} in it, got {}", text);
+  throw Error(ExitCode::usage, "-o: expected a name ending in .mp4, or in .png or .exr with {{frame:05}} in it, got {}",
+              text);
 }
 
 std::vector<fs::path> OutputTarget::files(const FrameRange& frames) const {

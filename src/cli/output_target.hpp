@@ -1,4 +1,4 @@
-// Where the pictures go: one video, one PNG file per frame, or nowhere.
+// Where the pictures go: one video, one PNG or EXR file per frame, or nowhere.
 #pragma once
 
 #include <filesystem>
@@ -34,6 +34,8 @@ struct OutputTarget {
   Kind kind = Kind::video;
   std::string text;  ///< as the user typed it, or the default; a pattern where kind is images
 
+  /// Whether pictures are written with all layers of a frame, as OpenEXR.
+  bool layered() const { return kind == Kind::images && std::filesystem::path(text).extension() == ".exr"; }
   /// The file of one frame (images) or of all of them (video).
   std::filesystem::path file(int frame) const;
   std::vector<std::filesystem::path> files(const FrameRange& frames) const;

@@ -87,6 +87,7 @@ FilmPlan plan_of(const cache::Reader& reader, const RunOptions& options) {
   plan.finds_camera = render::CameraPath::is_found(*reader.snapshot(0), plan.settings.camera);
   plan.whole_film = !options.frames.begin && !options.frames.end;
   plan.target = parse_output(options.output, plan.scene.scene);
+  plan.settings.layers = plan.target.layered();
   for (const frame::ObjectInfo& object : plan.scene.objects) plan.objects.push_back(object.name);
   return plan;
 }
@@ -316,6 +317,7 @@ ExitCode run(const RunOptions& options) {
   const scene::Scene scene = load_scene(options.common);
   FilmPlan plan = plan_of(scene, options);
   plan.target = parse_output(options.output, scene.name);
+  plan.settings.layers = plan.target.layered();
   if (plan.finds_camera) plan.make_all(scene);
   PathLedger paths;
   add_inputs(paths, scene);

@@ -63,7 +63,7 @@ ExitCode sheet(const SheetOptions& options) {
     for (const frame::SnapshotPtr& snapshot : snapshots) {
       const int k = snapshot->frame;
       pictures.push_back(
-          {painter->draw(*snapshot), fmt::format("frame {}", k), fmt::format("{:.2f} s", snapshot->time)});
+          {painter->draw(*snapshot).image, fmt::format("frame {}", k), fmt::format("{:.2f} s", snapshot->time)});
       progress.advance(Stage::draw);
     }
     Metadata metadata = describe_pictures(stills->scene(), settings, painter->description());

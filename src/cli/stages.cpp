@@ -10,6 +10,8 @@
 #include "core/version.hpp"
 #include "image/png.hpp"
 #include "mesh/ply.hpp"
+#include "render/framing.hpp"
+#include "render/seen.hpp"
 #include "video/encoder.hpp"
 
 namespace weft::cli {
@@ -26,13 +28,13 @@ class GlPainter : public FramePainter {
 
   void look_through(render::CameraPath path) override { renderer_.look_through(std::move(path)); }
 
-  image::Image draw(const frame::FrameSnapshot& snapshot) override {
-    image::Image image = renderer_.draw(snapshot);
-    if (!warned_ && shows_single_color(image)) {
+  Picture draw(const frame::FrameSnapshot& snapshot) override {
+    Picture picture{renderer_.draw(snapshot), renderer_.layers()};
+    if (!warned_ && shows_single_color(picture.image)) {
       warned_ = true;
       log::warn(fmt::format("frame {} shows a single color: does the camera look at the scene?", snapshot.frame));
     }
-    return image;
+    return picture;
   }
 
   StageTime last_time() const override {
@@ -47,18 +49,29 @@ class GlPainter : public FramePainter {
   bool warned_ = false;
 };
 
+// What the figures of the layer id.object stand for.
+Metadata name_objects(Metadata metadata, const frame::FrameSnapshot& snapshot) {
+  int number = render::kFirstSurface;
+  for (const auto& surface : snapshot.surfaces)
+    if (render::is_subject(*surface)) metadata[fmt::format("object.{}", number++)] = surface->name;
+  return metadata;
+}
+
 class OutputWriter : public FrameWriter {
  public:
   explicit OutputWriter(const WriterSettings& settings) : settings_(settings) {
     if (settings.target.kind == OutputTarget::Kind::video) open_video();
   }
 
-  void write(const frame::FrameSnapshot& snapshot, const image::Image& image) override {
-    if (video_) {
-      video_->add(image);
-    } else if (settings_.target.kind == OutputTarget::Kind::images) {
-      image::write_png(settings_.target.file(snapshot.frame), image,
-                       describe_still(settings_.metadata, snapshot.frame, snapshot.time));
+  void write(const frame::FrameSnapshot& snapshot, const Picture& picture) override {
+    if (video_) return video_->add(picture.image);
+    if (settings_.target.kind != OutputTarget::Kind::images) return;
+    const std::filesystem::path file = settings_.target.file(snapshot.frame);
+    const Metadata metadata = describe_still(settings_.metadata, snapshot.frame, snapshot.time);
+    if (settings_.target.layered()) {
+      image::write_exr(file, picture.layers, name_objects(metadata, snapshot));
+    } else {
+      image::write_png(file, picture.image, metadata);
     }
   }
 

@@ -11,10 +11,17 @@
 #include "cli/output_target.hpp"
 #include "cli/run_report.hpp"
 #include "frame/frame_snapshot.hpp"
+#include "image/exr.hpp"
 #include "image/image.hpp"
 #include "render/renderer.hpp"
 
 namespace weft::cli {
+
+/// What is drawn of a frame.
+struct Picture {
+  image::Image image;
+  image::Layers layers;  ///< where they are asked for
+};
 
 /// Draws frames.
 class FramePainter {
@@ -22,7 +29,7 @@ class FramePainter {
   virtual ~FramePainter() = default;
   /// Takes cameras that were found; without them, what is not placed is found from the first frame that is drawn.
   virtual void look_through(render::CameraPath) {}
-  virtual image::Image draw(const frame::FrameSnapshot& snapshot) = 0;
+  virtual Picture draw(const frame::FrameSnapshot& snapshot) = 0;
   virtual StageTime last_time() const = 0;
   virtual std::string description() const = 0;
 };
@@ -31,7 +38,7 @@ class FramePainter {
 class FrameWriter {
  public:
   virtual ~FrameWriter() = default;
-  virtual void write(const frame::FrameSnapshot& snapshot, const image::Image& image) = 0;
+  virtual void write(const frame::FrameSnapshot& snapshot, const Picture& picture) = 0;
   virtual void finish() = 0;
 };
 

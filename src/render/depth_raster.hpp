@@ -10,21 +10,21 @@
 
 namespace weft::render {
 
-/// Calls write(index, covered, depth, share_b, share_c) for texels of a map of size x size, row by row, among them all
-/// whose centre the triangle covers. Its corners are in texels, with a depth that is linear over the map.
+/// Calls write(index, covered, depth, share_b, share_c) for texels of a map, row by row, among them all whose centre
+/// the triangle covers. Its corners are in texels, with a depth that is linear over the map.
 template <class Write>
-void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, int size,
+void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c, int width, int height,
                    const Write& write) {
   const float b_x = b.x() - a.x(), b_y = b.y() - a.y(), c_x = c.x() - a.x(), c_y = c.y() - a.y();
   const float area = b_x * c_y - c_x * b_y;
   if (!(std::abs(area) > 1e-12f)) return;  // seen edge-on
   // First and last texel whose centre may lie inside.
   const auto first = [](float low) { return std::max(0, static_cast<int>(std::ceil(low - 0.5f))); };
-  const auto last = [&](float high) { return std::min(size - 1, static_cast<int>(std::floor(high - 0.5f))); };
+  const auto last = [](float high, int size) { return std::min(size - 1, static_cast<int>(std::floor(high - 0.5f))); };
   const auto [x_min, x_max] = std::minmax({a.x(), b.x(), c.x()});
   const auto [y_min, y_max] = std::minmax({a.y(), b.y(), c.y()});
-  if (!(x_max > 0 && y_max > 0 && x_min < static_cast<float>(size) && y_min < static_cast<float>(size))) return;
-  const int x0 = first(x_min), x1 = last(x_max), y0 = first(y_min), y1 = last(y_max);
+  if (!(x_max > 0 && y_max > 0 && x_min < static_cast<float>(width) && y_min < static_cast<float>(height))) return;
+  const int x0 = first(x_min), x1 = last(x_max, width), y0 = first(y_min), y1 = last(y_max, height);
   // Shares of b and c at a place, and the depth they give, change by these along x.
   const float b_step = c_y / area, c_step = -b_y / area;
   const float depth_b = b.z() - a.z(), depth_c = c.z() - a.z();
@@ -35,7 +35,7 @@ void fill_triangle(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eig
       const float step = static_cast<float>(x - x0), to_b = b_first + step * b_step, to_c = c_first + step * c_step;
       // A little outside counts as well, so that rounding leaves no gaps.
       const bool covered = std::min(std::min(to_b, to_c), 1 - to_b - to_c) >= -1e-5f;
-      write(y * size + x, covered, a.z() + to_b * depth_b + to_c * depth_c, to_b, to_c);
+      write(y * width + x, covered, a.z() + to_b * depth_b + to_c * depth_c, to_b, to_c);
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <type_traits>
 
+#include "image/color.hpp"
 #include "render/depth_raster.hpp"
 #include "render/painted_mesh.hpp"
 
@@ -41,6 +42,10 @@ struct Edge {
   }
   float at(float x, float y) const { return along * (x - from_x) + across * (y - from_y); }
 };
+
+Vec3 linear_of(std::uint32_t rgba) {
+  return image::linear_from_srgb(Vec3(rgba & 0xFF, rgba >> 8 & 0xFF, rgba >> 16 & 0xFF) / 255);
+}
 
 // Thresholds of the samples' opacity, in eighths: neighbours differ by much.
 constexpr int kThresholdOrder[] = {0, 4, 6, 2, 5, 1, 3, 7};
@@ -270,15 +275,15 @@ void Outlines::sample_floor(const Floor& floor, const View& view) {
   }
 }
 
-/// Mean of the samples' colours. Each is that of the pixel itself where it shows the same, else of the pixel around it
+/// The pixel that each sample takes its colour from: the pixel itself where it shows the same, else the one around it
 /// that shows the same surface nearest to the plane of the sample's triangle: of two sides of an edge, each its own.
-std::uint32_t Outlines::resolve(std::size_t slot, std::span<const Seen> seen, const std::uint32_t* picture) const {
+std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t slot, std::span<const Seen> seen) const {
   const int x = pixels_[slot].x, y = pixels_[slot].y;
   const Samples& samples = samples_[slot];
   const int x0 = std::max(x - 1, 0), x1 = std::min(x + 1, width_ - 1);
   const int y0 = std::max(y - 1, 0), y1 = std::min(y + 1, height_ - 1);
   const auto index = [&](int i, int j) { return static_cast<std::size_t>(j) * width_ + i; };
-  std::uint32_t sums[3] = {};
+  std::array<std::size_t, kSamples> sources;
   std::size_t chosen = 0;
   for (int s = 0; s < kSamples; ++s) {
     const float surface = samples.surface[s], slope_x = samples.slope_x[s], slope_y = samples.slope_y[s];
@@ -307,11 +312,9 @@ std::uint32_t Outlines::resolve(std::size_t slot, std::span<const Seen> seen, co
         }
       }
     }
-    for (int channel = 0; channel < 3; ++channel) sums[channel] += picture[chosen] >> (8 * channel) & 0xFF;
+    sources[s] = chosen;
   }
-  std::uint32_t mean = 0;
-  for (int channel = 0; channel < 3; ++channel) mean |= (sums[channel] + kSamples / 2) / kSamples << (8 * channel);
-  return mean;
+  return sources;
 }
 
 void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
@@ -323,9 +326,32 @@ void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> mes
   if (floor) sample_floor(*floor, view);
   // All are resolved before the first is written: they look at each other.
   resolved_.clear();
-  for (std::size_t slot = 0; slot < pixels_.size(); ++slot) resolved_.push_back(resolve(slot, seen, picture.data()));
+  for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
+    std::uint32_t sums[3] = {}, mean = 0;
+    for (const std::size_t source : find_sources(slot, seen))
+      for (int channel = 0; channel < 3; ++channel) sums[channel] += picture[source] >> (8 * channel) & 0xFF;
+    for (int channel = 0; channel < 3; ++channel) mean |= (sums[channel] + kSamples / 2) / kSamples << (8 * channel);
+    resolved_.push_back(mean);
+  }
   for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
     picture[static_cast<std::size_t>(pixels_[slot].y) * width_ + pixels_[slot].x] = resolved_[slot];
+  }
+}
+
+void Outlines::cut_out(std::span<const Seen> seen, std::span<const std::uint32_t> unsmoothed,
+                       std::vector<Eigen::Vector4f>& surfaces) const {
+  const auto color = [&](std::size_t pixel) {
+    return Eigen::Vector4f(linear_of(unsmoothed[pixel]).cast<float>().homogeneous());
+  };
+  surfaces.assign(seen.size(), Eigen::Vector4f::Zero());
+  for (std::size_t i = 0; i < seen.size(); ++i)
+    if (seen[i].surface >= kFirstSurface) surfaces[i] = color(i);
+  for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
+    Eigen::Vector4f& pixel = surfaces[static_cast<std::size_t>(pixels_[slot].y) * width_ + pixels_[slot].x];
+    pixel.setZero();
+    const auto sources = find_sources(slot, seen);
+    for (int s = 0; s < kSamples; ++s)
+      if (samples_[slot].surface[s] >= kFirstSurface) pixel += color(sources[s]) / kSamples;
   }
 }
 

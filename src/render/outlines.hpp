@@ -24,6 +24,11 @@ class Outlines {
   void smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
               const View& view, const PixelArea& area, std::span<std::uint32_t> picture);
 
+  /// Of the last picture, without floor and backdrop: linear colours times what the surfaces cover of each pixel, and
+  /// that share, lowest row first. `unsmoothed`: the picture before.
+  void cut_out(std::span<const Seen> seen, std::span<const std::uint32_t> unsmoothed,
+               std::vector<Eigen::Vector4f>& surfaces) const;
+
   /// Pixels of the last picture that were sampled.
   std::size_t count() const { return pixels_.size(); }
 
@@ -52,7 +57,7 @@ class Outlines {
   void sample(const Vertex& a, const Vertex& b, const Vertex& c, float surface, const Shows& shows = {});
   void sample_with_holes(const DrawnMesh& mesh, float surface, const View& view);
   void sample_floor(const Floor& floor, const View& view);
-  std::uint32_t resolve(std::size_t slot, std::span<const Seen> seen, const std::uint32_t* picture) const;
+  std::array<std::size_t, kSamples> find_sources(std::size_t slot, std::span<const Seen> seen) const;
   Vertex to_picture(const Eigen::Vector4d& clip) const;
 
   int width_, height_, words_;  // words of bits in a row

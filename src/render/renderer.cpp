@@ -8,6 +8,8 @@
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
+#include "image/color.hpp"
+#include "render/data_passes.hpp"
 #include "render/framing.hpp"
 #include "render/outlines.hpp"
 #include "render/shading.hpp"
@@ -123,9 +125,11 @@ struct Renderer::Impl {
   };
   std::optional<Passes> passes;
   std::optional<Outlines> outlines;
+  std::optional<DataPasses> data;
+  image::Layers layers;
 
   // The picture and what it shows, lowest row first; kept for their memory.
-  std::vector<std::uint32_t> rgba;
+  std::vector<std::uint32_t> rgba, unsmoothed;
   std::vector<Seen> seen;
 
   explicit Impl(const Settings& wanted);
@@ -137,6 +141,7 @@ struct Renderer::Impl {
   void upload_frame(const Plan& plan);
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
   image::Image draw(const frame::FrameSnapshot& snapshot);
+  void draw_layers(const Plan& plan, const image::Image& image);
 };
 
 Renderer::Impl::Impl(const Settings& wanted)
@@ -152,7 +157,8 @@ Renderer::Impl::Impl(const Settings& wanted)
                 settings.height);
   }
   passes.emplace(gl, quality, settings);
-  if (quality.smooth_outlines) outlines.emplace(settings.width, settings.height);
+  if (quality.smooth_outlines || settings.layers) outlines.emplace(settings.width, settings.height);
+  if (settings.layers) data.emplace(settings.width, settings.height);
   check_errors(gl, "preparing to draw");
 }
 
@@ -246,9 +252,31 @@ image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
   passes->shading.read(rgba);
   if (outlines) {
     passes->geometry.read_seen(seen);
+    if (data) unsmoothed = rgba;
     outlines->smooth(seen, meshes, plan.floor, plan.view, area, rgba);
   }
-  return to_image(rgba, settings.width, settings.height);
+  image::Image image = to_image(rgba, settings.width, settings.height);
+  if (data) draw_layers(plan, image);
+  return image;
+}
+
+void Renderer::Impl::draw_layers(const Plan& plan, const image::Image& image) {
+  layers = {settings.width, settings.height, {}};
+  std::vector<Eigen::Vector4f> surfaces;
+  outlines->cut_out(seen, unsmoothed, surfaces);
+  for (const char* name : {"R", "G", "B", "A", "picture.R", "picture.G", "picture.B"})
+    layers.channels.push_back({name, std::vector<float>(surfaces.size()), true});
+  std::array<float, 256> linear;
+  for (int k = 0; k < 256; ++k) linear[k] = static_cast<float>(image::linear_from_srgb(k / 255.0));
+  for (int y = 0; y < settings.height; ++y) {
+    for (int x = 0; x < settings.width; ++x) {
+      const std::size_t at = static_cast<std::size_t>(y) * settings.width + x;
+      const Eigen::Vector4f& surface = surfaces[static_cast<std::size_t>(settings.height - 1 - y) * settings.width + x];
+      for (int k = 0; k < 4; ++k) layers.channels[k].values[at] = surface[k];
+      for (int k = 0; k < 3; ++k) layers.channels[4 + k].values[at] = linear[image.pixel(x, y)[k]];
+    }
+  }
+  data->draw(passes->surfaces, plan.floor, plan.view, layers);
 }
 
 Renderer::Renderer(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}
@@ -267,6 +295,10 @@ image::Image Renderer::draw(const frame::FrameSnapshot& snapshot) {
   check_errors(impl_->gl, "drawing");
   impl_->times = {wall.seconds(), process_cpu_seconds() - cpu_start};
   return image;
+}
+
+image::Layers Renderer::layers() {
+  return std::move(impl_->layers);
 }
 
 DrawTimes Renderer::last_times() const {

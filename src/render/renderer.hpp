@@ -5,6 +5,7 @@
 #include <string>
 
 #include "frame/frame_snapshot.hpp"
+#include "image/exr.hpp"
 #include "image/image.hpp"
 #include "render/camera_path.hpp"
 
@@ -17,8 +18,9 @@ struct Settings {
   int width = 1280, height = 720;  ///< pixels
   Quality quality = Quality::final;
   Backend backend = Backend::automatic;
-  std::string camera;  ///< by name; empty: the first, or one that has all of the run in view
-  int threads = 0;     ///< of the software rasteriser; 0: its own choice
+  std::string camera;   ///< by name; empty: the first, or one that has all of the run in view
+  int threads = 0;      ///< of the software rasteriser; 0: its own choice
+  bool layers = false;  ///< whether layers() are asked for
 
   double aspect() const { return static_cast<double>(width) / height; }
 };
@@ -40,6 +42,9 @@ class Renderer {
   /// Takes the cameras that were found of a run. Without them what is not placed is found from the first frame drawn.
   void look_through(CameraPath path);
   image::Image draw(const frame::FrameSnapshot& snapshot);
+  /// The last picture for compositors, linear: R, G, B, A of the surfaces alone, colours times coverage, and shadowless
+  /// where nothing is; picture.R, .G, .B with floor and backdrop; and all of DataPasses.
+  image::Layers layers();
   DrawTimes last_times() const;
 
   /// Vendor, renderer and version of the GL in use, and which backend was loaded and why.

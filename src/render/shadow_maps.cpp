@@ -25,7 +25,7 @@ void fill_with_holes(const DrawnMesh& mesh, std::span<const Eigen::Vector3f> pla
     const Opacity* opacity = mesh.holes->opacity(r);
     for (const auto& [a, b, c] : mesh.triangles.subspan(range.first, range.count)) {
       if (opacity == nullptr) {
-        fill_triangle(places[a], places[b], places[c], size, write);
+        fill_triangle(places[a], places[b], places[c], size, size, write);
         continue;
       }
       const Eigen::Vector2f at_a = mesh.holes->place(r, a), along_b = mesh.holes->place(r, b) - at_a,
@@ -36,7 +36,7 @@ void fill_with_holes(const DrawnMesh& mesh, std::span<const Eigen::Vector3f> pla
       const Eigen::Vector3f map_b = places[b] - places[a], map_c = places[c] - places[a];
       const auto area = [](const auto& p, const auto& q) { return std::abs(p.x() * q.y() - p.y() * q.x()); };
       const float footprint = std::sqrt(area(texels_b, texels_c) / std::max(area(map_b, map_c), 1e-6f));
-      fill_triangle(places[a], places[b], places[c], size,
+      fill_triangle(places[a], places[b], places[c], size, size,
                     [&](int at, bool covered, float depth, float to_b, float to_c) {
                       const bool here = covered && opacity->at(at_a + to_b * along_b + to_c * along_c, footprint) >
                                                        threshold_at(at % size, at / size);
@@ -131,10 +131,10 @@ void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& cli
     const auto in_front = [&](Index vertex) { return clip[vertex].z() >= -clip[vertex].w(); };
     for (const auto& [a, b, c] : mesh.triangles) {
       if (in_front(a) && in_front(b) && in_front(c)) {
-        fill_triangle(places[a], places[b], places[c], size, write);
+        fill_triangle(places[a], places[b], places[c], size, size, write);
       } else {
         clip_near({clip[a], clip[b], clip[c]}, [&](const auto& p, const auto& q, const auto& r) {
-          fill_triangle(place(p), place(q), place(r), size, write);
+          fill_triangle(place(p), place(q), place(r), size, size, write);
         });
       }
     }

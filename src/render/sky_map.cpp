@@ -20,7 +20,8 @@ void draw_sky_map(std::span<const DrawnMesh> meshes, const SkyView& view, std::v
       const Vec3 at = (texture_from_world * position.homogeneous()).head<3>();
       places.push_back(at.cwiseProduct(Vec3(kSkySize, kSkySize, 1)).cast<float>());
     }
-    for (const auto& [a, b, c] : mesh.triangles) fill_triangle(places[a], places[b], places[c], kSkySize, write);
+    for (const auto& [a, b, c] : mesh.triangles)
+      fill_triangle(places[a], places[b], places[c], kSkySize, kSkySize, write);
   }
 }
 

@@ -31,6 +31,9 @@ class SurfaceBuffers {
   /// World position of each drawn vertex [m], and triangles of them.
   std::span<const Vec3> positions() const { return positions_; }
   std::span<const Triangle> triangles() const { return mesh_.triangles; }
+  /// And what they stand for.
+  const ShadedMesh& mesh() const { return mesh_; }
+  const frame::SurfaceState& state() const { return state_; }
 
  private:
   const Gl* gl_;

@@ -71,12 +71,12 @@ class Source : public FrameSource {
 class Painter : public FramePainter {
  public:
   explicit Painter(Script& script) : script_(script), life_(script) {}
-  image::Image draw(const frame::FrameSnapshot& snapshot) override {
+  Picture draw(const frame::FrameSnapshot& snapshot) override {
     if (snapshot.frame == script_.drawing_fails_at) fail(ExitCode::internal, "context lost");
     script_.drawn.push_back(snapshot.frame);
     image::Image image(1, 1);
     image.rgb[0] = static_cast<std::uint8_t>(snapshot.frame);
-    return image;
+    return {image, {}};
   }
   StageTime last_time() const override { return {0.25, 0.5}; }
   std::string description() const override { return "brush"; }
@@ -89,9 +89,9 @@ class Painter : public FramePainter {
 class Writer : public FrameWriter {
  public:
   explicit Writer(Script& script) : script_(script), life_(script) {}
-  void write(const frame::FrameSnapshot& snapshot, const image::Image& image) override {
+  void write(const frame::FrameSnapshot& snapshot, const Picture& picture) override {
     if (snapshot.frame == script_.writing_fails_at) fail(ExitCode::output_failed, "disk full");
-    EXPECT_EQ(image.rgb[0], snapshot.frame) << "picture and frame got mixed up";
+    EXPECT_EQ(picture.image.rgb[0], snapshot.frame) << "picture and frame got mixed up";
     script_.written.push_back(snapshot.frame);
   }
   void finish() override {

@@ -11,7 +11,7 @@ constexpr int kSize = 64;
 
 std::vector<float> fill(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
   std::vector<float> depths(kSize * kSize, 9.0f);
-  fill_triangle(a, b, c, kSize, [&](int at, bool covered, float depth, float, float) {
+  fill_triangle(a, b, c, kSize, kSize, [&](int at, bool covered, float depth, float, float) {
     if (covered) depths[at] = depth;
   });
   return depths;

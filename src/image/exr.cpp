@@ -1,0 +1,64 @@
+#include "image/exr.hpp"
+
+#include <OpenEXR/ImfChannelList.h>
+#include <OpenEXR/ImfChromaticitiesAttribute.h>
+#include <OpenEXR/ImfFrameBuffer.h>
+#include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfOutputFile.h>
+#include <OpenEXR/ImfStandardAttributes.h>
+
+#include <algorithm>
+#include <exception>
+
+#include "core/error.hpp"
+#include "core/temporary_file.hpp"
+
+namespace weft::image {
+namespace {
+
+Imf::Header header_of(const Layers& layers, const Metadata& metadata) {
+  Imf::Header header(layers.width, layers.height);
+  header.compression() = Imf::ZIP_COMPRESSION;
+  Imf::addChromaticities(header, Imf::Chromaticities());  // Rec. 709
+  for (const auto& [key, text] : metadata) header.insert(key, Imf::StringAttribute(text));
+  for (const Layers::Channel& channel : layers.channels)
+    header.channels().insert(channel.name, Imf::Channel(channel.half ? Imf::HALF : Imf::FLOAT));
+  return header;
+}
+
+}  // namespace
+
+void write_exr(const std::filesystem::path& file, const Layers& layers, const Metadata& metadata) {
+  const std::size_t pixels = static_cast<std::size_t>(layers.width) * static_cast<std::size_t>(layers.height);
+  for (const Layers::Channel& channel : layers.channels) {
+    if (channel.values.size() == pixels) continue;
+    throw Error(ExitCode::output_failed, "{}: expected {}x{} values of {}, got {}", file.string(), layers.width,
+                layers.height, channel.name, channel.values.size());
+  }
+  TemporaryFile temporary(file);
+  try {
+    Imf::OutputFile out(temporary.path().c_str(), header_of(layers, metadata));
+    Imf::FrameBuffer rows;
+    std::vector<std::vector<half>> halves;
+    halves.reserve(layers.channels.size());
+    for (const Layers::Channel& channel : layers.channels) {
+      const auto insert = [&](Imf::PixelType type, const auto* values) {
+        // The library takes what it writes as char*.
+        auto* bytes = const_cast<char*>(reinterpret_cast<const char*>(values));
+        rows.insert(channel.name, Imf::Slice(type, bytes, sizeof(*values), sizeof(*values) * layers.width));
+      };
+      if (channel.half) {
+        insert(Imf::HALF, halves.emplace_back(channel.values.begin(), channel.values.end()).data());
+      } else {
+        insert(Imf::FLOAT, channel.values.data());
+      }
+    }
+    out.setFrameBuffer(rows);
+    out.writePixels(layers.height);
+  } catch (const std::exception& error) {
+    throw Error(ExitCode::output_failed, "{}: {}", file.string(), error.what());
+  }
+  temporary.commit();
+}
+
+}  // namespace weft::image

@@ -1,0 +1,83 @@
+// Read back by OpenImageIO.
+#include "image/exr.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+#include <cstdlib>
+#include <sstream>
+
+#include "support/test_folder.hpp"
+
+namespace weft::image {
+namespace {
+
+using support::expect_error;
+using support::read_bytes;
+
+class ExrTest : public support::TestFolder {
+ protected:
+  void SetUp() override {
+    TestFolder::SetUp();
+    const int status = std::system("oiiotool --version >/dev/null 2>&1");
+    if (WEXITSTATUS(status) == 127) GTEST_SKIP() << "oiiotool is not here: apt-get install openimageio-tools";
+  }
+  std::string told(const std::string& options) {
+    const std::string out = (folder_ / "out").string();
+    EXPECT_EQ(std::system(fmt::format("oiiotool {} >'{}' 2>&1", options, out).c_str()), 0);
+    return read_bytes(out);
+  }
+};
+
+// Values that 16 bits hold; no two alike.
+Layers patterned(int width, int height) {
+  Layers layers{width, height, {}};
+  for (const char* name : {"R", "A", "depth.Z", "normal.X"}) {
+    Layers::Channel channel{name, {}, name[1] == '\0'};
+    const float first = static_cast<float>(layers.channels.size());
+    for (int i = 0; i < width * height; ++i) channel.values.push_back(first + static_cast<float>(i) / 64);
+    layers.channels.push_back(std::move(channel));
+  }
+  layers.channels[2].values[1] = std::numeric_limits<float>::infinity();
+  return layers;
+}
+
+TEST_F(ExrTest, EveryValueIsReadBackInItsPlace) {
+  const Layers layers = patterned(5, 3);
+  const std::string file = (folder_ / "a.exr").string();
+  write_exr(file, layers);
+  std::istringstream lines(told("--dumpdata '" + file + "'"));
+  int pixels = 0;
+  for (std::string line; std::getline(lines, line);) {
+    int x = 0, y = 0, at = 0;
+    if (std::sscanf(line.c_str(), " Pixel (%d, %d):%n", &x, &y, &at) < 2 || at == 0) continue;
+    const char* text = line.c_str() + at;
+    for (const Layers::Channel& channel : layers.channels) {
+      char* end = nullptr;
+      EXPECT_EQ(std::strtof(text, &end), channel.values[static_cast<std::size_t>(5 * y + x)]) << channel.name << line;
+      text = end;
+    }
+    ++pixels;
+  }
+  EXPECT_EQ(pixels, 15);
+}
+
+TEST_F(ExrTest, HeaderHasNamesDepthsAndMetadata) {
+  const std::string file = (folder_ / "a.exr").string();
+  write_exr(file, patterned(2, 2), {{"object.2", "sheet"}});
+  const std::string header = told("--info -v '" + file + "'");
+  EXPECT_NE(header.find("R (half), A (half), depth.Z (float), normal.X (float)"), std::string::npos) << header;
+  EXPECT_NE(header.find("object.2: \"sheet\""), std::string::npos) << header;
+  EXPECT_NE(header.find("chromaticities: 0.64, 0.33, 0.3, 0.6, 0.15, 0.06"), std::string::npos) << header;
+}
+
+TEST_F(ExrTest, NothingIsLeftOfWhatCannotBeWritten) {
+  Layers layers = patterned(4, 4);
+  layers.channels[1].values.pop_back();
+  expect_error(ExitCode::output_failed, "a.exr: expected 4x4 values of A, got 15",
+               [&] { write_exr(folder_ / "a.exr", layers); });
+  EXPECT_TRUE(std::filesystem::is_empty(folder_));
+}
+
+}  // namespace
+}  // namespace weft::image

@@ -1,0 +1,203 @@
+// Each figure of random pixels against a search through all triangles.
+#include "render/data_passes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "render/renderer.hpp"
+#include "render/snapshots.hpp"
+
+namespace weft::render {
+namespace {
+
+constexpr int kWidth = 192, kHeight = 108;
+
+/// A sheet that turns over a sphere in front of a floor, warped by `phase` and moved by it.
+frame::FrameSnapshot moment(double phase, const frame::FrameSnapshot* same) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  snapshot.cameras.push_back(camera_at({1.5, -3, 1.8 + 0.1 * phase}, {0, 0, 0.5}, 40));
+  snapshot.lights.push_back(sun({-0.3, 0.4, -1}));
+  add_floor(snapshot);
+  add_sphere(snapshot, {0.1, 0.2, 0.4}, 0.4, 14);
+  constexpr int n = 9;
+  std::vector<Vec3> positions;
+  std::vector<Vec2> uv;
+  std::vector<std::array<Index, 3>> triangles;
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const double u = i / (n - 1.0), v = j / (n - 1.0);
+      uv.emplace_back(u, 2 * v);
+      positions.emplace_back(u - 0.4 + 0.2 * phase, v - 0.6, 0.5 + 0.4 * std::sin(3 * u + 4 * v + phase));
+      const Index k = static_cast<Index>(positions.size()) - 1;
+      if (i == 0 || j == 0) continue;
+      triangles.push_back({k - n - 1, k - n, k});
+      triangles.push_back({k - n - 1, k, k - 1});
+    }
+  }
+  frame::Surface& sheet = add_surface(snapshot, frame::ObjectKind::cloth, positions, triangles);
+  sheet.uv = uv;
+  sheet.parts = {{"left", sheet.appearance}, {"right", sheet.appearance}};
+  for (std::size_t t = 0; t < triangles.size(); ++t) sheet.part_of_triangle.push_back(t % 3 == 0);
+  for (std::size_t i = 0; i < positions.size(); ++i) snapshot.states.back().heat.push_back(static_cast<float>(i) / 100);
+  if (same) snapshot.surfaces = same->surfaces;
+  return snapshot;
+}
+
+struct Found {
+  double depth = 1e9, object = 0, part = 0, heat = 0;
+  Vec3 position, before, face;
+  Vec2 uv{0, 0};
+};
+
+/// By the heights over the sides of each triangle, as areas.
+Found search(const frame::FrameSnapshot& now, const frame::FrameSnapshot& before, const Vec3& eye, const Vec3& along) {
+  Found found;
+  for (std::size_t s = 0; s < now.surfaces.size(); ++s) {
+    const frame::Surface& surface = *now.surfaces[s];
+    const auto& x = now.states[s].positions;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const auto& [a, b, c] = surface.triangles[t];
+      const Vec3 normal = (x[b] - x[a]).cross(x[c] - x[a]);
+      const double depth = normal.dot(x[a] - eye) / normal.dot(along);
+      if (!(depth > 0.01 && depth < found.depth)) continue;
+      const Vec3 p = eye + depth * along;
+      const double at_a = (x[b] - p).cross(x[c] - p).dot(normal) / normal.squaredNorm();
+      const double at_b = (x[c] - p).cross(x[a] - p).dot(normal) / normal.squaredNorm(), at_c = 1 - at_a - at_b;
+      if (surface.infinite_floor) {
+        if (normal.dot(along) < 0) found = {depth, 1, 0, 0, p, p, normal};
+        continue;
+      }
+      if (std::min({at_a, at_b, at_c}) < 0) continue;
+      const auto& y = before.states[s].positions;
+      found = {depth, 1.0 + s, 0, 0, p, at_a * y[a] + at_b * y[b] + at_c * y[c], normal};
+      if (!surface.part_of_triangle.empty()) found.part = 1 + surface.part_of_triangle[t];
+      if (!surface.uv.empty()) found.uv = at_a * surface.uv[a] + at_b * surface.uv[b] + at_c * surface.uv[c];
+      const auto& heat = now.states[s].heat;
+      if (!heat.empty()) found.heat = at_a * heat[a] + at_b * heat[b] + at_c * heat[c];
+    }
+  }
+  return found;
+}
+
+struct Viewer {
+  ViewAxes axes;
+  Vec3 eye;
+  double tan_y, tan_x;
+
+  explicit Viewer(const frame::Camera& camera)
+      : axes(view_axes(camera.target - camera.position, Vec3::UnitZ())),
+        eye(camera.position),
+        tan_y(std::tan(radians(camera.field_of_view) / 2)),
+        tan_x(tan_y * kWidth / kHeight) {}
+  Vec3 along(const Vec2& pixel) const {
+    return axes.forward + (2 * pixel.x() / kWidth - 1) * tan_x * axes.right +
+           (2 * pixel.y() / kHeight - 1) * tan_y * axes.up;
+  }
+  Vec2 pixel(const Vec3& p) const {
+    const Vec3 to = (p - eye) / (p - eye).dot(axes.forward);
+    return {(1 + to.dot(axes.right) / tan_x) * kWidth / 2, (1 + to.dot(axes.up) / tan_y) * kHeight / 2};
+  }
+};
+
+class DataPassesTest : public testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    Settings settings;
+    settings.width = kWidth;
+    settings.height = kHeight;
+    settings.layers = true;
+    Renderer renderer(settings);
+    first_ = moment(0, nullptr), second_ = moment(1, &first_);
+    renderer.draw(first_);
+    still_ = renderer.layers();
+    picture_ = renderer.draw(second_);
+    layers_ = renderer.layers();
+  }
+  static float value(const image::Layers& layers, const std::string& name, int x, int y) {
+    for (const image::Layers::Channel& channel : layers.channels)
+      if (channel.name == name) return channel.values[static_cast<std::size_t>(kHeight - 1 - y) * kWidth + x];
+    ADD_FAILURE() << "no channel " << name;
+    return 0;
+  }
+
+  static inline frame::FrameSnapshot first_, second_;
+  static inline image::Layers still_, layers_;
+  static inline image::Image picture_;
+};
+
+TEST_F(DataPassesTest, AreThoseOfASearchThroughAllTriangles) {
+  const Viewer viewer(second_.cameras[0]), viewer_before(first_.cameras[0]);
+  std::mt19937 random(1);
+  int counts[4] = {}, beside = 0;
+  for (int k = 0; k < 1000; ++k) {
+    const int x = static_cast<int>(random() % kWidth), y = static_cast<int>(random() % kHeight);
+    const Vec2 pixel(x + 0.5, y + 0.5);
+    const Found found = search(second_, first_, viewer.eye, viewer.along(pixel));
+    const auto at = [&](const char* name) { return value(layers_, name, x, y); };
+    if (at("id.object") != found.object || at("id.part") != found.part) {
+      ++beside;  // an edge passes through the centre
+      continue;
+    }
+    ++counts[static_cast<int>(found.object)];
+    if (found.object == 0) {
+      EXPECT_TRUE(std::isinf(at("depth.Z")));
+      continue;
+    }
+    // 32 bits of some metres; what the floor shows at the horizon is far.
+    const double rounding = 2e-7 * std::max(1.0, found.depth);
+    EXPECT_NEAR(at("depth.Z"), found.depth, rounding);
+    EXPECT_NEAR(at("position.X"), found.position.x(), rounding);
+    EXPECT_NEAR(at("position.Y"), found.position.y(), rounding);
+    EXPECT_NEAR(at("position.Z"), found.position.z(), rounding);
+    EXPECT_NEAR(at("uv.U"), found.uv.x(), 1e-6);
+    EXPECT_NEAR(at("uv.V"), found.uv.y(), 1e-6);
+    EXPECT_NEAR(at("heat.V"), found.heat, 1e-6);
+    const Vec2 motion = pixel - viewer_before.pixel(found.before);
+    EXPECT_NEAR(at("motion.X"), motion.x(), 1e-5);
+    EXPECT_NEAR(at("motion.Y"), motion.y(), 1e-5);
+    // Vertex normals of a smooth surface: near that of the triangle, and toward the viewer.
+    const Vec3 normal(at("normal.X"), at("normal.Y"), at("normal.Z"));
+    const Vec3 face = found.face.normalized() * (found.face.dot(viewer.along(pixel)) > 0 ? -1 : 1);
+    EXPECT_NEAR(normal.norm(), 1, 1e-6);
+    EXPECT_GT(normal.dot(face), 0.8);  // a cell of the sheet turns by up to 30 degrees
+  }
+  EXPECT_LE(beside, 2);
+  EXPECT_GT(std::min({counts[1], counts[2], counts[3]}), 30) << "floor, sphere and sheet";
+}
+
+TEST_F(DataPassesTest, NothingMovesInTheFirstPicture) {
+  const std::vector<float> none(std::size_t{kWidth} * kHeight, 0.0f);
+  int count = 0;
+  for (const image::Layers::Channel& channel : still_.channels) {
+    if (!channel.name.starts_with("motion")) continue;
+    EXPECT_EQ(channel.values, none);
+    ++count;
+  }
+  EXPECT_EQ(count, 2);
+}
+
+TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
+  int whole = 0, same = 0, partly = 0;
+  for (int y = 0; y < kHeight; ++y) {
+    for (int x = 0; x < kWidth; ++x) {
+      const float alpha = value(layers_, "A", x, y), red = value(layers_, "R", x, y);
+      EXPECT_GE(alpha, 0);
+      EXPECT_LE(alpha, 1);
+      EXPECT_LE(red, alpha) << "times coverage, at " << x << " " << y;
+      if (alpha == 1) {
+        ++whole;
+        same += red == value(layers_, "picture.R", x, y);
+      }
+      partly += alpha > 0 && alpha < 1;
+    }
+  }
+  EXPECT_GT(whole, 1000);
+  // Where surfaces fold, as half of so small a picture does, that averages their encoded colours, this the linear ones.
+  EXPECT_GT(same, 0.5 * whole);
+  EXPECT_GT(partly, 100) << "outlines are smooth";
+}
+
+}  // namespace
+}  // namespace weft::render
