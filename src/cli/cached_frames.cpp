@@ -1,29 +1,61 @@
 #include "cli/cached_frames.hpp"
 
-#include <algorithm>
+#include <string>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/log.hpp"
 
 namespace weft::cli {
+namespace {
 
-FrameRange cached_frames(const cache::Reader& reader, FrameSelection selection) {
-  const int frame_count = reader.manifest().frame_count;
-  const std::vector<int> there = reader.frames();
-  int whole = 0;
-  while (whole < static_cast<int>(there.size()) && there[whole] == whole) ++whole;
-  if (!selection.end && whole < frame_count) {
-    log::warn(fmt::format("{} holds {} of {} frames; weft simulate --resume makes the others", reader.folder().string(),
-                          whole, frame_count));
-    selection.end = std::max(whole, 1);
+/// Frames that cannot be taken.
+struct Missing {
+  std::vector<int> absent, broken;
+  std::string first_problem;  ///< of the first that is broken
+
+  void look_at(const cache::Reader& reader, int frame) {
+    if (!reader.has(frame)) return absent.push_back(frame);
+    try {
+      reader.verify(frame);
+    } catch (const Error& error) {
+      if (broken.empty()) first_problem = error.what();
+      broken.push_back(frame);
+    }
   }
-  const FrameRange wanted = resolve_frames(selection, frame_count);
+
+  bool none() const { return absent.empty() && broken.empty(); }
+
+  std::string text() const {
+    const auto frames = [](const std::vector<int>& list) {
+      return fmt::format("frame{} {}", list.size() == 1 ? "" : "s", frames_text(list));
+    };
+    std::string text;
+    if (!absent.empty()) text = fmt::format("{} {} not there", frames(absent), absent.size() == 1 ? "is" : "are");
+    if (!absent.empty() && !broken.empty()) text += "; ";
+    if (!broken.empty()) text += fmt::format("{} cannot be used: {}", frames(broken), first_problem);
+    return text;
+  }
+};
+
+}  // namespace
+
+FrameRange cached_frames(const cache::Reader& reader, const FrameSelection& selection, bool partial) {
+  const FrameRange wanted = resolve_frames(selection, reader.manifest().frame_count);
+  FrameRange before{wanted.begin, wanted.begin, wanted.step};  // the first that is missing
+  Missing missing;
   for (int frame = wanted.begin; frame < wanted.end; frame += wanted.step) {
-    if (std::binary_search(there.begin(), there.end(), frame)) continue;
-    throw Error(ExitCode::asset_unreadable, "{}: frame {} is not there; weft simulate --resume makes what is missing",
-                reader.folder().string(), frame);
+    missing.look_at(reader, frame);
+    if (missing.none()) before.end = frame + 1;
   }
-  return wanted;
+  if (missing.none()) return wanted;
+  if (!partial || before.end == wanted.begin)
+    throw Error(ExitCode::not_whole,
+                "{}: of frames {} {}; weft simulate --resume makes what is missing, --partial takes what is before it",
+                reader.folder().string(), wanted.text(), missing.text());
+  log::warn(fmt::format("{}: of frames {} {}; only {} are taken", reader.folder().string(), wanted.text(),
+                        missing.text(), before.text()));
+  return before;
 }
 
 void show_frames(const cache::Reader& reader, render::CameraPath& camera) {

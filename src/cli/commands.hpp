@@ -25,6 +25,9 @@ ExitCode thumbnail(const ThumbnailOptions& options);
 /// Evenly spaced frames on one picture, with their numbers and times.
 ExitCode sheet(const SheetOptions& options);
 
+/// Puts the parts of a film together to one video.
+ExitCode join(const JoinOptions& options);
+
 /// Prints what this machine offers and tries it.
 ExitCode doctor(const DoctorOptions& options);
 

@@ -31,7 +31,7 @@ ExitCode export_frames(const ExportOptions& options) {
   request.folder = options.output;
   request.name = manifest.scene;
   request.fps = manifest.fps;
-  const FrameRange frames = cached_frames(reader, options.frames);
+  const FrameRange frames = cached_frames(reader, options.frames, options.partial);
   for (int frame = frames.begin; frame < frames.end; frame += frames.step) request.frames.push_back(frame);
 
   const auto files = exporter::files(request, *reader.snapshot(frames.begin));

@@ -86,7 +86,7 @@ class Film {
       ++made_so_far_;
       progress_.advance(Stage::simulate);
       if (only_show) camera_->see(*made.snapshot);
-      if (!wanted_.contains(frame)) {
+      if (!wanted_.contains(frame) || parts_.drawn.contains(frame)) {
         log_.write("frame_done", frame_json(record(frame)));
       } else if (!only_show && !snapshots_.push(std::move(made.snapshot))) {
         break;
@@ -150,8 +150,9 @@ class Film {
         progress_.advance(Stage::write);
         log_.write("frame_done", frame_json(frame));
       }
-      if (writer) writer->finish();
-      result_.finished_output = writer != nullptr;
+      const bool finishes = writer && (parts_.part_is_kept || !result_.failure);
+      if (finishes) writer->finish();
+      result_.finished_output = finishes;
     } catch (...) {
       result_.failure = std::current_exception();
     }

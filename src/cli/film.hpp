@@ -8,6 +8,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -31,7 +32,9 @@ struct FilmParts {
   /// One that is found from all frames, where the scene does not place it. Frames that are made are then drawn, from
   /// the store, when the last of them is there.
   std::optional<render::CameraPath> camera = std::nullopt;
-  std::filesystem::path meshes;                     ///< folder; empty: none
+  std::filesystem::path meshes;  ///< folder; empty: none
+  std::set<int> drawn = {};      ///< wanted frames that an earlier run has drawn
+  bool part_is_kept = true;      ///< where the source or the painter fails, what came before is finished
   std::function<void(const MadeFrame&)> look = {};  ///< at each frame that is made, in order; may be empty
 };
 

@@ -1,7 +1,6 @@
 #include "cli/frame_range.hpp"
 
 #include <charconv>
-#include <vector>
 
 #include "core/error.hpp"
 
@@ -35,6 +34,17 @@ std::optional<int> parse_part(std::string_view part, std::string_view whole) {
 
 std::string FrameRange::text() const {
   return step == 1 ? fmt::format("{}:{}", begin, end) : fmt::format("{}:{}:{}", begin, end, step);
+}
+
+std::string frames_text(const std::vector<int>& frames) {
+  std::string text;
+  for (std::size_t first = 0, next = 0; first < frames.size(); first = next) {
+    for (next = first + 1; next < frames.size() && frames[next] == frames[next - 1] + 1;) ++next;
+    if (first > 0) text += ", ";
+    text += next == first + 1 ? fmt::format("{}", frames[first])
+                              : fmt::format("{}:{}", frames[first], frames[next - 1] + 1);
+  }
+  return text;
 }
 
 FrameSelection parse_frames(std::string_view text) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 namespace weft::cli {
 
@@ -22,6 +23,9 @@ struct FrameRange {
   int last() const { return begin + (count() - 1) * step; }
   std::string text() const;
 };
+
+/// Frames in words, those in a row as a range: `3, 8:21`. Ascending, at least one.
+std::string frames_text(const std::vector<int>& frames);
 
 /// Reads `A:B`, `A:B:STEP`, `A:`, `:B` or `:`. Throws Error(usage).
 FrameSelection parse_frames(std::string_view text);

@@ -49,7 +49,9 @@ struct SimulateOptions : RunOptions {
 };
 
 /// Its scene is the folder of a cache.
-struct RenderOptions : RunOptions {};
+struct RenderOptions : RunOptions {
+  bool partial = false;  ///< takes the frames before the first that is missing
+};
 
 struct CheckOptions {
   std::vector<std::filesystem::path> scenes;
@@ -71,6 +73,14 @@ struct SheetOptions {
   std::optional<int> columns;
 
   SheetOptions() { common.quality = render::Quality::preview; }
+};
+
+struct JoinOptions {
+  std::vector<std::filesystem::path> parts;  ///< videos, or folders of pictures
+  std::filesystem::path output;
+  FrameSelection frames;
+  bool partial = false;  ///< takes the frames before the first that is missing
+  bool overwrite = false;
 };
 
 struct SchemaOptions {
@@ -120,6 +130,7 @@ struct ExportOptions {
   std::filesystem::path cache, output;  ///< folders
   exporter::Format format = exporter::Format::gltf;
   FrameSelection frames;
+  bool partial = false;  ///< takes the frames before the first that is missing
   bool overwrite = false;
 };
 
@@ -129,8 +140,8 @@ struct PrintText {
 };
 
 using Command = std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SheetOptions,
-                             SchemaOptions, DoctorOptions, BenchOptions, DiffOptions, AcceptOptions, ReviewOptions,
-                             ExportOptions, PrintText>;
+                             JoinOptions, SchemaOptions, DoctorOptions, BenchOptions, DiffOptions, AcceptOptions,
+                             ReviewOptions, ExportOptions, PrintText>;
 
 /// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
 Command parse_command_line(const std::vector<std::string>& arguments);

@@ -40,6 +40,7 @@ struct FilmPlan {
   OutputTarget target;
   render::Settings settings;
   std::vector<std::string> objects;  ///< names
+  Drawn drawn = {};                  ///< by an earlier run that this one goes on with
 
   bool draws() const { return target.kind != Kind::none; }
 
@@ -77,14 +78,14 @@ FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {
   return plan;
 }
 
-FilmPlan plan_of(const cache::Reader& reader, const RunOptions& options) {
+FilmPlan plan_of(const cache::Reader& reader, const RenderOptions& options) {
   FilmPlan plan;
   plan.scene = reader.manifest();
   plan.scene_text = reader.scene_text();
   if (!options.common.camera.empty()) check_camera(plan.scene.cameras, options.common.camera);
   plan.settings = render_settings({plan.scene.width, plan.scene.height}, plan.scene.camera, options.common);
-  plan.wanted = plan.made = cached_frames(reader, options.frames);
-  plan.finds_camera = render::CameraPath::is_found(*reader.snapshot(0), plan.settings.camera);
+  plan.wanted = plan.made = cached_frames(reader, options.frames, options.partial);
+  plan.finds_camera = render::CameraPath::is_found(*reader.snapshot(plan.wanted.begin), plan.settings.camera);
   plan.whole_film = !options.frames.begin && !options.frames.end;
   plan.target = parse_output(options.output, plan.scene.scene);
   plan.settings.layers = plan.target.layered();
@@ -93,8 +94,12 @@ FilmPlan plan_of(const cache::Reader& reader, const RunOptions& options) {
 }
 
 void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& options) {
+  const auto not_own = [&](std::vector<fs::path> files) {
+    std::erase_if(files, [&](const fs::path& file) { return plan.drawn.own.contains(file); });
+    return files;
+  };
   if (plan.draws()) {
-    paths.writes("-o", plan.target.text, plan.target.files(plan.wanted));
+    paths.writes("-o", plan.target.text, not_own(plan.target.files(plan.wanted)));
     if (plan.target.kind == Kind::video) paths.writes("-o", video::partial_name(plan.target.file(0)));
     paths.writes_content("-o, for the effective scene,", plan.effective_scene_file(), plan.scene_text);
   }
@@ -102,7 +107,7 @@ void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& opti
     std::vector<fs::path> files;
     for (const std::string& object : plan.objects)
       for (fs::path& file : mesh_files(options.meshes, object).names(plan.wanted)) files.push_back(std::move(file));
-    paths.writes("--meshes", options.meshes, files);
+    paths.writes("--meshes", options.meshes, not_own(std::move(files)));
   }
   if (!options.stats.empty()) paths.writes("--stats", options.stats);
   if (!options.log_json.empty() && options.log_json != "-") paths.writes("--log-json", options.log_json);
@@ -178,7 +183,8 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
   }
   if (plan.draws() && plan.finds_camera) parts.camera.emplace(plan.settings.camera, plan.settings.aspect());
   parts.meshes = options_.meshes;
-  const int drawn = plan.draws() ? plan.wanted.count() : 0;
+  parts.drawn = plan.drawn.frames;
+  const int drawn = plan.draws() ? plan.wanted.count() - static_cast<int>(parts.drawn.size()) : 0;
   progress_.emplace(options_.common.progress, StageCounts{plan.simulated, drawn, drawn});
   FilmResult result = make_film(parts, plan.made, plan.wanted, stop(), *progress_, *log_);
   progress_.reset();
@@ -375,7 +381,16 @@ ExitCode simulate(const SimulateOptions& options) {
 ExitCode render(const RenderOptions& options) {
   Session session(options);
   const cache::Reader reader(options.common.scene);
-  const FilmPlan plan = plan_of(reader, options);
+  FilmPlan plan = plan_of(reader, options);
+  if (options.resume) {
+    plan.drawn = find_drawn(plan.target, plan.wanted, plan.settings, plan.scene, options.meshes, plan.objects);
+    const auto count = static_cast<int>(plan.drawn.frames.size());
+    const bool whole = count == plan.wanted.count();
+    if (count > 0)
+      log::info(fmt::format("note: {} is {}: frames {}", plan.target.text, whole ? "whole already" : "there in part",
+                            frames_text({plan.drawn.frames.begin(), plan.drawn.frames.end()})));
+    if (whole) return ExitCode::ok;
+  }
   PathLedger paths;
   paths.reads_folder(options.common.scene, "the cache");
   add_outputs(paths, plan, options);
@@ -384,6 +399,7 @@ ExitCode render(const RenderOptions& options) {
   session.begin(plan);
   FilmParts parts;
   parts.open_source = [&] { return std::make_unique<CacheSource>(reader, plan.made); };
+  parts.part_is_kept = false;
   session.make(plan, std::move(parts));
   return session.end(plan, nullptr);
 }

@@ -107,6 +107,8 @@ Metadata describe_pictures(const cache::Manifest& scene, const render::Settings&
                     {"scene_hash", fmt::format("{:016x}", scene.scene_hash)},
                     {"weft_version", kVersion},
                     {"gl", gl},
+                    {"fps", fmt::format("{}", scene.fps)},
+                    {"scene_frames", fmt::format("{}", scene.frame_count)},
                     {"quality", kQualities[static_cast<int>(settings.quality)]}};
   if (!settings.camera.empty()) metadata["camera"] = settings.camera;
   if (!scene.title.empty()) metadata["title"] = scene.title;

@@ -47,7 +47,8 @@ std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings);
 
 using Metadata = std::map<std::string, std::string>;
 
-/// What video and stills say about themselves: scene, scene_hash, weft_version, gl, camera, quality.
+/// What video and stills say about themselves: scene, scene_hash, weft_version, gl, fps and scene_frames (of the
+/// scene), camera, quality.
 Metadata describe_pictures(const cache::Manifest& scene, const render::Settings& settings, const std::string& gl);
 
 /// Adds what holds for one still: frame and time_s.

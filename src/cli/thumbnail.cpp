@@ -17,8 +17,11 @@
 namespace weft::cli {
 namespace {
 
-void check_frame(int frame, const std::vector<int>& frames) {
+void check_frame(int frame, const Stills& stills) {
+  const std::vector<int>& frames = stills.frames();
   if (std::binary_search(frames.begin(), frames.end(), frame)) return;
+  if (frame < stills.scene().frame_count)
+    throw Error(ExitCode::not_whole, "frame {} is not there; weft simulate --resume makes what is missing", frame);
   throw Error(ExitCode::usage, "--frame: expected one of the {} frames from {} to {}, got {}", frames.size(),
               frames.front(), frames.back(), frame);
 }
@@ -83,7 +86,7 @@ ExitCode thumbnail(const ThumbnailOptions& options) {
   if (options.start) return thumbnail_of_start(options);
   const std::unique_ptr<Stills> stills = open_stills(options.common);
   const std::vector<int>& frames = stills->frames();
-  if (options.frame) check_frame(*options.frame, frames);
+  if (options.frame) check_frame(*options.frame, *stills);
   const std::filesystem::path file =
       still_file(*stills, options.output, stills->scene().scene + ".png", options.common.overwrite);
   std::string text;

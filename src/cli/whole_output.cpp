@@ -21,45 +21,83 @@ bool agrees(const Metadata& found, Metadata expected) {
   });
 }
 
-bool is_whole_video(const fs::path& file, const FrameRange& frames, const render::Settings& settings,
-                    Metadata expected) {
+enum class State { absent, other, part, whole };
+
+State state_of_video(const fs::path& file, const FrameRange& frames, const render::Settings& settings,
+                     Metadata expected) {
   video::Decoder decoder(file);
   expected["frames"] = frames.text();
   // Odd sizes are padded to even ones.
   const bool fits = decoder.width() == settings.width + settings.width % 2 &&
                     decoder.height() == settings.height + settings.height % 2;
-  if (!fits || !agrees(decoder.metadata(), std::move(expected))) return false;
+  if (!fits || !agrees(decoder.metadata(), std::move(expected))) return State::other;
   int count = 0;
   while (decoder.next()) ++count;
-  return count == frames.count();
+  return count == frames.count() ? State::whole : State::part;
 }
 
-bool is_whole_picture(const fs::path& file, const render::Settings& settings, const Metadata& expected) {
+State state_of_picture(const fs::path& file, int frame, const render::Settings& settings, Metadata expected) {
+  expected["frame"] = fmt::format("{}", frame);
   Metadata found;
   const image::Image image = image::read_png(file, &found);
-  return image.width == settings.width && image.height == settings.height && agrees(found, expected);
+  const bool fits = image.width == settings.width && image.height == settings.height;
+  return fits && agrees(found, std::move(expected)) ? State::whole : State::other;
+}
+
+bool is_file(const fs::path& file) {
+  std::error_code ignored;
+  return fs::is_regular_file(file, ignored);
+}
+
+// What stands at the place of these frames; of pictures of one.
+State state_of(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
+               const Metadata& expected) {
+  const fs::path file = target.file(frames.begin);
+  if (!is_file(file)) return State::absent;
+  try {
+    if (target.kind == OutputTarget::Kind::video) return state_of_video(file, frames, settings, expected);
+    return state_of_picture(file, frames.begin, settings, expected);
+  } catch (const Error&) {
+    return State::other;  // what cannot be read is nothing of ours
+  }
+}
+
+std::vector<fs::path> meshes_of(const FrameRange& frames, const fs::path& folder,
+                                const std::vector<std::string>& objects) {
+  std::vector<fs::path> files;
+  if (folder.empty()) return files;
+  for (const std::string& object : objects)
+    for (fs::path& file : mesh_files(folder, object).names(frames)) files.push_back(std::move(file));
+  return files;
 }
 
 }  // namespace
 
+Drawn find_drawn(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
+                 const cache::Manifest& scene, const fs::path& meshes, const std::vector<std::string>& objects) {
+  const Metadata expected = describe_pictures(scene, settings, "");
+  Drawn drawn;
+  const auto look_at = [&](const FrameRange& part) {
+    const State state = state_of(target, part, settings, expected);
+    if (state != State::part && state != State::whole) return;
+    const std::vector<fs::path> with = meshes_of(part, meshes, objects);
+    drawn.own.insert(target.file(part.begin));
+    drawn.own.insert(with.begin(), with.end());
+    if (state == State::part || !std::ranges::all_of(with, is_file)) return;
+    for (int frame = part.begin; frame < part.end; frame += part.step) drawn.frames.insert(frame);
+  };
+  if (target.kind == OutputTarget::Kind::video) {
+    look_at(frames);
+  } else {
+    for (int frame = frames.begin; frame < frames.end; frame += frames.step) look_at({frame, frame + 1, 1});
+  }
+  return drawn;
+}
+
 bool is_whole(const OutputTarget& target, const FrameRange& frames, const render::Settings& settings,
               const cache::Manifest& scene, const fs::path& meshes, const std::vector<std::string>& objects) {
-  const auto exists = [](const fs::path& file) {
-    std::error_code ignored;
-    return fs::is_regular_file(file, ignored);
-  };
-  const std::vector<fs::path> files = target.files(frames);
-  if (!std::ranges::all_of(files, exists)) return false;
-  if (!meshes.empty())
-    for (const std::string& object : objects)
-      if (!std::ranges::all_of(mesh_files(meshes, object).names(frames), exists)) return false;
-  const Metadata expected = describe_pictures(scene, settings, "");
-  try {
-    if (target.kind == OutputTarget::Kind::video) return is_whole_video(files[0], frames, settings, expected);
-    return std::ranges::all_of(files, [&](const fs::path& file) { return is_whole_picture(file, settings, expected); });
-  } catch (const Error&) {
-    return false;  // what cannot be read is not whole
-  }
+  const Drawn drawn = find_drawn(target, frames, settings, scene, meshes, objects);
+  return static_cast<int>(drawn.frames.size()) == frames.count();
 }
 
 }  // namespace weft::cli

@@ -20,6 +20,7 @@ enum class ExitCode : int {
   output_failed = 6,      ///< disk, encoder or image writer
   images_differ = 7,      ///< pictures differ by more than the limits
   reference_missing = 8,  ///< a picture has no reference
+  not_whole = 9,          ///< frames that were asked for are not there
   interrupted = 75,       ///< Ctrl-C or SIGTERM; what is finished is kept, and `--resume` goes on
 };
 

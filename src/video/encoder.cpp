@@ -127,7 +127,7 @@ void Encoder::Impl::send(const AVFrame* next) {
 // Makes the finished file out of the fragments.
 void Encoder::Impl::publish() {
   TemporaryFile whole(file);
-  copy_to_fast_start(fragments->path(), whole.path(), file, rate, settings.metadata);
+  copy_to_fast_start({&fragments->path(), 1}, whole.path(), file, rate, settings.metadata);
   verify_frames(whole.path(), file, rate, frames);
   whole.commit();
 }

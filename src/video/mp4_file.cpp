@@ -1,5 +1,8 @@
 #include "video/mp4_file.hpp"
 
+#include <algorithm>
+#include <optional>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -36,6 +39,22 @@ bool read_packet(AVFormatContext& input, AVPacket& packet, const std::filesystem
   if (code == AVERROR_EOF) return false;
   check(code, reported_file, "read the frames back");
   return true;
+}
+
+// The header of an MP4 file describes one kind of packets.
+bool same_codec(const AVCodecParameters& a, const AVCodecParameters& b) {
+  const auto bytes = [](const AVCodecParameters& codec) {
+    return std::basic_string_view<std::uint8_t>(codec.extradata, static_cast<std::size_t>(codec.extradata_size));
+  };
+  return a.codec_id == b.codec_id && a.width == b.width && a.height == b.height && bytes(a) == bytes(b);
+}
+
+// Between decoding and showing the first frame.
+std::int64_t delay_of(const std::filesystem::path& file, const std::filesystem::path& reported_file, AVRational rate) {
+  const InputPtr input = open_video(file, reported_file);
+  const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
+  if (!read_packet(*input, *packet, reported_file)) return 0;
+  return av_rescale_q(packet->pts - packet->dts, input->streams[0]->time_base, av_inv_q(rate));
 }
 
 }  // namespace
@@ -81,24 +100,36 @@ void Mp4Writer::close() {
   output_.reset();
 }
 
-void copy_to_fast_start(const std::filesystem::path& from, const std::filesystem::path& to,
+void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::filesystem::path& to,
                         const std::filesystem::path& reported_file, AVRational rate,
                         const std::map<std::string, std::string>& metadata) {
-  const InputPtr input = open_video(from, reported_file);
-  const AVStream& stream = *input->streams[0];
-  Mp4Writer writer(to, reported_file, Mp4Layout::fast_start, *stream.codecpar, rate, metadata);
+  const InputPtr first = open_video(from.front(), reported_file);
+  const AVCodecParameters& codec = *first->streams[0]->codecpar;
+  Mp4Writer writer(to, reported_file, Mp4Layout::fast_start, codec, rate, metadata);
   const PacketPtr packet = check_allocated(PacketPtr(av_packet_alloc()), reported_file);
 
-  // A fragmented file cannot hold times below zero, so libav moved all of them by the delay of the B-frames. The first
-  // packet is frame 0, because the stream starts with a key frame.
-  std::int64_t delay = AV_NOPTS_VALUE;
-  while (read_packet(*input, *packet, reported_file)) {
-    av_packet_rescale_ts(packet.get(), stream.time_base, av_inv_q(rate));
-    if (delay == AV_NOPTS_VALUE) delay = packet->pts;
-    packet->pts -= delay;
-    packet->dts -= delay;
-    writer.write(*packet);
-    av_packet_unref(packet.get());
+  // Frames are decoded at k minus the delay of the B-frames, which a file of one frame does not have.
+  std::int64_t delay = 0;
+  for (const std::filesystem::path& file : from) delay = std::max(delay, delay_of(file, reported_file, rate));
+
+  std::int64_t written = 0;
+  for (const std::filesystem::path& file : from) {
+    const InputPtr input = open_video(file, reported_file);
+    const AVStream& stream = *input->streams[0];
+    if (!same_codec(codec, *stream.codecpar))
+      fail(reported_file, fmt::format("join {}", file.string()), "it is not encoded as the first one is");
+    // A fragmented file cannot hold times below zero, so libav moved all of them by the delay. The first packet is
+    // frame 0, because the stream starts with a key frame.
+    const std::int64_t before = written;
+    std::optional<std::int64_t> first_time;
+    for (; read_packet(*input, *packet, reported_file); ++written) {
+      av_packet_rescale_ts(packet.get(), stream.time_base, av_inv_q(rate));
+      if (!first_time) first_time = packet->pts;
+      packet->pts += before - *first_time;
+      packet->dts = written - delay;
+      writer.write(*packet);
+      av_packet_unref(packet.get());
+    }
   }
   writer.close();
 }

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <span>
 #include <string>
 
 #include "video/libav.hpp"
@@ -36,9 +37,9 @@ class Mp4Writer {
   OutputPtr output_;
 };
 
-/// Copies the packets of `from` into a new fast start file `to`, so that the first frame is shown at time zero. Throws
-/// Error(output_failed).
-void copy_to_fast_start(const std::filesystem::path& from, const std::filesystem::path& to,
+/// Copies the packets of the files `from`, one after the other, into a new fast start file `to`, so that the first
+/// frame is shown at time zero. Throws Error(output_failed), also where they are not encoded alike.
+void copy_to_fast_start(std::span<const std::filesystem::path> from, const std::filesystem::path& to,
                         const std::filesystem::path& reported_file, AVRational rate,
                         const std::map<std::string, std::string>& metadata);
 

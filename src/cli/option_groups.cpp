@@ -1,0 +1,94 @@
+#include "cli/option_groups.hpp"
+
+namespace weft::cli {
+namespace {
+
+constexpr std::array kBackends{Choice<render::Backend>{"auto", render::Backend::automatic},
+                               Choice<render::Backend>{"osmesa", render::Backend::osmesa},
+                               Choice<render::Backend>{"egl", render::Backend::egl}};
+constexpr std::array kProgressStyles{
+    Choice<Progress::Style>{"auto", Progress::Style::automatic}, Choice<Progress::Style>{"bar", Progress::Style::bar},
+    Choice<Progress::Style>{"plain", Progress::Style::plain}, Choice<Progress::Style>{"none", Progress::Style::none}};
+
+}  // namespace
+
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--set",
+          [&overrides](const std::vector<std::string>& texts) {
+            for (const std::string& text : texts) overrides.push_back(check_override(text));
+          },
+          "Change one value of the scene, checked like the file; may be given several times")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false);
+}
+
+void add_value(CLI::App& command, const char* name, const char* value, const std::string& description,
+               std::function<void(const std::string&)> read) {
+  command.add_option_function<std::string>(name, read, description)->type_name(value);
+}
+
+void add_backend(CLI::App& command, render::Backend& backend) {
+  add_value(command, "--backend", "auto|osmesa|egl", "How the OpenGL context is made [auto]",
+            [&](const std::string& text) { backend = parse_choice("--backend", text, kBackends); });
+}
+
+void add_picture(CLI::App& command, SceneOptions& options) {
+  add_value(command, "--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]",
+            [&](const std::string& text) { options.size = parse_size(text); });
+  add_value(command, "--camera", "NAME", "A camera of the scene [its choice, or automatic framing]",
+            [&](const std::string& text) { options.camera = text; });
+  const char* quality = options.quality == render::Quality::preview ? "preview" : "final";
+  add_value(command, "--quality", "draft|preview|final", fmt::format("Care taken in drawing [{}]", quality).c_str(),
+            [&](const std::string& text) { options.quality = parse_choice("--quality", text, kQualities); });
+  add_backend(command, options.backend);
+}
+
+void add_process(CLI::App& command, SceneOptions& options) {
+  add_value(command, "--threads", "N", "Threads to use at most [all cores]; results do not depend on it",
+            [&](const std::string& text) { options.threads = parse_integer("--threads", text, 1, kMaxThreads); });
+  add_value(command, "--progress", "auto|bar|plain|none", "Progress on standard error [auto]",
+            [&](const std::string& text) { options.progress = parse_choice("--progress", text, kProgressStyles); });
+  command.add_flag("--overwrite", options.overwrite, "Replace files that exist already");
+}
+
+void add_common(CLI::App& command, SceneOptions& options, const char* what) {
+  command.add_option("SCENE", options.scene, what)->required()->type_name("");
+  add_value(command, "--fps", "N", "Frames a second [the scene's]",
+            [&](const std::string& text) { options.fps = parse_fps(text); });
+  add_overrides(command, options.overrides);
+  add_picture(command, options);
+  add_process(command, options);
+}
+
+void add_output(CLI::App& command, RunOptions& options) {
+  add_value(command, "-o,--output", "FILE", "Video (.mp4), pictures ('out/{frame:05}.png') or layers of pictures (.exr) [output/<scene>.mp4]",
+            [&](const std::string& text) { options.output = text; });
+}
+
+void add_frames(CLI::App& command, RunOptions& options, const char* description) {
+  add_value(command, "--frames", "A:B[:STEP]", description,
+            [&](const std::string& text) { options.frames = parse_frames(text); });
+}
+
+void add_side_files(CLI::App& command, RunOptions& options) {
+  add_value(command, "--meshes", "DIR", "Also write each cloth and obstacle of each such frame as PLY",
+            [&](const std::string& text) { options.meshes = text; });
+  add_value(command, "--stats", "FILE", "Also write times, iterations and energies as JSON",
+            [&](const std::string& text) { options.stats = text; });
+  add_value(command, "--log-json", "FILE|-", "Also write events as JSON lines (-: standard output)",
+            [&](const std::string& text) { options.log_json = text; });
+}
+
+void add_error(CLI::App& command, RunOptions& options) {
+  command.add_flag("--error", options.error,
+                   "Also tell how far off the run is, by simulating it with other steps, solver settings and starts");
+  command.add_flag("--mesh-error", options.mesh_error, "Likewise, and with half and a quarter of the cells");
+}
+
+void add_partial(CLI::App& command, bool& partial) {
+  command.add_flag("--partial", partial, "Where frames are missing or broken: take those before the first of them");
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,42 @@
+// Options that several commands share, as CLI11 reads them.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "cli/option_values.hpp"
+#include "cli/options.hpp"
+
+namespace weft::cli {
+
+inline constexpr int kMaxThreads = 1024;
+inline constexpr std::array kQualities{Choice<render::Quality>{"draft", render::Quality::draft},
+                                       Choice<render::Quality>{"preview", render::Quality::preview},
+                                       Choice<render::Quality>{"final", render::Quality::final}};
+inline constexpr const char* kSceneOrCache = "The scene, a TOML file, or the folder of a cache";
+
+/// One option with one value, handed to `read` as text.
+void add_value(CLI::App& command, const char* name, const char* value, const std::string& description,
+               std::function<void(const std::string&)> read);
+
+/// --set.
+void add_overrides(CLI::App& command, std::vector<std::string>& overrides);
+void add_backend(CLI::App& command, render::Backend& backend);
+/// --size, --camera, --quality, --backend.
+void add_picture(CLI::App& command, SceneOptions& options);
+/// --threads, --progress, --overwrite.
+void add_process(CLI::App& command, SceneOptions& options);
+/// The scene, and all that changes how it is read or drawn.
+void add_common(CLI::App& command, SceneOptions& options, const char* what = "The scene, a TOML file");
+void add_output(CLI::App& command, RunOptions& options);
+void add_frames(CLI::App& command, RunOptions& options, const char* description);
+/// --meshes, --stats, --log-json.
+void add_side_files(CLI::App& command, RunOptions& options);
+/// --error, --mesh-error.
+void add_error(CLI::App& command, RunOptions& options);
+void add_partial(CLI::App& command, bool& partial);
+
+}  // namespace weft::cli

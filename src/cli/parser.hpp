@@ -1,0 +1,52 @@
+// The program's commands, and the values that CLI11 writes into while parsing.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+#include <vector>
+
+#include "cli/options.hpp"
+
+namespace weft::cli {
+
+struct Parser {
+  CLI::App app{"Weft: cloth scenes to video, on any machine, without a window.", "weft"};
+  RunOptions run;
+  SimulateOptions simulate;
+  RenderOptions render;
+  CheckOptions check;
+  ThumbnailOptions thumbnail;
+  SheetOptions sheet;
+  JoinOptions join;
+  SchemaOptions schema;
+  DoctorOptions doctor;
+  BenchOptions bench;
+  std::string option_of_speed;  // one that was given; empty: none
+  DiffOptions diff;
+  AcceptOptions accept;
+  ReviewOptions review;
+  ExportOptions exported;
+
+  Parser();
+
+  void add_run();
+  void add_simulate();
+  void add_render();
+  void add_check();
+  void add_thumbnail();
+  void add_sheet();
+  void add_join();
+  void add_schema();
+  void add_doctor();
+  void add_bench();
+  void add_diff();
+  void add_accept();
+  void add_review();
+  void add_export();
+
+  std::vector<std::string> command_names() const;
+  /// The command that was typed; null before one is parsed.
+  CLI::App* selected() const;
+};
+
+}  // namespace weft::cli

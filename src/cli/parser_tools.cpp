@@ -1,0 +1,163 @@
+// Commands beside films: checks, measurements, comparison, exports.
+#include "cli/option_groups.hpp"
+#include "cli/parser.hpp"
+#include "core/error.hpp"
+
+namespace weft::cli {
+namespace {
+
+constexpr std::array kBenches{Choice<BenchOptions::Kind>{"stability", BenchOptions::Kind::stability},
+                              Choice<BenchOptions::Kind>{"accuracy", BenchOptions::Kind::accuracy},
+                              Choice<BenchOptions::Kind>{"speed", BenchOptions::Kind::speed},
+                              Choice<BenchOptions::Kind>{"fabrics", BenchOptions::Kind::fabrics}};
+constexpr std::array kFormats{
+    Choice<exporter::Format>{"ply", exporter::Format::ply}, Choice<exporter::Format>{"obj", exporter::Format::obj},
+    Choice<exporter::Format>{"pc2", exporter::Format::pc2}, Choice<exporter::Format>{"gltf", exporter::Format::gltf}};
+
+}  // namespace
+
+void Parser::add_check() {
+  CLI::App& command = *app.add_subcommand("check", "Print every mistake of one or more scenes");
+  command.add_option("SCENE", check.scenes, "Scenes, TOML files")->required()->type_name("");
+  command.add_flag("--plan", check.plan, "Also print which parts the scene needs and which are left out");
+  add_overrides(command, check.overrides);
+  command.footer("\nExample:\n  weft check scenes/*.toml");
+}
+
+void Parser::add_schema() {
+  CLI::App& command = *app.add_subcommand("schema", "Print the JSON schema of the scene format");
+  command.add_flag("--pattern", schema.pattern, "That of sewing patterns instead");
+  command.footer("\nExample:\n  weft schema > weft.schema.json\n  weft schema --pattern > pattern.schema.json");
+}
+
+void Parser::add_doctor() {
+  CLI::App& command = *app.add_subcommand("doctor", "Test this machine: processor, OpenGL, encoder");
+  add_backend(command, doctor.backend);
+}
+
+void Parser::add_bench() {
+  CLI::App& command = *app.add_subcommand("bench", "Measure: stability, error against run time, speed, or fabrics");
+  command
+      .add_option_function<std::string>(
+          "WHAT", [this](const std::string& text) { bench.kind = parse_choice("WHAT", text, kBenches); },
+          "stability: what comes of stiff and extreme scenes; accuracy: error against run time of a scene; speed: "
+          "time by stage, iterations and memory over sizes, threads and steps; fabrics: drape, bending and extension "
+          "against what was published")
+      ->required()
+      ->type_name("");
+  command
+      .add_option("SCENE", bench.scene, "For accuracy and speed: the scene, a TOML file [a swinging sheet; a drape]")
+      ->type_name("");
+  add_overrides(command, bench.overrides);
+  add_value(command, "-o,--output", "DIR", "Folder for tables and plots [output/bench]",
+            [this](const std::string& text) { bench.output = text; });
+  command.add_flag("--overwrite", bench.overwrite, "Replace files that exist already");
+  const auto of_speed = [&](const char* name, const char* value, const char* description,
+                            std::function<void(const std::string&)> read) {
+    add_value(command, name, value, description, [this, name, read](const std::string& text) {
+      read(text);
+      option_of_speed = name;
+    });
+  };
+  of_speed("--sizes", "F,F,...", "Of speed: particles along each side, times those of the scene [0.5,1,2,4]",
+           [this](const std::string& text) { bench.sizes = parse_list<double>("--sizes", text, parse_factor); });
+  of_speed("--threads", "N,N,...", "Of speed: numbers of threads [1 and all cores]", [this](const std::string& text) {
+    bench.threads = parse_list<int>("--threads", text, [](const char* option, const std::string& part) {
+      return parse_integer(option, part, 1, kMaxThreads);
+    });
+  });
+  of_speed("--steps", "F,F,...", "Of speed: time.step, or time.tolerance, times that of the scene [0.5,1,2]",
+           [this](const std::string& text) { bench.steps = parse_list<double>("--steps", text, parse_factor); });
+  of_speed("--frames", "A:B", "Of speed: frames to measure, from A up to but without B [1:9]",
+           [this](const std::string& text) {
+             bench.frames = parse_frames(text);
+             if (bench.frames.step != 1 || bench.frames.begin == 0)
+               throw Error(ExitCode::usage,
+                           "--frames: expected A:B with A from 1, for frame 0 takes no time and each needs the one "
+                           "before, got {}",
+                           text);
+           });
+  of_speed("--draw", "draft|preview|final", "Of speed: draw each frame too, with such care",
+           [this](const std::string& text) { bench.drawing = parse_choice("--draw", text, kQualities); });
+  command.footer(
+      "\nExamples:\n"
+      "  weft bench stability -o stability\n"
+      "  weft bench accuracy scenes/falling_band.toml --set time.duration=0.8 -o accuracy\n"
+      "  weft bench speed scenes/falling_band.toml --sizes 0.5,1,2 --frames 20:40 -o speed");
+}
+
+void Parser::add_diff() {
+  CLI::App& command = *app.add_subcommand("diff", "Compare pictures, videos, or folders of them");
+  command.add_option("REFERENCE", diff.reference, "As it should be: .png, video, folder")->required()->type_name("");
+  command.add_option("TEST", diff.test, "As it is now: likewise")->required()->type_name("");
+  int& limit = diff.limits.pixel_tolerance;
+  add_value(command, "--pixel-tolerance", "N", fmt::format("Levels of 255 by which a pixel may differ [{}]", limit),
+            [&limit](const std::string& text) { limit = parse_integer("--pixel-tolerance", text, 0, 255); });
+  const auto add_share = [&](const char* name, double& most, const char* what) {
+    add_value(command, name, "X", fmt::format("{} [{}]", what, most),
+              [name, &most](const std::string& text) { most = parse_share(name, text); });
+  };
+  add_share("--pixel-budget", diff.limits.pixel_budget, "Share of the pixels that may differ by more");
+  add_share("--max-flip", diff.limits.flip, "Largest mean of FLIP, 0 (looks the same) to 1");
+  add_share("--max-spot", diff.limits.spot, "Largest value of FLIP at any pixel");
+  add_value(command, "--heatmap", "FILE.png|DIR", "Also paint where it differs; a video's worst frame",
+            [this](const std::string& text) { diff.heatmap = text; });
+  command.add_flag("--overwrite", diff.overwrite, "Replace heat maps that exist already");
+  command.add_flag("--json", diff.json, "Print JSON instead of text");
+  command.footer(
+      "\nExamples:\n"
+      "  weft diff references/band.png band.png --heatmap difference.png\n"
+      "  weft diff references output --heatmap output/differences\n"
+      "  weft diff before.mp4 after.mp4\n"
+      "\nFolders are compared by name. References may lie in one folder for each class of machines, named as weft\n"
+      "doctor says, and one named default. "
+      "Exit codes: 0 all within the limits, 7 something differs, 8 a reference is missing, 4 a file is unreadable.");
+}
+
+void Parser::add_accept() {
+  CLI::App& command = *app.add_subcommand("accept", "Make pictures the new references, and record why");
+  command.add_option("REFERENCE", accept.reference, "The reference, or its folder")->required()->type_name("");
+  command.add_option("TEST", accept.tests, "The new pictures or videos, each by name")->required()->type_name("");
+  command.add_option("--reason", accept.reason, "Why: kept in accepted.md")->required()->type_name("TEXT");
+  command.footer(
+      "\nExamples:\n"
+      "  weft accept references output/band.png --reason \"floor is darker by design\"\n"
+      "  weft accept references/mesa-22.3-256bit output/band.png --reason \"one pixel at the hem\"");
+}
+
+void Parser::add_review() {
+  CLI::App& command = *app.add_subcommand("review", "Write a page for looking at runs, which opens in any browser");
+  command.add_option("DIR", review.folders, "Folders with videos and statistics of weft run")
+      ->required()
+      ->type_name("");
+  add_value(command, "-o,--output", "DIR", "Folder of the page [output/review]",
+            [this](const std::string& text) { review.output = text; });
+  add_value(command, "--reference", "DIR", "Folder with runs of the same names to compare with",
+            [this](const std::string& text) { review.reference = text; });
+  command.add_flag("--overwrite", review.overwrite, "Replace a page that exists already");
+  command.footer(
+      "\nExample:\n"
+      "  weft run scenes/falling_band.toml -o runs/band.mp4 --stats runs/band.json\n"
+      "  weft review runs -o page\n"
+      "\nOpen page/index.html; the folder needs no server and loads nothing from elsewhere.");
+}
+
+void Parser::add_export() {
+  CLI::App& command = *app.add_subcommand("export", "Write the frames of a cache as files for other programs");
+  command.add_option("CACHE", exported.cache, "Folder of weft simulate --cache")->required()->type_name("");
+  add_value(command, "--format", "ply|obj|pc2|gltf", "Form of the files [gltf]",
+            [this](const std::string& text) { exported.format = parse_choice("--format", text, kFormats); });
+  command.add_option("-o,--output", exported.output, "Folder of the files")->required()->type_name("DIR");
+  add_value(command, "--frames", "A:B[:STEP]", "Frames A up to but without B, counted from 0 [all]",
+            [this](const std::string& text) { exported.frames = parse_frames(text); });
+  add_partial(command, exported.partial);
+  command.add_flag("--overwrite", exported.overwrite, "Replace files that exist already");
+  command.footer(
+      "\nExamples:\n"
+      "  weft export band.cache --format gltf -o band\n"
+      "  weft export band.cache --format ply -o band --frames 0:126:25\n"
+      "\nply, obj: a file for each object and frame; pc2: for each object an OBJ file and a point cache that moves\n"
+      "its vertices; gltf: one file with all that is visible, its colours and its motion (morph targets).");
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,221 @@
+// What is not whole is no output: missing and broken frames, pictures that are drawn later, parts of videos.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <sstream>
+
+#include "cli/cached_run.hpp"
+#include "cli/frame_range.hpp"
+#include "cli/video_probe.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kPictures = "p/{frame:05}.png";
+
+bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
+TEST(FramesText, TellsFramesInARowAsARange) {
+  EXPECT_EQ(frames_text({7}), "7");
+  EXPECT_EQ(frames_text({0, 1}), "0:2");
+  EXPECT_EQ(frames_text({3, 5, 8, 9, 10}), "3, 5, 8:11");
+}
+
+class Completeness : public CachedRun {
+ protected:
+  void expect_not_whole(const Arguments& arguments, const std::string& said) const {
+    const Outcome outcome = weft(arguments);
+    EXPECT_EQ(outcome.exit_code, 9) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, said)) << outcome.err;
+  }
+  /// Cuts a file of the cache in half.
+  void break_file(const std::string& name) const {
+    const std::string bytes = support::read_bytes(folder_ / name);
+    support::write_bytes(folder_ / name, bytes.substr(0, bytes.size() / 2));
+  }
+};
+
+TEST_F(Completeness, RenderOfAPartTakesTheFramesBeforeItsEndIfTold) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
+  expect_not_whole({"render", "c", "-o", "all.mp4"}, "c: of frames 0:21 frames 8:21 are not there; weft simulate");
+  expect_not_whole({"render", "c", "-o", "all.mp4", "--frames", "5:12:2"}, "c: of frames 5:12:2 frames 9, 11 are not");
+  expect_not_whole({"render", "c", "-o", "all.mp4", "--frames", "8:12", "--partial"}, "frames 8:12 are not there");
+  expect_not_whole({"thumbnail", "c", "-o", "t.png", "--frame", "8"}, "frame 8 is not there");
+  EXPECT_FALSE(fs::exists(folder_ / "all.mp4"));
+  const Outcome part = weft({"render", "c", "-o", "part.mp4", "--partial"});
+  EXPECT_EQ(part.exit_code, 0);
+  EXPECT_TRUE(contains(part.err, "frames 8:21 are not there; only 0:8 are taken")) << part.err;
+  EXPECT_EQ(probe_video(folder_ / "part.mp4").frames, 8);
+  EXPECT_EQ(probe_video(folder_ / "part.mp4").metadata.at("frames"), "0:8");
+}
+
+TEST_F(Completeness, WhatIsNoRangeOrNoCacheIsToldApart) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":8"});
+  EXPECT_EQ(weft({"render", "c", "-o", "d.mp4", "--frames", "5:22"}).exit_code, 2);
+  EXPECT_EQ(weft({"render", "c", "-o", "d.mp4", "--frames", ":8", "--camera", "front"}).exit_code, 2);
+  EXPECT_EQ(weft({"thumbnail", "c", "-o", "t.png", "--frame", "21"}).exit_code, 2);
+  const Outcome none = weft({"render", "s.toml", "-o", "d.mp4"});
+  EXPECT_EQ(none.exit_code, 4);
+  EXPECT_TRUE(contains(none.err, "s.toml: expected a frame cache, a folder with a manifest.json")) << none.err;
+}
+
+TEST_F(Completeness, FramesThatAreMissingInTheMiddleOrBrokenAreNamedBeforeAnythingIsDrawn) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  fs::remove(folder_ / "c/frame_00004.weft");
+  break_file("c/frame_00007.weft");
+  break_file("c/frame_00012.weft");
+  const std::string said =
+      "c: of frames 0:21 frame 4 is not there; frames 7, 12 cannot be used: c/frame_00007.weft: broken";
+  expect_not_whole({"render", "c", "-o", kPictures, "--meshes", "m", "--stats", "s.json"}, said);
+  for (const char* output : {"p", "m", "s.json"}) EXPECT_FALSE(fs::exists(folder_ / output)) << output;
+}
+
+TEST_F(Completeness, RenderResumesToThePicturesAndMeshesOfOneThatWasNotStopped) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  expect_well({"render", "c", "-o", "whole/{frame:05}.png", "--meshes", "mw"});
+  expect_well({"render", "c", "-o", kPictures, "--meshes", "m", "--frames", "3:9"});
+  expect_well({"render", "c", "-o", kPictures, "--meshes", "m", "--frames", "12:15"});
+  fs::remove(folder_ / "m/ball_00013.ply");
+  const auto drawn = fs::last_write_time(folder_ / "p/00003.png");
+  const Arguments again{"render", "c", "-o", kPictures, "--meshes", "m", "--resume"};
+  const Outcome resumed = weft(again);
+  EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
+  EXPECT_TRUE(contains(resumed.err, "{frame:05}.png is there in part: frames 3:9, 12, 14\n")) << resumed.err;
+  expect_same("whole", "p", ".png", kFrames);
+  expect_same("mw", "m", ".ply", 3 * kFrames);
+  EXPECT_EQ(fs::last_write_time(folder_ / "p/00003.png"), drawn) << "a picture that was there was drawn again";
+  const Outcome nothing_left = weft(again);
+  EXPECT_EQ(nothing_left.exit_code, 0);
+  EXPECT_EQ(nothing_left.err, "note: p/{frame:05}.png is whole already: frames 0:21\n");
+}
+
+TEST_F(Completeness, RenderDoesNotGoOnWithOtherPictures) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  const Arguments render{"render", "c", "-o", kPictures, "--frames", ":4", "--resume"};
+  expect_well(render);
+  const std::string third = support::read_bytes(folder_ / "p/00002.png");
+  // A picture of another frame under this name is not this one, and may be all that there is of it.
+  fs::copy_file(folder_ / "p/00003.png", folder_ / "p/00002.png", fs::copy_options::overwrite_existing);
+  const Outcome refused = weft(render);
+  EXPECT_EQ(refused.exit_code, 6);
+  EXPECT_TRUE(contains(refused.err, "p/00002.png: exists already")) << refused.err;
+  Arguments forced = render;
+  forced.push_back("--overwrite");
+  expect_well(forced);
+  EXPECT_EQ(support::read_bytes(folder_ / "p/00002.png"), third);
+}
+
+TEST_F(Completeness, VideoThatWasStoppedIsDrawnAnewAndAnotherIsKept) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  Subprocess process({"render", "c", "-o", "a.mp4", "--size", "640x360", "--progress", "none", "--log-json", "-"},
+                     folder_);
+  ASSERT_TRUE(process.wait_for_output("\"frame\":1,"));
+  process.send(SIGINT);
+  if (process.wait().exit_code == 0) GTEST_SKIP() << "it was done before the signal came";
+  EXPECT_LT(probe_video(folder_ / "a.mp4").frames, kFrames);
+  const auto render = [&](const Arguments& more) {
+    Arguments arguments{"render", "c", "-o", "a.mp4", "--size", "640x360", "--progress", "none"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return run_weft(arguments, folder_);
+  };
+  EXPECT_EQ(render({"--resume", "--quality", "draft"}).exit_code, 6) << "another film has this name";
+  EXPECT_EQ(render({"--resume"}).exit_code, 0);
+  EXPECT_EQ(probe_video(folder_ / "a.mp4").frames, kFrames);
+  EXPECT_EQ(render({"--resume"}).err, "note: a.mp4 is whole already: frames 0:21\n");
+}
+
+class Joining : public Completeness {
+ protected:
+  void SetUp() override {
+    Completeness::SetUp();
+    expect_well({"simulate", "s.toml", "--cache", "c"});
+  }
+  void draw(const std::string& output, const std::string& frames) const {
+    expect_well({"render", "c", "-o", output, "--frames", frames, "--overwrite"});
+  }
+  Outcome join(Arguments arguments) const {
+    arguments.insert(arguments.begin(), "join");
+    return run_weft(arguments, folder_);
+  }
+  void expect_joined(const Arguments& arguments) const {
+    const Outcome outcome = join(arguments);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  }
+  void expect_refused(const Arguments& arguments, int code, const std::string& said) const {
+    const Outcome outcome = join(arguments);
+    EXPECT_EQ(outcome.exit_code, code) << outcome.err;
+    EXPECT_TRUE(contains(outcome.err, said)) << outcome.err;
+    EXPECT_FALSE(fs::exists(folder_ / "joined.mp4"));
+  }
+};
+
+TEST_F(Joining, OfFoldersIsByteForByteTheVideoOfRender) {
+  draw("whole.mp4", ":");
+  draw("b/{frame:05}.png", "9:21");
+  draw("a/{frame}.png", ":9");
+  expect_joined({"b", "a", "-o", "joined.mp4"});
+  EXPECT_TRUE(support::read_bytes(folder_ / "joined.mp4") == support::read_bytes(folder_ / "whole.mp4"));
+  draw("every_third.mp4", "::3");
+  expect_joined({"a", "b", "-o", "third.mp4", "--frames", "::3"});
+  EXPECT_TRUE(support::read_bytes(folder_ / "third.mp4") == support::read_bytes(folder_ / "every_third.mp4"));
+}
+
+TEST_F(Joining, OfVideosKeepsEveryPictureAndItsTime) {
+  std::string pictures;
+  const auto lines = [&](const std::string& video) {
+    // Without the times of the part: "0, pts, duration, size, hash".
+    std::string hashes;
+    std::istringstream text(decoded(video));
+    for (std::string line; std::getline(text, line);) hashes += line.substr(line.rfind(',')) + "\n";
+    return hashes;
+  };
+  for (const auto& [name, frames] : {std::pair{"x.mp4", ":1"}, {"y.mp4", "1:14"}, {"z.mp4", "14:21"}}) {
+    draw(name, frames);
+    pictures += lines(name);
+  }
+  expect_joined({"z.mp4", "x.mp4", "y.mp4", "-o", "joined.mp4"});
+  EXPECT_EQ(lines("joined.mp4"), pictures);
+  const VideoFacts facts = probe_video(folder_ / "joined.mp4");
+  EXPECT_EQ(facts.frames, kFrames);
+  EXPECT_NEAR(facts.duration, kFrames / 25.0, 1e-9);
+  EXPECT_EQ(facts.metadata.at("frames"), "0:21");
+  // It counts as the film itself.
+  EXPECT_EQ(weft({"render", "c", "-o", "joined.mp4", "--resume"}).err,
+            "note: joined.mp4 is whole already: frames 0:21\n");
+}
+
+TEST_F(Joining, NamesWhatIsMissingAndMakesNoFile) {
+  draw("p/{frame:05}.png", ":");
+  draw("a.mp4", ":9");
+  draw("b.mp4", "11:21");
+  for (const char* name : {"p/00004.png", "p/00010.png", "p/00011.png"}) fs::remove(folder_ / name);
+  expect_refused({"p", "-o", "joined.mp4"}, 9, "of frames 0:21 frames 4, 10:12 are missing; --partial takes");
+  expect_refused({"a.mp4", "b.mp4", "-o", "joined.mp4"}, 9, "of frames 0:21 frames 9:11 are missing");
+  break_file("p/00007.png");
+  expect_refused({"p", "-o", "joined.mp4", "--frames", "5:10"}, 9, "frame 7 is missing; p/00007.png");
+  expect_joined({"p", "-o", "part.mp4", "--partial"});
+  EXPECT_EQ(probe_video(folder_ / "part.mp4").frames, 4);
+  expect_joined({"a.mp4", "b.mp4", "-o", "first.mp4", "--partial"});
+  EXPECT_EQ(probe_video(folder_ / "first.mp4").frames, 9);
+}
+
+TEST_F(Joining, RefusesWhatIsNoPartOfTheFilm) {
+  draw("p/{frame:05}.png", ":9");
+  draw("a.mp4", ":9");
+  draw("b.mp4", "7:21");
+  expect_refused({"a.mp4", "b.mp4", "-o", "joined.mp4"}, 2, "frame 7 is in both a.mp4 and b.mp4");
+  expect_refused({"p", "b.mp4", "-o", "joined.mp4"}, 2, "either videos or folders of pictures");
+  expect_refused({"b.mp4", "-o", "joined.mp4", "--frames", "9:21"}, 2, "a video is joined whole");
+  expect_well({"simulate", "s.toml", "--cache", "d", "--set", "cloth.cloth.look.color=[1,0,0]"});
+  expect_well({"render", "d", "-o", "q/{frame:05}.png", "--frames", "9:21"});
+  expect_refused({"p", "q", "-o", "joined.mp4"}, 2, "q/00009.png: expected parts of one film, its scene_hash is '");
+  expect_refused({"c", "-o", "joined.mp4"}, 4, "c: holds no pictures");
+  expect_refused({"p", "-o", "p.avi"}, 2, "-o: expected a name ending in .mp4");
+}
+
+}  // namespace
+}  // namespace weft::cli
