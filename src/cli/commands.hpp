@@ -28,6 +28,9 @@ ExitCode sheet(const SheetOptions& options);
 /// Puts the parts of a film together to one video.
 ExitCode join(const JoinOptions& options);
 
+/// Runs a scene with many values; ends with the exit code of the first run that failed.
+ExitCode sweep(const SweepOptions& options);
+
 /// Prints what this machine offers and tries it.
 ExitCode doctor(const DoctorOptions& options);
 

@@ -87,6 +87,11 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "thumbnail") return parser.thumbnail;
   if (name == "sheet") return parser.sheet;
   if (name == "join") return parser.join;
+  if (name == "sweep") {
+    if (parser.sweep.axes.empty() && parser.sweep.list.empty())
+      throw Error(ExitCode::usage, "weft sweep: expected --set KEY=A,B,... or --list; see weft sweep --help");
+    return parser.sweep;
+  }
   if (name == "schema") return parser.schema;
   if (name == "bench") return parser.bench;
   if (name == "diff") return parser.diff;

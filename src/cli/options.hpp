@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/frame_range.hpp"
+#include "cli/sweep_plan.hpp"
 #include "compare/compare.hpp"
 #include "core/progress.hpp"
 #include "export/export.hpp"
@@ -83,6 +84,16 @@ struct JoinOptions {
   bool overwrite = false;
 };
 
+struct SweepOptions {
+  std::filesystem::path scene, list;  ///< the list may be empty
+  std::vector<Axis> axes;
+  std::filesystem::path output;        ///< folder
+  std::vector<std::string> passed_on;  ///< to each run, checked
+  int jobs = 1;                        ///< runs at once
+  std::optional<int> frame;            ///< of the sheet, else the last
+  bool overwrite = false;
+};
+
 struct SchemaOptions {
   bool pattern = false;  ///< of sewing patterns, not of scenes
 };
@@ -140,8 +151,8 @@ struct PrintText {
 };
 
 using Command = std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SheetOptions,
-                             JoinOptions, SchemaOptions, DoctorOptions, BenchOptions, DiffOptions, AcceptOptions,
-                             ReviewOptions, ExportOptions, PrintText>;
+                             JoinOptions, SweepOptions, SchemaOptions, DoctorOptions, BenchOptions, DiffOptions,
+                             AcceptOptions, ReviewOptions, ExportOptions, PrintText>;
 
 /// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
 Command parse_command_line(const std::vector<std::string>& arguments);

@@ -25,6 +25,7 @@ Parser::Parser() {
   add_thumbnail();
   add_sheet();
   add_join();
+  add_sweep();
   add_schema();
   add_doctor();
   add_bench();

@@ -18,6 +18,7 @@ struct Parser {
   ThumbnailOptions thumbnail;
   SheetOptions sheet;
   JoinOptions join;
+  SweepOptions sweep;
   SchemaOptions schema;
   DoctorOptions doctor;
   BenchOptions bench;
@@ -36,6 +37,7 @@ struct Parser {
   void add_thumbnail();
   void add_sheet();
   void add_join();
+  void add_sweep();
   void add_schema();
   void add_doctor();
   void add_bench();

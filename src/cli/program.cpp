@@ -30,6 +30,7 @@ struct Dispatch {
   ExitCode operator()(const ThumbnailOptions& options) const { return thumbnail(options); }
   ExitCode operator()(const SheetOptions& options) const { return sheet(options); }
   ExitCode operator()(const JoinOptions& options) const { return join(options); }
+  ExitCode operator()(const SweepOptions& options) const { return sweep(options); }
   ExitCode operator()(const SchemaOptions& options) const {
     return print(
         (options.pattern ? scene::json_schema(garment::pattern_rules(), "Weft pattern") : scene::json_schema()) + "\n");

@@ -24,6 +24,16 @@ void paste(Image& onto, const Image& image, int x, int y) {
     std::copy_n(image.pixel(0, row), 3 * static_cast<std::size_t>(image.width), onto.pixel(x, y + row));
 }
 
+// As much of the text as there is room for.
+std::string fitting(const Font& font, std::string text, int room) {
+  if (font.width(text) <= room) return text;
+  while (!text.empty() && font.width(text + "…") > room) {
+    while (text.size() > 1 && (text.back() & 0xC0) == 0x80) text.pop_back();  // the rest of a character of UTF-8
+    text.pop_back();
+  }
+  return text + "…";
+}
+
 }  // namespace
 
 Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const std::string& heading) {
@@ -46,8 +56,9 @@ Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const s
     const int y = top + static_cast<int>(i) / columns * (height + layout.caption);
     paste(sheet, picture.image, x, y);
     const int baseline = y + height + layout.text * 5 / 4;
-    font.draw(sheet, x, baseline, picture.left, kInk);
-    font.draw(sheet, x + width - font.width(picture.right), baseline, picture.right, kFaintInk);
+    const int right = font.width(picture.right);
+    font.draw(sheet, x, baseline, fitting(font, picture.left, width - right - layout.gap / 2), kInk);
+    font.draw(sheet, x + width - right, baseline, picture.right, kFaintInk);
   }
   return sheet;
 }

@@ -1,0 +1,135 @@
+#include "cli/sweep_report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "image/contact_sheet.hpp"
+#include "image/png.hpp"
+#include "image/shrink.hpp"
+#include "video/decoder.hpp"
+
+namespace weft::cli {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+constexpr int kPictureWidth = 400;  // pixels
+constexpr int kMostColumns = 6;
+constexpr std::uint8_t kGrey = 200;
+
+std::string text_of(const Json& value) {
+  return value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : "";
+}
+
+// What stands at this place of the statistics; null where nothing does.
+Json at(const Json& json, std::initializer_list<const char*> path) {
+  const Json* here = &json;
+  for (const char* key : path) {
+    if (!here->is_object() || !here->contains(key)) return nullptr;
+    here = &(*here)[key];
+  }
+  return *here;
+}
+
+const Json& frames_of(const Json& stats) {
+  static const Json kNone = Json::array();
+  return stats.is_object() && stats.contains("frames") && stats["frames"].is_array() ? stats["frames"] : kNone;
+}
+
+std::string largest(const Json& stats, const char* key) {
+  std::optional<double> most;
+  for (const Json& frame : frames_of(stats))
+    if (const Json value = at(frame, {key}); value.is_number())
+      most = std::max(value.get<double>(), most.value_or(value.get<double>()));
+  return most ? fmt::format("{:.4g}", *most) : "";
+}
+
+std::string error_of(const Json& stats) {
+  if (const Json all = at(stats, {"error", "all", "position_m"}); all.is_number()) return text_of(all);
+  const Json steps = at(stats, {"totals", "error_estimate_m"}), solver = at(stats, {"totals", "solver_error_m"});
+  if (!steps.is_number() || !solver.is_number()) return "";
+  return fmt::format("{:.4g}", steps.get<double>() + solver.get<double>());
+}
+
+std::optional<image::Image> picture_of(const std::filesystem::path& file, std::optional<int> frame) {
+  try {
+    video::Decoder decoder(file);
+    std::optional<image::Image> picture;
+    for (int k = 0; !frame || k <= *frame; ++k) {
+      std::optional<image::Image> next = decoder.next();
+      if (!next) break;
+      picture = std::move(next);
+    }
+    if (picture) picture = image::shrink(*picture, kPictureWidth);
+    return picture;
+  } catch (const Error&) {
+    return std::nullopt;  // a run that failed before its first picture
+  }
+}
+
+}  // namespace
+
+std::string label_of(const SweepRun& run) {
+  std::string label;
+  for (const auto& [key, value] : run.difference)
+    label += fmt::format("{}{}={}", label.empty() ? "" : "  ", key, value);
+  return label.empty() ? "as it is" : label;
+}
+
+bench::Table sweep_table(const std::vector<SweepResult>& results) {
+  std::vector<std::string> keys;
+  for (const SweepResult& result : results)
+    for (const auto& [key, value] : result.run.difference)
+      if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
+  bench::Table table{keys};
+  for (const char* column : {"exit code", "CPU s", "frames", "Newton iterations", "rejected steps", "largest strain",
+                             "kinetic energy at the end J", "error m", "run"})
+    table.front().emplace_back(column);
+  for (const SweepResult& result : results) {
+    std::vector<std::string>& row = table.emplace_back();
+    for (const std::string& key : keys) {
+      const auto& changes = result.run.difference;
+      const auto found = std::ranges::find(changes, key, [](const auto& change) { return change.first; });
+      row.push_back(found == changes.end() ? "" : found->second);
+    }
+    const Json& frames = frames_of(result.stats);
+    row.push_back(fmt::format("{}", static_cast<int>(result.code)));
+    row.push_back(text_of(at(result.stats, {"totals", "cpu"})));
+    row.push_back(fmt::format("{}", frames.size()));
+    double iterations = 0;
+    for (const Json& frame : frames) iterations += frame.value("newton_iterations", 0.0);
+    row.push_back(fmt::format("{}", iterations));
+    row.push_back(text_of(at(result.stats, {"totals", "rejected_steps"})));
+    row.push_back(largest(result.stats, "max_strain"));
+    row.push_back(frames.empty() ? "" : text_of(at(frames.back(), {"kinetic_energy_j"})));
+    row.push_back(error_of(result.stats));
+    row.push_back(result.run.name);
+  }
+  return table;
+}
+
+void write_sweep_sheet(const std::filesystem::path& file, const std::vector<SweepResult>& results,
+                       const std::string& heading, std::optional<int> frame) {
+  std::vector<std::optional<image::Image>> found;
+  for (const SweepResult& result : results) found.push_back(picture_of(result.video, frame));
+  const auto some = std::ranges::find_if(found, [](const auto& picture) { return picture.has_value(); });
+  if (some == found.end()) return;
+  image::Image none((*some)->width, (*some)->height);
+  std::ranges::fill(none.rgb, kGrey);
+  std::vector<image::SheetPicture> pictures;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const bool fits = found[i] && found[i]->width == none.width && found[i]->height == none.height;
+    const std::string cost = text_of(at(results[i].stats, {"totals", "cpu"}));
+    const bool good = results[i].code == ExitCode::ok;
+    pictures.push_back(
+        {fits ? *found[i] : none, label_of(results[i].run),
+         good ? fmt::format("{} CPU s", cost) : fmt::format("exit {}", static_cast<int>(results[i].code))});
+  }
+  const int columns =
+      std::min(kMostColumns, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(results.size())))));
+  image::write_png(file, image::contact_sheet(pictures, columns, heading));
+}
+
+}  // namespace weft::cli

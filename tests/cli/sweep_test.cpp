@@ -1,0 +1,183 @@
+// weft sweep: which runs there are, and what becomes of them.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "cli/cached_run.hpp"
+#include "cli/sweep_plan.hpp"
+#include "image/png.hpp"
+#include "image/shrink.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::vector<std::string> names(const std::vector<SweepRun>& runs) {
+  std::vector<std::string> names;
+  for (const SweepRun& run : runs) names.push_back(run.name);
+  return names;
+}
+
+TEST(SweepPlan, ValuesArePartedByCommasOutsideOfBrackets) {
+  EXPECT_EQ(parse_axis("a.b=1, 2,3").values, (std::vector<std::string>{"1", "2", "3"}));
+  EXPECT_EQ(parse_axis("w=[0,1],[2,3]").values, (std::vector<std::string>{"[0,1]", "[2,3]"}));
+  EXPECT_EQ(parse_axis("m={fabric=\"a,b\",x=1},\"c,d\"").values,
+            (std::vector<std::string>{"{fabric=\"a,b\",x=1}", "\"c,d\""}));
+  support::expect_error(ExitCode::usage, "expected values such as a=1,2,3", [] { parse_axis("a=1,,2"); });
+  support::expect_error(ExitCode::usage, "expected path.to.key=value", [] { parse_axis("a"); });
+}
+
+TEST(SweepPlan, HasAllCombinationsNamedByWhatDiffers) {
+  const auto runs = plan_sweep({}, {{"cloth.a.bend", {"1e-6", "1e-5"}}, {"fps", {"25"}}, {"time.step", {"1", "2"}}});
+  EXPECT_EQ(names(runs),
+            (std::vector<std::string>{"bend=1e-6_step=1", "bend=1e-6_step=2", "bend=1e-5_step=1", "bend=1e-5_step=2"}));
+  EXPECT_EQ(runs[1].changes, (Changes{{"cloth.a.bend", "1e-6"}, {"fps", "25"}, {"time.step", "2"}}));
+}
+
+TEST(SweepPlan, KeysThatEndAlikeAreToldApart) {
+  EXPECT_EQ(names(plan_sweep({}, {{"cloth.a.bend", {"1", "2"}}, {"cloth.b.bend", {"3"}}})),
+            (std::vector<std::string>{"bend=1", "bend=2"}));
+  EXPECT_EQ(names(plan_sweep({}, {{"cloth.a.bend", {"1", "2"}}, {"cloth.b.bend", {"3", "4"}}})).front(),
+            "a.bend=1_b.bend=3");
+}
+
+TEST(SweepPlan, NamesAreFileNamesOfTheirOwn) {
+  const auto runs =
+      plan_sweep({}, {{"k", {"[0, 1]", "{0,1}", "../a b", std::string(300, 'x'), std::string(301, 'x')}}});
+  EXPECT_EQ(names(runs), (std::vector<std::string>{"k=0,1", "k=0,1~2", "k=..-ab", "k=" + std::string(118, 'x'),
+                                                   "k=" + std::string(118, 'x') + "~2"}));
+}
+
+TEST(SweepPlan, WhatIsAskedForTwiceIsThereOnce) {
+  EXPECT_EQ(plan_sweep({}, {{"k", {"1", "2", "1"}}}).size(), 2u);
+  support::expect_error(ExitCode::usage, "k: expected its values in one place, got it twice", [] {
+    plan_sweep({}, {{"k", {"1"}}, {"k", {"2"}}});
+  });
+  support::expect_error(ExitCode::usage, "at most 10000 runs", [] {
+    plan_sweep({}, {{"a", std::vector<std::string>(101, "1")}, {"b", std::vector<std::string>(100, "1")}});
+  });
+}
+
+class SweepList : public support::TestFolder {
+ protected:
+  std::vector<Changes> read(const std::string& name, const std::string& text) const {
+    support::write_bytes(folder_ / name, text);
+    return read_list(folder_ / name);
+  }
+};
+
+TEST_F(SweepList, OfCsvAndTomlIsTheSame) {
+  const std::vector<Changes> expected{{{"a.b", "1e-6"}, {"w", "[1, 2]"}}, {{"a.b", "2"}}};
+  EXPECT_EQ(read("l.csv", "a.b, w\n1e-6,\"[1, 2]\"\n\n2,\n"), expected);
+  EXPECT_EQ(read("l.toml", "[[run]]\na.b = 1e-6\nw = [1, 2]\n[[run]]\na.b = 2\n"),
+            (std::vector<Changes>{{{"a.b", "1e-06"}, {"w", "[ 1, 2 ]"}}, {{"a.b", "2"}}}));
+  EXPECT_EQ(names(plan_sweep(expected, {{"s", {"3", "4"}}})).front(), "b=1e-6_w=1,2_s=3");
+}
+
+TEST_F(SweepList, MistakesNameTheirLine) {
+  support::expect_error(ExitCode::asset_unreadable, "l.csv:3: expected 2 values as in the first line, got 1",
+                        [&] { read("l.csv", "a,b\n1,2\n3\n"); });
+  support::expect_error(ExitCode::asset_unreadable, "l.toml:2:", [&] { read("l.toml", "[[run]]\na = = 1\n"); });
+  support::expect_error(ExitCode::asset_unreadable, "expected a table [[run]]", [&] { read("l.toml", "a = 1\n"); });
+  support::expect_error(ExitCode::asset_unreadable, "names no run", [&] { read("l.csv", "a,b\n"); });
+}
+
+TEST(Shrink, PixelsAreTheMeanOfWhatTheyCover) {
+  image::Image image(4, 2);
+  for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = static_cast<std::uint8_t>(10 * (i / 3) + i % 3);
+  const image::Image half = image::shrink(image, 2);
+  ASSERT_EQ(half.height, 1);
+  EXPECT_EQ(half.rgb, (std::vector<std::uint8_t>{25, 26, 27, 45, 46, 47}));  // of pixels 0 1 4 5, and 2 3 6 7
+  EXPECT_EQ(image::shrink(image, 4).rgb, image.rgb);
+}
+
+class Sweeps : public CachedRun {
+ protected:
+  static constexpr const char* kRadius = "obstacle.ball.radius=0.1,0.11";
+  Arguments with_sweep(Arguments more) const {
+    more.insert(more.begin(), {"sweep", "s.toml", "-o", "w", "--size", "64x36", "--quality", "draft"});
+    return more;
+  }
+  Outcome sweep(const Arguments& more) const { return run_weft(with_sweep(more), folder_); }
+  std::string table() const { return support::read_bytes(folder_ / "w/table.csv"); }
+};
+
+TEST_F(Sweeps, HaveTheVideosOfSingleRunsASheetATableAndAPage) {
+  const Arguments arguments{"--set",  kRadius, "--set", "time.duration=0.2", "--set", "time.step=0.02,0.01",
+                            "--jobs", "2"};
+  const Outcome outcome = sweep(arguments);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  expect_well({"run", "s.toml", "-o", "one.mp4", "--set", "obstacle.ball.radius=0.11", "--set", "time.duration=0.2",
+               "--set", "time.step=0.01"});
+  EXPECT_EQ(decoded("w/radius=0.11_step=0.01/s.mp4"), decoded("one.mp4"));
+  const std::string csv = table();
+  EXPECT_TRUE(csv.starts_with("radius,step,exit code,CPU s,frames,Newton iterations,")) << csv;
+  EXPECT_NE(csv.find("\n0.11,0.01,0,"), std::string::npos) << csv;
+  EXPECT_EQ(std::ranges::count(csv, '\n'), 5);
+  const image::Image sheet = image::read_png(folder_ / "w/sheet.png");
+  EXPECT_GT(sheet.width, 2 * 64);
+  EXPECT_GT(sheet.height, 2 * 36);
+  EXPECT_TRUE(fs::exists(folder_ / "w/page/index.html"));
+}
+
+TEST_F(Sweeps, GoOnWithWhatIsNotDoneAndPassOverTheRest) {
+  const Arguments arguments{"--set", "time.duration=0.08,0.12,0.120"};
+  EXPECT_EQ(sweep(arguments).exit_code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "w/duration=0.120")) << "the same scene was run twice";
+  fs::remove(folder_ / "w/duration=0.08/s.mp4");
+  const auto written = fs::last_write_time(folder_ / "w/duration=0.12/s.mp4");
+  fs::remove(folder_ / "w/duration=0.08/s.json");
+  const Outcome again = sweep(arguments);
+  EXPECT_EQ(again.exit_code, 0) << again.err;
+  EXPECT_NE(again.err.find("] duration=0.12: done already\n"), std::string::npos) << again.err;
+  EXPECT_NE(again.err.find("duration=0.120: the same scene as duration=0.12\n"), std::string::npos) << again.err;
+  EXPECT_TRUE(fs::exists(folder_ / "w/duration=0.08/s.mp4"));
+  EXPECT_EQ(fs::last_write_time(folder_ / "w/duration=0.12/s.mp4"), written);
+  const Outcome other = sweep({"--set", "time.duration=0.08,0.12", "--frames", "0:2"});
+  EXPECT_EQ(other.exit_code, 6);
+  EXPECT_NE(other.err.find("w: holds runs with other options"), std::string::npos) << other.err;
+  fs::create_directories(folder_ / "w2/mine");
+  EXPECT_EQ(run_weft({"sweep", "s.toml", "-o", "w2", "--set", kRadius}, folder_).exit_code, 6);
+}
+
+TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {
+  // A camera that one of the scenes has.
+  const std::string cameras =
+      "camera=[{name='v',position=[1,-1,1],target=[0,0,0.2]}],"
+      "[{name='w',position=[1,-1,1],target=[0,0,0.2]}]";
+  const Outcome outcome = sweep({"--set", cameras, "--set", "time.duration=0.08", "--camera", "v"});
+  EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
+  EXPECT_NE(outcome.err.find("exit code 2: weft: --camera: expected w, got v"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("weft: 1 of 2 runs failed:\n"), std::string::npos) << outcome.err;
+  EXPECT_NE(table().find(",2,,0,"), std::string::npos) << table();
+  EXPECT_TRUE(fs::exists(folder_ / "w/sheet.png"));
+}
+
+TEST_F(Sweeps, MistakesOfAnyRunEndThemBeforeTheFirst) {
+  const Outcome outcome = sweep({"--set", "obstacle.ball.radius=0.1,-1", "--set", "cloth.cloth.position=[0,0,1],3"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.err.find("--set obstacle.ball.radius=-1: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("--set cloth.cloth.position=3: "), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(folder_ / "w"));
+  EXPECT_EQ(sweep({}).exit_code, 2);
+  EXPECT_EQ(run_weft({"sweep", "s.toml", "-o", ".", "--set", kRadius}, folder_).exit_code, 2) << "holds the scene";
+}
+
+TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
+  const Arguments arguments{"--set", kRadius, "--set", "time.step=0.002"};
+  Subprocess process(with_sweep(arguments), folder_);
+  for (int i = 0; i < 3000 && !fs::exists(folder_ / "w/radius=0.1/.s.weft-cache/frame_00002.weft"); ++i) usleep(20'000);
+  process.send(SIGTERM);
+  const Outcome stopped = process.wait();
+  EXPECT_EQ(stopped.exit_code, 75) << stopped.err;
+  EXPECT_NE(stopped.err.find("2 of 2 runs are not done; the same command goes on"), std::string::npos) << stopped.err;
+  EXPECT_EQ(sweep({"--set", kRadius, "--set", "time.step=0.002"}).exit_code, 0);
+  expect_well({"run", "s.toml", "-o", "one.mp4", "--set", "time.step=0.002"});
+  EXPECT_EQ(decoded("w/radius=0.1/s.mp4"), decoded("one.mp4"));
+}
+
+}  // namespace
+}  // namespace weft::cli
