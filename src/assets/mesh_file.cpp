@@ -33,8 +33,9 @@ std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
 }
 
 /// Joins vertices at exactly the same place (0 and -0 are one) and drops those that no face names. Vertices come in the
-/// order in which faces first name them. Returns the number of copies joined to others.
-std::size_t join_vertices(Soup& soup) {
+/// order in which faces first name them. Counts copies joined to others. Returns for each vertex which it is then, or
+/// −1.
+std::vector<Index> join_vertices(Soup& soup, std::size_t& joined) {
   const std::vector<Index> first = first_at_same_place(soup.positions);
   std::vector<Index> renamed(first.size(), -1);
   std::vector<Vec3> kept;
@@ -49,9 +50,30 @@ std::size_t join_vertices(Soup& soup) {
   for (auto& q : soup.quads) std::for_each(q.begin(), q.end(), rename);
   for (auto& t : soup.triangles) std::for_each(t.begin(), t.end(), rename);
   soup.positions = std::move(kept);
-  std::size_t joined = 0;
-  for (std::size_t v = 0; v < first.size(); ++v) joined += first[v] == static_cast<Index>(v) ? 0 : 1;
-  return joined;
+  for (std::size_t v = 0; v < first.size(); ++v) {
+    joined += first[v] == static_cast<Index>(v) ? 0 : 1;
+    renamed[v] = renamed[static_cast<std::size_t>(first[v])];
+  }
+  return renamed;
+}
+
+/// What the file says of vertices beside their places; `renamed`: which of the result each is.
+void take_vertices(const Soup& soup, const std::vector<Index>& renamed, LoadedMesh& result) {
+  const std::size_t count = result.mesh.positions.size();
+  for (std::size_t v = 0; v < renamed.size(); ++v) {
+    if (renamed[v] < 0 || !soup.colors[v].allFinite()) continue;
+    if (result.colors.empty()) result.colors.assign(count, Vec3::Zero());
+    Vec3& color = result.colors[static_cast<std::size_t>(renamed[v])];
+    color = color.cwiseMax(soup.colors[v]).cwiseMin(1);
+  }
+  for (const Soup::Weight& weight : soup.weights) {
+    const Index vertex = renamed[static_cast<std::size_t>(weight.vertex)];
+    if (vertex < 0 || !(weight.weight > 0)) continue;
+    std::vector<double>& group = result.groups[soup.group_names[static_cast<std::size_t>(weight.group)]];
+    group.resize(count);
+    double& most = group[static_cast<std::size_t>(vertex)];
+    most = std::min(1.0, std::max(most, weight.weight));
+  }
 }
 
 /// UVs of the triangles that make_topology() makes, also after vertices have been joined: equal places give the same.
@@ -81,10 +103,11 @@ LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std:
 
   LoadedMesh result;
   result.uv = corners_of(soup);
-  result.joined_vertices = join_vertices(soup);
+  const std::vector<Index> renamed = join_vertices(soup, result.joined_vertices);
   result.mesh.topology = make_topology(soup, result.removed_triangles);
   if (result.mesh.topology.triangles.empty()) source.fail("expected faces with an area, got none");
   result.mesh.positions = std::move(soup.positions);
+  take_vertices(soup, renamed, result);
   return result;
 }
 

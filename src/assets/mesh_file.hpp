@@ -4,6 +4,7 @@
 #include <array>
 #include <cstddef>
 #include <filesystem>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,6 +19,10 @@ struct LoadedMesh {
   /// Of the corners of each triangle, as the file has it, v upward: islands of one vertex differ. NaN where a part of
   /// the file has none; empty where all have none.
   std::vector<std::array<Vec2, 3>> uv;
+  std::vector<Vec3> colors;  ///< per vertex, each channel from 0 to 1; empty where no part of the file has any
+  /// Weight from 0 to 1 of each vertex in the groups of the file, or its bones. Of vertices that became one these and
+  /// the channels of colours are the largest.
+  std::map<std::string, std::vector<double>> groups;
   std::size_t removed_triangles = 0;  ///< without area: a corner named twice, or all corners on a line
   std::size_t joined_vertices = 0;    ///< copies at the same place, as made by seams of texture or normals
 };

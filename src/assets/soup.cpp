@@ -29,7 +29,7 @@ using Transform = Eigen::Matrix4d;
 /// Faces flatter than this (area by longest side squared) count as having no area: their normal is rounding noise of
 /// the single precision that assimp reads with.
 constexpr double kFlatFace = 1e-7;
-constexpr double kNoUv = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
 
 bool has_area(const mesh::Triangle& t, const std::vector<Vec3>& x) {
   const auto corner = [&](std::size_t k) -> const Vec3& { return x[t[k]]; };
@@ -45,6 +45,18 @@ Transform to_eigen(const aiMatrix4x4& m) {
   return result;
 }
 
+/// Bones of meshes are groups of vertices; those of one name are one.
+void append_groups(Soup& soup, const aiMesh& part, std::size_t base) {
+  for (const aiBone* bone : std::span(part.mBones, part.mNumBones)) {
+    const auto known = std::ranges::find(soup.group_names, bone->mName.C_Str());
+    const auto group = static_cast<Index>(known - soup.group_names.begin());
+    if (known == soup.group_names.end()) soup.group_names.emplace_back(bone->mName.C_Str());
+    for (const aiVertexWeight& weight : std::span(bone->mWeights, bone->mNumWeights))
+      if (weight.mVertexId < part.mNumVertices)
+        soup.weights.push_back({group, static_cast<Index>(base + weight.mVertexId), weight.mWeight});
+  }
+}
+
 /// Appends one mesh under a node's transform.
 void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
   const std::size_t base = soup.positions.size();
@@ -54,9 +66,13 @@ void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
     const aiVector3D& x = part.mVertices[v];
     const Eigen::Vector4d world = to_world * Eigen::Vector4d(x.x, x.y, x.z, 1);
     soup.positions.push_back(world.head<3>());
-    soup.uv.emplace_back(kNoUv, kNoUv);
+    soup.uv.emplace_back(kNone, kNone);
     if (part.HasTextureCoords(0)) soup.uv.back() = {part.mTextureCoords[0][v].x, part.mTextureCoords[0][v].y};
+    soup.colors.emplace_back(kNone, kNone, kNone);
+    if (part.HasVertexColors(0))
+      soup.colors.back() = {part.mColors[0][v].r, part.mColors[0][v].g, part.mColors[0][v].b};
   }
+  append_groups(soup, part, base);
   // A mirroring transform turns faces inside out; reverse them to keep their outside.
   const bool mirrored = to_world.topLeftCorner<3, 3>().determinant() < 0;
   std::vector<Index> corners;
@@ -173,6 +189,12 @@ std::string to_bytes(const Soup& soup) {
   std::string bytes;
   put(bytes, soup.positions);
   put(bytes, soup.uv);
+  put(bytes, soup.colors);
+  put(bytes, soup.weights);
+  std::vector<char> names;  // each ends with a zero
+  for (const std::string& name : soup.group_names)
+    names.insert(names.end(), name.c_str(), name.c_str() + name.size() + 1);
+  put(bytes, names);
   put(bytes, soup.triangles);
   put(bytes, soup.quads);
   return bytes;
@@ -182,6 +204,15 @@ Soup from_bytes(std::string_view bytes) {
   Soup soup;
   take(bytes, soup.positions);
   take(bytes, soup.uv);
+  take(bytes, soup.colors);
+  take(bytes, soup.weights);
+  std::vector<char> names;
+  take(bytes, names);
+  for (auto begin = names.begin(); begin != names.end();) {
+    const auto end = std::find(begin, names.end(), '\0');
+    soup.group_names.emplace_back(begin, end);
+    begin = end == names.end() ? end : end + 1;
+  }
   take(bytes, soup.triangles);
   take(bytes, soup.quads);
   return soup;

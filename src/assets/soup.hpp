@@ -17,6 +17,14 @@ namespace weft::assets {
 struct Soup {
   std::vector<Vec3> positions;  ///< in the unit of the file
   std::vector<Vec2> uv;         ///< per position, v upward; NaN where its mesh has none
+  std::vector<Vec3> colors;     ///< likewise; NaN where its mesh has none
+  /// Weights of the groups of vertices, or bones: number among group_names, place among positions, and weight.
+  struct Weight {
+    Index group, vertex;
+    double weight;
+  };
+  std::vector<Weight> weights;
+  std::vector<std::string> group_names;
   std::vector<mesh::Triangle> triangles;
   std::vector<mesh::Quad> quads;
 };

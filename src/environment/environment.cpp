@@ -15,6 +15,7 @@
 #include "core/nearest.hpp"
 #include "core/parallel.hpp"
 #include "environment/acting.hpp"
+#include "environment/chosen_particles.hpp"
 #include "garment/garment.hpp"
 #include "garment/uv_rest.hpp"
 #include "mesh/caps.hpp"
@@ -84,25 +85,6 @@ mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
   return mesh;
 }
 
-/// A part that holds no particle would hold nothing, silently; of rectangles the scene's check has told already.
-void check_parts(const scene::Cloth& cloth, const ClothObject& object, const std::string& where) {
-  std::vector<std::string> edges;
-  for (const auto& [name, particles] : object.edges) edges.push_back(name);
-  const auto check = [&](const scene::ClothPart& part, const char* kind) {
-    if (!part.edge.empty() && !object.edges.contains(part.edge)) {
-      const std::string nearest = nearest_name(part.edge, edges);
-      throw Error(ExitCode::scene_invalid, "{}: expected a {} at an edge of its pattern, such as {}, got \"{}\"{}",
-                  where, kind, edges.front(), part.edge,
-                  nearest.empty() ? "" : fmt::format("; did you mean {}?", nearest));
-    }
-    if (particles_of(part, object).empty())
-      throw Error(ExitCode::scene_invalid,
-                  "{}: expected a {} that holds at least one particle, got one that holds none", where, kind);
-  };
-  for (const scene::Pin& pin : cloth.pins) check(pin, "pin");
-  for (const scene::Weight& weight : cloth.weights) check(weight, "weight");
-}
-
 /// Garments stand upright along z, like shapes, those of panels around parts of a wearer where it stands. Parts of them
 /// are in fractions across and up.
 void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
@@ -126,7 +108,6 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   if (wearer == nullptr) object.mesh = turned_up(std::move(object.mesh), scene.up);
   object.sheet = std::move(garment.sheet);
   object.spacing = std::numbers::sqrt2 * mesh::least_height(object.sheet);
-  check_parts(cloth, object, where);
   for (const scene::PanelPaint& panel : cloth.look.panels)
     if (std::ranges::find(object.panels, panel.name) == object.panels.end()) {
       const std::string nearest = nearest_name(panel.name, object.panels);
@@ -190,8 +171,9 @@ bool takes_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std:
   return true;
 }
 
-/// Cloth from a file: its start is the mesh, its shape at rest that too, or the flat panels that its UVs are.
-void use_mesh_file(const scene::Cloth& cloth, const std::string& where, ClothObject& object) {
+/// Cloth from a file: its start is the mesh, its shape at rest that too, or the flat panels that its UVs are. Returns
+/// what else the file says of its vertices.
+assets::LoadedMesh use_mesh_file(const scene::Cloth& cloth, const std::string& where, ClothObject& object) {
   assets::LoadedMesh loaded = load_sheet(cloth, where);
   garment::UvRest rest;
   if (cloth.rest != scene::ClothRest::mesh) rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale);
@@ -208,7 +190,7 @@ void use_mesh_file(const scene::Cloth& cloth, const std::string& where, ClothObj
         object.mesh.uv[static_cast<std::size_t>(object.sheet.triangles[t][k])] = object.sheet.material[t][k];
     object.paint_uv = object.sheet.material;
   }
-  check_parts(cloth, object, where);
+  return loaded;
 }
 
 // How many times the least height of a cloth's triangles, or the least spacing of its quads, the longest edge may be
@@ -268,6 +250,7 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wea
   const std::string where =
       fmt::format("{}:{}:{}: cloth.{}", scene.file.string(), cloth.line, cloth.column, cloth.name);
   const mesh::Grid grid = grid_of(cloth);
+  assets::LoadedMesh file;
   switch (cloth.shape) {
     case scene::ClothShape::quads:
       use_quads(grid, object);
@@ -279,12 +262,13 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wea
       use_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::crossed), object);
       break;
     case scene::ClothShape::mesh:
-      use_mesh_file(cloth, where, object);
+      file = use_mesh_file(cloth, where, object);
       break;
     case scene::ClothShape::pattern:
       use_pattern(scene, cloth, where, wearers, object);
       break;
   }
+  choose_particles(cloth, file, where, object);
   if (meets_obstacles(scene) && scene::rectangle_particles(cloth) == 0) check_triangles(object.sheet, where);
   for (Vec3& x : object.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
   object.start = start_positions(cloth, object.mesh);
@@ -379,7 +363,7 @@ std::vector<FollowingPin> following_pins(const scene::Scene& scene, const std::v
       if (followed.body != name) continue;
       FollowingPin& places = following.emplace_back();
       places.part = followed.part;
-      for (const Index particle : particles_of(pin, cloths[c])) places.places.push_back(cloths[c].start[particle]);
+      for (const Chosen& chosen : cloths[c].pins[p]) places.places.push_back(cloths[c].start[chosen.particle]);
       followers.push_back({c, p, first});
       first += places.places.size();
     }
@@ -406,17 +390,6 @@ BodyObject make_character(const scene::Character& character, const Actor& actor)
 }
 
 }  // namespace
-
-std::vector<Index> particles_of(const scene::ClothPart& part, const ClothObject& cloth) {
-  std::vector<std::uint8_t> on_edge(part.edge.empty() ? 0 : cloth.fractions.size(), 0);
-  if (!part.edge.empty())
-    for (const Index i : cloth.edges.at(part.edge)) on_edge[i] = 1;
-  std::vector<Index> particles;
-  for (std::size_t i = 0; i < cloth.fractions.size(); ++i)
-    if ((on_edge.empty() || on_edge[i] != 0) && part.holds(cloth.fractions[i].x(), cloth.fractions[i].y()))
-      particles.push_back(static_cast<Index>(i));
-  return particles;
-}
 
 mesh::Grid grid_of(const scene::Cloth& cloth) {
   return {.nu = cloth.particles_weft,

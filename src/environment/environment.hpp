@@ -22,6 +22,13 @@
 
 namespace weft::environment {
 
+/// A particle of a part of a cloth, numbered within it.
+struct Chosen {
+  Index particle = 0;
+  double share = 1;    ///< above 0, at most 1: of the strength or mass that the part has for each
+  bool faded = false;  ///< around the part of a pin, not of it
+};
+
 /// A deformable sheet, of quads or of triangles, as it starts.
 struct ClothObject {
   std::string name;
@@ -36,10 +43,11 @@ struct ClothObject {
   /// Least distance between particles of a grid [m]; of triangles √2 times the least height, which is the same for the
   /// two halves of a square.
   double spacing = 0;
-  std::vector<Vec3> start;  ///< positions of the particles [m]
-  Vec3 velocity{0, 0, 0};   ///< of all of them [m/s]
-  double put_on = 0;        ///< time after the start of the simulation, its preroll included, at which it comes [s]
-  std::string rest_from;    ///< of a mesh file: what its shape at rest is taken from, and why
+  std::vector<std::vector<Chosen>> pins, weights;  ///< particles of each of the scene; of a pin its part comes first
+  std::vector<Vec3> start;                         ///< positions of the particles [m]
+  Vec3 velocity{0, 0, 0};                          ///< of all of them [m/s]
+  double put_on = 0;      ///< time after the start of the simulation, its preroll included, at which it comes [s]
+  std::string rest_from;  ///< of a mesh file: what its shape at rest is taken from, and why
   std::vector<std::string> warnings;
 };
 
@@ -79,9 +87,6 @@ void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
 /// A cloth as it starts. Throws Error(asset_unreadable, scene_invalid) for what its file holds, naming the scene's
 /// line.
 ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers);
-
-/// The particles of a part of a cloth, numbered within it.
-std::vector<Index> particles_of(const scene::ClothPart& part, const ClothObject& cloth);
 
 /// Does not change: who steps through time keeps what it asks for.
 class Environment {

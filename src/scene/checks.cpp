@@ -54,6 +54,17 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
   }
 }
 
+/// Reads the picture, so that what is wrong with it shows with all other mistakes.
+void check_image(const std::optional<std::filesystem::path>& image, const std::string& key, Findings& findings) {
+  if (!image || !findings.has(key) || findings.faulty(key)) return;
+  try {
+    image::read_picture(*image);
+  } catch (const std::exception& error) {
+    findings.report(
+        key, fmt::format("expected a picture (PNG or JPEG), got {}: {}", in_quotes(image->string()), error.what()));
+  }
+}
+
 void check_part(const Cloth& cloth, const ClothPart& part, const std::string& path, Findings& findings) {
   for (int axis = 0; axis < 2; ++axis) {
     if (part.low[axis] <= part.high[axis]) continue;
@@ -65,6 +76,14 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
     findings.report(path + ".edge",
                     "expected none of a cloth that is sewn from no pattern, got " + in_quotes(part.edge));
     return;
+  }
+  check_image(part.mask, path + ".mask", findings);
+  if (cloth.shape != ClothShape::mesh) {
+    if (part.vertex_color != VertexColor::none)
+      findings.report(path + ".vertex_color", "expected none of a cloth that is not shape = \"mesh\", got one");
+    if (!part.vertex_group.empty())
+      findings.report(path + ".vertex_group",
+                      "expected none of a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
   if (rectangle_particles(cloth) == 0) return;  // what it holds shows when the file is read
   // A part between two rows of particles would hold nothing, silently.
@@ -93,6 +112,11 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
   check_reference(followed.body, bodies, "an obstacle or character", path + ".follow", findings);
   if (!followed.part.empty() && !findings.faulty(path + ".follow"))
     check_reference(followed.body, characters, "a character before the part", path + ".follow", findings);
+  if (pin.fade > 0 && !pin.strength)
+    findings.report(path + ".fade",
+                    fmt::format("expected a strength beside it, which fades; got {} m and none; to hold the part and "
+                                "draw what is around it, write a pin that holds and beside it one with both",
+                                pin.fade));
   check_part(cloth, pin, path, findings);
 }
 
@@ -132,23 +156,11 @@ void check_layers(const Scene& scene, Findings& findings) {
   }
 }
 
-/// Reads the picture, so that what is wrong with it shows with all other mistakes.
-void check_image(const Paint& paint, const std::string& path, Findings& findings) {
-  const std::string key = path + ".image";
-  if (!paint.image || !findings.has(key) || findings.faulty(key)) return;
-  try {
-    image::read_picture(*paint.image);
-  } catch (const std::exception& error) {
-    findings.report(key, fmt::format("expected a picture (PNG or JPEG), got {}: {}", in_quotes(paint.image->string()),
-                                     error.what()));
-  }
-}
-
 void check_look(const Cloth& cloth, const std::string& path, Findings& findings) {
-  check_image(cloth.look, path + ".look", findings);
+  check_image(cloth.look.image, path + ".look.image", findings);
   for (std::size_t p = 0; p < cloth.look.panels.size(); ++p) {
     const std::string& entry = findings.entry(path + ".look.panel", p);
-    check_image(cloth.look.panels[p], entry, findings);
+    check_image(cloth.look.panels[p].image, entry + ".image", findings);
     if (cloth.shape != ClothShape::pattern)
       findings.report(entry, "expected none of a cloth that is sewn from no pattern");
   }

@@ -111,8 +111,13 @@ void for_each_dependency(const Scene& scene, const DependencyVisitor& each) {
   Walk walk(each);
   for (const Obstacle& obstacle : scene.obstacles)
     if (const auto* mesh = std::get_if<MeshFile>(&obstacle.shape)) walk.visit(mesh->path);
-  for (const Cloth& cloth : scene.cloths)
+  for (const Cloth& cloth : scene.cloths) {
     if (!cloth.file.empty()) walk.visit(cloth.file);
+    for (const Pin& pin : cloth.pins)
+      if (pin.mask) walk.visit(*pin.mask);
+    for (const Weight& weight : cloth.weights)
+      if (weight.mask) walk.visit(*weight.mask);
+  }
   for (const Character& character : scene.characters) {
     if (const auto* file = std::get_if<CharacterFile>(&character.source)) walk.visit(file->path);
     if (const Acting* acting = acting_of(character); acting != nullptr && acting->motion) walk.visit(*acting->motion);

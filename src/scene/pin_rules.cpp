@@ -15,6 +15,16 @@ void part_rows(TableBuilder<S>& rows) {
       .single_fills_all();
   rows.plain(Type::text, "edge", &S::edge, "edge of a sewing pattern, as panel.edge, of which the part consists")
       .by_default("all between low and high");
+  rows.plain(Type::file, "mask", &S::mask,
+             "picture (PNG or JPEG) whose greys are shares: white takes particles whole, black not, what it leaves "
+             "transparent neither. It is laid on the UVs of a mesh; on other cloth it spans what low and high span, "
+             "its left end at low weft, its foot at low warp")
+      .by_default("none");
+  rows.choice("vertex_color", &S::vertex_color, {"none", "red", "green", "blue", "brightness"},
+              "of the colours that the file of a mesh gives its vertices: what their share is");
+  rows.plain(Type::text, "vertex_group", &S::vertex_group,
+             "group of vertices, or bone, of the file of a mesh, whose weights are shares")
+      .by_default("none");
 }
 
 const Table& pin_key_rules() {
@@ -52,8 +62,12 @@ const Table& pin_rules() {
           .excludes("keys")
           .number("release", &Pin::release, within(-1, 1e5), "s", "time at which they are let go; negative: never")
           .number("strength", &Pin::strength, above(0, 1e9), "N/m",
-                  "of a damped spring that draws each of them to where it is to be")
-          .by_default("none: they are held there, as far as nothing is in the way")
+                  "of a damped spring that draws each of them to where it is to be, times its share")
+          .by_default("none: they are held there, as far as nothing is in the way, those with a share of half or more")
+          .number("fade", &Pin::fade, within(0, 1e3), "m",
+                  "distance along edges of the cloth at rest up to which what is around them is drawn as well, by ever "
+                  "softer springs; it asks for a strength. To hold them and only draw what is around, hold them by a "
+                  "pin without strength beside this one: what a pin chooses is never drawn by the fade of another")
           .choice(
               "interpolation", [](Pin& pin) -> Interpolation& { return pin.motion.interpolation; }, kInterpolations,
               "between its keys")
@@ -70,7 +84,7 @@ const Table& weight_rules() {
   static const Table kTable =
       TableBuilder<Weight>("Mass that hangs on a part of the cloth, as lead does in the hem of a curtain.")
           .with(part_rows<Weight>)
-          .number("mass", &Weight::mass, above(0, 1e9), "kg", "in equal shares on all particles of the part")
+          .number("mass", &Weight::mass, above(0, 1e9), "kg", "on all particles of the part, by their shares")
           .build();
   return kTable;
 }

@@ -157,10 +157,16 @@ struct PinTrack {
   std::vector<PinKey> keys;  ///< empty: they stay where they start
 };
 
-/// Particles of a cloth, in fractions of its rest size along weft and warp: those inside [low, high].
+enum class VertexColor { none, red, green, blue, brightness };
+
+/// Particles of a cloth, in fractions of its rest size along weft and warp: those inside [low, high]. What else is
+/// given says which share of each of them; several such shares are multiplied.
 struct ClothPart {
   Vec2 low{0, 0}, high{1, 1};
-  std::string edge;  ///< of a pattern, as "panel.edge": only those on it; empty: all
+  std::string edge;                              ///< of a pattern, as "panel.edge": only those on it; empty: all
+  std::optional<std::filesystem::path> mask;     ///< picture whose greys are shares; absolute after checking
+  VertexColor vertex_color = VertexColor::none;  ///< of the file of a mesh
+  std::string vertex_group;                      ///< likewise: a group of its vertices, or bone; empty: all
 
   /// Whether the particle at fractions (u, v) of the rest size is inside; the slack keeps i / (n - 1) inside a bound
   /// that was written with fewer digits.
@@ -176,6 +182,7 @@ struct Pin : ClothPart {
   PinTrack motion;                 ///< else of their own
   double release = -1;             ///< time at which they are let go [s]; negative: never
   std::optional<double> strength;  ///< of the springs that draw them there [N/m]; none: they are held
+  double fade = 0;  ///< distance along the cloth up to which others are drawn too, ever less [m]; needs a strength
 };
 
 /// The body and, of a character, the part (else empty) that a pin follows.
@@ -187,7 +194,7 @@ inline Followed followed(const Pin& pin) {
   return {pin.follow.substr(0, dot), dot == std::string::npos ? "" : pin.follow.substr(dot + 1)};
 }
 
-/// Mass that hangs on particles, in equal shares.
+/// Mass that hangs on particles, by their shares.
 struct Weight : ClothPart {
   double mass = 0.1;  ///< [kg]
 };

@@ -124,13 +124,16 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     const auto masses = cloth.sheet.triangles.empty() ? forces::lumped_masses(cloth.grid, material.density)
                                                       : forces::lumped_masses(cloth.sheet, material.density);
     masses_.insert(masses_.end(), masses.begin(), masses.end());
-    for (const scene::Weight& weight : scene.cloths[c].weights) {
-      const std::vector<Index> carriers = environment::particles_of(weight, cloth);
-      for (Index particle : carriers) masses_[first + particle] += weight.mass / static_cast<double>(carriers.size());
+    for (std::size_t w = 0; w < cloth.weights.size(); ++w) {
+      double shares = 0;
+      for (const environment::Chosen& carrier : cloth.weights[w]) shares += carrier.share;
+      for (const environment::Chosen& carrier : cloth.weights[w])
+        masses_[first + carrier.particle] += scene.cloths[c].weights[w].mass * (carrier.share / shares);
     }
     held_.resize(masses_.size());
-    for (const scene::Pin& pin : scene.cloths[c].pins)
-      for (Index particle : environment::particles_of(pin, cloth)) held_[first + particle] = 1;
+    for (std::size_t p = 0; p < cloth.pins.size(); ++p)
+      for (const environment::Chosen& chosen : cloth.pins[p])
+        if (!scene.cloths[c].pins[p].strength) held_[first + chosen.particle] = 1;
     if (cloth.sheet.triangles.empty())
       add_quad_forces(c, cloth.grid, material, scene.physics);
     else

@@ -48,32 +48,58 @@ environment::Track track_of(const scene::PinTrack& motion, const Vec3& middle) {
   return environment::Track(track, {.position = middle});
 }
 
+/// Of the part of a pin, whoever holds it; what its fade draws comes behind that and is not counted.
+Vec3 middle_of(std::span<const environment::Chosen> particles, std::span<const Vec3> start) {
+  Vec3 middle = Vec3::Zero();
+  std::size_t count = 0;
+  for (const environment::Chosen& chosen : particles) {
+    if (chosen.faded) break;
+    middle += start[static_cast<std::size_t>(chosen.particle)];
+    ++count;
+  }
+  return middle / static_cast<double>(count);
+}
+
 }  // namespace
 
+// Linear in the particles of all pins.
+std::vector<Pins::Owned> Pins::owners(const environment::Environment& environment,
+                                      const std::vector<Index>& first_particle) {
+  std::vector<Owned> owned;
+  for (const bool faded : {false, true}) {
+    std::size_t pin = 0;
+    for (std::size_t c = 0; c < environment.cloths.size(); ++c)
+      for (const std::vector<environment::Chosen>& particles : environment.cloths[c].pins) {
+        for (const environment::Chosen& chosen : particles) {
+          const auto i = static_cast<std::size_t>(first_particle[c] + chosen.particle);
+          if (i >= owned.size()) owned.resize(i + 1);
+          if (chosen.faded == faded && owned[i].share == 0) owned[i] = {pin, chosen.share};
+        }
+        ++pin;
+      }
+  }
+  return owned;
+}
+
 Pins::Pins(const scene::Scene& scene, const environment::Environment& environment,
-           const std::vector<Index>& first_particle) {
+           const std::vector<Index>& first_particle)
+    : owned_(owners(environment, first_particle)) {
   const double start_time = -scene.preroll_frames() / scene.time.fps;
-  std::vector<Index> taken;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const environment::ClothObject& cloth = environment.cloths[c];
-    for (std::size_t number = 0; number < scene.cloths[c].pins.size(); ++number) {
+    for (std::size_t number = 0; number < cloth.pins.size(); ++number) {
       const scene::Pin& pin = scene.cloths[c].pins[number];
-      Group group;
-      const std::vector<Index> all = environment::particles_of(pin, cloth);
+      Group& group = groups_.emplace_back();
+      const std::vector<environment::Chosen>& all = cloth.pins[number];
       std::vector<std::size_t> places;  // of the group's particles among all of the pin
       for (std::size_t k = 0; k < all.size(); ++k) {
-        const Index particle = first_particle[c] + all[k];
-        if (std::find(taken.begin(), taken.end(), particle) != taken.end()) continue;
+        const Index particle = first_particle[c] + all[k].particle;
+        if (of(particle) != groups_.size() - 1) continue;
         group.particles.push_back(particle);
         places.push_back(k);
-        taken.push_back(particle);
       }
-      if (group.particles.empty()) continue;
       group.about = {c, number, group.particles.size(), pin.strength};
-      for (Index particle : group.particles) {
-        pin_of_.resize(std::max(pin_of_.size(), static_cast<std::size_t>(particle) + 1));
-        pin_of_[static_cast<std::size_t>(particle)] = groups_.size();
-      }
+      if (group.particles.empty()) continue;
 
       const auto start = [&](Index particle) -> const Vec3& { return cloth.start[particle - first_particle[c]]; };
       group.release = pin.release;
@@ -93,13 +119,10 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
         for (Index particle : group.particles)
           group.arms.push_back(pose.rotation.conjugate() * (start(particle) - pose.position));
       } else {
-        Vec3 middle = Vec3::Zero();
-        for (Index particle : group.particles) middle += start(particle);
-        middle /= static_cast<double>(group.particles.size());
+        const Vec3 middle = middle_of(all, cloth.start);
         group.track = track_of(pin.motion, middle);
         for (Index particle : group.particles) group.arms.push_back(start(particle) - middle);
       }
-      groups_.push_back(std::move(group));
     }
   }
 }
@@ -133,7 +156,7 @@ void Pins::held_at(double t, const environment::Environment& environment,
                    std::vector<integrator::HeldParticle>& held) const {
   held.clear();
   for (const Group& group : groups_) {
-    if (group.release >= 0 && t > group.release) continue;
+    if (group.particles.empty() || (group.release >= 0 && t > group.release)) continue;
     for (std::size_t p = 0; p < group.anchors.size(); ++p) {
       const Anchor& anchor = group.anchors[p];
       std::array<Moving, 3> corners;

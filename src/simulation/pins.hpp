@@ -30,10 +30,12 @@ class Pins {
   std::size_t size() const { return groups_.size(); }
   const About& about(std::size_t pin) const { return groups_[pin].about; }
   /// The pin that a particle belongs to; only of particles that belong to one.
-  std::size_t of(Index particle) const { return pin_of_[static_cast<std::size_t>(particle)]; }
+  std::size_t of(Index particle) const { return owned_[static_cast<std::size_t>(particle)].pin; }
+  /// What its spring has of the strength of that pin, above 0 and at most 1; likewise.
+  double share(Index particle) const { return owned_[static_cast<std::size_t>(particle)].share; }
 
   /// Particles held at time t [s]; pins that are released by then are left out. One entry per particle: where pins
-  /// overlap, the first of the scene wins.
+  /// overlap, the first of the scene wins, and the part of one over the fade of another.
   void held_at(double t, const environment::Environment& environment,
                std::vector<integrator::HeldParticle>& held) const;
 
@@ -44,6 +46,13 @@ class Pins {
     std::array<double, 3> weights;  // of the point of the triangle that was nearest at the start
     Vec3 arm;                       // from there, along the triangle's axes [m]
   };
+  /// Whose a particle is, by its number among the groups, and its share.
+  struct Owned {
+    std::size_t pin = 0;
+    double share = 0;  // 0: nobody's
+  };
+  static std::vector<Owned> owners(const environment::Environment& environment,
+                                   const std::vector<Index>& first_particle);
   static std::vector<Anchor> anchor(const environment::Environment& environment, std::size_t character, double t,
                                     std::span<const Vec3> places);
   /// Particles that share one motion.
@@ -59,7 +68,7 @@ class Pins {
   };
 
   std::vector<Group> groups_;
-  std::vector<std::size_t> pin_of_;  // per particle
+  std::vector<Owned> owned_;  // per particle
 };
 
 }  // namespace weft::simulation

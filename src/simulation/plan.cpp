@@ -62,8 +62,14 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
 
 void plan_constraints(const Scene& scene, std::vector<PlanItem>& items) {
   std::size_t pins = 0;
-  for (const Cloth& cloth : scene.cloths) pins += cloth.pins.size();
-  items.push_back(when("constraint: pins", pins > 0, fmt::format("{} group{}", pins, pins == 1 ? "" : "s"), "no pin"));
+  std::ptrdiff_t fading = 0;
+  for (const Cloth& cloth : scene.cloths) {
+    pins += cloth.pins.size();
+    fading += std::ranges::count_if(cloth.pins, [](const scene::Pin& pin) { return pin.fade > 0; });
+  }
+  const auto groups = [](auto count) { return fmt::format("{} group{}", count, count == 1 ? "" : "s"); };
+  items.push_back(when("constraint: pins", pins > 0, groups(pins), "no pin"));
+  items.push_back(when("force: springs that fade around pins", fading > 0, groups(fading), "no pin has a fade"));
 }
 
 // The parts of the search for near surfaces, each of which can be switched.

@@ -43,7 +43,7 @@ YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environ
     const std::size_t count = environment.cloths[about.cloth].start.size();
     double weight = 0;
     for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * scene.physics.gravity.norm();
-    most_force_.push_back(kLoad * weight / static_cast<double>(about.particles));
+    most_force_.push_back(kLoad * weight / static_cast<double>(std::max<std::size_t>(about.particles, 1)));
   }
 }
 
@@ -84,8 +84,9 @@ void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::s
   const Index particle = target.constraint.particle;
   const auto i = static_cast<std::size_t>(particle);
   const std::size_t pin = pins_.of(particle);
-  if (const auto& strength = pins_.about(pin).strength) {
-    pulls_.push_back({particle, target.x_end, target.v_end, *strength, 2 * std::sqrt(*strength * masses_[i])});
+  if (const auto& whole = pins_.about(pin).strength) {
+    const double strength = *whole * pins_.share(particle);
+    pulls_.push_back({particle, target.x_end, target.v_end, strength, 2 * std::sqrt(strength * masses_[i])});
     return;
   }
   Vec3 speed = (target.x_end - h * target.v_end - x[i]) / (kReturnSteps * h);

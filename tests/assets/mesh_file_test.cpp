@@ -101,6 +101,28 @@ TEST_F(MeshFiles, KeepTheOrderInWhichFacesNameVertices) {
   EXPECT_TRUE(loaded.mesh.topology.quads.empty());
 }
 
+// The second triangle repeats two places of the first; of what became one vertex the largest counts.
+TEST_F(MeshFiles, KeepColoursAndGroupsOfVerticesThatTheyJoin) {
+  const LoadedMesh colored = load("colors.obj",
+                                  "v 0 0 0 0.25 0 0\nv 1 0 0 0 0.5 0\nv 0 1 0 0 0 1\nv 1 0 0 1 0 0\nv 0 1 0 0 0 0\n"
+                                  "v 1 1 0 0 0 0\nf 1 2 3\nf 4 6 5\n");
+  EXPECT_EQ(colored.colors, (std::vector<Vec3>{{0.25, 0, 0}, {1, 0.5, 0}, {0, 0, 1}, {0, 0, 0}}));
+  EXPECT_TRUE(colored.groups.empty());
+  const std::string identity = "1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;;";
+  const LoadedMesh grouped =
+      load("groups.x", "xof 0303txt 0032\nFrame Root { FrameTransformMatrix { " + identity +
+                           " }\n Mesh M { 3; 0.0;0.0;0.0;, 1.0;0.0;0.0;, 0.0;1.0;0.0;;\n  1; 3;0,1,2;;\n"
+                           "  XSkinMeshHeader { 1; 1; 2; }\n  SkinWeights { \"waist\"; 2; 0,1; 1.0,0.25; " +
+                           identity + " }\n  SkinWeights { \"hem\"; 2; 1,2; 0.75,1.0; " + identity + " } } }\n");
+  EXPECT_TRUE(grouped.colors.empty());
+  ASSERT_EQ(grouped.groups.size(), 2u);
+  for (std::size_t v = 0; v < 3; ++v) {
+    const Vec3& x = grouped.mesh.positions[v];
+    EXPECT_EQ(grouped.groups.at("waist")[v], x.x() == 1 ? 0.25 : x.y() == 0 ? 1 : 0);
+    EXPECT_EQ(grouped.groups.at("hem")[v], x.x() == 1 ? 0.75 : x.y() == 0 ? 0 : 1);
+  }
+}
+
 TEST_F(MeshFiles, OfTrianglesAndQuadsBecomeTriangles) {
   const LoadedMesh loaded = load("mixed.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nv 2 0 0\nf 1 2 3 4\nf 2 5 3\n");
   EXPECT_TRUE(loaded.mesh.topology.quads.empty());

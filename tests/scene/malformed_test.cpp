@@ -180,6 +180,12 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:5:8: cloth.band.pin.0: expected a part that holds at least one particle, got one between two rows\n"},
     {"PinAtAnEdgeOfASheet", "[[cloth]]\nname = 'band'\npin = [{ edge = 'front.top' }]\n",
      "s.toml:3:17: cloth.band.pin.0.edge: expected none of a cloth that is sewn from no pattern, got \"front.top\"\n"},
+    {"PinFadesWithoutStrength", "[[cloth]]\nname = 'band'\npin = [{ high = [1, 0], fade = 0.1 }]\n",
+     "s.toml:3:32: cloth.band.pin.0.fade: expected a strength beside it, which fades; got 0.1 m and none; to hold the "
+     "part and draw what is around it, write a pin that holds and beside it one with both\n"},
+    {"GroupOfARectangle", "[[cloth]]\nname = 'band'\nweight = [{ vertex_group = 'hem' }]\n",
+     "s.toml:3:28: cloth.band.weight.0.vertex_group: expected none of a cloth that is not shape = \"mesh\", got "
+     "\"hem\"\n"},
     {"PinFollowsAPartOfAnObstacle",
      "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n[[cloth]]\nname = 'band'\npin = [{ follow = 'ball.top' }]\n",
      "s.toml:6:19: cloth.band.pin.0.follow: expected the name of a character before the part, got \"ball\"\n"},

@@ -97,10 +97,12 @@ void expect_change(const std::string& text, const std::string& override_text) {
   EXPECT_NE(effective_scene(before.scene), effective_scene(after.scene)) << override_text;
 }
 
-/// Names, references and files need more than any other value; scene_test covers them.
+/// Names, references, files and what needs another key beside it need more than any other value; scene_test covers
+/// them.
 bool is_plain_value(const std::string& path, const Rule& rule) {
   return rule.type != Type::name && rule.type != Type::file && rule.type != Type::texts && !path.ends_with("follow") &&
-         !path.ends_with("edge") && path != "render.camera" && !path.ends_with("shape") && !path.ends_with("kind") &&
+         !path.ends_with("edge") && !path.ends_with("vertex_group") && !path.ends_with("vertex_color") &&
+         !path.ends_with("fade") && path != "render.camera" && !path.ends_with("shape") && !path.ends_with("kind") &&
          !path.ends_with("source");
 }
 

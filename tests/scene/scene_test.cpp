@@ -175,6 +175,9 @@ TEST_F(EveryKey, OfAPinFillsItsMember) {
   EXPECT_EQ(motion.interpolation, Interpolation::linear);
   EXPECT_EQ(following.strength, std::nullopt);
   EXPECT_EQ(scene_.cloths[0].pins[1].strength, 30);
+  EXPECT_EQ(scene_.cloths[0].pins[1].fade, 0.07);
+  EXPECT_EQ(following.mask, std::nullopt);
+  EXPECT_EQ(scene_.cloths[0].pins[1].mask->filename(), "check.png");
   ASSERT_EQ(motion.keys.size(), 4u);
   EXPECT_EQ(motion.keys[0].time, 0.5);
   EXPECT_FALSE(motion.keys[2].in_world);
@@ -222,7 +225,7 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
   EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
   EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
-  EXPECT_EQ(scene_.obstacles[7].line, 151) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].line, 153) << "where the scene names its file";
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 

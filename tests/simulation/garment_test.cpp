@@ -109,24 +109,27 @@ TEST_F(Garments, ArePinnedByEdgesOfTheirPattern) {
   const scene::Scene scene = dressed("pin = [{ edge = 'front.top' }, { edge = 'back.hem', low = [0.5, 0] }]\n");
   const environment::Environment environment(scene);
   const environment::ClothObject& cloth = environment.cloths[0];
-  const auto top = environment::particles_of(scene.cloths[0].pins[0], cloth);
+  const auto& top = cloth.pins[0];
   EXPECT_EQ(top.size(), 12U);
-  for (const Index i : top) {
+  for (const auto& [i, share, faded] : top) {
+    EXPECT_EQ(share, 1);
+    EXPECT_FALSE(faded);
     EXPECT_NEAR(cloth.start[i].z(), 0.4, 0.01);
     EXPECT_LT(cloth.start[i].y(), 1e-3) << "of the front";
   }
-  const auto hem = environment::particles_of(scene.cloths[0].pins[1], cloth);
+  const auto& hem = cloth.pins[1];
   EXPECT_EQ(hem.size(), 6U);
-  for (const Index i : hem) {
+  for (const auto& [i, share, faded] : hem) {
     EXPECT_NEAR(cloth.start[i].z(), 0.1, 0.01);
     EXPECT_GT(cloth.start[i].y(), -1e-3);
     EXPECT_GT(cloth.start[i].x(), 0);
   }
   const scene::Scene misspelt = dressed("pin = [{ edge = 'front.tip' }]\n");
-  support::expect_error(ExitCode::scene_invalid,
-                        "expected a pin at an edge of its pattern, such as back.hem, got \"front.tip\"; did you mean "
-                        "front.top?",
-                        [&] { environment::Environment refused(misspelt); });
+  support::expect_error(
+      ExitCode::scene_invalid,
+      "pin.0.edge: expected an edge of its pattern, such as back.hem, got \"front.tip\"; did you mean "
+      "front.top?",
+      [&] { environment::Environment refused(misspelt); });
 }
 
 TEST_F(Garments, StandUprightWhicheverAxisIsUp) {

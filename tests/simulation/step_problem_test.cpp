@@ -206,8 +206,8 @@ TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {
     const std::vector<Vec3>& x = environment.cloths[0].start;
     const std::vector<Vec3> still(x.size(), Vec3::Zero());
     std::vector<integrator::HeldParticle> pinned;
-    for (Index i : environment::particles_of(scene.cloths[0].pins[0], environment.cloths[0]))
-      pinned.push_back({{i, Mat3::Zero()}, x[i], Vec3::Zero()});
+    for (const environment::Chosen& chosen : environment.cloths[0].pins[0])
+      pinned.push_back({{chosen.particle, Mat3::Zero()}, x[chosen.particle], Vec3::Zero()});
     ClothSystem cloth(scene, environment);
     StepProblem problem(cloth);
     const auto matrix_with = [&](std::span<const integrator::HeldParticle> held) {

@@ -123,7 +123,7 @@ TEST_F(TriangleClothOfFile, FilesThatAreNoSheetAndPinsThatHoldNothingAreRefused)
     const Simulation simulation(scene);
   };
   EXPECT_NO_THROW(build("f 1 3 4\n", {0, 0}));
-  support::expect_error(ExitCode::scene_invalid, "expected a pin that holds at least one particle", [&] {
+  support::expect_error(ExitCode::scene_invalid, "pin.0: expected a part that holds at least one particle", [&] {
     build("f 1 3 4\n", {0.5, 0.5});
   });
   support::expect_error(ExitCode::asset_unreadable, "1 that face both ways", [&] { build("f 1 4 3\n", {0, 0}); });

@@ -89,6 +89,32 @@ TEST(SoftPin, GivesUnderTheWeightByItsStrength) {
   EXPECT_NEAR(sag, weight / (13 * 5), 0.02 * weight / (13 * 5));
 }
 
+// Held by its upper row, and drawn for 0.2 m below it, by less and less, to where the motion of that takes it: at the
+// end of a fast swing it is closer to that place than without, the closer the less has faded. Below nothing is drawn.
+TEST(FadingPin, DrawsWhatIsAroundAndLeavesTheRest) {
+  const std::string keys = "keys = [{ time = 0 }, { time = 0.2, offset = [0.1, 0.6, 0.1], rotation = [0, 0, 60] }]\n";
+  const auto distances = [&](const std::string& pin) {
+    const scene::Scene scene = support::scene_of_text(hanging(0.2, keys + pin, ""));
+    const auto frames = support::run_scene(scene, {.judged = false, .keep_positions = true});
+    const std::vector<Vec3>& start = frames.front().cloths[0];
+    const Vec3 middle(0, 0, 0.8);
+    const Eigen::AngleAxisd turn(std::acos(0.5), Vec3::UnitZ());
+    std::vector<double> mean(13, 0.0);  // of each row
+    for (std::size_t i = 0; i < start.size(); ++i)
+      mean[i / 13] +=
+          (middle + Vec3(0.1, 0.6, 0.1) + turn * (start[i] - middle) - frames.back().cloths[0][i]).norm() / 13;
+    return mean;
+  };
+  const auto held = distances("");
+  const auto fading = distances(
+      "[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, 1]\ninterpolation = 'linear'\nstrength = 30\nfade = 0.2\n" + keys);
+  EXPECT_LT(held[12], 1e-12);
+  EXPECT_LT(fading[12], 1e-12) << "held as before, though both pins have it";
+  for (std::size_t row = 8; row < 12; ++row) EXPECT_LT(fading[row], 0.7 * held[row]) << row;
+  EXPECT_LT(fading[11], fading[9]);
+  EXPECT_GT(fading[0], 0.1) << "what is far hangs freely";
+}
+
 TEST(PinKeys, OffsetAndPositionAreTwoWaysToSayOneThing) {
   const auto end_of = [](const std::string& keys) {
     const auto frames = support::run_scene(support::scene_of_text(hanging(0.4, keys, "")));

@@ -32,8 +32,8 @@ class ClothModel {
     const environment::ClothObject& cloth = environment_.cloths[0];
     const forces::StretchParameters stretch{m.stretch_weft, m.stretch_warp, 0};
     held_.resize(x.size());
-    for (const scene::Pin& pin : scene.cloths[0].pins)
-      for (Index i : environment::particles_of(pin, cloth)) held_[i] = 1;
+    for (const auto& pin : cloth.pins)
+      for (const environment::Chosen& chosen : pin) held_[chosen.particle] = 1;
     if (cloth.sheet.triangles.empty()) {
       masses = forces::lumped_masses(cloth.grid, m.density);
       forces_.push_back(std::make_unique<forces::Stretch>(cloth.grid, 0, stretch));

@@ -1,0 +1,148 @@
+// Which particles pins and weights take: by rows, pictures, colours and groups of vertices, and what fades around them.
+#include "environment/chosen_particles.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+#include <map>
+
+#include "image/png.hpp"
+#include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::environment {
+namespace {
+
+std::map<Index, double> shares_of(const std::vector<Chosen>& chosen) {
+  std::map<Index, double> shares;
+  for (const Chosen& one : chosen) shares.emplace(one.particle, one.share);
+  EXPECT_EQ(shares.size(), chosen.size()) << "each once";
+  return shares;
+}
+
+class ChosenParticles : public support::TestFolder {
+ protected:
+  /// The first cloth of a scene; `cloth` goes on in its table.
+  ClothObject cloth_of(const std::string& cloth) const {
+    return std::move(Environment(support::scene_of_text("[[cloth]]\nname = 'c'\n" + cloth)).cloths[0]);
+  }
+  /// A picture of one row of greys.
+  std::string row_of(const std::vector<int>& greys) const {
+    image::Image picture(static_cast<int>(greys.size()), 1);
+    for (std::size_t i = 0; i < greys.size(); ++i)
+      for (int k = 0; k < 3; ++k)
+        picture.rgb[3 * i + static_cast<std::size_t>(k)] = static_cast<std::uint8_t>(greys[i]);
+    image::write_png(folder_ / "mask.png", picture, {});
+    return (folder_ / "mask.png").string();
+  }
+  /// A strip of two squares along x, 1 m each, with UVs that run against x, red growing along x, blue where y is 1.
+  std::string strip() const {
+    std::string text = "o strip\n";
+    for (int y = 0; y < 2; ++y)
+      for (int x = 0; x < 3; ++x) text += fmt::format("v {} {} 0 {} 0.25 {}\n", x, y, 0.5 * x, y);
+    for (int y = 0; y < 2; ++y)
+      for (int x = 0; x < 3; ++x) text += fmt::format("vt {} {}\n", 1 - 0.5 * x, y);
+    text += "f 1/1 2/2 5/5 4/4\nf 2/2 3/3 6/6 5/5\n";
+    support::write_bytes(folder_ / "strip.obj", text);
+    return (folder_ / "strip.obj").string();
+  }
+  std::string strip_with(const std::string& more) const {
+    return "shape = 'mesh'\nrest = 'mesh'\nfile = '" + strip() + "'\n" + more;
+  }
+};
+
+// Distances of a grid of 0.1 m, of the row at warp 0 and of what is up to 0.25 m from it.
+TEST_F(ChosenParticles, FadeWithTheDistanceAlongTheClothAtRest) {
+  for (const char* shape : {"quads", "aligned_triangles"}) {
+    const ClothObject cloth =
+        cloth_of(fmt::format("size = [0.4, 0.4]\nparticles = 5\nstart_scale = [0.5, 0.5]\nshape = '{}'\n"
+                             "pin = [{{ high = [1, 0], strength = 10, fade = 0.25 }}]\n",
+                             shape));
+    const auto shares = shares_of(cloth.pins[0]);
+    ASSERT_EQ(shares.size(), 15u) << shape;
+    for (const auto& [particle, share] : shares) {
+      const double s = 1 - 0.1 * (particle / 5) / 0.25;
+      EXPECT_NEAR(share, s * s * (3 - 2 * s), 1e-12) << shape << " " << particle;
+    }
+    for (std::size_t k = 0; k < cloth.pins[0].size(); ++k) EXPECT_EQ(cloth.pins[0][k].faded, k >= 5) << shape;
+  }
+}
+
+// From a corner, of quads also across: 0.141 m along the diagonal.
+TEST_F(ChosenParticles, FadeAcrossQuadsToo) {
+  const ClothObject cloth =
+      cloth_of("size = [0.4, 0.4]\nparticles = 5\npin = [{ high = [0, 0], strength = 10, fade = 0.2 }]\n");
+  const auto shares = shares_of(cloth.pins[0]);
+  const double s = 1 - 0.1 * std::sqrt(2) / 0.2;
+  ASSERT_EQ(shares.size(), 4u);
+  EXPECT_NEAR(shares.at(6), s * s * (3 - 2 * s), 1e-12);
+}
+
+// White, a third, black over five columns: the greys of a picture lie in the middles of its pixels.
+TEST_F(ChosenParticles, HaveTheGreyOfAMaskAsTheirShare) {
+  const std::string mask = row_of({255, 85, 0});
+  const auto pinned = [&](const std::string& more) {
+    return cloth_of("size = [1, 1]\nparticles = 5\npin = [{ mask = '" + mask + "'" + more + " }]\n");
+  };
+  const auto soft = shares_of(pinned(", strength = 3").pins[0]);
+  ASSERT_EQ(soft.size(), 20u);
+  EXPECT_EQ(soft.at(0), 1);
+  EXPECT_NEAR(soft.at(1), 0.25 * 1 / 3.0 + 0.75, 1e-12);  // at 0.75 pixels from the left, 0.25 behind a middle
+  EXPECT_NEAR(soft.at(2), 1 / 3.0, 1e-12);
+  EXPECT_FALSE(soft.contains(4));
+  const auto held = pinned(", high = [1, 0.5]");
+  EXPECT_EQ(shares_of(held.pins[0]).size(), 6u) << "two columns of three rows: a third is not held";
+}
+
+// A mask stands as it is seen: its foot at low warp.
+TEST_F(ChosenParticles, AreTakenByMasksThatStandUpright) {
+  image::Image picture(1, 2);
+  picture.rgb = {255, 255, 255, 0, 0, 0};
+  image::write_png(folder_ / "mask.png", picture, {});
+  const auto shares = shares_of(cloth_of("size = [1, 1]\nparticles = 3\npin = [{ strength = 1, mask = '" +
+                                         (folder_ / "mask.png").string() + "' }]\n")
+                                    .pins[0]);
+  EXPECT_FALSE(shares.contains(0));
+  EXPECT_EQ(shares.at(8), 1);
+}
+
+TEST_F(ChosenParticles, OfMeshesAreTakenByUvsColoursAndGroups) {
+  const std::string mask = row_of({255, 0});
+  const ClothObject cloth =
+      cloth_of(strip_with("pin = [{ mask = '" + mask +
+                          "' }, { vertex_color = 'red', strength = 2 }, { vertex_color = 'blue' },\n"
+                          "       { vertex_color = 'brightness', strength = 1, low = [0, 1] }]\n"
+                          "weight = [{ vertex_color = 'red', mass = 3 }]\n"));
+  const auto x_of = [&](Index i) { return cloth.start[static_cast<std::size_t>(i)].x(); };
+  const auto y_of = [&](Index i) { return cloth.start[static_cast<std::size_t>(i)].y(); };
+  for (const auto& [particle, share] : shares_of(cloth.pins[0])) EXPECT_GE(x_of(particle), 1) << "UVs run against x";
+  const auto red = shares_of(cloth.pins[1]);
+  ASSERT_EQ(red.size(), 4u);
+  for (const auto& [particle, share] : red) EXPECT_NEAR(share, 0.5 * x_of(particle), 1e-6);
+  const auto blue = shares_of(cloth.pins[2]);
+  ASSERT_EQ(blue.size(), 3u);
+  for (const auto& [particle, share] : blue) EXPECT_EQ(y_of(particle), 1);
+  for (const auto& [particle, share] : shares_of(cloth.pins[3]))
+    EXPECT_NEAR(share, (0.5 * x_of(particle) + 0.25 + 1) / 3, 1e-6);
+  EXPECT_EQ(shares_of(cloth.weights[0]), red);
+}
+
+TEST_F(ChosenParticles, AreRefusedForWhatTheClothHasNot) {
+  const auto refused = [&](const std::string& cloth, const std::string& words) {
+    support::expect_error(ExitCode::scene_invalid, words, [&] { cloth_of(cloth); });
+  };
+  const std::string black = row_of({0});
+  refused("particles = 3\npin = [{}, { mask = '" + black + "' }]\n",
+          ":1:1: cloth.c.pin.1: expected a part that holds at least one particle, got one that holds none");
+  refused(strip_with("weight = [{ vertex_group = 'waist' }]\n"),
+          "cloth.c.weight.0.vertex_group: expected a mesh with groups of vertices, or bones, got one without");
+  support::write_bytes(folder_ / "bare.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
+  const std::string bare = "shape = 'mesh'\nfile = '" + (folder_ / "bare.obj").string() + "'\n";
+  refused(bare + "pin = [{ vertex_color = 'red' }]\n",
+          "cloth.c.pin.0.vertex_color: expected a mesh whose vertices have colours, got none");
+  refused(bare + "pin = [{ mask = '" + black + "' }]\n",
+          "cloth.c.pin.0.mask: expected a mesh with texture coordinates (UVs) to lay it on, got none");
+}
+
+}  // namespace
+}  // namespace weft::environment
