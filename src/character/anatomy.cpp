@@ -7,6 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "character/nameless.hpp"
+
 namespace weft::character {
 namespace {
 
@@ -239,7 +241,7 @@ Skeleton::Skeleton(const Rig& rig) : rig_(rig) {
       if (little < 0) little = find_below(rig.character, hand, other);
     Index index = find_below(rig.character, hand, "index");
     if (index < 0) index = find_below(rig.character, hand, "finger1");
-    if (index >= 0 && little >= 0) fingers_[right] = {index, little};
+    fingers_[right] = index >= 0 && little >= 0 ? std::array{index, little} : find_knuckles(rig.character, hand);
   }
 }
 

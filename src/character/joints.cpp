@@ -1,8 +1,11 @@
 #include "character/joints.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <map>
+
+#include "character/nameless.hpp"
 
 namespace weft::character {
 namespace {
@@ -32,7 +35,7 @@ const std::vector<Part> kSides = {
     {"UpperLeg", {"upperleg", "upleg", "thigh", "thighbend", "upperleg01", "femur", "hip"}},
     {"LowerLeg", {"lowerleg", "lowleg", "leg", "calf", "shin", "lowerleg01", "tibia", "knee"}},
     {"Foot", {"ankle", "foot"}},
-    {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "foot"}},
+    {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
 };
 
 /// What stands in names of nodes beside side and part: of Biped, Rigify, Source, VRM, Character Creator.
@@ -107,23 +110,31 @@ bool is_above(std::span<const Node> nodes, Index above, Index node) {
   return above >= 0 && above != node && std::ranges::find(line, above) != line.end();
 }
 
-/// Where names leave it open the tree says which nodes are trunk: hips are where legs and spine part, or above, the
-/// chest is where the arms part, and the spine is on the way.
+/// The tree says which nodes are trunk: hips are where legs and spine part, or above, the chest is where the arms part,
+/// and the spine is halfway, the lower one of two.
 void settle_trunk(std::span<const Node> nodes, std::vector<Index>& joints) {
   const auto at = [&](Joint joint) -> Index& { return joints[place_of(joint)]; };
-  const Index arms = common_ancestor(nodes, at(Joint::left_upper_arm), at(Joint::right_upper_arm));
+  Index arms = common_ancestor(nodes, at(Joint::left_upper_arm), at(Joint::right_upper_arm));
   const Index legs = common_ancestor(nodes, at(Joint::left_upper_leg), at(Joint::right_upper_leg));
   const Index parting = common_ancestor(nodes, legs, arms);
   if (parting >= 0 && parting != arms && at(Joint::hips) != parting && !is_above(nodes, at(Joint::hips), parting))
     at(Joint::hips) = parting;
   if (at(Joint::hips) < 0) at(Joint::hips) = legs;
+  // Arms of Biped hang from its neck.
+  if (arms >= 0 && arms == at(Joint::neck)) arms = nodes[arms].parent;
   if (!is_above(nodes, at(Joint::hips), arms)) return;
   at(Joint::chest) = arms;
-  const Index spine = at(Joint::spine);
-  if (is_above(nodes, at(Joint::hips), spine) && is_above(nodes, spine, arms)) return;
-  const std::vector<Index> line = line_of(nodes, arms);  // from the chest down
-  const auto between = static_cast<std::size_t>(std::ranges::find(line, at(Joint::hips)) - line.begin()) - 1;
-  at(Joint::spine) = between > 0 ? line[(between + 1) / 2] : -1;
+  std::vector<Index> between;  // from the chest down, without what turns in the hips
+  for (Index n = nodes[arms].parent; n != at(Joint::hips); n = nodes[n].parent)
+    if (!nodes[n].local.translation().isZero() || nodes[n].parent != at(Joint::hips)) between.push_back(n);
+  at(Joint::spine) = between.empty() ? -1 : between[between.size() / 2];
+}
+
+/// Whether names say all that a body needs to be moved.
+bool is_whole(const std::vector<Index>& joints) {
+  return std::ranges::all_of(
+      std::array{Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_upper_leg, Joint::left_lower_leg},
+      [&](Joint left) { return joints[place_of(left)] >= 0 && joints[place_of(on_side(left, true))] >= 0; });
 }
 
 }  // namespace
@@ -172,7 +183,7 @@ Index joint_number(const std::string& name) {
   return found == names.end() ? -1 : static_cast<Index>(found - names.begin());
 }
 
-std::vector<Index> find_joints(std::span<const Node> nodes) {
+std::vector<Index> find_named_joints(std::span<const Node> nodes) {
   std::map<std::pair<std::string, std::string>, Index> known;  // the first of each name counts
   for (std::size_t n = 0; n < nodes.size(); ++n) known.emplace(side_and_part(nodes[n].name), static_cast<Index>(n));
   std::vector<Index> joints;
@@ -192,6 +203,16 @@ std::vector<Index> find_joints(std::span<const Node> nodes) {
   }
   if (joints[place_of(Joint::spine)] == joints[place_of(Joint::chest)]) joints[place_of(Joint::chest)] = -1;
   settle_trunk(nodes, joints);
+  return joints;
+}
+
+std::vector<Index> find_joints(const Character& character) {
+  std::vector<Index> joints = find_named_joints(character.nodes);
+  if (is_whole(joints)) return joints;
+  const std::vector<Index> nameless = find_nameless_joints(character);
+  for (std::size_t j = 0; j < joints.size(); ++j)
+    if (joints[j] < 0 && std::ranges::find(joints, nameless[j]) == joints.end()) joints[j] = nameless[j];
+  settle_trunk(character.nodes, joints);
   return joints;
 }
 

@@ -61,6 +61,9 @@ Index joint_number(const std::string& name);
 /// For each of joint_names() the node that has its part, -1 where there is none, by the names of the usual rigs (a
 /// table in joints.cpp). Prefixes, case, spaces and underscores do not count. Hips, spine and chest are where limbs
 /// part.
-std::vector<Index> find_joints(std::span<const Node> nodes);
+std::vector<Index> find_named_joints(std::span<const Node> nodes);
+
+/// The same, and where names leave out upper or lower arms or legs what the tree says (nameless.hpp).
+std::vector<Index> find_joints(const Character& character);
 
 }  // namespace weft::character

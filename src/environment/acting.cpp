@@ -103,7 +103,7 @@ Index named_node(const Cast& cast, const std::string& key, const std::string& na
 std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
                              std::optional<std::string> scene::JointNames::*name, const character::Character& character,
                              const std::string& source) {
-  std::vector<Index> joints = character::find_joints(character.nodes);
+  std::vector<Index> joints = character::find_joints(character);
   for (const scene::JointNames& joint : given) {
     const Index number = character::joint_number(joint.name);
     const std::string key = fmt::format("joint.{}", joint.name);

@@ -107,7 +107,7 @@ class RetargetedBvh : public support::TestFolder {
     const std::filesystem::path file = folder_ / "motion.bvh";
     support::write_bytes(file, bvh);
     const LoadedCharacter motion = load_motion(file, {}, "test");
-    const auto ours = character::find_joints(body_.nodes), theirs = character::find_joints(motion.character.nodes);
+    const auto ours = character::find_joints(body_), theirs = character::find_joints(motion.character);
     result_ =
         character::retarget({body_, ours}, {motion.character, theirs}, motion.character.clips.front(), Vec3::UnitZ());
     std::vector<Vec3> all, at(body_.mesh.positions.size());
@@ -143,10 +143,26 @@ TEST_F(RetargetedBvh, DoesNotDependOnZeroPosesOrTheOrderOfJoints) {
   }
 }
 
+TEST_F(RetargetedBvh, NeedsNoNames) {
+  std::vector<Bone> bones = somebody();
+  const std::vector<double> order(bones.size(), 0);
+  const std::vector<Vec3> expected =
+      vertices(write_bvh(bones, std::vector<Quat>(bones.size(), Quat::Identity()), order));
+  std::vector<Quat> zero;
+  for (std::size_t b = 0; b < bones.size(); ++b) {
+    bones[b].name = fmt::format("j{}", b);
+    zero.push_back(Quat(1 + static_cast<double>(b % 3), static_cast<double>(b % 5), 2, -1).normalized());
+  }
+  const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order));
+  double furthest = 0;
+  for (std::size_t v = 0; v < got.size(); ++v) furthest = std::max(furthest, (got[v] - expected[v]).norm());
+  EXPECT_LT(furthest, 1e-4);  // as above
+}
+
 TEST_F(RetargetedBvh, PointsLimbsWhereThoseOfTheMotionPointAndBendsThemForward) {
   const std::vector<Bone> bones = somebody();
   vertices(write_bvh(bones, std::vector<Quat>(bones.size(), Quat::Identity()), std::vector<double>(bones.size(), 0)));
-  const auto joints = character::find_joints(body_.nodes);
+  const auto joints = character::find_joints(body_);
   const character::Skeleton skeleton({body_, joints});
   EXPECT_TRUE(result_.doubts.empty()) << result_.doubts.front();
   for (int key = 0; key < kKeys; ++key) {

@@ -30,7 +30,7 @@ TEST(Parts, OfTheMannequinLieWhereTheyBelong) {
   const MannequinBuild build{.edge_length = 0.03};
   const Character body = make_mannequin(build);
   const auto joints = mannequin_joints(build);
-  const std::vector<Index> nodes = find_joints(body.nodes);
+  const std::vector<Index> nodes = find_joints(body);
   const VertexMask hands = vertices_of(body, nodes, joints_of_part("hands"));
   const VertexMask torso = vertices_of(body, nodes, joints_of_part("torso"));
   const auto joint = [&](Joint j) { return joints[static_cast<std::size_t>(j)]; };
@@ -70,7 +70,7 @@ Character hand_with(int fingers) {
 
 TEST(Parts, HoldWhatIsBelowTheirJointsAndNodes) {
   const Character body = hand_with(3);
-  const std::vector<Index> nodes = find_joints(body.nodes);
+  const std::vector<Index> nodes = find_joints(body);
   EXPECT_EQ(vertices_of(body, nodes, joints_of_part("LeftHand")), (VertexMask{0, 0, 1, 1, 1, 1}));
   EXPECT_EQ(vertices_of(body, nodes, joints_of_part("LeftLowerArm")), (VertexMask{0, 1, 0, 0, 0, 0}));
   EXPECT_EQ(vertices_below(body, 1), (VertexMask{0, 1, 1, 1, 1, 1}));
@@ -80,7 +80,7 @@ TEST(Parts, HoldWhatIsBelowTheirJointsAndNodes) {
 TEST(Parts, FingersAreThreeChainsThatHoldSkin) {
   for (const int fingers : {0, 1, 2, 3, 5}) {
     const Character body = hand_with(fingers);
-    EXPECT_EQ(has_fingers(body, find_joints(body.nodes)), fingers >= 3) << fingers;
+    EXPECT_EQ(has_fingers(body, find_joints(body)), fingers >= 3) << fingers;
   }
 }
 
@@ -88,13 +88,13 @@ TEST(Parts, BelongToWhateverHoldsHalf) {
   Character body = hand_with(0);
   body.influences = {{0, 1}, {1, 0.5}, {2, 0.5}, {2, 0.4}, {1, 0.6}};
   body.first_influence = {0, 1, 3, 5};
-  const std::vector<Index> nodes = find_joints(body.nodes);
+  const std::vector<Index> nodes = find_joints(body);
   EXPECT_EQ(vertices_of(body, nodes, joints_of_part("LeftHand")), (VertexMask{0, 1, 0}));
 }
 
 TEST(Parts, LimbsAreArmsAndLegsAndTheRestIsTrunk) {
   const Character body = make_mannequin({.edge_length = 0.03});
-  const std::vector<Index> nodes = find_joints(body.nodes);
+  const std::vector<Index> nodes = find_joints(body);
   const std::vector<Limb> limbs = limbs_of(body, nodes);
   const VertexMask arms = vertices_of(body, nodes, joints_of_part("arms")),
                    legs = vertices_of(body, nodes, joints_of_part("legs"));

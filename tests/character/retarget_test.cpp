@@ -1,5 +1,6 @@
 #include "character/retarget.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <numbers>
@@ -68,7 +69,7 @@ Character sticks(double size, double arm, double facing, const Quat& frame, bool
 
 /// The arm bends at the elbow by 90° upward, in world directions of a body that faces -y, while the hips walk `way`.
 Clip waving(const Character& body, const Vec3& way) {
-  const auto joints = find_joints(body.nodes);
+  const auto joints = find_joints(body);
   const auto node = [&](const char* joint) { return joints[joint_number(joint)]; };
   const auto globals = global_transforms(body, rest_pose(body));
   const Index elbow = node("LeftLowerArm"), hips = node("Hips");
@@ -88,7 +89,7 @@ struct Result {
   const Character& body;
   Clip clip;
   Vec3 place(const std::string& joint, double t) const {
-    const auto joints = find_joints(body.nodes);
+    const auto joints = find_joints(body);
     const auto globals = global_transforms(body, pose_at(body, clip, t));
     return globals[joints[joint_number(joint)]].translation();
   }
@@ -104,7 +105,7 @@ struct Result {
 };
 
 Result retargeted(const Character& body, const Character& motion, const Clip& clip) {
-  const auto ours = find_joints(body.nodes), theirs = find_joints(motion.nodes);
+  const auto ours = find_joints(body), theirs = find_joints(motion);
   return {body, retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ()).clip};
 }
 
@@ -207,7 +208,7 @@ TEST(Joints, OfTheUsualRigsAreFoundByName) {
   for (const auto& [rig, names] : rigs) {
     std::vector<Node> nodes{{"Armature", -1, Affine::Identity()}, {"LHipJoint", 0, Affine::Identity()}};
     for (const std::string& name : names) nodes.push_back({name, 0, Affine::Identity()});
-    const auto found = find_joints(nodes);
+    const auto found = find_named_joints(nodes);
     for (std::size_t k = 0; k < joints.size(); ++k)
       EXPECT_EQ(found[joint_number(joints[k])], static_cast<Index>(k + 2)) << rig << " " << joints[k];
     EXPECT_EQ(found[joint_number("RightFoot")], -1) << rig;
@@ -227,7 +228,7 @@ TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
   add("LeftShoulder", add("LeftCollar", last));
   add("RightShoulder", add("RightCollar", last));
   for (const char* leg : {"LeftHip", "RightHip"}) add(leg, 0);
-  auto found = find_joints(nodes);
+  auto found = find_named_joints(nodes);
   EXPECT_EQ(found[place_of(Joint::hips)], 0);
   EXPECT_EQ(found[place_of(Joint::spine)], 2);
   EXPECT_EQ(found[place_of(Joint::chest)], 4);
@@ -237,10 +238,51 @@ TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
   last = add("CC_Base_Spine01", add("CC_Base_Waist", hip));
   for (const char* leg : {"CC_Base_L_Thigh", "CC_Base_R_Thigh"}) add(leg, pelvis);
   for (const char* arm : {"CC_Base_L_Upperarm", "CC_Base_R_Upperarm"}) add(arm, last);
-  found = find_joints(nodes);
+  found = find_named_joints(nodes);
   EXPECT_EQ(found[place_of(Joint::hips)], hip);
   EXPECT_EQ(nodes[found[place_of(Joint::spine)]].name, "CC_Base_Waist");
   EXPECT_EQ(found[place_of(Joint::chest)], last);
+}
+
+TEST(Joints, OfRigifyAndBipedAreFoundInTheirTrees) {
+  std::vector<Node> nodes;
+  const auto add = [&](const std::string& name, Index parent) {
+    nodes.push_back({name, parent, Affine(Eigen::Translation3d(0, 0, 1))});
+    return static_cast<Index>(nodes.size() - 1);
+  };
+  // Halves of limbs follow each other.
+  Index last = add("DEF-spine", add("root", -1));
+  for (const char* leg : {"DEF-thigh.L", "DEF-thigh.R"}) add(leg, last);
+  for (const char* name : {"DEF-spine.001", "DEF-spine.002", "DEF-spine.003"}) last = add(name, last);
+  for (const char* side : {".L", ".R"})
+    add(std::string("DEF-forearm") + side,
+        add(std::string("DEF-upper_arm") + side + ".001",
+            add(std::string("DEF-upper_arm") + side, add(std::string("DEF-shoulder") + side, last))));
+  add("DEF-spine.006", add("DEF-spine.005", add("DEF-spine.004", last)));
+  auto found = find_named_joints(nodes);
+  const auto name_of = [&](Joint joint) {
+    return found[place_of(joint)] < 0 ? "" : nodes[found[place_of(joint)]].name;
+  };
+  EXPECT_EQ(name_of(Joint::hips), "DEF-spine");
+  EXPECT_EQ(name_of(Joint::spine), "DEF-spine.001");
+  EXPECT_EQ(name_of(Joint::chest), "DEF-spine.003");
+  EXPECT_EQ(name_of(Joint::neck), "DEF-spine.004");
+  EXPECT_EQ(name_of(Joint::head), "DEF-spine.006");
+  EXPECT_EQ(name_of(Joint::left_upper_arm), "DEF-upper_arm.L");
+  EXPECT_EQ(name_of(Joint::right_lower_arm), "DEF-forearm.R");
+  // Arms hang from the neck.
+  nodes.clear();
+  const Index pelvis = add("Bip01 Pelvis", add("Bip01", -1));
+  last = add("Bip01 Spine", pelvis);
+  for (const char* leg : {"Bip01 L Thigh", "Bip01 R Thigh"}) add(leg, last);
+  last = add("Bip01 Neck", add("Bip01 Spine1", last));
+  add("Bip01 Head", last);
+  for (const char* side : {"L", "R"})
+    add(fmt::format("Bip01 {} UpperArm", side), add(fmt::format("Bip01 {} Clavicle", side), last));
+  found = find_named_joints(nodes);
+  EXPECT_EQ(name_of(Joint::hips), "Bip01 Pelvis");
+  EXPECT_EQ(name_of(Joint::chest), "Bip01 Spine1");
+  EXPECT_EQ(name_of(Joint::neck), "Bip01 Neck");
 }
 
 TEST(Retarget, DoubtsWhatNoBodyDoes) {
@@ -248,7 +290,7 @@ TEST(Retarget, DoubtsWhatNoBodyDoes) {
   Clip clip = waving(motion, Vec3::Zero());
   clip.channels[0].rotation.values[1] = about(Vec3::UnitY(), -175);
   const Character body = sticks(1, 30, 0, kOwnFrame);
-  const auto ours = find_joints(body.nodes), theirs = find_joints(motion.nodes);
+  const auto ours = find_joints(body), theirs = find_joints(motion);
   const Retargeted result = retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ());
   ASSERT_EQ(result.doubts.size(), 1u);
   EXPECT_EQ(result.doubts[0], "LeftLowerArm bends by 175° at 1 s of the motion; people reach 165°");

@@ -111,9 +111,39 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
   return result;
 }
 
-void report(const Character& body, const std::string& file) {
+Character without_names(Character character) {
+  for (std::size_t n = 0; n < character.nodes.size(); ++n) character.nodes[n].name = fmt::format("j{}", n);
+  return character;
+}
+
+/// Prints which joints of a skeleton are others where its nodes have no names, and returns those found.
+std::vector<Index> compare_without_names(const Character& character) {
+  const auto named = find_joints(character), found = find_joints(without_names(character));
+  const auto name = [&](Index node) { return node < 0 ? "none" : character.nodes[node].name.c_str(); };
+  for (std::size_t j = 0; j < kJointCount; ++j)
+    if (named[j] != found[j])
+      std::printf("    without names %s: %s for %s\n", joint_names()[j].c_str(), name(found[j]), name(named[j]));
+  return found;
+}
+
+void report_without_names(const Character& body, const Character& motion, const Clip& expected) {
+  const Character nameless = without_names(motion);
+  const auto ours = find_joints(body), found = compare_without_names(motion);
+  if (found[0] < 0) return;
+  const Clip got = retarget({body, ours}, {nameless, found}, nameless.clips.front(), kUp).clip;
+  std::vector<Vec3> a(body.mesh.positions.size()), b(a.size());
+  double furthest = 0;
+  for (int k = 0; k <= 10; ++k) {
+    skin(body, pose_at(body, expected, expected.duration * k / 10), a);
+    skin(body, pose_at(body, got, expected.duration * k / 10), b);
+    for (std::size_t v = 0; v < a.size(); ++v) furthest = std::max(furthest, (a[v] - b[v]).norm());
+  }
+  std::printf("    without names off by %.3g mm\n", 1e3 * furthest);
+}
+
+void report(const Character& body, const std::string& file, bool nameless) {
   assets::LoadedCharacter motion = assets::load_motion(file, {}, file);
-  const auto ours = find_joints(body.nodes), theirs = find_joints(motion.character.nodes);
+  const auto ours = find_joints(body), theirs = find_joints(motion.character);
   if (mean_trunk({motion.character, theirs}, motion.character.clips.front()).dot(kUp) < 0.5)
     motion = assets::load_motion(file, {{}, scene::FileUp::z}, file);
   std::string missing;
@@ -131,6 +161,7 @@ void report(const Character& body, const std::string& file) {
               f.bone.c_str(), f.arm, f.trunk, f.trunk_when, seconds,
               missing.empty() ? "" : (" without" + missing).c_str());
   for (const std::string& doubt : result.doubts) std::printf("    %s\n", doubt.c_str());
+  if (nameless) report_without_names(body, motion.character, result.clip);
 }
 
 }  // namespace
@@ -141,6 +172,8 @@ int main(int argc, char** argv) {
   std::string body_file;
   app.add_option("FILES", files, "BVH, glTF, FBX and so on, with a motion each")->required();
   app.add_option("--body", body_file, "a character from a file, with z up [the mannequin]");
+  bool nameless = false;
+  app.add_flag("--nameless", nameless, "also with nodes that are called j0, j1 and so on");
   CLI11_PARSE(app, argc, argv);
   const Character body =
       body_file.empty() ? make_mannequin({}) : assets::load_character(body_file, {}, body_file).character;
@@ -148,9 +181,10 @@ int main(int argc, char** argv) {
       "| Motion | keys | steps | feet over the floor [mm] | slip [mm] | limb off by [°] | arm [°] | trunk [°] | CPU "
       "[s] "
       "|\n");
+  if (nameless) compare_without_names(body);
   for (const std::string& file : files) {
     try {
-      report(body, file);
+      report(body, file, nameless);
     } catch (const std::exception& e) {
       std::printf("| %s | %s\n", file.c_str(), e.what());
     }
