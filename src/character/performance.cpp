@@ -26,8 +26,7 @@ double clip_time(const Timing& timing, double t) {
 
 Performance::Performance(const Character& character, const Clip& clip, const Playing& playing, const Vec3& up)
     : character_(character), clip_(clip), playing_(playing), up_(up), rest_(rest_pose(character)) {
-  for (const Channel& channel : clip.channels)
-    if (channel.position.times.size() > 1 && (root_ < 0 || channel.node < root_)) root_ = channel.node;
+  root_ = traveling_node(clip);
   if (root_ >= 0) {
     const Index parent = character.nodes[root_].parent;
     if (parent >= 0) root_to_world_ = global_transforms(character, rest_)[parent].linear();

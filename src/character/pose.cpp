@@ -45,6 +45,9 @@ Mat3 rotation_of(const Mat3& linear) {
   return rotation;
 }
 
+/// Keys of different joints that are closer than this are one [s].
+constexpr double kSameTime = 1e-6;
+
 }  // namespace
 
 Affine Placement::to_affine() const {
@@ -78,6 +81,29 @@ Pose pose_at(const Character& character, const Clip& clip, double t) {
   for (const MorphChannel& channel : clip.morphs)
     if (!channel.weight.times.empty()) pose.morphs[channel.target] = value_at(channel.weight, t);
   return pose;
+}
+
+std::vector<double> key_times(const Clip& clip) {
+  std::vector<double> times{0};
+  for (const Channel& channel : clip.channels) {
+    times.insert(times.end(), channel.rotation.times.begin(), channel.rotation.times.end());
+    times.insert(times.end(), channel.position.times.begin(), channel.position.times.end());
+  }
+  std::sort(times.begin(), times.end());
+  std::vector<double> distinct;
+  for (const double t : times)
+    if (t >= 0 && (distinct.empty() || t - distinct.back() > kSameTime)) distinct.push_back(t);
+  return distinct;
+}
+
+Index traveling_node(const Clip& clip) {
+  Index uppermost = -1;
+  for (const Channel& channel : clip.channels) {
+    const std::vector<Vec3>& places = channel.position.values;
+    const bool travels = std::ranges::any_of(places, [&](const Vec3& x) { return x != places.front(); });
+    if (travels && (uppermost < 0 || channel.node < uppermost)) uppermost = channel.node;
+  }
+  return uppermost;
 }
 
 Pose blend(const Pose& a, const Pose& b, double weight) {

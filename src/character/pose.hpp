@@ -31,6 +31,12 @@ Pose rest_pose(const Character& character);
 /// The pose of a clip at time t [s] after its start; before and after the clip that of its ends.
 Pose pose_at(const Character& character, const Clip& clip, double t);
 
+/// All times at which a joint has a key, from 0 on; 0 always.
+std::vector<double> key_times(const Clip& clip);
+
+/// The uppermost node whose position changes in a clip; -1 if none does.
+Index traveling_node(const Clip& clip);
+
 /// From `a` (weight 0) to `b` (weight 1): positions and stretches along straight lines, rotations the shortest way.
 Pose blend(const Pose& a, const Pose& b, double weight);
 

@@ -16,9 +16,6 @@
 namespace weft::character {
 namespace {
 
-/// Keys of different joints that are closer than this are one [s].
-constexpr double kSameTime = 1e-6;
-
 /// Skeletons whose joints differ by less are the same: a thousandth of all their lengths, 3 mm in an adult; and they
 /// face the same way if what the hips hang from is turned by less [radians].
 constexpr double kSameLength = 1e-3, kSameAngle = 1e-3;
@@ -59,20 +56,6 @@ double lowest_foot(const Skeleton& skeleton, const Posture& posture, const Vec3&
   for (const Joint joint : {Joint::left_foot, Joint::left_toes, Joint::right_foot, Joint::right_toes})
     if (skeleton.has(joint)) height = std::min(height, up.dot(posture.places[place_of(joint)]));
   return height;
-}
-
-/// All times at which a joint of the motion has a key, from 0 on.
-std::vector<double> key_times(const Clip& clip) {
-  std::vector<double> times{0};
-  for (const Channel& channel : clip.channels) {
-    times.insert(times.end(), channel.rotation.times.begin(), channel.rotation.times.end());
-    times.insert(times.end(), channel.position.times.begin(), channel.position.times.end());
-  }
-  std::sort(times.begin(), times.end());
-  std::vector<double> distinct;
-  for (const double t : times)
-    if (t >= 0 && (distinct.empty() || t - distinct.back() > kSameTime)) distinct.push_back(t);
-  return distinct;
 }
 
 /// Whether two skeletons have the same joints and, up to one ratio, the same places of joints in the axes of their

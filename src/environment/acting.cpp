@@ -16,6 +16,7 @@
 #include "character/parts.hpp"
 #include "character/performance.hpp"
 #include "character/retarget.hpp"
+#include "character/travel.hpp"
 #include "core/error.hpp"
 #include "core/nearest.hpp"
 #include "environment/plausibility.hpp"
@@ -33,6 +34,9 @@ constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
 
 /// Ends of a clip that are further apart do not close to the eye [m].
 constexpr double kGap = 1e-3;
+
+/// Feet that miss the speed of the body by more slide by more than 5 cm a step of 0.7 m [1].
+constexpr double kFeetMiss = 0.07;
 
 /// A trunk that points up, in the mean over a motion, by more than this stands [1].
 constexpr double kStands = 0.7;
@@ -147,6 +151,31 @@ assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acti
   return load(scene::FileUp::z);
 }
 
+double leg_length(const character::Rig& rig) {
+  const character::Skeleton skeleton(rig);
+  return skeleton.leg_length(skeleton.at(character::rest_pose(rig.character)));
+}
+
+/// The clip with the way that the scene asks for. `size`: of the body by that of the skeleton whose clip it is.
+character::Clip travel(const Cast& cast, const scene::Acting& acting, const character::Rig& rig,
+                       const character::Clip& clip, double size, std::vector<std::string>& warnings) {
+  if (acting.travel.kind == scene::Travel::Kind::file || clip.duration <= 0) return clip;
+  if (acting.travel.kind == scene::Travel::Kind::none) return character::in_place(rig, clip, cast.up());
+  const double to_scene = size * cast.settings.speed, speed = acting.travel.speed;
+  character::Traveled traveled = character::at_speed(rig, clip, speed / to_scene, cast.up());
+  const double feet = to_scene * traveled.feet;
+  if (feet == 0) {
+    warnings.push_back(
+        fmt::format("{}: travel: clip \"{}\" takes no steps: feet slide at {:g} m/s", cast.where, clip.name, speed));
+  } else if (std::abs(feet - speed) > kFeetMiss * feet) {
+    warnings.push_back(
+        fmt::format("{}: travel: feet of clip \"{}\" go at {:.3g} m/s and slide at {:g} m/s; speed = {:.3g} would make "
+                    "them fit",
+                    cast.where, clip.name, feet, speed, cast.settings.speed * speed / feet));
+  }
+  return std::move(traveled.clip);
+}
+
 /// The clip of another skeleton, on this one.
 character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& body) {
   const std::string file = acting.motion->string();
@@ -162,9 +191,11 @@ character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& b
   if (!still.empty())
     body.warnings.push_back(
         fmt::format("{}: motion file {}: nothing that moves {}", cast.where, file, fmt::join(still, ", ")));
-  const character::Clip& clip = choose_clip(cast, acting.clip, motion.character.clips, file);
-  character::Retargeted result =
-      character::retarget({body.character, ours}, {motion.character, theirs}, clip, cast.up());
+  const character::Rig from{motion.character, theirs}, to{body.character, ours};
+  const double their_leg = leg_length(from), size = their_leg > 0 ? leg_length(to) / their_leg : 1;
+  const character::Clip clip =
+      travel(cast, acting, from, choose_clip(cast, acting.clip, motion.character.clips, file), size, body.warnings);
+  character::Retargeted result = character::retarget(to, from, clip, cast.up());
   for (const std::string& doubt : result.doubts)
     body.warnings.push_back(fmt::format("{}: motion file {}: {}", cast.where, file, doubt));
   return std::move(result.clip);
@@ -199,7 +230,9 @@ Body cast_body(const Cast& cast, const Source& source) {
   if (source.motion) {
     body.clip = take_over(cast, source, body);
   } else if (source.clip || !body.character.clips.empty()) {
-    body.clip = choose_clip(cast, source.clip, body.character.clips, body.source);
+    const auto joints = joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source);
+    body.clip = travel(cast, source, {body.character, joints},
+                       choose_clip(cast, source.clip, body.character.clips, body.source), 1, body.warnings);
   }
   if (body.clip && !source.loop && cast.settings.start > body.clip->duration)
     cast.fail("start", fmt::format("expected a time of clip \"{}\", at most {:g} s, got {:g}", body.clip->name,

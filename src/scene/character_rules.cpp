@@ -9,16 +9,16 @@ namespace {
 
 const Table& joint_rules() {
   static const Table kTable =
-      TableBuilder<JointNames>("A joint that the motion moves, where its name is none of those that are known.")
+      TableBuilder<JointNames>("A joint that the motion moves, where it is not found.")
           .plain(
               Type::name, "name", &JointNames::name,
               "Hips, Spine, Chest, Neck, Head, and Shoulder, UpperArm, LowerArm, Hand, UpperLeg, LowerLeg, Foot, Toes "
               "with Left or Right before it")
           .need(Need::required)
           .plain(Type::text, "body", &JointNames::body, "what it is called in the character's file")
-          .by_default("found by its name")
+          .by_default("found by its name, else by the tree and the lengths of bones")
           .plain(Type::text, "motion", &JointNames::motion, "what it is called in the file of the motion")
-          .by_default("found by its name")
+          .by_default("found by its name, else by the tree and the lengths of bones")
           .build();
   return kTable;
 }
@@ -52,6 +52,16 @@ auto of_source(Field Base::*field) {
   return [field](Character& c) -> Field& { return std::get<Kind>(c.source).*field; };
 }
 
+Value travel_value(const Travel& travel) {
+  if (travel.kind == Travel::Kind::speed) return std::vector<double>{travel.speed};
+  return std::string(travel.kind == Travel::Kind::none ? "none" : "file");
+}
+
+Travel travel_from(const Value& value) {
+  if (const auto* speed = std::get_if<std::vector<double>>(&value)) return {Travel::Kind::speed, speed->front()};
+  return {std::get<std::string>(value) == "none" ? Travel::Kind::none : Travel::Kind::file, 0};
+}
+
 /// The keys of every skinned body.
 template <class Kind>
 void acting_rows(TableBuilder<Character>& rows) {
@@ -63,6 +73,12 @@ void acting_rows(TableBuilder<Character>& rows) {
       .list(Type::list, "joint", of_source<Kind>(&Acting::joints), joint_rules())
       .plain(Type::text, "clip", of_source<Kind>(&Acting::clip), "animation of the motion, else of the body itself")
       .by_default("the first")
+      .number_or(
+          "travel", {"file", "none"}, above(0, 20), "m/s",
+          "way of the clip over the floor: that of its file, none (it stays in place), or one at a speed, as for clips "
+          "that walk on the spot",
+          [](Character& c) { return travel_value(of_source<Kind>(&Acting::travel)(c)); },
+          [](Character& c, const Value& value) { of_source<Kind> (&Acting::travel)(c) = travel_from(value); })
       .choice("stance", of_source<Kind>(&Acting::stance), {"first", "rest"},
               "pose that it stands in before: the one at start, or that without any animation")
       .plain(Type::boolean, "loop", of_source<Kind>(&Acting::loop),

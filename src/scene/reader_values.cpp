@@ -18,6 +18,7 @@ Value Reader::read_value(const toml::node& node, const Rule& rule, const std::st
     case Type::color:
       return read_color(node, rule, path);
     case Type::number:
+      if (!rule.choices.empty() && node.is_string()) return read_text(node, rule, path);
       return read_numbers(node, rule, path);
     case Type::texts:
       return read_texts(node, rule, path);
@@ -33,7 +34,7 @@ Value Reader::read_text(const toml::node& node, const Rule& rule, const std::str
   }
   const std::string& text = string->get();
   if (rule.type == Type::file) return check_file(node, text, path);
-  if (rule.type == Type::choice && std::find(rule.choices.begin(), rule.choices.end(), text) == rule.choices.end()) {
+  if (!rule.choices.empty() && std::find(rule.choices.begin(), rule.choices.end(), text) == rule.choices.end()) {
     return refuse(
         node, path,
         fmt::format("expected {}, got {}{}", expectation(rule), in_quotes(text), suggestion(text, rule.choices)));

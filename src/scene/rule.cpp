@@ -84,7 +84,9 @@ std::string expectation(const Rule& rule) {
       break;
   }
   const std::string number = rule.whole ? "a whole number" : "a number";
-  if (rule.components.empty()) return number + " " + range_text(rule);
+  if (rule.components.empty())
+    return (rule.choices.empty() ? "" : fmt::format("{} or ", fmt::join(rule.choices, ", "))) + number + " " +
+           range_text(rule);
   const std::string array = fmt::format("[{}], each {}", fmt::join(rule.components, ", "), range_text(rule));
   return rule.single_fills_all ? number + " or " + array : array;
 }

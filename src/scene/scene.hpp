@@ -289,12 +289,20 @@ struct JointNames {
   std::optional<std::string> motion;  ///< in the file of the motion
 };
 
+/// How a clip goes over the floor: as its file has it, in place, or at a speed.
+struct Travel {
+  enum class Kind { file, none, speed };
+  Kind kind = Kind::file;
+  double speed = 0;  ///< [m/s of the scene]; where that is the kind
+};
+
 /// How a skinned body is made to move.
 struct Acting {
   std::optional<std::string> clip;              ///< of `motion`, else of the body itself; absent: the first
   std::optional<std::filesystem::path> motion;  ///< file whose motion it takes over; absolute after checking
   FileUp motion_up = FileUp::as_file;           ///< axis of `motion` that points up
   std::vector<JointNames> joints;
+  Travel travel;
   Stance stance = Stance::first;  ///< pose that is held while dressing
   bool loop = false;              ///< again and again, each round from where the last one has come to
   double crossfade = 0;           ///< [s] of clip time at the end of a round that pass over into the next

@@ -45,6 +45,8 @@ Json type_schema(const Rule& rule) {
     case Type::color:
       return {{"anyOf", {numbers_schema(rule), {{"type", "string"}, {"pattern", "^#[0-9A-Fa-f]{6}$"}}}}};
     case Type::number:
+      if (!rule.choices.empty())
+        return {{"anyOf", {numbers_schema(rule), {{"type", "string"}, {"enum", rule.choices}}}}};
       return numbers_schema(rule);
     case Type::table:
       return table_schema(*rule.table);

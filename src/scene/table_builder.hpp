@@ -154,6 +154,18 @@ class TableBuilder {
     rule.choices = std::move(choices);
     return *this;
   }
+  /// A number, or a word in its place; the functions give and take either.
+  TableBuilder& number_or(std::string key, std::vector<std::string> words, Range range, std::string unit,
+                          std::string documentation, std::function<Value(S&)> get,
+                          std::function<void(S&, const Value&)> set) {
+    Rule& rule = add(std::move(key), Type::number, std::move(documentation));
+    rule.choices = std::move(words);
+    rule.range = range;
+    rule.unit = std::move(unit);
+    rule.get = [get](void* s) { return get(*static_cast<S*>(s)); };
+    rule.set = [set](void* s, const Value& value) { set(*static_cast<S*>(s), value); };
+    return *this;
+  }
   /// One array for two members; a single number sets both.
   template <class First, class Second>
   TableBuilder& pair(std::string key, First first, Second second, Range range, std::string unit,

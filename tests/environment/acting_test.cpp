@@ -312,6 +312,21 @@ TEST_F(Acting, TakesOverTheMotionOfAnotherFileByTheNamesThatTheSceneGives) {
   EXPECT_NE(make().warnings[0].find("nothing that moves Spine"), std::string::npos);
 }
 
+TEST_F(Acting, LeavesAMotionInPlaceOrGivesItASpeed) {
+  file_.motion = folder_ / "walk.bvh";
+  support::write_bytes(*file_.motion, bvh());
+  file_.joints = {{"Spine", std::nullopt, "Back"}};
+  file_.travel = {scene::Travel::Kind::none, 0};
+  const Actor still = make();
+  EXPECT_LT((at(still, 1)[1] - at(still, 0)[1]).norm(), kSingle);
+  file_.travel = {scene::Travel::Kind::speed, 1.5};
+  character_.speed = 0.5;
+  const Actor slides = make();
+  ASSERT_EQ(slides.warnings.size(), 1u);
+  EXPECT_NE(slides.warnings[0].find("takes no steps: feet slide at 1.5 m/s"), std::string::npos) << slides.warnings[0];
+  EXPECT_NEAR((at(slides, 1)[1] - at(slides, 0)[1]).norm(), 1.5, 1e-3);
+}
+
 TEST_F(Acting, StandsUpAMotionWhoseFileHasZUp) {
   std::string file = bvh();
   for (std::size_t at = 0; (at = file.find("OFFSET 0 5 0", at)) != std::string::npos; ++at)

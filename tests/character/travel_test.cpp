@@ -1,0 +1,93 @@
+#include "character/travel.hpp"
+
+#include <gtest/gtest.h>
+
+#include "character/footing.hpp"
+#include "character/gait.hpp"
+#include "character/mannequin.hpp"
+#include "character/pose.hpp"
+
+namespace weft::character {
+namespace {
+
+const Vec3 kUp = Vec3::UnitZ();
+
+/// The mannequin and its walk from standing to standing.
+class Travel : public testing::Test {
+ protected:
+  static constexpr double kWay = 4;  // [m]
+
+  std::vector<Posture> postures(const Clip& clip) const {
+    std::vector<Posture> postures;
+    for (const double t : key_times(clip)) postures.push_back(skeleton_.at(pose_at(body_, clip, t)));
+    return postures;
+  }
+
+  Vec3 hips(const Clip& clip, double t) const { return skeleton_.at(pose_at(body_, clip, t)).places[0]; }
+
+  /// How far the ball of a foot goes at most while it stands in the walk.
+  double slip(const Clip& clip) const {
+    const std::vector<double> times = key_times(clip);
+    const Footsteps steps = find_footsteps(skeleton_, postures(walk_), key_times(walk_), kUp);
+    const std::vector<Posture> at = postures(clip);
+    double slip = 0;
+    for (const bool right : {false, true})
+      for (const Contact& contact : steps.contacts[right])
+        for (std::size_t k = contact.first; k <= contact.last; ++k) {
+          const std::size_t ball = place_of(on_side(Joint::left_toes, right));
+          slip = std::max(slip, (at[k].places[ball] - at[contact.first].places[ball]).norm());
+        }
+    return slip;
+  }
+
+  const Character body_ = make_mannequin({.edge_length = 0.1});
+  const std::vector<Index> joints_ = find_joints(body_);
+  const Rig rig_{body_, joints_};
+  const Skeleton skeleton_{rig_};
+  const Clip walk_ = make_walk(body_, {.distance = kWay});
+};
+
+TEST_F(Travel, OfNoneLeavesTheBodyWhereItIs) {
+  const Clip clip = in_place(rig_, walk_, kUp);
+  ASSERT_GT((hips(walk_, walk_.duration) - hips(walk_, 0)).norm(), 0.9 * kWay);
+  EXPECT_LT((hips(clip, walk_.duration) - hips(clip, 0)).norm(), 1e-5);  // its last key is 2 µs before its end
+  for (const double t : key_times(walk_)) {
+    const Vec3 from_start = hips(clip, t) - hips(clip, 0);
+    EXPECT_LT(std::hypot(from_start.x(), from_start.y()), 0.1) << t;  // sways by 5 cm, gets going within a step
+    EXPECT_NEAR(hips(clip, t).z(), hips(walk_, t).z(), 1e-9) << "heights stay";
+  }
+}
+
+TEST_F(Travel, AtTheSpeedOfTheFeetMakesThemStand) {
+  const Clip still = in_place(rig_, walk_, kUp);
+  ASSERT_GT(slip(still), 0.5);
+  const double mean = kWay / walk_.duration;
+  const Traveled traveled = at_speed(rig_, still, mean, kUp);
+  // Balls of feet roll before and after they stand: measured 6 %.
+  EXPECT_NEAR(traveled.feet, mean, 0.1 * mean);
+  EXPECT_NEAR((hips(traveled.clip, walk_.duration) - hips(traveled.clip, 0)).norm(), kWay, 0.02 * kWay);
+  EXPECT_LT(slip(traveled.clip), 0.05);
+  EXPECT_GT((hips(walk_, walk_.duration) - hips(walk_, 0)).dot(hips(traveled.clip, walk_.duration)), 0) << "ahead";
+}
+
+TEST_F(Travel, TakesTheWayOfTheClipOutFirst) {
+  const Traveled once = at_speed(rig_, in_place(rig_, walk_, kUp), 0.5, kUp), twice = at_speed(rig_, walk_, 0.5, kUp);
+  for (const double t : {0.5, 1.5, walk_.duration})
+    EXPECT_LT((hips(once.clip, t) - hips(twice.clip, t)).norm(), 0.05) << t;
+}
+
+TEST_F(Travel, GoesAheadWhereNoFeetTell) {
+  Clip stands = walk_;
+  for (Channel& channel : stands.channels) {
+    for (Quat& turned : channel.rotation.values) turned = channel.rotation.values.front();
+    for (Vec3& place : channel.position.values) place = channel.position.values.front();
+  }
+  const Traveled traveled = at_speed(rig_, stands, 0.5, kUp);
+  EXPECT_EQ(traveled.feet, 0);
+  const Vec3 way = hips(traveled.clip, stands.duration) - hips(traveled.clip, 0);
+  EXPECT_LT((way - 0.5 * stands.duration * -Vec3::UnitY()).norm(),
+            1e-3);  // hips and shoulders stand level but for 0.01°
+}
+
+}  // namespace
+}  // namespace weft::character
