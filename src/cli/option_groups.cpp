@@ -63,7 +63,8 @@ void add_common(CLI::App& command, SceneOptions& options, const char* what) {
 }
 
 void add_output(CLI::App& command, RunOptions& options) {
-  add_value(command, "-o,--output", "FILE", "Video (.mp4), pictures ('out/{frame:05}.png') or layers of pictures (.exr) [output/<scene>.mp4]",
+  add_value(command, "-o,--output", "FILE",
+            "Video (.mp4), pictures ('out/{frame:05}.png') or layers of pictures (.exr) [output/<scene>.mp4]",
             [&](const std::string& text) { options.output = text; });
 }
 
