@@ -172,6 +172,7 @@ void serialize(Archive& archive, frame::Surface& surface, const Textures& textur
         serialize(archive, part.appearance, textures);
       },
       kLeastPart);
+  serialize_plain(archive, surface.passed_through);
   serialize_plain(archive, surface.part_of_triangle);
   serialize_plain(archive, surface.paint_uv);
 }
@@ -251,6 +252,8 @@ void check(const frame::Surface& surface, std::size_t vertices) {
       for (const Index vertex : face)
         if (vertex < 0 || static_cast<std::size_t>(vertex) >= vertices) broken("a face has a vertex that is not there");
   };
+  if (!surface.passed_through.empty() && surface.passed_through.size() != surface.triangles.size())
+    broken("there is not one flag per triangle");
   if (!surface.part_of_triangle.empty() && surface.part_of_triangle.size() != surface.triangles.size())
     broken("there is not one part per triangle");
   for (const std::int32_t part : surface.part_of_triangle)

@@ -306,9 +306,8 @@ std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::s
   const PartFinder finder(cast, acting, body);
   std::vector<scene::BodyPart> wanted = cast.settings.parts;
   if (!says_hands(wanted) && cast.settings.collide && finder.has_fingers()) {
-    scene::BodyPart hands = part_named("hands");
-    hands.collide = false;
-    wanted.push_back(hands);
+    wanted.push_back(part_named("hands"));
+    wanted.back().collide = false;
     body.warnings.push_back(
         fmt::format("{}: the hands have fingers, which would catch cloth: it passes through them; if it is not to, "
                     "write [[character.part]] name = \"hands\"",
@@ -499,9 +498,12 @@ KeyFrameCount count(const Cast& cast, const KeyTimes& times, std::size_t vertice
 
 template <class Source>
 KeyFrameCount count(const Cast& cast, const Source& source) {
-  const Body body = cast_body(cast, source);
-  return count(cast, key_times(cast, body.clip ? character::key_rate(*body.clip) : 0),
-               body.character.mesh.positions.size());
+  Body body = cast_body(cast, source);
+  KeyFrameCount counted = count(cast, key_times(cast, body.clip ? character::key_rate(*body.clip) : 0),
+                                body.character.mesh.positions.size());
+  for (const Part& part : parts_of(cast, source, {}, body))
+    if (!part.collide) counted.left_out.emplace_back(part.name, std::ranges::count(part.vertices, 1));
+  return counted;
 }
 
 KeyFrameCount count(const Cast& cast, const scene::MeshSequence& source) {

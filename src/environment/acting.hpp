@@ -5,6 +5,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "character/parts.hpp"
@@ -60,6 +61,7 @@ Standing stand(const scene::Scene& scene, const scene::Character& character, con
 /// What make_actor would store, without making it, for the plan.
 struct KeyFrameCount {
   std::size_t keys = 0, vertices = 0, bytes = 0;
+  std::vector<std::pair<std::string, std::size_t>> left_out = {};  ///< parts that do not collide, and their vertices
 };
 KeyFrameCount count_key_frames(const scene::Scene& scene, const scene::Character& character);
 

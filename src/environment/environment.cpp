@@ -337,18 +337,22 @@ struct Place {
   void operator()(const KeyFrames& keys) const { keys.at(t, positions); }
 };
 
-/// The triangles that collide, closed where parts are left out; none where all do.
-std::vector<mesh::Triangle> colliding_triangles(const mesh::Mesh& mesh, const std::vector<Part>& parts) {
-  if (std::ranges::all_of(parts, &Part::collide)) return {};
-  std::vector<std::uint8_t> collides(mesh.positions.size(), 1);
-  for (const Part& part : parts)
+/// Finds the triangles of parts that are left out, and closes the others; of what collides whole or not at all there
+/// are none of either.
+void leave_out_parts(BodyObject& body) {
+  if (std::ranges::all_of(body.parts, &Part::collide)) return;
+  std::vector<std::uint8_t> collides(body.mesh.positions.size(), 1);
+  for (const Part& part : body.parts)
     for (std::size_t v = 0; v < collides.size(); ++v)
       if (part.vertices[v] != 0) collides[v] = part.collide;
-  std::vector<mesh::Triangle> kept;
-  for (const mesh::Triangle& t : mesh.topology.triangles)
-    if (collides[t[0]] + collides[t[1]] + collides[t[2]] >= 2) kept.push_back(t);
-  mesh::close_cuts(mesh.topology.triangles, mesh.positions, kept);
-  return kept;
+  for (const mesh::Triangle& t : body.mesh.topology.triangles) {
+    const bool left_out = collides[t[0]] + collides[t[1]] + collides[t[2]] < 2;
+    body.passed_through.push_back(left_out);
+    if (!left_out) body.colliding.push_back(t);
+  }
+  mesh::close_cuts(body.mesh.topology.triangles, body.mesh.positions, body.colliding);
+  // What is left out whole does not collide.
+  if (body.colliding.empty()) body.collide = false;
 }
 
 /// The pins that follow a character; writes where the body finds them, behind so many vertices.
@@ -383,9 +387,7 @@ BodyObject make_character(const scene::Character& character, const Actor& actor)
   object.parts = actor.parts;
   object.limbs = actor.limbs;
   object.coloring = actor.coloring;
-  object.colliding = colliding_triangles(actor.mesh, actor.parts);
-  // What is left out whole does not collide.
-  if (object.colliding.empty() && !std::ranges::all_of(actor.parts, &Part::collide)) object.collide = false;
+  leave_out_parts(object);
   return object;
 }
 

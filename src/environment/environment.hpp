@@ -71,7 +71,8 @@ struct BodyObject {
     std::size_t cloth = 0, pin = 0, first_vertex = 0;
   };
   std::vector<Follower> followers;
-  std::vector<mesh::Triangle> colliding;  ///< where a part is left out: the others, closed; else none
+  std::vector<mesh::Triangle> colliding;     ///< where a part is left out: the others, closed; else none
+  std::vector<std::uint8_t> passed_through;  ///< of triangles of the mesh: 1 where they do not collide; empty: all do
   std::span<const mesh::Triangle> colliding_triangles() const {
     return colliding.empty() ? mesh.topology.triangles : colliding;
   }

@@ -56,6 +56,7 @@ struct Surface {
   bool visible = true;
   bool infinite_floor = false;                  ///< a ground plane: drawn to the horizon, left out of automatic framing
   std::vector<std::array<Index, 3>> triangles;  ///< drawn and collided with; counter-clockwise seen from the front
+  std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 where cloth does not meet it; empty: it meets all
   std::vector<std::array<Index, 4>> quads;      ///< faces as simulated, if the object is made of quads; else empty
   std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; empty if it has none
   double crease_angle = 30;  ///< degrees; sharper edges are drawn hard (180: all smooth, as for cloth)

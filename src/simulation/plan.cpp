@@ -150,6 +150,9 @@ void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   if (scene.characters.empty()) items.push_back({"motion: characters", false, "no character"});
   for (const scene::Character& character : scene.characters) {
     const environment::KeyFrameCount count = environment::count_key_frames(scene, character);
+    for (const auto& [part, vertices] : count.left_out)
+      items.push_back({fmt::format("collision: {} of {}", part, character.name), false,
+                       fmt::format("cloth passes through {} of {} vertices", vertices, count.vertices)});
     items.push_back({fmt::format("motion: character {}", character.name), true,
                      fmt::format("{} key frame{} of {} vertices, {:.4g} MB, {}", count.keys, count.keys == 1 ? "" : "s",
                                  count.vertices, static_cast<double>(count.bytes) / 1e6,

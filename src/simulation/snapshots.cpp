@@ -110,6 +110,8 @@ std::shared_ptr<const frame::Surface> make_body_surface(const environment::BodyO
   const auto surface =
       make_surface(body.name, body.character ? frame::ObjectKind::character : frame::ObjectKind::obstacle, body.mesh);
   surface->infinite_floor = body.infinite_floor;
+  surface->passed_through = body.passed_through;
+  if (!body.collide) surface->passed_through.assign(surface->triangles.size(), 1);
   if (body.character) surface->crease_angle = kCharacterCrease;
   if (body.coloring && body.look.as_file) {
     for (const character::Material& material : body.coloring->materials)

@@ -72,6 +72,7 @@ TEST(Codec, SurfacesComeBackAsTheyWere) {
       EXPECT_EQ(a.parts[p].name, b.parts[p].name);
       expect_same_paint(a.parts[p].appearance, b.parts[p].appearance);
     }
+    EXPECT_EQ(a.passed_through, b.passed_through);
     EXPECT_EQ(a.part_of_triangle, b.part_of_triangle);
     EXPECT_EQ(a.paint_uv, b.paint_uv);
   }

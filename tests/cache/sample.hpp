@@ -45,6 +45,7 @@ struct Sample {
     cloth.appearance.back_paleness = 0.125;
     cloth.parts = {{"front", cloth.appearance}, {"back", {}}};
     cloth.part_of_triangle = {1, 0};
+    cloth.passed_through = {0, 1};
     cloth.paint_uv = {{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}, {Vec2(2, 0), Vec2(3, 1), Vec2(2, 1)}};
     frame::Surface floor;
     floor.name = "floor";

@@ -188,6 +188,8 @@ TEST_F(Acting, LeavesHandsWithFingersOutUnlessTheSceneHasItsOwnSay) {
   EXPECT_EQ(std::ranges::count(by_itself.parts[0].vertices, 1), 3);
   ASSERT_EQ(by_itself.warnings.size(), 1u);
   EXPECT_NE(by_itself.warnings[0].find("the hands have fingers, which would catch cloth"), std::string::npos);
+  const auto counted = count_key_frames(scene_, character_).left_out;
+  EXPECT_EQ(counted, (std::vector<std::pair<std::string, std::size_t>>{{"hands", 3}}));
 
   character_.parts = {part("left_hand")};
   const Actor as_said = make();

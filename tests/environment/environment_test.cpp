@@ -13,6 +13,7 @@
 #include "core/error.hpp"
 #include "mesh/geometry.hpp"
 #include "support/mesh_measures.hpp"
+#include "support/scene_runs.hpp"
 
 namespace weft::environment {
 namespace {
@@ -172,6 +173,29 @@ TEST(Obstacle, AtRestStandsAtItsPoseForAllTimes) {
     EXPECT_LT((bounds_of(environment, t).max() - Vec3(3, 3, 6)).norm(), kRounding);
   }
   EXPECT_EQ(placed(environment, 0), placed(environment, 5));
+}
+
+TEST(Body, IsPassedThroughWhereAPartIsLeftOut) {
+  const auto man_with = [](const std::string& more) {
+    return Environment(
+               support::scene_of_text("[[character]]\nname = 'man'\nsource = 'mannequin'\nedge_length = 0.05\n" + more))
+        .bodies[0];
+  };
+  EXPECT_TRUE(man_with("").passed_through.empty());
+  const BodyObject man = man_with("part = [{ name = 'hands', collide = false }]\n");
+  const auto& triangles = man.mesh.topology.triangles;
+  ASSERT_EQ(man.passed_through.size(), triangles.size());
+  std::size_t met = 0;
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    const auto& hand = man.parts[0].vertices;
+    const bool of_a_hand = hand[triangles[t][0]] + hand[triangles[t][1]] + hand[triangles[t][2]] >= 2;
+    EXPECT_EQ(man.passed_through[t] != 0, of_a_hand);
+    if (of_a_hand) continue;
+    ASSERT_LT(met, man.colliding.size());
+    EXPECT_EQ(man.colliding[met++], triangles[t]);
+  }
+  EXPECT_LT(met, triangles.size());
+  EXPECT_GT(man.colliding.size(), met) << "the cuts are closed";
 }
 
 scene::Scene scene_with_tumbling_torus() {

@@ -112,6 +112,11 @@ TEST(FadingPin, DrawsWhatIsAroundAndLeavesTheRest) {
   EXPECT_LT(fading[12], 1e-12) << "held as before, though both pins have it";
   for (std::size_t row = 8; row < 12; ++row) EXPECT_LT(fading[row], 0.7 * held[row]) << row;
   EXPECT_LT(fading[11], fading[9]);
+  const auto both = distances(
+      "strength = 30\nfade = 0.2\n[[cloth.pin]]\nlow = [0, 0.75]\nhigh = [1, 0.75]\n"
+      "interpolation = 'linear'\n" +
+      keys);
+  EXPECT_LT(both[9], 1e-12) << "a pin holds what is its own, though the fade of one before it lies there";
   EXPECT_GT(fading[0], 0.1) << "what is far hangs freely";
 }
 

@@ -51,6 +51,7 @@ struct Faces {
     for (std::size_t o = 0; o < objects.size(); ++o) {
       const JudgedObject& object = objects[o];
       for (std::size_t f = 0; f < object.triangles.size(); ++f) {
+        if (!object.passed_through.empty() && object.passed_through[f] != 0) continue;
         Face face{{o, static_cast<Index>(f)}, object.triangles[f], {}};
         for (std::size_t c = 0; c < 3; ++c) face.corners[c] = to_point(object, face.vertices[c]);
         if (CGAL::collinear(face.corners[0], face.corners[1], face.corners[2])) {
@@ -126,8 +127,8 @@ std::vector<JudgedObject> objects_of(const frame::FrameSnapshot& snapshot) {
   std::vector<JudgedObject> objects;
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
-    objects.push_back(
-        {surface.name, surface.kind == frame::ObjectKind::cloth, snapshot.states[i].positions, surface.triangles});
+    objects.push_back({surface.name, surface.kind == frame::ObjectKind::cloth, snapshot.states[i].positions,
+                       surface.triangles, surface.passed_through});
   }
   return objects;
 }

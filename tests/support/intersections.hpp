@@ -20,6 +20,8 @@ struct JudgedObject {
   bool is_cloth = true;             ///< false: an obstacle, which may intersect other obstacles
   std::span<const Vec3> positions;  ///< one per vertex [m]
   std::span<const std::array<Index, 3>> triangles;
+  std::span<const std::uint8_t> passed_through =
+      {};  ///< of each 1 where cloth may be: it is not judged; empty: all are
 };
 
 /// A face of an object of the list.

@@ -18,6 +18,7 @@ namespace weft::support {
 struct PlyMesh {
   std::vector<Vec3> positions;
   std::vector<std::array<Index, 3>> triangles;
+  std::size_t passed_through = 0;  // of the triangles, at their end: cloth may be there
 };
 
 /// Bit for bit. Throws std::runtime_error where the file is not as long as its header says or a face is no triangle of
@@ -36,6 +37,10 @@ inline PlyMesh read_ply(const std::filesystem::path& path) {
   PlyMesh mesh;
   mesh.positions.resize(std::stoul(bytes.substr(after("element vertex "))));
   mesh.triangles.resize(std::stoul(bytes.substr(after("element face "))));
+  const std::string comment = "comment cloth passes through the last ";
+  if (const std::size_t said = bytes.find(comment); said < after("end_header\n"))
+    mesh.passed_through = std::stoul(bytes.substr(said + comment.size()));
+  expect(mesh.passed_through <= mesh.triangles.size());
   const std::size_t size_of_positions = mesh.positions.size() * sizeof(Vec3);
   std::size_t at = after("end_header\n");
   expect(bytes.size() == at + size_of_positions + 13 * mesh.triangles.size());

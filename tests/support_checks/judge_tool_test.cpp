@@ -5,6 +5,7 @@
 #include <cstdlib>
 
 #include "mesh/ply.hpp"
+#include "support/ply.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::support {
@@ -57,6 +58,25 @@ TEST_F(JudgeToolTest, ObstaclesAreNotHeldAgainstEachOther) {
   write_spike("ball_00000.ply", -0.1);
   EXPECT_EQ(run("").exit_code, 1);
   EXPECT_EQ(run("--obstacle ball --obstacle half_pipe").exit_code, 0);
+}
+
+// A hand whose first face, which goes through the sheet, is left out of contact: it comes last, and is not judged.
+TEST_F(JudgeToolTest, FacesThatClothPassesThroughAreLeftOut) {
+  write_floor("sheet_00000.ply");
+  const std::vector<Vec3> places{{0.25, 0.25, -0.1}, {0.25, 0.25, 1}, {0.5, 0.25, 1}, {0.25, 0.5, 1}};
+  const std::vector<std::array<Index, 3>> faces{{0, 1, 2}, {1, 2, 3}};
+  const auto write_hand = [&](const std::vector<std::uint8_t>& passed_through) {
+    mesh::write_ply(folder_ / "hand_00000.ply", places, faces, passed_through);
+  };
+  write_hand({});
+  EXPECT_EQ(run("--obstacle hand").exit_code, 1);
+  write_hand({0, 1});
+  EXPECT_EQ(run("--obstacle hand").exit_code, 1);
+  write_hand({1, 0});
+  EXPECT_EQ(run("--obstacle hand").text, "frame 0: 0 intersecting pairs\n1 frames: 0 intersecting pairs\n");
+  const PlyMesh read = read_ply(folder_ / "hand_00000.ply");
+  EXPECT_EQ(read.passed_through, 1u);
+  EXPECT_EQ(read.triangles, (std::vector<std::array<Index, 3>>{{1, 2, 3}, {0, 1, 2}}));
 }
 
 TEST_F(JudgeToolTest, WhatCannotBeJudgedIsNoPass) {
