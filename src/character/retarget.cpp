@@ -260,7 +260,8 @@ class Retargeter {
       leg.knee = place(Joint::left_lower_leg);
       leg.ankle = place(Joint::left_foot);
       leg.heel = leg.ankle - above_sole(Joint::left_foot) * normal;
-      leg.ball = place(toes) - above_sole(toes) * normal;
+      // Toes stay flat while the heel rises, and their joint stays above them.
+      leg.ball = place(toes) - above_sole(toes) * (toes == Joint::left_toes ? up_ : normal);
       leg.hinge = frame.axes[place_of(on_side(Joint::left_lower_leg, right))] * Vec3::UnitX();
     }
     return legs;

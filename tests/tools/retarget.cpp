@@ -35,7 +35,8 @@ struct Follows {
   std::string bone;                  // that has it
   double arm = 0;                    // likewise of arms alone
   double trunk = 0, trunk_when = 0;  // likewise from the hips to between the shoulders
-  double slip = 0;                   // largest way of a ball of the foot during a contact [m]
+  double slip = 0;                   // largest way of the joint of the toes during a contact, level [m]
+  double toes = 0;                   // likewise of the middle of the skin of the toes, or of the foot without toes [m]
   double below = 0, above = 0;       // of the lowest vertex under and over the floor, with a foot on it [m]
   std::size_t steps = 0, keys = 0;
   double when = 0;
@@ -50,6 +51,21 @@ double lowest(const Rig& body, const Pose& pose) {
   for (std::size_t v = 0; v < x.size(); ++v)
     if (kFeet[v] != 0) lowest = std::min(lowest, kUp.dot(x[v]));
   return lowest;
+}
+
+/// The mean place of the vertices that a joint moves, level.
+Vec3 middle_of_skin(const Rig& body, Joint joint, const Pose& pose) {
+  const VertexMask mask = vertices_below(body.character, body.joints[place_of(joint)]);
+  std::vector<Vec3> x(mask.size());
+  skin(body.character, pose, x);
+  Vec3 sum = Vec3::Zero();
+  int count = 0;
+  for (std::size_t v = 0; v < x.size(); ++v)
+    if (mask[v] != 0) {
+      sum += x[v];
+      ++count;
+    }
+  return (sum - sum.dot(kUp) * kUp) / std::max(1, count);
 }
 
 Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Clip& ours) {
@@ -78,8 +94,14 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
     const Joint toes = on_side(a.has(Joint::left_toes) ? Joint::left_toes : Joint::left_foot, right);
     for (const Contact& contact : steps.contacts[right]) {
       ++result.steps;
+      Vec3 first = Vec3::Zero();
       for (std::size_t k = contact.first; k <= contact.last; ++k) {
         standing[k] = true;
+        if ((k - contact.first) % 3 == 0) {
+          const Vec3 here = middle_of_skin(body, toes, pose_at(body.character, ours, times[k]));
+          if (k == contact.first) first = here;
+          result.toes = std::max(result.toes, (here - first).norm());
+        }
         Vec3 way = at[k].places[place_of(toes)] - at[contact.first].places[place_of(toes)];
         way -= way.dot(kUp) * kUp;
         result.slip = std::max(result.slip, way.norm());
@@ -156,9 +178,9 @@ void report(const Character& body, const std::string& file, bool nameless) {
   const double seconds = process_cpu_seconds() - begin;
   const Follows f = measure({body, ours}, {motion.character, theirs}, clip, result.clip);
   const std::string short_name = file.substr(file.rfind('/') + 1);
-  std::printf("| %s | %zu | %zu | %.1f (%.2f s) to %.1f | %.1f | %.1f %s | %.2g | %.1f (%.2f s) | %.2f |%s\n",
-              short_name.c_str(), f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, f.angle,
-              f.bone.c_str(), f.arm, f.trunk, f.trunk_when, seconds,
+  std::printf("| %s | %zu | %zu | %.1f (%.2f s) to %.1f | %.1f, %.1f | %.1f %s | %.2g | %.1f (%.2f s) | %.2f |%s\n",
+              short_name.c_str(), f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, 1e3 * f.toes,
+              f.angle, f.bone.c_str(), f.arm, f.trunk, f.trunk_when, seconds,
               missing.empty() ? "" : (" without" + missing).c_str());
   for (const std::string& doubt : result.doubts) std::printf("    %s\n", doubt.c_str());
   if (nameless) report_without_names(body, motion.character, result.clip);
@@ -178,7 +200,8 @@ int main(int argc, char** argv) {
   const Character body =
       body_file.empty() ? make_mannequin({}) : assets::load_character(body_file, {}, body_file).character;
   std::printf(
-      "| Motion | keys | steps | feet over the floor [mm] | slip [mm] | limb off by [°] | arm [°] | trunk [°] | CPU "
+      "| Motion | keys | steps | feet over the floor [mm] | slip of joint, of skin [mm] | limb off by [°] | arm [°] | "
+      "trunk [°] | CPU "
       "[s] "
       "|\n");
   if (nameless) compare_without_names(body);
