@@ -66,13 +66,15 @@ const Table& panel_rules() {
           .excludes("file")
           .plain(Type::file, "file", &Panel::file, "SVG drawing with the outline; relative to the pattern's folder")
           .excludes("path")
-          .plain(Type::text, "id", &Panel::id, "of the element in the drawing")
+          .plain(
+              Type::text, "id", &Panel::id,
+              "of the outline in the drawing, or of a group with one outline and texts that name edges; or its label")
           .plain(Type::text, "mirror_of", &Panel::mirror_of,
                  "panel before it that it is the mirror image of; what it does not say itself it has from there, with "
                  "left and right exchanged")
           .plain(Type::text, "edges", &Panel::edge_names,
                  "names of the curves of the outline, in their order; neighbours of one name are one edge")
-          .by_default("1 2 3 and so on")
+          .by_default("those in the drawing, else 1 2 3 and so on")
           .number("grain", &Panel::grain, within(-360, 360), "degrees",
                   "direction of the warp, counter-clockwise from the panel's y axis")
           .vector("position", &Panel::position, {"across", "up"}, within(-100, 100), "m",
@@ -140,17 +142,17 @@ void mirror(const Panel& from, Panel& panel) {
 }
 
 /// The outline of a panel that is right; else what is wrong goes to the findings, or to the mistakes of drawings.
-std::optional<Outline> outline_of(const Panel& panel, const std::string& path, Findings& findings,
-                                  std::vector<std::string>& in_drawings) {
+std::optional<DrawnPanel> drawn_panel(const Panel& panel, const std::string& path, Findings& findings,
+                                      std::vector<std::string>& in_drawings) {
   if (panel.path.empty()) try {
-      return load_svg_outline(panel.file, panel.id);
+      return load_svg_panel(panel.file, panel.id);
     } catch (const Error& error) {
       // Panels of one drawing that cannot be read all say the same.
       if (std::ranges::find(in_drawings, error.what()) == in_drawings.end()) in_drawings.emplace_back(error.what());
       return std::nullopt;
     }
   ParsedPath parsed = parse_path(panel.path);
-  if (parsed.mistake.empty()) return std::move(parsed.outline);
+  if (parsed.mistake.empty()) return DrawnPanel{std::move(parsed.outline), {}};
   findings.report(path + ".path", parsed.mistake);
   return std::nullopt;
 }
@@ -181,15 +183,17 @@ void draw_panel(Panel& panel, const std::string& path, Findings& findings, std::
     return;
   }
   const std::string key = panel.path.empty() ? path + ".file" : path + ".path";
-  std::optional<Outline> drawn = outline_of(panel, path, findings, in_drawings);
+  std::optional<DrawnPanel> drawn = drawn_panel(panel, path, findings, in_drawings);
   if (!drawn) return;
-  Outline& outline = *drawn;
+  auto& [outline, names] = *drawn;
   if (!panel.mirror_of.empty())
     for (Curve& curve : outline)
       for (Vec2& p : curve.control) p.x() = -p.x();
-  std::vector<std::string> names;
-  if (const std::string mistake = name_curves(panel.edge_names, outline, names); !mistake.empty())
-    return findings.report(path + ".edges", mistake);
+  if (names.empty() || !panel.edge_names.empty()) {
+    names.clear();
+    if (const std::string mistake = name_curves(panel.edge_names, outline, names); !mistake.empty())
+      return findings.report(path + ".edges", mistake);
+  }
   const std::vector<Vec2> points = sampled(outline);
   Vec2 low = points[0], high = points[0];
   for (const Vec2& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);

@@ -3,13 +3,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <fstream>
 #include <iterator>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <pugixml.hpp>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -19,6 +22,9 @@ namespace weft::garment {
 namespace {
 
 constexpr double kMetresPerPixel = 0.0254 / 96;
+// Curves that turn by more where they meet have a corner there: pieces of a drawn curve meet within 1 or 2 degrees, a
+// side seam and a hem by 60 or more.
+constexpr double kCorner = 25 * std::numbers::pi / 180;
 // Numbers read from one attribute at most.
 constexpr std::size_t kMaxNumbers = 20000;
 using Affine = Eigen::Affine2d;
@@ -49,10 +55,10 @@ class Drawing {
 
   pugi::xml_node root() const { return document_.document_element(); }
   pugi::xml_node find(const std::string& id) const {
-    const pugi::xml_node found =
-        document_.find_node([&](const pugi::xml_node& n) { return id == n.attribute("id").value(); });
-    if (!found) refuse(0, fmt::format("expected an element with the id \"{}\", got none", id));
-    return found;
+    for (const char* key : {"id", "inkscape:label"})
+      if (const auto found = document_.find_node([&](const auto& n) { return id == n.attribute(key).value(); }))
+        return found;
+    refuse(0, fmt::format("expected an element with the id or label \"{}\", got none", id));
   }
 
  private:
@@ -175,23 +181,155 @@ Outline outline_of(const Drawing& drawing, const pugi::xml_node& node) {
   return std::move(parsed.outline);
 }
 
+/// An element's coordinates to metres, y upward.
+class Sheet {
+ public:
+  explicit Sheet(const Drawing& drawing) : drawing_(drawing), unit_(unit_of(drawing)) {}
+
+  Affine to_metres(const pugi::xml_node& element) const {
+    Affine transform = Affine::Identity();
+    for (pugi::xml_node node = element; node && node != drawing_.root(); node = node.parent())
+      transform = own_transform(drawing_, node) * transform;
+    return Eigen::Scaling(unit_, -unit_) * transform;
+  }
+
+  Outline place(Outline outline, const pugi::xml_node& element) const {
+    const Affine transform = to_metres(element);
+    for (Curve& curve : outline)
+      for (Vec2& p : curve.control) {
+        p = transform * p;
+        if (!p.allFinite()) drawing_.refuse(element, "expected finite coordinates, got others");
+      }
+    return outline;
+  }
+
+ private:
+  const Drawing& drawing_;
+  const double unit_;
+};
+
+struct Label {
+  std::string text;
+  Vec2 place;  ///< [m]
+};
+
+/// What a group holds.
+struct Group {
+  std::vector<pugi::xml_node> outlines;
+  std::vector<Label> edges;
+  std::optional<Vec2> origin;
+};
+
+/// The words of a text and of what is in it.
+std::string words_in(const pugi::xml_node& node) {
+  std::string words = node.value();
+  for (const pugi::xml_node& child : node.children()) words += words_in(child);
+  return words;
+}
+
+void read_text(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node, Group& group) {
+  std::istringstream stream(words_in(node));
+  std::string first, name, more;
+  stream >> first;
+  if (first != "origin" && !first.starts_with("edge:")) return;
+  pugi::xml_node at = node;
+  if (!at.attribute("x")) at = node.child("tspan");
+  const auto x = numbers_of(at.attribute("x").value()), y = numbers_of(at.attribute("y").value());
+  if (!x || !y || x->empty() || y->empty())
+    drawing.refuse(node, "expected x and y where a label stands, got something else");
+  const Vec2 place = sheet.to_metres(at) * Vec2(x->front(), y->front());
+  if (!place.allFinite()) drawing.refuse(node, "expected finite coordinates, got others");
+  if (first == "origin") {
+    group.origin = place;
+    return;
+  }
+  name = first.substr(5);
+  if (name.empty()) stream >> name;
+  const auto of_names = [](char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '-'; };
+  if (name.empty() || !std::ranges::all_of(name, of_names) || stream >> more)
+    drawing.refuse(node, "expected edge: and a name of letters, digits, _ and -, got something else");
+  group.edges.push_back({name, place});
+}
+
+void read_group(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node, Group& group) {
+  for (const pugi::xml_node& child : node.children()) {
+    const std::string_view kind = child.name();
+    if (kind == "text") {
+      read_text(drawing, sheet, child, group);
+    } else if (kind == "g") {
+      read_group(drawing, sheet, child, group);
+    } else if (kind == "polygon" || kind == "rect") {
+      group.outlines.push_back(child);
+    } else if (kind == "path" && parse_path(child.attribute("d").value()).mistake.empty()) {
+      std::istringstream classes(child.attribute("class").value());
+      if (std::find(std::istream_iterator<std::string>(classes), {}, "sa") == std::istream_iterator<std::string>())
+        group.outlines.push_back(child);
+    }
+  }
+}
+
+double distance(const Curve& curve, const Vec2& from) {
+  constexpr int kPoints = 16;
+  double nearest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i <= kPoints; ++i) nearest = std::min(nearest, (curve.at(double(i) / kPoints) - from).norm());
+  return nearest;
+}
+
+bool has_corner(const Curve& before, const Curve& after) {
+  constexpr double kEnd = 1e-3;  // directions at ends whose control points coincide are those a little inward
+  const Vec2 in = before.end() - before.at(1 - kEnd), out = after.at(kEnd) - after.start();
+  return std::abs(std::atan2(in.x() * out.y() - in.y() * out.x(), in.dot(out))) > kCorner;
+}
+
+/// A name for each curve.
+std::vector<std::string> name_edges(const Outline& outline, const std::vector<Label>& labels) {
+  const std::size_t n = outline.size();
+  std::vector<std::size_t> edge(n, 0);  // of a curve, counted from the first corner on
+  std::size_t first = 0, edges = 0;
+  while (first < n && !has_corner(outline[(first + n - 1) % n], outline[first])) ++first;
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::size_t k = (first + i) % n;
+    if (i > 0 && has_corner(outline[(k + n - 1) % n], outline[k])) ++edges;
+    edge[k] = edges;
+  }
+  std::vector<std::vector<const Label*>> of_edge(edges + 1);
+  for (const Label& label : labels) {
+    const auto nearest =
+        std::ranges::min_element(outline, {}, [&](const Curve& c) { return distance(c, label.place); });
+    of_edge[edge[static_cast<std::size_t>(nearest - outline.begin())]].push_back(&label);
+  }
+  std::vector<std::string> names;
+  for (std::size_t k = 0; k < n; ++k) {
+    const auto& own = of_edge[edge[k]];
+    const auto away = [&](const Label* label) { return (outline[k].at(0.5) - label->place).norm(); };
+    names.push_back(own.empty() ? std::to_string(edge[k] + 1) : (*std::ranges::min_element(own, {}, away))->text);
+  }
+  return names;
+}
+
+DrawnPanel panel_of(const Drawing& drawing, const Sheet& sheet, const pugi::xml_node& node) {
+  Group group;
+  read_group(drawing, sheet, node, group);
+  if (group.outlines.size() != 1)
+    drawing.refuse(node,
+                   fmt::format("expected a group with one closed outline, got {}; name the outline itself by its id",
+                               group.outlines.size()));
+  DrawnPanel panel{sheet.place(outline_of(drawing, group.outlines[0]), group.outlines[0]), {}};
+  if (!group.edges.empty()) panel.names = name_edges(panel.outline, group.edges);
+  if (group.origin)
+    for (Curve& curve : panel.outline)
+      for (Vec2& p : curve.control) p -= *group.origin;
+  return panel;
+}
+
 }  // namespace
 
-Outline load_svg_outline(const std::filesystem::path& file, const std::string& id) {
+DrawnPanel load_svg_panel(const std::filesystem::path& file, const std::string& id) {
   const Drawing drawing(file);
+  const Sheet sheet(drawing);
   const pugi::xml_node element = drawing.find(id);
-  Outline outline = outline_of(drawing, element);
-  Affine transform = Affine::Identity();
-  for (pugi::xml_node node = element; node && node != drawing.root(); node = node.parent())
-    transform = own_transform(drawing, node) * transform;
-  const double unit = unit_of(drawing);
-  for (Curve& curve : outline)
-    for (Vec2& p : curve.control) {
-      p = transform * p;
-      p = unit * Vec2(p.x(), -p.y());
-      if (!p.allFinite()) drawing.refuse(element, "expected finite coordinates, got others");
-    }
-  return outline;
+  if (std::string_view(element.name()) == "g") return panel_of(drawing, sheet, element);
+  return {sheet.place(outline_of(drawing, element), element), {}};
 }
 
 }  // namespace weft::garment

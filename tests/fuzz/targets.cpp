@@ -100,7 +100,7 @@ void check_outline(const garment::Outline& outline) {
 // The element has the name that all drawings of the corpus give it.
 void read_svg(Bytes bytes) {
   may_refuse({ExitCode::asset_unreadable},
-             [&] { check_outline(garment::load_svg_outline(MemoryFile(bytes).path(), "front")); });
+             [&] { check_outline(garment::load_svg_panel(MemoryFile(bytes).path(), "front").outline); });
 }
 
 void read_outline(Bytes bytes) {

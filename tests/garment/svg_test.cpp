@@ -15,7 +15,7 @@ class Drawings : public support::TestFolder {
  protected:
   Outline load(const std::string& svg, const std::string& id = "p") {
     support::write_bytes(folder_ / "d.svg", svg);
-    return load_svg_outline(folder_ / "d.svg", id);
+    return load_svg_panel(folder_ / "d.svg", id).outline;
   }
   void expect_corners(const std::string& svg, const std::vector<Vec2>& corners) {
     const Outline outline = load(svg);
@@ -55,7 +55,7 @@ TEST_F(Drawings, TransformsOfElementAndGroupsApply) {
 
 TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineColumnAndElement) {
   expect_refused("<svg>\n  <path id='p' d='M0 0L1 x'/></svg>", "d.svg:2:4: path \"p\": expected a number, got \"x\"");
-  expect_refused("<svg>\n\n<path id='q' d='M0 0L1 1L0 1Z'/></svg>", "the id \"p\"");
+  expect_refused("<svg>\n\n<path id='q' d='M0 0L1 1L0 1Z'/></svg>", "the id or label \"p\"");
   expect_refused("<svg><circle id='p' r='1'/></svg>", "path, polygon or rect");
   expect_refused("<svg viewBox='0 0 0 1' width='1mm'><path id='p' d='M0 0L1 1L0 1Z'/></svg>", "viewBox");
   expect_refused("<svg>\n<path id='p' transform='spin(3)' d='M0 0L1 1L0 1Z'/></svg>", "transform");
@@ -63,7 +63,40 @@ TEST_F(Drawings, WhatIsNoneIsRefusedWithFileLineColumnAndElement) {
   expect_refused("", "expected XML");
   expect_refused("<svg><rect id='p' width='a' height='1'/></svg>", "numbers");
   support::expect_error(ExitCode::asset_unreadable, "none that can be read",
-                        [&] { load_svg_outline(folder_ / "absent.svg", "p"); });
+                        [&] { load_svg_panel(folder_ / "absent.svg", "p"); });
+}
+
+TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
+  // Two panels on a sheet: a bodice whose neck is drawn in two pieces and whose hem goes over in the side without a
+  // corner, and another.
+  const std::string sheet = R"(<svg width='1000mm' viewBox='0 0 1000 1000' xmlns:inkscape='x'>
+    <g inkscape:label='front' transform='translate(100 0)'>
+      <path class='fabric sa' d='M-10 -10H210V310H-10Z'/>
+      <path class='grainline' d='M100 50V250'/>
+      <path d='M0 0 C20 20 40 30 60 30 C80 30 100 20 120 0 L200 0 L200 240 Q200 300 140 300 L0 300 Z'/>
+      <text x='60' y='20'>edge:neck</text>
+      <text transform='translate(150 -5)' x='0' y='0'><tspan>edge: </tspan><tspan>shoulder</tspan></text>
+      <text><tspan x='210' y='100'>edge: side</tspan></text>
+      <text x='70' y='310'>edge: hem</text>
+      <text x='100' y='150'>Front, cut 1 on fold</text>
+      <text x='100' y='300'>origin</text>
+    </g>
+    <g id='back'><rect x='500' y='0' width='200' height='300'/></g>
+    <g id='both'><rect x='0' y='0' width='2' height='3'/><g><polygon points='0 0 1 0 1 1'/></g></g>
+    <g id='odd'><rect x='0' y='0' width='2' height='3'/><text x='0' y='0'>edge: two words</text></g>
+  </svg>)";
+  support::write_bytes(folder_ / "d.svg", sheet);
+  const DrawnPanel front = load_svg_panel(folder_ / "d.svg", "front");
+  const std::vector<std::string> names{"neck", "neck", "shoulder", "side", "hem", "hem", "4"};
+  ASSERT_EQ(front.names.size(), front.outline.size());
+  EXPECT_EQ(front.names, names);
+  EXPECT_LT((front.outline[0].start() - Vec2(-0.1, 0.3)).norm(), 1e-12) << "from the middle of the hem";
+  EXPECT_TRUE(load_svg_panel(folder_ / "d.svg", "back").names.empty());
+  const auto refused = [&](const std::string& id, const std::string& words) {
+    support::expect_error(ExitCode::asset_unreadable, words, [&] { load_svg_panel(folder_ / "d.svg", id); });
+  };
+  refused("both", "d.svg:14:6: g \"both\": expected a group with one closed outline, got 2");
+  refused("odd", "text: expected edge: and a name of letters");
 }
 
 TEST_F(Drawings, DamagedFilesAreRefusedOrRead) {
