@@ -9,10 +9,13 @@
 #include "cli/path_ledger.hpp"
 #include "compare/acceptance.hpp"
 #include "compare/files.hpp"
+#include "compare/references.hpp"
 #include "core/log.hpp"
 
 namespace weft::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 std::string user_name() {
   const char* name = std::getenv("USER");
@@ -23,6 +26,15 @@ std::string user_name() {
 
 bool is_blank(const std::string& text) {
   return std::all_of(text.begin(), text.end(), [](unsigned char c) { return std::isspace(c) != 0; });
+}
+
+// References are added and replaced, never taken away.
+void tell_left(const fs::path& references, const fs::path& test, const std::vector<std::string>& names) {
+  if (!fs::is_directory(references)) return;
+  const std::string machine = compare::machine_class_of(test / names.front());
+  for (const std::string& name : compare::reference_names(references, machine))
+    if (!std::binary_search(names.begin(), names.end(), name))
+      log::info(fmt::format("note: {} has no counterpart in {}; it stays", name, test.string()));
 }
 
 }  // namespace
@@ -38,10 +50,23 @@ ExitCode accept(const AcceptOptions& options) {
   }
   // All are looked at before the first reference changes.
   std::vector<compare::Acceptance> plans;
-  for (const std::filesystem::path& test : options.tests) {
-    plans.push_back(compare::Acceptance::plan(options.reference, test));
+  const auto add = [&](const fs::path& test, const std::string& name) {
+    plans.push_back(compare::Acceptance::plan(options.reference, test, name));
     plans.back().reason = options.reason;
     plans.back().user = user_name();
+  };
+  for (const fs::path& test : options.tests) {
+    if (!fs::is_directory(test)) {
+      add(test, test.filename());
+      continue;
+    }
+    if (is_file)
+      throw Error(ExitCode::usage, "{}: a folder cannot become {}: name the folder of references instead",
+                  test.string(), options.reference.string());
+    const std::vector<std::string> names = compare::comparable_names(test);
+    if (names.empty()) throw Error(ExitCode::asset_unreadable, "{}: holds no pictures or videos", test.string());
+    for (const std::string& name : names) add(test / name, name);
+    tell_left(options.reference, test, names);
   }
   PathLedger paths;
   for (const compare::Acceptance& plan : plans) paths.reads(plan.test, "a picture to accept");

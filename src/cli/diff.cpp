@@ -1,15 +1,16 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
-#include <nlohmann/json.hpp>
 #include <optional>
 
 #include "cli/commands.hpp"
+#include "cli/diff_limits.hpp"
+#include "cli/diff_report.hpp"
 #include "cli/path_ledger.hpp"
 #include "compare/files.hpp"
 #include "compare/references.hpp"
+#include "core/temporary_file.hpp"
 #include "image/png.hpp"
 
 namespace weft::cli {
@@ -40,11 +41,14 @@ struct Pair {
   std::string name;
   std::optional<fs::path> reference;
   fs::path test;
+  compare::Limits limits = {};
 
   FileComparison compare(const DiffOptions& options) const {
     if (!reference) return only_one(name, options.reference, test, Outcome::no_reference);
     if (!fs::exists(test)) return only_one(name, *reference, test, Outcome::no_test);
-    return compare::compare_files(*reference, test, options.limits);
+    FileComparison result = compare::compare_files(*reference, test, limits);
+    result.name = name;
+    return result;
   }
 };
 
@@ -94,67 +98,6 @@ ExitCode exit_code(const std::vector<FileComparison>& results) {
   return code;
 }
 
-// Each figure that is past its limit says so.
-std::string describe_figures(const FileComparison& result, const compare::Limits& limits) {
-  const compare::Figures& f = result.worst.figures;
-  const auto limit = [](double figure, double most) { return figure > most ? fmt::format(" (limit {:g})", most) : ""; };
-  const double pixels = static_cast<double>(f.width) * f.height;
-  return fmt::format(
-      "{} of {} pixels differ, {} by more than {} levels{}; at most {} at ({}, {}); FLIP {:.2g}{}, at most {:.2g}{}; "
-      "SSIM {:.5f}",
-      f.pixels_changed, pixels, f.pixels_over, limits.pixel_tolerance,
-      limit(static_cast<double>(f.pixels_over), std::floor(limits.pixel_budget * pixels)), f.largest, f.largest_x,
-      f.largest_y, f.flip, limit(f.flip, limits.flip), f.spot, limit(f.spot, limits.spot), f.ssim);
-}
-
-std::string describe(const FileComparison& result, const compare::Limits& limits) {
-  std::string line = result.name + ": ";
-  if (!result.problem.empty()) line += result.problem;
-  if (result.frames == 0) return line;
-  if (!result.problem.empty()) line += "; ";
-  const bool same = result.worst.figures.pixels_changed == 0;
-  if (result.video) line += fmt::format("{} of {} frames differ", result.frames_differing, result.frames);
-  if (result.video && !same) line += fmt::format("; worst is frame {}: ", result.worst_frame);
-  if (same) return line + (result.video ? ", all are the same" : "same");
-  if (!result.video) line += result.frames_differing > 0 ? "DIFFERS: " : "within the limits: ";
-  return line + describe_figures(result, limits);
-}
-
-const char* name_of(Outcome outcome) {
-  constexpr const char* kNames[] = {"same",        "within",  "differs",      "size",
-                                    "frame_count", "no_test", "no_reference", "unreadable"};
-  return kNames[static_cast<int>(outcome)];
-}
-
-using Json = nlohmann::ordered_json;
-
-Json describe_json(const FileComparison& result, const fs::path& heatmap) {
-  Json json{{"name", result.name},
-            {"reference", result.reference.string()},
-            {"test", result.test.string()},
-            {"outcome", name_of(result.outcome)}};
-  if (!result.problem.empty()) json["problem"] = result.problem;
-  if (result.frames == 0) return json;
-  const compare::Figures& f = result.worst.figures;
-  if (result.video) {
-    json["frames"] = result.frames;
-    json["frames_differing"] = result.frames_differing;
-    json["worst_frame"] = result.worst_frame;
-  }
-  json["width"] = f.width;
-  json["height"] = f.height;
-  json["pixels_changed"] = f.pixels_changed;
-  json["pixels_over"] = f.pixels_over;
-  json["share_over"] = f.share_over();
-  json["largest"] = f.largest;
-  json["largest_at"] = {f.largest_x, f.largest_y};
-  json["ssim"] = f.ssim;
-  json["flip"] = f.flip;
-  json["spot"] = f.spot;
-  if (!heatmap.empty()) json["heatmap"] = heatmap.string();
-  return json;
-}
-
 // Where the heat map of a pair goes; empty where none is asked for. A video that has the name of a picture keeps its
 // ending.
 fs::path heatmap_file(const DiffOptions& options, const std::vector<Pair>& pairs, const std::string& name) {
@@ -165,8 +108,8 @@ fs::path heatmap_file(const DiffOptions& options, const std::vector<Pair>& pairs
   return options.heatmap / (taken ? name + ".png" : picture);
 }
 
-void check_heatmaps(const DiffOptions& options, const std::vector<Pair>& pairs) {
-  if (options.heatmap.empty()) return;
+void check_outputs(const DiffOptions& options, const std::vector<Pair>& pairs) {
+  if (options.heatmap.empty() && options.junit.empty()) return;
   PathLedger paths;
   for (const fs::path& folder : {options.reference, options.test})
     if (fs::is_directory(folder)) paths.searches(folder, "a folder to compare");
@@ -174,7 +117,10 @@ void check_heatmaps(const DiffOptions& options, const std::vector<Pair>& pairs) 
     if (pair.reference) paths.reads(*pair.reference, "a reference");
     paths.reads(pair.test, "a picture to test");
   }
-  for (const Pair& pair : pairs) paths.writes("--heatmap", heatmap_file(options, pairs, pair.name));
+  if (!options.limits_file.empty()) paths.reads(options.limits_file, "the limits");
+  if (!options.heatmap.empty())
+    for (const Pair& pair : pairs) paths.writes("--heatmap", heatmap_file(options, pairs, pair.name));
+  if (!options.junit.empty()) paths.writes("--junit", options.junit);
   paths.check_absent(options.overwrite);
   paths.check_writable();
 }
@@ -187,25 +133,24 @@ ExitCode diff(const DiffOptions& options) {
     throw Error(ExitCode::usage, "--heatmap: expected a folder for the pictures of folders, got {}",
                 options.heatmap.string());
   }
-  const std::vector<Pair> pairs = all_pairs(options);
-  check_heatmaps(options, pairs);
+  std::vector<Pair> pairs = all_pairs(options);
+  const DiffLimits limits(options.limits, options.limits_file);
+  for (Pair& pair : pairs) pair.limits = limits.of(pair.name);
+  check_outputs(options, pairs);
   std::vector<FileComparison> results;
   for (const Pair& pair : pairs) results.push_back(pair.compare(options));
   const ExitCode code = exit_code(results);
-  Json json{{"exit_code", static_cast<int>(code)},
-            {"limits",
-             {{"pixel_tolerance", options.limits.pixel_tolerance},
-              {"pixel_budget", options.limits.pixel_budget},
-              {"flip", options.limits.flip},
-              {"spot", options.limits.spot}}},
-            {"results", Json::array()}};
-  std::string text;
-  for (const FileComparison& result : results) {
-    const fs::path heatmap = result.frames > 0 ? heatmap_file(options, pairs, result.name) : fs::path();
-    if (!heatmap.empty()) image::write_png(heatmap, compare::heat_map(result.worst.flip));
-    json["results"].push_back(describe_json(result, heatmap));
-    text += describe(result, options.limits) + "\n";
+  Json json{
+      {"exit_code", static_cast<int>(code)}, {"limits", describe_json(options.limits)}, {"results", Json::array()}};
+  std::vector<std::string> lines;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const fs::path heatmap = results[i].frames > 0 ? heatmap_file(options, pairs, results[i].name) : fs::path();
+    if (!heatmap.empty()) image::write_png(heatmap, compare::heat_map(results[i].worst.flip));
+    json["results"].push_back(describe_json(results[i], pairs[i].limits, heatmap));
+    lines.push_back(describe(results[i], pairs[i].limits));
   }
+  if (!options.junit.empty()) write_file(options.junit, junit_xml(results, lines));
+  std::string text = fmt::format("{}\n", fmt::join(lines, "\n"));
   if (results.size() > 1) {
     const auto good = std::count_if(results.begin(), results.end(), [](const auto& result) { return result.good(); });
     text += fmt::format("{} of {} are as their references\n", good, results.size());

@@ -119,14 +119,16 @@ struct BenchOptions {
 struct DiffOptions {
   std::filesystem::path reference, test;  ///< files or folders
   compare::Limits limits;
-  std::filesystem::path heatmap;  ///< picture or folder; empty: none
+  std::filesystem::path limits_file;  ///< limits of single pictures; empty: none
+  std::filesystem::path heatmap;      ///< picture or folder; empty: none
+  std::filesystem::path junit;        ///< file; empty: none
   bool overwrite = false;
   bool json = false;
 };
 
 struct AcceptOptions {
   std::filesystem::path reference;           ///< file or folder
-  std::vector<std::filesystem::path> tests;  ///< files
+  std::vector<std::filesystem::path> tests;  ///< files or folders
   std::string reason;
 };
 

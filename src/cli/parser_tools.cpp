@@ -153,22 +153,30 @@ void Parser::add_diff() {
   add_share("--max-spot", diff.limits.spot, "Largest value of FLIP at any pixel");
   add_value(command, "--heatmap", "FILE.png|DIR", "Also paint where it differs; a video's worst frame",
             [this](const std::string& text) { diff.heatmap = text; });
-  command.add_flag("--overwrite", diff.overwrite, "Replace heat maps that exist already");
+  add_value(command, "--limits", "FILE.toml", "Limits of single pictures, by name",
+            [this](const std::string& text) { diff.limits_file = text; });
+  add_value(command, "--junit", "FILE.xml", "Also write what came of each pair for CI systems",
+            [this](const std::string& text) { diff.junit = text; });
+  command.add_flag("--overwrite", diff.overwrite, "Replace heat maps and reports that exist already");
   command.add_flag("--json", diff.json, "Print JSON instead of text");
   command.footer(
       "\nExamples:\n"
       "  weft diff references/band.png band.png --heatmap difference.png\n"
       "  weft diff references output --heatmap output/differences\n"
       "  weft diff before.mp4 after.mp4\n"
-      "\nFolders are compared by name. References may lie in one folder for each class of machines, named as weft\n"
-      "doctor says, and one named default. "
+      "\nFolders are compared with all below them, by name. References may lie in one folder for each class\n"
+      "of machines, named as weft doctor says, and one named default. Limits are tables [[picture]]\n"
+      "with a name, in which * stands for anything, and pixel_tolerance, pixel_budget, max_flip or max_spot; the last\n"
+      "that fits counts. "
       "Exit codes: 0 all within the limits, 7 something differs, 8 a reference is missing, 4 a file is unreadable.");
 }
 
 void Parser::add_accept() {
   CLI::App& command = *app.add_subcommand("accept", "Make pictures the new references, and record why");
   command.add_option("REFERENCE", accept.reference, "The reference, or its folder")->required()->type_name("");
-  command.add_option("TEST", accept.tests, "The new pictures or videos, each by name")->required()->type_name("");
+  command.add_option("TEST", accept.tests, "The new pictures or videos, each by name, or folders of them")
+      ->required()
+      ->type_name("");
   command.add_option("--reason", accept.reason, "Why: kept in accepted.md")->required()->type_name("TEXT");
   command.footer(
       "\nExamples:\n"

@@ -108,7 +108,7 @@ std::string short_hash(const fs::path& file) {
   return hash_of(read_file(file));
 }
 
-Acceptance Acceptance::plan(const fs::path& reference, const fs::path& test) {
+Acceptance Acceptance::plan(const fs::path& reference, const fs::path& test, const std::string& name) {
   Acceptance plan;
   if (!is_comparable(test)) {
     throw Error(ExitCode::usage, "{}: expected a picture (.png) or a video such as .mp4", test.string());
@@ -126,7 +126,6 @@ Acceptance Acceptance::plan(const fs::path& reference, const fs::path& test) {
     plan.reference = reference;
     return plan;
   }
-  const std::string name = test.filename();
   const fs::path fresh = fs::is_directory(folder / "default") ? folder / "default" / name : folder / name;
   plan.reference = find_reference(folder, name, machine_class_of(test)).value_or(fresh);
   return plan;

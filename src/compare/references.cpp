@@ -22,6 +22,12 @@ std::vector<fs::path> places(const fs::path& folder, const std::string& machine)
   return found;
 }
 
+// Lies in the folder of a class, not in one of the pictures'.
+bool is_of_class(const std::string& name) {
+  static const std::regex kClass(R"((default|mesa-\d+\.\d+(-\d+bit)?)/.*)");
+  return std::regex_match(name, kClass);
+}
+
 }  // namespace
 
 std::string machine_class(const std::string& gl) {
@@ -56,8 +62,8 @@ std::vector<std::string> reference_names(const fs::path& folder, const std::stri
   std::set<std::string> names;
   for (const fs::path& place : places(folder, machine)) {
     if (!fs::is_directory(place)) continue;
-    const auto here = comparable_names(place);
-    names.insert(here.begin(), here.end());
+    for (const std::string& name : comparable_names(place))
+      if (place != folder || !is_of_class(name)) names.insert(name);
   }
   return {names.begin(), names.end()};
 }
@@ -65,10 +71,17 @@ std::vector<std::string> reference_names(const fs::path& folder, const std::stri
 std::vector<std::string> comparable_names(const fs::path& folder) {
   std::vector<std::string> names;
   std::error_code error;
-  for (const auto& entry : fs::directory_iterator(folder, error)) {
+  // A folder that is a link is one like the others; a circle of them ends with an error.
+  fs::recursive_directory_iterator entry(folder, fs::directory_options::follow_directory_symlink, error);
+  for (; !error && entry != fs::recursive_directory_iterator(); entry.increment(error)) {
     // Hidden files are those that are still being written.
-    const std::string name = entry.path().filename();
-    if (entry.is_regular_file() && is_comparable(name) && !name.starts_with('.')) names.push_back(name);
+    const bool hidden = entry->path().filename().string().starts_with('.');
+    std::error_code ignored;
+    if (entry->is_directory(ignored)) {
+      if (hidden) entry.disable_recursion_pending();
+    } else if (!hidden && entry->is_regular_file(ignored) && is_comparable(entry->path())) {
+      names.push_back(entry->path().lexically_relative(folder).generic_string());
+    }
   }
   if (error) throw Error(ExitCode::asset_unreadable, "{}: {}", folder.string(), error.message());
   std::sort(names.begin(), names.end());

@@ -5,6 +5,8 @@
 //     references/mesa-22.3-256bit/name.png   the references of this class of machines
 //     references/default/name.png            those of all others
 //     references/name.png                    or, without any classes, simply this
+//
+// Below these a name may have folders of its own: references/default/front/name.png is that of front/name.png.
 #pragma once
 
 #include <filesystem>
@@ -28,7 +30,8 @@ std::optional<std::filesystem::path> find_reference(const std::filesystem::path&
 /// Names of all references that this class has, sorted.
 std::vector<std::string> reference_names(const std::filesystem::path& folder, const std::string& machine);
 
-/// Names of the pictures and videos right in a folder, sorted. Throws Error(asset_unreadable).
+/// Names of all pictures and videos below a folder, such as "front/name.png", sorted; not of hidden ones. Throws
+/// Error(asset_unreadable).
 std::vector<std::string> comparable_names(const std::filesystem::path& folder);
 
 }  // namespace weft::compare

@@ -92,7 +92,7 @@ TEST_F(Diff, AcceptedPictureIsTheReferenceFromThenOn) {
   write("out/b.png", 130);
   expect({"accept", "ref", "out/a.png"}, 2, "--reason is required");
   expect({"accept", "ref", "out/a.png", "--reason", " "}, 2, "--reason: expected words");
-  expect({"accept", "ref", "out", "--reason", "all"}, 2, "out: expected a picture");
+  expect({"accept", "ref/a.png", "out", "--reason", "all"}, 2, "out: a folder cannot become ref/a.png");
   expect({"accept", "ref/a.png", "out/a.png", "out/b.png", "--reason", "two"}, 2, "cannot all become ref/a.png");
   expect({"accept", "ref", "out/a.png", "out/none.png", "--reason", "half"}, 4, "none.png: does not exist");
   expect({"diff", "ref", "out"}, 7, "0 of 2 are as their references");
@@ -100,6 +100,87 @@ TEST_F(Diff, AcceptedPictureIsTheReferenceFromThenOn) {
   expect({"diff", "ref", "out"}, 7, "a.png: same");
   EXPECT_NE(support::read_bytes(folder_ / "ref/accepted.md").find("| brighter by design |"), std::string::npos);
   expect({"accept", "ref", "out/a.png", "--reason", "again"}, 0, "ref/a.png: is the same already");
+}
+
+TEST_F(Diff, FoldersAreComparedWithAllBelowThem) {
+  write("ref/a.png", 1);
+  write("ref/front/a.png", 1);
+  write("ref/front/deep/b.png", 1);
+  write("out/a.png", 1);
+  write("out/front/a.png", 9);
+  expect({"diff", "ref", "out"}, 7, "front/a.png: DIFFERS");
+  EXPECT_NE(outcome_.out.find("front/deep/b.png: missing: the reference ref/front/deep/b.png"), std::string::npos);
+  EXPECT_NE(outcome_.out.find("\n1 of 3 are as their references"), std::string::npos) << outcome_.out;
+  write("out/front/a.png", 1);
+  write("out/front/deep/b.png", 1);
+  write("out/back/c.png", 1);
+  expect({"diff", "ref", "out", "--heatmap", "maps"}, 8, "back/c.png: no reference");
+  EXPECT_TRUE(std::filesystem::exists(folder_ / "maps/front/deep/b.png"));
+  std::filesystem::remove_all(folder_ / "out/back");
+  expect({"diff", "ref", "out"}, 0, "3 of 3 are as their references");
+  // Folders of classes are no folders of pictures.
+  std::filesystem::rename(folder_ / "ref/front", folder_ / "front");
+  std::filesystem::create_directories(folder_ / "ref/default");
+  std::filesystem::rename(folder_ / "front", folder_ / "ref/default/front");
+  expect({"diff", "ref", "out"}, 0, "3 of 3 are as their references");
+}
+
+TEST_F(Diff, LimitsOfSinglePicturesComeFromAFile) {
+  for (const char* name : {"a.png", "front/a.png", "front/b.png"}) {
+    write(std::string("ref/") + name, 100);
+    write(std::string("out/") + name, 130);
+  }
+  support::write_bytes(folder_ / "limits.toml",
+                       "[[picture]]\nname = \"front/*\"\npixel_budget = 1\nmax_flip = 1\nmax_spot = 1\n"
+                       "[[picture]]\nname = \"front/b.*\"\npixel_budget = 0\n");
+  expect({"diff", "ref", "out", "--limits", "limits.toml"}, 7, "front/a.png: within the limits");
+  EXPECT_TRUE(outcome_.out.starts_with("a.png: DIFFERS")) << outcome_.out;
+  EXPECT_NE(outcome_.out.find("front/b.png: DIFFERS"), std::string::npos) << outcome_.out;
+  const auto broken = [&](const std::string& text, const std::string& words) {
+    support::write_bytes(folder_ / "limits.toml", text);
+    expect({"diff", "ref", "out", "--limits", "limits.toml"}, 4, words);
+  };
+  broken("[[picture]]\nmax_flip = 1\n", "limits.toml:1:1: expected a name");
+  broken("[[picture]]\nname = \"a\"\nmax_flop = 1\n", "limits.toml:3:12: unknown key max_flop; did you mean max_flip?");
+  broken("[[picture]]\nname = \"a\"\nmax_flip = 2\n", "limits.toml:3:12: max_flip: expected a number from 0 to 1");
+  broken("picture = 1\n", "expected tables [[picture]]");
+}
+
+TEST_F(Diff, JUnitNamesWhatFailedAndWhatIsBroken) {
+  write("ref/a.png", 1);
+  write("ref/f/b<&>.png", 1);
+  write("ref/c.png", 1);
+  write("out/a.png", 1);
+  write("out/f/b<&>.png", 90);
+  write("out/new.png", 90);
+  support::write_bytes(folder_ / "out/c.png", "words");
+  expect({"diff", "ref", "out", "--junit", "report.xml"}, 4, "");
+  const std::string xml = support::read_bytes(folder_ / "report.xml");
+  EXPECT_TRUE(
+      xml.starts_with("<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n"
+                      "<testsuite name=\"weft diff\" tests=\"4\" failures=\"2\" errors=\"1\" skipped=\"0\">\n"
+                      "  <testcase classname=\".\" name=\"a.png\"/>\n"
+                      "  <testcase classname=\".\" name=\"c.png\">\n    <error type=\"unreadable\" message=\"c.png: "))
+      << xml;
+  EXPECT_NE(xml.find("<testcase classname=\"f\" name=\"b&lt;&amp;&gt;.png\">\n    <failure type=\"differs\""),
+            std::string::npos)
+      << xml;
+  EXPECT_NE(xml.find("<failure type=\"no_reference\""), std::string::npos) << xml;
+  expect({"diff", "ref", "out", "--junit", "report.xml"}, 6, "report.xml: exists already");
+}
+
+TEST_F(Diff, FoldersAreAcceptedWithAllBelowThem) {
+  write("ref/a.png", 1);
+  write("ref/gone.png", 1);
+  write("out/a.png", 1);
+  write("out/front/b.png", 9);
+  expect({"accept", "ref", "out", "--reason", "new view"}, 0, "note: gone.png has no counterpart in out; it stays");
+  EXPECT_NE(outcome_.err.find("ref/front/b.png: now as out/front/b.png"), std::string::npos) << outcome_.err;
+  EXPECT_NE(outcome_.err.find("ref/a.png: is the same already"), std::string::npos) << outcome_.err;
+  EXPECT_NE(support::read_bytes(folder_ / "ref/accepted.md").find("| front/b.png | none |"), std::string::npos);
+  expect({"diff", "ref", "out"}, 7, "2 of 3 are as their references");
+  std::filesystem::create_directories(folder_ / "empty");
+  expect({"accept", "ref", "empty", "--reason", "none"}, 4, "empty: holds no pictures or videos");
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ class References : public support::TestFolder {
   }
 
   void accept(const std::string& reference, const std::string& test, const std::string& reason) const {
-    Acceptance plan = Acceptance::plan(folder_ / reference, folder_ / test);
+    Acceptance plan = Acceptance::plan(folder_ / reference, folder_ / test, std::filesystem::path(test).filename());
     plan.reason = reason;
     plan.user = "me";
     changed_ = plan.carry_out();
@@ -80,15 +80,28 @@ TEST_F(References, PicturesTellTheClassOfTheirMachine) {
   EXPECT_EQ(machine_class_of(folder_ / "none.png"), "");
 }
 
-TEST_F(References, OnlyWholePicturesAndVideosOfAFolderCount) {
+TEST_F(References, AllPicturesAndVideosBelowAFolderCountButHiddenOnes) {
   write("out/b.png", 1);
   write("out/a.png", 1);
   write("out/folder/c.png", 1);
+  write("out/.being_written/d.png", 1);
   support::write_bytes(folder_ / "out/accepted.md", "");
   support::write_bytes(folder_ / "out/.a.png.123.tmp", "");
   support::write_bytes(folder_ / "out/.hidden.png", "");
   support::write_bytes(folder_ / "out/v.mp4", "");
-  EXPECT_EQ(comparable_names(folder_ / "out"), (std::vector<std::string>{"a.png", "b.png", "v.mp4"}));
+  EXPECT_EQ(comparable_names(folder_ / "out"), (std::vector<std::string>{"a.png", "b.png", "folder/c.png", "v.mp4"}));
+}
+
+TEST_F(References, HaveFoldersOfTheirOwnBelowThoseOfTheClasses) {
+  write("ref/mesa-22.3-256bit/front/a.png", 1);
+  write("ref/default/front/a.png", 2);
+  write("ref/default/front/b.png", 2);
+  write("ref/mesa-lab/c.png", 3);
+  write("ref/mesa-1.2/d.png", 4);
+  EXPECT_EQ(reference_names(folder_ / "ref", machine_class(kGl)),
+            (std::vector<std::string>{"front/a.png", "front/b.png", "mesa-lab/c.png"}));
+  EXPECT_EQ(found("front/a.png", machine_class(kGl)), "mesa-22.3-256bit/front/a.png");
+  EXPECT_EQ(found("front/a.png", ""), "default/front/a.png");
 }
 
 TEST_F(References, AcceptedPictureReplacesTheOneThatDiffWouldTake) {
@@ -153,7 +166,7 @@ TEST_F(References, WhatIsNoWholePictureIsNotAccepted) {
   const std::string bytes = support::read_bytes(folder_ / "out/a.png");
   support::write_bytes(folder_ / "out/a.png", bytes.substr(0, bytes.size() - 5));
   support::write_bytes(folder_ / "out/a.txt", "text");
-  const auto plan = [&](const char* test) { Acceptance::plan(folder_ / "ref", folder_ / test); };
+  const auto plan = [&](const char* test) { Acceptance::plan(folder_ / "ref", folder_ / test, test); };
   support::expect_error(ExitCode::asset_unreadable, "ends too early", [&] { plan("out/a.png"); });
   support::expect_error(ExitCode::asset_unreadable, "does not exist", [&] { plan("out/b.png"); });
   support::expect_error(ExitCode::usage, "expected a picture", [&] { plan("out/a.txt"); });

@@ -1,0 +1,74 @@
+#include "cli/diff_limits.hpp"
+
+#include <fnmatch.h>
+#include <toml++/toml.h>
+
+#include "cli/option_values.hpp"
+#include "core/error.hpp"
+
+namespace weft::cli {
+namespace {
+
+[[noreturn]] void refuse(const std::filesystem::path& file, const toml::source_region& where, const std::string& text) {
+  throw Error(ExitCode::asset_unreadable, "{}:{}:{}: {}", file.string(), where.begin.line, where.begin.column, text);
+}
+
+toml::table parse(const std::filesystem::path& file) {
+  try {
+    return toml::parse_file(file.string());
+  } catch (const toml::parse_error& error) {
+    refuse(file, error.source(), std::string(error.description()));
+  }
+}
+
+std::function<void(compare::Limits&)> change(const std::filesystem::path& file, const std::string& key,
+                                             const toml::node& node) {
+  if (key == "pixel_tolerance") {
+    const auto levels = node.value<std::int64_t>();
+    if (!node.is_integer() || *levels < 0 || *levels > 255)
+      refuse(file, node.source(), "pixel_tolerance: expected a whole number from 0 to 255");
+    return [levels](compare::Limits& limits) { limits.pixel_tolerance = static_cast<int>(*levels); };
+  }
+  const std::vector<std::pair<std::string, double compare::Limits::*>> shares{
+      {"pixel_budget", &compare::Limits::pixel_budget},
+      {"max_flip", &compare::Limits::flip},
+      {"max_spot", &compare::Limits::spot}};
+  for (const auto& [name, member] : shares) {
+    if (key != name) continue;
+    const auto share = node.value<double>();
+    if (!share || !(*share >= 0 && *share <= 1)) refuse(file, node.source(), key + ": expected a number from 0 to 1");
+    return [member = member, share](compare::Limits& limits) { limits.*member = *share; };
+  }
+  const std::vector<std::string> known{"name", "pixel_tolerance", "pixel_budget", "max_flip", "max_spot"};
+  refuse(file, node.source(), fmt::format("unknown key {}{}", key, did_you_mean(key, known)));
+}
+
+}  // namespace
+
+DiffLimits::DiffLimits(const compare::Limits& all, const std::filesystem::path& file) : all_(all) {
+  if (file.empty()) return;
+  const toml::table table = parse(file);
+  for (const auto& [key, node] : table) {
+    const toml::array* pictures = node.as_array();
+    if (key.str() != "picture" || pictures == nullptr || !pictures->is_array_of_tables())
+      refuse(file, node.source(), fmt::format("expected tables [[picture]], got {}", key.str()));
+    for (const toml::node& picture : *pictures) {
+      const toml::table& values = *picture.as_table();
+      const auto name = values["name"].value<std::string>();
+      if (!name) refuse(file, picture.source(), "expected a name, such as \"front/*.png\"");
+      Entry& entry = entries_.emplace_back(Entry{*name, {}});
+      for (const auto& [k, value] : values)
+        if (k.str() != "name") entry.changes.push_back(change(file, std::string(k.str()), value));
+    }
+  }
+}
+
+compare::Limits DiffLimits::of(const std::string& name) const {
+  compare::Limits limits = all_;
+  for (const Entry& entry : entries_)
+    if (::fnmatch(entry.pattern.c_str(), name.c_str(), 0) == 0)
+      for (const auto& apply : entry.changes) apply(limits);
+  return limits;
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,131 @@
+#include "cli/diff_report.hpp"
+
+#include <fmt/format.h>
+
+#include <cmath>
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using compare::FileComparison;
+using Outcome = FileComparison::Outcome;
+
+// Each figure that is past its limit says so.
+std::string describe_figures(const FileComparison& result, const compare::Limits& limits) {
+  const compare::Figures& f = result.worst.figures;
+  const auto limit = [](double figure, double most) { return figure > most ? fmt::format(" (limit {:g})", most) : ""; };
+  const double pixels = static_cast<double>(f.width) * f.height;
+  return fmt::format(
+      "{} of {} pixels differ, {} by more than {} levels{}; at most {} at ({}, {}); FLIP {:.2g}{}, at most {:.2g}{}; "
+      "SSIM {:.5f}",
+      f.pixels_changed, pixels, f.pixels_over, limits.pixel_tolerance,
+      limit(static_cast<double>(f.pixels_over), std::floor(limits.pixel_budget * pixels)), f.largest, f.largest_x,
+      f.largest_y, f.flip, limit(f.flip, limits.flip), f.spot, limit(f.spot, limits.spot), f.ssim);
+}
+
+}  // namespace
+
+std::string describe(const FileComparison& result, const compare::Limits& limits) {
+  std::string line = result.name + ": ";
+  if (!result.problem.empty()) line += result.problem;
+  if (result.frames == 0) return line;
+  if (!result.problem.empty()) line += "; ";
+  const bool same = result.worst.figures.pixels_changed == 0;
+  if (result.video) line += fmt::format("{} of {} frames differ", result.frames_differing, result.frames);
+  if (result.video && !same) line += fmt::format("; worst is frame {}: ", result.worst_frame);
+  if (same) return line + (result.video ? ", all are the same" : "same");
+  if (!result.video) line += result.frames_differing > 0 ? "DIFFERS: " : "within the limits: ";
+  return line + describe_figures(result, limits);
+}
+
+namespace {
+
+const char* name_of(Outcome outcome) {
+  constexpr const char* kNames[] = {"same",        "within",  "differs",      "size",
+                                    "frame_count", "no_test", "no_reference", "unreadable"};
+  return kNames[static_cast<int>(outcome)];
+}
+
+// What XML may hold: five characters by name, and none of those that it forbids.
+std::string escaped(const std::string& text) {
+  std::string safe;
+  for (const char c : text) {
+    if (c == '<')
+      safe += "&lt;";
+    else if (c == '>')
+      safe += "&gt;";
+    else if (c == '&')
+      safe += "&amp;";
+    else if (c == '"')
+      safe += "&quot;";
+    else if (static_cast<unsigned char>(c) < 0x20)
+      safe += ' ';
+    else
+      safe += c;
+  }
+  return safe;
+}
+
+}  // namespace
+
+Json describe_json(const FileComparison& result, const compare::Limits& limits, const fs::path& heatmap) {
+  Json json{{"name", result.name},
+            {"reference", result.reference.string()},
+            {"test", result.test.string()},
+            {"outcome", name_of(result.outcome)}};
+  if (!result.problem.empty()) json["problem"] = result.problem;
+  if (result.frames == 0) return json;
+  const compare::Figures& f = result.worst.figures;
+  if (result.video) {
+    json["frames"] = result.frames;
+    json["frames_differing"] = result.frames_differing;
+    json["worst_frame"] = result.worst_frame;
+  }
+  json["width"] = f.width;
+  json["height"] = f.height;
+  json["pixels_changed"] = f.pixels_changed;
+  json["pixels_over"] = f.pixels_over;
+  json["share_over"] = f.share_over();
+  json["largest"] = f.largest;
+  json["largest_at"] = {f.largest_x, f.largest_y};
+  json["ssim"] = f.ssim;
+  json["flip"] = f.flip;
+  json["spot"] = f.spot;
+  json["limits"] = describe_json(limits);
+  if (!heatmap.empty()) json["heatmap"] = heatmap.string();
+  return json;
+}
+
+Json describe_json(const compare::Limits& limits) {
+  return {{"pixel_tolerance", limits.pixel_tolerance},
+          {"pixel_budget", limits.pixel_budget},
+          {"flip", limits.flip},
+          {"spot", limits.spot}};
+}
+
+std::string junit_xml(const std::vector<FileComparison>& results, const std::vector<std::string>& descriptions) {
+  std::string cases;
+  int failures = 0, errors = 0;
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    const fs::path name = results[i].name;
+    const std::string folder = name.parent_path().string();
+    cases += fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escaped(folder.empty() ? "." : folder),
+                         escaped(name.filename().string()));
+    if (results[i].good()) {
+      cases += "/>\n";
+      continue;
+    }
+    const bool broken = results[i].outcome == Outcome::unreadable;
+    ++(broken ? errors : failures);
+    const char* kind = broken ? "error" : "failure";
+    cases += fmt::format(">\n    <{} type=\"{}\" message=\"{}\"/>\n  </testcase>\n", kind, name_of(results[i].outcome),
+                         escaped(descriptions[i]));
+  }
+  return fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"weft diff\" tests=\"{}\" "
+      "failures=\"{}\" errors=\"{}\" skipped=\"0\">\n{}</testsuite>\n",
+      results.size(), failures, errors, cases);
+}
+
+}  // namespace weft::cli
