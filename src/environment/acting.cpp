@@ -18,7 +18,8 @@
 #include "character/retarget.hpp"
 #include "character/travel.hpp"
 #include "core/error.hpp"
-#include "core/nearest.hpp"
+#include "environment/body_parts.hpp"
+#include "environment/cast.hpp"
 #include "environment/plausibility.hpp"
 #include "mesh/topology.hpp"
 #include "scene/sequence_files.hpp"
@@ -41,41 +42,6 @@ constexpr double kFeetMiss = 0.07;
 /// A trunk that points up, in the mean over a motion, by more than this stands [1].
 constexpr double kStands = 0.7;
 
-/// What there is to be sampled.
-struct Body {
-  std::string source;  ///< for messages: the file it is from
-  character::Character character;
-  std::optional<character::Clip> clip;
-  std::vector<std::string> warnings;
-};
-
-/// A character of the scene, and how messages name it.
-struct Cast {
-  const scene::Scene& scene;
-  const scene::Character& settings;
-  std::string where;
-
-  Vec3 up() const { return scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY(); }
-  assets::FileAxes axes() const { return {settings.scale, settings.up, scene.up}; }
-  /// When it begins to move [s].
-  double leaves() const { return settings.dressing - scene.preroll_frames() / scene.time.fps; }
-  character::Timing timing() const { return {leaves(), settings.blend, settings.start, settings.speed}; }
-
-  [[noreturn]] void fail(const std::string& key, const std::string& why) const {
-    throw Error(ExitCode::scene_invalid, "{}.{}: {}", where, key, why);
-  }
-};
-
-Cast make_cast(const scene::Scene& scene, const scene::Character& settings) {
-  return {scene, settings,
-          fmt::format("{}:{}:{}: character.{}", scene.file.string(), settings.line, settings.column, settings.name)};
-}
-
-std::string did_you_mean(const std::string& name, const std::vector<std::string>& known) {
-  const std::string nearest = nearest_name(name, known);
-  return nearest.empty() ? "" : fmt::format("; did you mean \"{}\"?", nearest);
-}
-
 /// The clip that the scene names, or the first.
 const character::Clip& choose_clip(const Cast& cast, const std::optional<std::string>& name,
                                    const std::vector<character::Clip>& clips, const std::string& source) {
@@ -88,35 +54,6 @@ const character::Clip& choose_clip(const Cast& cast, const std::optional<std::st
   if (names.empty()) cast.fail("clip", fmt::format("expected an animation in {}, got none; leave the key out", source));
   cast.fail("clip", fmt::format("expected one of the {} clips of {}, \"{}\", got \"{}\"{}", names.size(), source,
                                 fmt::join(names, "\", \""), *name, did_you_mean(*name, names)));
-}
-
-/// The node of a file that a [[character.joint]] names.
-Index named_node(const Cast& cast, const std::string& key, const std::string& name,
-                 const std::vector<character::Node>& nodes, const std::string& source) {
-  std::vector<std::string> names;
-  for (std::size_t n = 0; n < nodes.size(); ++n) {
-    if (nodes[n].name == name) return static_cast<Index>(n);
-    names.push_back(nodes[n].name);
-  }
-  cast.fail(key,
-            fmt::format("expected the name of a node of {}, got \"{}\"{}", source, name, did_you_mean(name, names)));
-}
-
-/// The nodes of a skeleton that have the parts of joint_names(), found by their names or as the scene says; −1 for
-/// those that are not found.
-std::vector<Index> joints_of(const Cast& cast, const std::vector<scene::JointNames>& given,
-                             std::optional<std::string> scene::JointNames::*name, const character::Character& character,
-                             const std::string& source) {
-  std::vector<Index> joints = character::find_joints(character);
-  for (const scene::JointNames& joint : given) {
-    const Index number = character::joint_number(joint.name);
-    const std::string key = fmt::format("joint.{}", joint.name);
-    if (number < 0)
-      cast.fail(key + ".name", fmt::format("expected a joint of the body, got \"{}\"{}", joint.name,
-                                           did_you_mean(joint.name, character::joint_names())));
-    if (joint.*name) joints[number] = named_node(cast, key, *(joint.*name), character.nodes, source);
-  }
-  return joints;
 }
 
 void check_hips(const Cast& cast, const std::vector<Index>& joints, const std::vector<character::Node>& nodes,
@@ -238,88 +175,6 @@ Body cast_body(const Cast& cast, const Source& source) {
     cast.fail("start", fmt::format("expected a time of clip \"{}\", at most {:g} s, got {:g}", body.clip->name,
                                    body.clip->duration, cast.settings.start));
   return body;
-}
-
-/// Finds the vertices of a part of the scene, or one that is known by its name alone.
-class PartFinder {
- public:
-  PartFinder(const Cast& cast, const scene::Acting& acting, const Body& body)
-      : cast_(cast),
-        body_(body),
-        joints_(joints_of(cast, acting.joints, &scene::JointNames::body, body.character, body.source)) {}
-
-  /// `key`: what messages name.
-  character::VertexMask find(const scene::BodyPart& part, const std::string& key) const {
-    character::VertexMask mask = vertices_of(part, key);
-    const auto holds = [&](const auto& t) { return mask[t[0]] + mask[t[1]] + mask[t[2]] >= 2; };
-    if (std::ranges::none_of(body_.character.mesh.topology.triangles, holds))
-      cast_.fail(key, fmt::format("expected a part with vertices of {}, got \"{}\", which holds none", body_.source,
-                                  part.bone.value_or(part.material.value_or(part.name))));
-    return mask;
-  }
-
-  bool has_fingers() const { return character::has_fingers(body_.character, joints_); }
-
- private:
-  character::VertexMask vertices_of(const scene::BodyPart& part, const std::string& key) const {
-    const character::Character& body = body_.character;
-    if (part.bone)
-      return character::vertices_below(body, named_node(cast_, key + ".bone", *part.bone, body.nodes, body_.source));
-    if (part.material) {
-      const auto found = std::ranges::find(body.materials, *part.material);
-      if (found != body.materials.end())
-        return character::vertices_of_material(body, static_cast<Index>(found - body.materials.begin()));
-      cast_.fail(key + ".material", fmt::format("expected a material of {}, got \"{}\"{}", body_.source, *part.material,
-                                                did_you_mean(*part.material, body.materials)));
-    }
-    const std::vector<Index> joints = character::joints_of_part(part.name);
-    if (joints.empty())
-      cast_.fail(key, fmt::format("expected {} or a joint, or a part with bone or material, got \"{}\"{}",
-                                  "hands, feet, arms, legs, head, torso", part.name,
-                                  did_you_mean(part.name, character::part_names())));
-    return character::vertices_of(body, joints_, joints);
-  }
-
-  const Cast& cast_;
-  const Body& body_;
-  std::vector<Index> joints_;
-};
-
-/// Whether the scene has its own say on a hand.
-bool says_hands(const std::vector<scene::BodyPart>& parts) {
-  const std::vector<Index> hands = character::joints_of_part("hands");
-  return std::ranges::any_of(parts, [&](const scene::BodyPart& part) {
-    const std::vector<Index> joints = character::joints_of_part(part.name);
-    return !part.bone && !part.material &&
-           std::ranges::any_of(hands, [&](Index hand) { return std::ranges::find(joints, hand) != joints.end(); });
-  });
-}
-
-scene::BodyPart part_named(const std::string& name) {
-  scene::BodyPart part;
-  part.name = name;
-  return part;
-}
-
-std::vector<Part> parts_of(const Cast& cast, const scene::Acting& acting, std::span<const FollowingPin> following,
-                           Body& body) {
-  const PartFinder finder(cast, acting, body);
-  std::vector<scene::BodyPart> wanted = cast.settings.parts;
-  if (!says_hands(wanted) && cast.settings.collide && finder.has_fingers()) {
-    wanted.push_back(part_named("hands"));
-    wanted.back().collide = false;
-    body.warnings.push_back(
-        fmt::format("{}: the hands have fingers, which would catch cloth: it passes through them; if it is not to, "
-                    "write [[character.part]] name = \"hands\"",
-                    cast.where));
-  }
-  for (const FollowingPin& pin : following)
-    if (!pin.part.empty() && std::ranges::find(wanted, pin.part, &scene::BodyPart::name) == wanted.end())
-      wanted.push_back(part_named(pin.part));
-  std::vector<Part> parts;
-  for (const scene::BodyPart& part : wanted)
-    parts.push_back({part.name, finder.find(part, "part." + part.name), part.collide, part.friction, part.thickness});
-  return parts;
 }
 
 /// Adds what goes with a pin to the vertices of the body, of which it has `vertices` itself.
