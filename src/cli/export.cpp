@@ -7,6 +7,7 @@
 #include "cli/path_ledger.hpp"
 #include "cli/signals.hpp"
 #include "core/log.hpp"
+#include "export/obj.hpp"
 
 namespace weft::cli {
 
@@ -34,10 +35,16 @@ ExitCode export_frames(const ExportOptions& options) {
   const FrameRange frames = cached_frames(reader, options.frames, options.partial);
   for (int frame = frames.begin; frame < frames.end; frame += frames.step) request.frames.push_back(frame);
 
-  const auto files = exporter::files(request, *reader.snapshot(frames.begin));
+  const frame::SnapshotPtr first = reader.snapshot(frames.begin);
+  auto files = exporter::files(request, *first);
   PathLedger paths;
   paths.reads_folder(options.cache, "the cache");
+  // Parts of a film share its materials.
+  std::erase_if(files, [](const auto& file) { return file.extension() == ".mtl"; });
   paths.writes("-o", options.output, files);
+  if (request.format == exporter::Format::obj || request.format == exporter::Format::pc2)
+    for (const auto& surface : first->surfaces)
+      paths.writes_content("-o", request.folder / (surface->name + ".mtl"), exporter::mtl_text(*surface));
   paths.check_absent(options.overwrite);
   paths.check_writable();
   const bool whole = exporter::write(

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/temporary_file.hpp"
 #include "export/gltf.hpp"
 #include "export/obj.hpp"
 #include "export/pc2.hpp"
@@ -21,6 +22,9 @@ Path frame_file(const Request& request, const std::string& object, int frame) {
 Path shape_file(const Request& request, const std::string& object) {
   return request.folder / (object + ".obj");
 }
+Path material_file(const Request& request, const std::string& object) {
+  return request.folder / (object + ".mtl");
+}
 Path cache_file(const Request& request, const std::string& object) {
   return request.folder / (object + ".pc2");
 }
@@ -28,9 +32,19 @@ Path gltf_file(const Request& request) {
   return request.folder / (request.name + ".glb");
 }
 
+// As OBJ files are read where nothing else is said, by Blender too: y up, the front towards z.
+std::vector<Vec3> with_y_up(const frame::FrameSnapshot& snapshot, std::size_t surface) {
+  std::vector<Vec3> positions = snapshot.states[surface].positions;
+  if (snapshot.stage->up.z() > 0.5)
+    for (Vec3& x : positions) x = Vec3(x.x(), x.z(), -x.y());
+  return positions;
+}
+
 void write_meshes(const Request& request, const frame::FrameSnapshot& snapshot) {
   for (std::size_t s = 0; s < snapshot.surfaces.size(); ++s) {
     const frame::Surface& surface = *snapshot.surfaces[s];
+    if (request.format == Format::obj && snapshot.frame == request.frames.front())
+      write_file(material_file(request, surface.name), mtl_text(surface), Flush::no);
     const Path file = frame_file(request, surface.name, snapshot.frame);
     if (request.format == Format::ply)
       mesh::write_ply(file, snapshot.states[s].positions, surface.triangles);
@@ -67,8 +81,9 @@ class Sink {
     const int step = request_.frames.size() > 1 ? request_.frames[1] - request_.frames[0] : 1;
     for (std::size_t s = 0; s < snapshot.surfaces.size(); ++s) {
       const frame::Surface& surface = *snapshot.surfaces[s];
-      const std::vector<Vec3>& positions = snapshot.states[s].positions;
+      const std::vector<Vec3> positions = with_y_up(snapshot, s);
       if (first) {
+        write_file(material_file(request_, surface.name), mtl_text(surface), Flush::no);
         write_obj(shape_file(request_, surface.name), surface, positions);
         caches_.push_back(std::make_unique<PointCache>(cache_file(request_, surface.name), positions.size(),
                                                        snapshot.frame, step, request_.frames.size()));
@@ -98,8 +113,10 @@ std::vector<Path> files(const Request& request, const frame::FrameSnapshot& firs
     if (request.format == Format::pc2) {
       result.push_back(shape_file(request, surface->name));
       result.push_back(cache_file(request, surface->name));
+      result.push_back(material_file(request, surface->name));
       continue;
     }
+    if (request.format == Format::obj) result.push_back(material_file(request, surface->name));
     for (int frame : request.frames) result.push_back(frame_file(request, surface->name, frame));
   }
   return result;

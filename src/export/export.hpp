@@ -12,8 +12,8 @@ namespace weft::exporter {
 
 enum class Format {
   ply,   ///< a file for each object and frame: triangles, positions as double
-  obj,   ///< likewise: faces as simulated, with weft and warp as texture coordinates
-  pc2,   ///< a point cache for each object, and the object in the first frame as OBJ, which it applies to
+  obj,   ///< likewise: faces as simulated, with weft and warp as texture coordinates, normals, and a material (MTL)
+  pc2,   ///< a point cache for each object, and the object in the first frame as OBJ, which it applies to; y is up
   gltf,  ///< one file with all visible objects, their colours and their motion
 };
 

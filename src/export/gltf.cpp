@@ -8,7 +8,9 @@
 #include <cstdint>
 #include <cstring>
 #include <limits>
+#include <map>
 #include <string_view>
+#include <utility>
 
 #include "core/error.hpp"
 #include "core/temporary_file.hpp"
@@ -37,6 +39,33 @@ json material_of(const frame::Surface& surface) {
             {"roughnessFactor", look.roughness}}}};
 }
 
+// Gives each place of its own to what lies on either side of a crease; returns the group of each place.
+std::vector<Index> cut_at_creases(CutSurface& cut, const NormalGroups& groups) {
+  std::vector<Index> group_of(cut.vertex_of.size(), -1);
+  std::map<std::pair<Index, Index>, Index> copies;  // by place and group
+  for (std::size_t t = 0; t < cut.triangles.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      Index& corner = cut.triangles[t][k];
+      const auto place = static_cast<std::size_t>(corner);
+      const Index group = groups.of_corner[t][k];
+      if (group_of[place] < 0) group_of[place] = group;
+      if (group_of[place] == group) continue;
+      const auto [copy, fresh] = copies.try_emplace({corner, group}, static_cast<Index>(cut.vertex_of.size()));
+      if (fresh) {
+        cut.vertex_of.push_back(cut.vertex_of[place]);
+        if (!cut.uv.empty()) cut.uv.push_back(Vec2(cut.uv[place]));
+        group_of.push_back(group);
+      }
+      corner = copy->second;
+    }
+  return group_of;
+}
+
+std::vector<float> difference(std::vector<float> now, const std::vector<float>& start) {
+  for (std::size_t i = 0; i < now.size(); ++i) now[i] -= start[i];
+  return now;
+}
+
 void append_number(std::string& bytes, std::uint32_t number) {
   bytes.append(reinterpret_cast<const char*>(&number), sizeof number);
 }
@@ -57,10 +86,16 @@ GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z(
   for (std::size_t s = 0; s < first.surfaces.size(); ++s) {
     const frame::Surface& surface = *first.surfaces[s];
     if (!surface.visible) continue;
-    const CutSurface cut = cut_at_seams(surface);
-    objects_.push_back({s, turned(first.states[s].positions, cut.vertex_of), cut.vertex_of, {}});
+    const std::vector<Vec3>& positions = first.states[s].positions;
+    CutSurface cut = cut_at_seams(surface);
+    Object object{.surface = s, .groups = group_normals(surface, positions)};
+    object.group_of = cut_at_creases(cut, object.groups);
+    object.vertex_of = cut.vertex_of;
+    object.start = turned(positions, object.vertex_of);
+    object.start_normals = normals(object, first);
     document_["materials"].push_back(material_of(surface));
-    document_["meshes"].push_back({{"name", surface.name}, {"primitives", {primitive(cut, objects_.back().start)}}});
+    document_["meshes"].push_back({{"name", surface.name}, {"primitives", {primitive(cut, object)}}});
+    objects_.push_back(std::move(object));
   }
 }
 
@@ -75,6 +110,18 @@ std::vector<float> GltfFile::turned(const std::vector<Vec3>& positions, const st
   return result;
 }
 
+std::vector<float> GltfFile::normals(const Object& object, const frame::FrameSnapshot& snapshot) const {
+  const auto all =
+      normals_of(object.groups, *snapshot.surfaces[object.surface], snapshot.states[object.surface].positions);
+  std::vector<Vec3> of_place;
+  std::vector<Index> places;
+  for (const Index group : object.group_of) {
+    places.push_back(static_cast<Index>(of_place.size()));
+    of_place.push_back(group < 0 ? Vec3(0, 0, 1) : all[static_cast<std::size_t>(group)]);  // −1: of no triangle
+  }
+  return turned(of_place, places);
+}
+
 // Returns the number of the view.
 int GltfFile::append(const void* data, std::size_t size, int target) {
   json view{{"buffer", 0}, {"byteOffset", bytes_.size()}, {"byteLength", size}};
@@ -85,17 +132,17 @@ int GltfFile::append(const void* data, std::size_t size, int target) {
 }
 
 // Returns the number of the accessor, as the others do.
-int GltfFile::add_positions(const std::vector<float>& positions) {
+int GltfFile::add_vectors(const std::vector<float>& vectors) {
   std::array<float, 3> low, high;
   low.fill(std::numeric_limits<float>::max());
   high.fill(std::numeric_limits<float>::lowest());
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    low[i % 3] = std::min(low[i % 3], positions[i]);
-    high[i % 3] = std::max(high[i % 3], positions[i]);
+  for (std::size_t i = 0; i < vectors.size(); ++i) {
+    low[i % 3] = std::min(low[i % 3], vectors[i]);
+    high[i % 3] = std::max(high[i % 3], vectors[i]);
   }
-  document_["accessors"].push_back({{"bufferView", append(positions.data(), 4 * positions.size(), kVertices)},
+  document_["accessors"].push_back({{"bufferView", append(vectors.data(), 4 * vectors.size(), kVertices)},
                                     {"componentType", kFloat},
-                                    {"count", positions.size() / 3},
+                                    {"count", vectors.size() / 3},
                                     {"type", "VEC3"},
                                     {"min", low},
                                     {"max", high}});
@@ -115,8 +162,8 @@ int GltfFile::add_scalars(const std::vector<float>& values, bool with_bounds) {
   return static_cast<int>(document_["accessors"].size()) - 1;
 }
 
-json GltfFile::primitive(const CutSurface& surface, const std::vector<float>& start) {
-  json attributes{{"POSITION", add_positions(start)}};
+json GltfFile::primitive(const CutSurface& surface, const Object& object) {
+  json attributes{{"POSITION", add_vectors(object.start)}, {"NORMAL", add_vectors(object.start_normals)}};
   json& accessors = document_["accessors"];
   if (!surface.uv.empty()) {
     std::vector<float> uv;
@@ -145,10 +192,13 @@ void GltfFile::add(const frame::FrameSnapshot& snapshot, double time) {
   times_.push_back(static_cast<float>(time));
   frames_.push_back(snapshot.frame);
   for (Object& object : objects_) {
-    std::vector<float> displacement = turned(snapshot.states[object.surface].positions, object.vertex_of);
-    const bool moved = displacement != object.start;
-    for (std::size_t i = 0; i < displacement.size(); ++i) displacement[i] -= object.start[i];
-    object.targets.push_back(moved ? add_positions(displacement) : -1);
+    const std::vector<float> positions = turned(snapshot.states[object.surface].positions, object.vertex_of);
+    Target target;
+    if (positions != object.start) {
+      target.positions = add_vectors(difference(positions, object.start));
+      target.normals = add_vectors(difference(normals(object, snapshot), object.start_normals));
+    }
+    object.targets.push_back(target);
   }
 }
 
@@ -156,8 +206,9 @@ void GltfFile::add_targets(Object& object, json& mesh) {
   int still = -1;  // one for all frames that are as the first
   json targets = json::array(), names = json::array();
   for (std::size_t k = 0; k < object.targets.size(); ++k) {
-    if (object.targets[k] < 0 && still < 0) still = add_positions(std::vector<float>(object.start.size(), 0.0F));
-    targets.push_back({{"POSITION", object.targets[k] < 0 ? still : object.targets[k]}});
+    const auto [positions, normals] = object.targets[k];
+    if (positions < 0 && still < 0) still = add_vectors(std::vector<float>(object.start.size(), 0.0F));
+    targets.push_back({{"POSITION", positions < 0 ? still : positions}, {"NORMAL", positions < 0 ? still : normals}});
     names.push_back(fmt::format("frame_{:05}", frames_[k + 1]));
   }
   mesh["primitives"][0]["targets"] = std::move(targets);
@@ -185,7 +236,7 @@ void GltfFile::write(const std::filesystem::path& file, const std::string& anima
     json& mesh = document_["meshes"][o];
     document_["nodes"].push_back({{"name", mesh["name"]}, {"mesh", o}});
     all.push_back(static_cast<int>(o));
-    if (std::ranges::all_of(objects_[o].targets, [](int target) { return target < 0; })) continue;
+    if (std::ranges::all_of(objects_[o].targets, [](const Target& target) { return target.positions < 0; })) continue;
     add_targets(objects_[o], mesh);
     moving.push_back(static_cast<int>(o));
   }

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "export/normals.hpp"
 #include "export/seams.hpp"
 #include "frame/frame_snapshot.hpp"
 
@@ -16,9 +17,9 @@ namespace weft::exporter {
 /// positions do then too. That is the one way of moving vertices at will that the standard has, and readers know it
 /// (assimp, Blender, three.js). Objects that never move have no targets.
 ///
-/// y is up in glTF: where z is up in the scene, (x, y, z) becomes (x, z, -y), which Blender turns back. Normals are
-/// left out: readers then take those of the faces as they are at any time, while given ones would need targets of
-/// their own. Texture coordinates are weft and warp [m]; where panels meet at a seam each has vertices of its own.
+/// y is up in glTF: where z is up in the scene, (x, y, z) becomes (x, z, -y), which Blender turns back. Normals have
+/// targets as positions have: those of the first frame would be wrong in all others. Texture coordinates are weft and
+/// warp [m]; where panels meet at a seam each has vertices of its own.
 class GltfFile {
  public:
   /// Of the visible objects of the first frame.
@@ -31,18 +32,25 @@ class GltfFile {
   void write(const std::filesystem::path& file, const std::string& animation_name);
 
  private:
+  struct Target {
+    int positions = -1, normals = -1;  // accessors; −1 where all is as in the first frame
+  };
   struct Object {
-    std::size_t surface;
-    std::vector<float> start;      // as written
-    std::vector<Index> vertex_of;  // of the surface, for each that is written
-    std::vector<int> targets;      // accessors, one per later frame; −1 where it is as in the first
+    std::size_t surface = 0;
+    NormalGroups groups = {};
+    std::vector<float> start = {};  // as written
+    std::vector<float> start_normals = {};
+    std::vector<Index> vertex_of = {};  // of the surface, for each that is written
+    std::vector<Index> group_of = {};   // of normals, likewise; −1: of none
+    std::vector<Target> targets = {};   // one per later frame
   };
   int append(const void* data, std::size_t size, int target);
-  int add_positions(const std::vector<float>& positions);
+  int add_vectors(const std::vector<float>& vectors);
   int add_scalars(const std::vector<float>& values, bool with_bounds);
-  nlohmann::json primitive(const CutSurface& surface, const std::vector<float>& start);
+  nlohmann::json primitive(const CutSurface& surface, const Object& object);
   void add_targets(Object& object, nlohmann::json& mesh);
   void animate(const std::vector<int>& nodes, const std::string& name);
+  std::vector<float> normals(const Object& object, const frame::FrameSnapshot& snapshot) const;
   std::vector<float> turned(const std::vector<Vec3>& positions, const std::vector<Index>& vertices) const;
 
   bool z_up_;

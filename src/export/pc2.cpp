@@ -13,12 +13,12 @@ namespace weft::exporter {
 static_assert(std::endian::native == std::endian::little);
 
 PointCache::PointCache(const std::filesystem::path& file, std::size_t points, int first_frame, int step,
-                       std::size_t samples)
-    : name_(file), file_(file), out_(file_.path(), std::ios::binary) {
+                       std::size_t given)
+    : name_(file), file_(file), out_(file_.path(), std::ios::binary), step_(step) {
   put("POINTCACHE2", 12);
   const std::int32_t version = 1, point_count = static_cast<std::int32_t>(points),
-                     sample_count = static_cast<std::int32_t>(samples);
-  const float start = static_cast<float>(first_frame), rate = static_cast<float>(step);
+                     sample_count = static_cast<std::int32_t>((given - 1) * static_cast<std::size_t>(step) + 1);
+  const float start = static_cast<float>(first_frame), rate = 1;
   put(&version, 4), put(&point_count, 4), put(&start, 4), put(&rate, 4), put(&sample_count, 4);
 }
 
@@ -28,6 +28,19 @@ void PointCache::put(const void* data, std::size_t size) {
 }
 
 void PointCache::add(const std::vector<Vec3>& positions) {
+  for (int k = 1; k < step_ && !before_.empty(); ++k) {
+    const double share = static_cast<double>(k) / step_;
+    std::vector<Vec3> between;
+    between.reserve(positions.size());
+    for (std::size_t i = 0; i < positions.size(); ++i)
+      between.emplace_back(before_[i] + share * (positions[i] - before_[i]));
+    put(between);
+  }
+  put(positions);
+  before_ = positions;
+}
+
+void PointCache::put(const std::vector<Vec3>& positions) {
   std::vector<float> sample;
   sample.reserve(3 * positions.size());
   for (const Vec3& x : positions)

@@ -40,7 +40,7 @@ LoadResult load(const std::filesystem::path& file, const std::vector<std::string
 LoadResult load_text(std::string_view text, const std::filesystem::path& name,
                      const std::vector<std::string>& overrides = {});
 
-/// The JSON schema (Draft 4) of a format, made from its rule table.
+/// The JSON schema (Draft 2020-12) of a format, made from its rule table.
 std::string json_schema(const Table& table = scene_rules(), const std::string& title = "Weft scene");
 
 /// The checked scene with every default filled in, as TOML.

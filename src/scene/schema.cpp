@@ -1,4 +1,4 @@
-// The JSON schema of the scene format: Draft 4, the newest that editors' TOML plugins read.
+// The JSON schema of the scene format, Draft 2020-12. It has only what editors that know no draft after 7 read alike.
 #include <fmt/format.h>
 
 #include <nlohmann/json.hpp>
@@ -15,8 +15,8 @@ using Json = nlohmann::ordered_json;
 Json table_schema(const Table& table);
 
 Json number_schema(const Rule& rule) {
-  Json number = {{"type", rule.whole ? "integer" : "number"}, {"minimum", rule.range.low}};
-  if (rule.range.low_open) number["exclusiveMinimum"] = true;
+  Json number = {{"type", rule.whole ? "integer" : "number"}};
+  number[rule.range.low_open ? "exclusiveMinimum" : "minimum"] = rule.range.low;
   number["maximum"] = rule.range.high;
   return number;
 }
@@ -52,7 +52,9 @@ Json type_schema(const Rule& rule) {
       return table_schema(*rule.table);
     case Type::list:
     case Type::keys:
-      return {{"type", "array"}, {"items", table_schema(*rule.table)}, {"maxItems", rule.range.high}};
+      return {{"type", "array"},
+              {"items", table_schema(*rule.table)},
+              {"maxItems", static_cast<std::int64_t>(rule.range.high)}};
   }
   return {};
 }
@@ -122,7 +124,7 @@ Json table_schema(const Table& table) {
 }  // namespace
 
 std::string json_schema(const Table& table, const std::string& title) {
-  Json schema = {{"$schema", "http://json-schema.org/draft-04/schema#"}, {"title", title}};
+  Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}};
   schema.update(table_schema(table));
   return schema.dump(2) + "\n";
 }

@@ -25,6 +25,8 @@ TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
   expect_same("meshes", "ply", ".ply", 3 * kFrames);
   expect_exported({"c", "--format", "obj", "-o", "obj", "--frames", "2:21:6"});
   EXPECT_EQ(contents("obj", ".obj").size(), 3U * 4);
+  expect_exported({"c", "--format", "obj", "-o", "obj", "--frames", "3:4"});  // beside the same materials
+  EXPECT_EQ(contents("obj", ".mtl").size(), 3U);
   expect_exported({"c", "--format", "pc2", "-o", "pc2"});
   EXPECT_EQ(contents("pc2", ".pc2").size(), 3U);
   expect_exported({"c", "--format", "gltf", "-o", "gltf"});

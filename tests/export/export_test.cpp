@@ -12,6 +12,7 @@
 #include <cstring>
 
 #include "assets/mesh_file.hpp"
+#include "export/normals.hpp"
 #include "image/color.hpp"
 #include "support/test_folder.hpp"
 
@@ -169,8 +170,10 @@ T take(std::string_view& bytes) {
   return value;
 }
 
-TEST_F(Exported, PointCachesMoveTheObjFilesBesideThem) {
-  write(Format::pc2, {1, 3, 5});
+// What a program that counts samples, as Blender does, shows in frame k is frame k; axes are those that it takes OBJ
+// for.
+TEST_F(Exported, PointCachesHaveASampleForEachFrameAndMoveTheObjFilesBesideThem) {
+  write(Format::pc2, {1, 4, 7});
   for (std::size_t s = 0; s < surfaces_.size(); ++s) {
     std::ifstream in(file(surfaces_[s]->name + ".pc2"), std::ios::binary);
     const std::string content{std::istreambuf_iterator<char>(in), {}};
@@ -181,20 +184,99 @@ TEST_F(Exported, PointCachesMoveTheObjFilesBesideThem) {
     const std::size_t points = snapshot(1)->states[s].positions.size();
     EXPECT_EQ(take<std::int32_t>(bytes), static_cast<std::int32_t>(points));
     EXPECT_EQ(take<float>(bytes), 1.0F);
-    EXPECT_EQ(take<float>(bytes), 2.0F);
-    EXPECT_EQ(take<std::int32_t>(bytes), 3);
-    for (int k : request_.frames) {
-      const auto shown = snapshot(k);
-      for (const Vec3& x : shown->states[s].positions)
-        for (int axis = 0; axis < 3; ++axis) EXPECT_EQ(take<float>(bytes), static_cast<float>(x[axis]));
+    EXPECT_EQ(take<float>(bytes), 1.0F);
+    EXPECT_EQ(take<std::int32_t>(bytes), 7);
+    for (int k = 1; k <= 7; ++k) {
+      const int before = 1 + (k - 1) / 3 * 3;
+      const auto from = snapshot(before), to = snapshot(std::min(before + 3, 7));
+      for (std::size_t i = 0; i < points; ++i) {
+        const Vec3 &a = from->states[s].positions[i], &b = to->states[s].positions[i];
+        const Vec3 x = a + (k - before) / 3.0 * (b - a);
+        for (const double along : {x.x(), x.z(), -x.y()}) EXPECT_EQ(take<float>(bytes), static_cast<float>(along));
+      }
     }
     EXPECT_TRUE(bytes.empty());
     // The points of the cache are the vertices of the mesh, in their order.
     std::ifstream mesh(file(surfaces_[s]->name + ".obj"));
-    std::size_t vertices = 0;
-    for (std::string line; std::getline(mesh, line);) vertices += line.starts_with("v ");
-    EXPECT_EQ(vertices, points);
+    std::size_t vertex = 0;
+    for (std::string line; std::getline(mesh, line);) {
+      double x = 0, y = 0, z = 0;
+      if (std::sscanf(line.c_str(), "v %lf %lf %lf", &x, &y, &z) != 3) continue;
+      EXPECT_EQ(Vec3(x, -z, y), snapshot(1)->states[s].positions[vertex++]);
+    }
+    EXPECT_EQ(vertex, points);
   }
+}
+
+// Normals of a sheet, from the triangles around each vertex.
+Vec3 normal_at(const frame::Surface& surface, const std::vector<Vec3>& x, Index vertex) {
+  Vec3 sum = Vec3::Zero();
+  for (const auto& t : surface.triangles)
+    if (std::ranges::find(t, vertex) != t.end()) sum += (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]);
+  return sum.normalized();
+}
+
+void make_smooth(std::shared_ptr<const frame::Surface>& surface) {
+  frame::Surface smooth = *surface;
+  smooth.crease_angle = 180;  // as cloth is drawn
+  surface = std::make_shared<frame::Surface>(smooth);
+}
+
+TEST_F(Exported, ObjFilesHaveNormalsAndAMaterial) {
+  make_smooth(surfaces_[0]);
+  write(Format::obj, {3, 4});
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file("cloth_00003.obj").string(), 0);
+  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+  const aiMesh& mesh = *scene->mMeshes[0];
+  ASSERT_TRUE(mesh.HasNormals());
+  const frame::Surface& cloth = *surfaces_[0];
+  const std::vector<Vec3> x = snapshot(3)->states[0].positions;
+  for (unsigned f = 0; f < 2; ++f)
+    for (unsigned c = 0; c < 4; ++c) {
+      const aiVector3D& n = mesh.mNormals[mesh.mFaces[f].mIndices[c]];
+      EXPECT_LT((Vec3(n.x, n.y, n.z) - normal_at(cloth, x, cloth.quads[f][c])).norm(), 1e-6) << f << c;
+    }
+  const aiMaterial& material = *scene->mMaterials[mesh.mMaterialIndex];
+  EXPECT_EQ(std::string(material.GetName().C_Str()), "cloth");
+  aiColor3D color;
+  ASSERT_EQ(material.Get(AI_MATKEY_COLOR_DIFFUSE, color), aiReturn_SUCCESS);
+  EXPECT_NEAR(color.r, image::linear_from_srgb(cloth.appearance.color).x(), 1e-6);
+  float shininess = 0;
+  ASSERT_EQ(material.Get(AI_MATKEY_SHININESS, shininess), aiReturn_SUCCESS);
+  EXPECT_NEAR(1 - std::sqrt(shininess / 1000), 0.7, 1e-5);
+}
+
+TEST_F(Exported, GltfNormalsMoveWithTheFrames) {
+  make_smooth(surfaces_[0]);
+  write(Format::gltf, {2, 3});
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file("flutter.glb").string(), 0);
+  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+  const aiMesh& mesh = *scene->mMeshes[0];
+  ASSERT_EQ(mesh.mNumVertices, 6u);
+  ASSERT_EQ(mesh.mNumAnimMeshes, 1u);
+  const auto expect_normals = [&](int frame, const aiVector3D* normals) {
+    ASSERT_NE(normals, nullptr);
+    const std::vector<Vec3> x = snapshot(frame)->states[0].positions;
+    for (int i = 0; i < 6; ++i) {
+      const Vec3 n = normal_at(*surfaces_[0], x, i);
+      EXPECT_LT((Vec3(normals[i].x, normals[i].y, normals[i].z) - Vec3(n.x(), n.z(), -n.y())).norm(), 3 * kSingle);
+    }
+  };
+  expect_normals(2, mesh.mNormals);
+  expect_normals(3, mesh.mAnimMeshes[0]->mNormals);
+}
+
+TEST_F(Exported, SharpEdgesHaveANormalOnEitherSide) {
+  frame::Surface roof = *surfaces_[0];
+  roof.crease_angle = 30;
+  std::vector<Vec3> bent;
+  for (int i = 0; i < 6; ++i) bent.emplace_back(0.1 * (i % 3), 0.1 * (i / 3), i % 3 == 1 ? 0.1 : 0.0);
+  const NormalGroups folded = group_normals(roof, bent);
+  EXPECT_EQ(folded.vertex_of.size(), 8u) << "both vertices of the ridge twice";
+  for (const Vec3& n : normals_of(folded, roof, bent)) EXPECT_NEAR(std::abs(n.x()), std::sqrt(0.5), 1e-12);
+  EXPECT_NE(folded.of_corner[0][1], folded.of_corner[2][0]);
 }
 
 // The weights of an animated node at a time, by linear interpolation of its keys, as the file says.
@@ -288,7 +370,7 @@ TEST_F(Exported, AStopLeavesNothingHalf) {
   EXPECT_FALSE(exporter::write(
       request_, [&](int k) { return snapshot(k); }, [&] { return ++asked > 2; }));
   for (const auto& entry : std::filesystem::directory_iterator(request_.folder))
-    EXPECT_EQ(entry.path().extension(), ".obj") << "whole files only, no cache of two samples: " << entry.path();
+    EXPECT_NE(entry.path().extension(), ".pc2") << "whole files only, no cache of two samples: " << entry.path();
 }
 
 }  // namespace

@@ -41,8 +41,8 @@ class Judge {
       return at("wrong pattern");
     }
     if (value.is_number()) {
-      const double low = schema.value("minimum", -1e300);
-      if (value < low || (schema.value("exclusiveMinimum", false) && value == low)) return at("below minimum");
+      if (value < schema.value("minimum", -1e300) || value <= schema.value("exclusiveMinimum", -1e300))
+        return at("below minimum");
       if (value > schema.value("maximum", 1e300)) return at("above maximum");
     }
     for (const char* keyword : {"anyOf", "oneOf"}) {

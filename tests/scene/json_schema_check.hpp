@@ -1,4 +1,4 @@
-// A small independent judge of JSON schemas: the part of Draft 4 that the scene schema uses, no more.
+// A small independent judge of JSON schemas: the part of Draft 2020-12 that the scene schema uses, no more.
 #pragma once
 
 #include <nlohmann/json.hpp>
