@@ -220,7 +220,7 @@ TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
   // As 100STYLE has it: four chests and no spine.
   std::vector<Node> nodes;
   const auto add = [&](const std::string& name, Index parent) {
-    nodes.push_back({name, parent, Affine::Identity()});
+    nodes.push_back({name, parent, Affine(Eigen::Translation3d(0, 0, 0.1))});
     return static_cast<Index>(nodes.size() - 1);
   };
   Index last = add("Hips", -1);
@@ -240,6 +240,7 @@ TEST(Joints, OfTheTrunkAreWhereLimbsPart) {
   for (const char* arm : {"CC_Base_L_Upperarm", "CC_Base_R_Upperarm"}) add(arm, last);
   found = find_named_joints(nodes);
   EXPECT_EQ(found[place_of(Joint::hips)], hip);
+  ASSERT_GE(found[place_of(Joint::spine)], 0);
   EXPECT_EQ(nodes[found[place_of(Joint::spine)]].name, "CC_Base_Waist");
   EXPECT_EQ(found[place_of(Joint::chest)], last);
 }
