@@ -26,15 +26,15 @@ void check_frame(int frame, const Stills& stills) {
               frames.front(), frames.back(), frame);
 }
 
-struct Choice {
+struct Still {
   frame::SnapshotPtr snapshot;
   render::Saliency saliency;
 };
 
 /// The first of the frames that tell most.
-Choice most_salient(Stills& stills, const std::vector<int>& frames, Progress& progress) {
+Still most_salient(Stills& stills, const std::vector<int>& frames, Progress& progress) {
   const render::Settings& settings = stills.settings();
-  Choice best;
+  Still best;
   frame::SnapshotPtr previous;
   for (const int k : frames) {
     const frame::SnapshotPtr snapshot = stills.at(k, progress);
@@ -92,8 +92,8 @@ ExitCode thumbnail(const ThumbnailOptions& options) {
   std::string text;
   {
     Progress progress(options.common.progress, {stills->cost(options.frame.value_or(frames.back())), 1, 1});
-    const Choice choice =
-        options.frame ? Choice{stills->at(*options.frame, progress), {}} : most_salient(*stills, frames, progress);
+    const Still choice =
+        options.frame ? Still{stills->at(*options.frame, progress), {}} : most_salient(*stills, frames, progress);
     const frame::FrameSnapshot& snapshot = *choice.snapshot;
     const std::unique_ptr<FramePainter> painter = make_gl_painter(stills->settings());
     painter->look_through(stills->camera());

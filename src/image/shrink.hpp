@@ -6,7 +6,7 @@
 namespace weft::image {
 
 /// The picture at `width` pixels in its own shape; as it is where it is not wider. Each new pixel is the mean of those
-/// that it covers.
+/// that it covers, in sRGB as browsers do it.
 Image shrink(const Image& image, int width);
 
 }  // namespace weft::image

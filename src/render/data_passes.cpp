@@ -108,7 +108,8 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
       if (hit.surface >= 0) {
         const SurfaceBuffers& drawn = surfaces[hit.surface];
         const frame::Surface& surface = drawn.surface();
-        const auto& [a, b, c] = drawn.triangles()[hit.triangle];
+        const Triangle& corners = drawn.triangles()[hit.triangle];
+        const Index a = corners[0], b = corners[1], c = corners[2];
         const auto positions = drawn.positions();
         const Meeting meeting(view.eye, along, {positions[a], positions[b], positions[c]});
         const auto& source = drawn.mesh().source;

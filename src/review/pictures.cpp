@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "image/png.hpp"
+#include "image/shrink.hpp"
 #include "video/decoder.hpp"
 
 namespace weft::review {
@@ -62,30 +63,6 @@ compare::Plane<float> shrink_to_largest(const compare::Plane<float>& plane, int 
 
 }  // namespace
 
-image::Image shrink(const image::Image& image, int width) {
-  if (image.width <= width) return image;
-  const int height =
-      std::max(1, static_cast<int>(std::lround(static_cast<double>(image.height) * width / image.width)));
-  image::Image small(width, height);
-  for (int y = 0; y < height; ++y) {
-    const int top = static_cast<int>(static_cast<long long>(y) * image.height / height);
-    const int bottom = std::max(top + 1, static_cast<int>(static_cast<long long>(y + 1) * image.height / height));
-    for (int x = 0; x < width; ++x) {
-      const int left = static_cast<int>(static_cast<long long>(x) * image.width / width);
-      const int right = static_cast<int>(static_cast<long long>(x + 1) * image.width / width);
-      for (int channel = 0; channel < 3; ++channel) {
-        int sum = 0;
-        for (int j = top; j < bottom; ++j) {
-          for (int i = left; i < right; ++i) sum += image.pixel(i, j)[channel];
-        }
-        const int count = (bottom - top) * (right - left);
-        small.pixel(x, y)[channel] = static_cast<std::uint8_t>((sum + count / 2) / count);
-      }
-    }
-  }
-  return small;
-}
-
 Survey survey(const RunFiles& run) {
   Survey found;
   Reader reader(run);
@@ -97,7 +74,7 @@ Survey survey(const RunFiles& run) {
       found.width = image->width;
       found.height = image->height;
     }
-    if (found.count % stride == 0) found.tiles.push_back({found.count, shrink(*image, kTileWidth)});
+    if (found.count % stride == 0) found.tiles.push_back({found.count, image::shrink(*image, kTileWidth)});
     if (found.tiles.size() == kMaxTiles) {
       stride *= 2;
       std::erase_if(found.tiles, [stride](const Tile& tile) { return tile.picture % stride != 0; });

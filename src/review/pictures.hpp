@@ -45,8 +45,4 @@ std::vector<PairComparison> compare_with_reference(const RunFiles& run, const Pi
 /// The picture of `to` that shows the moment closest to picture k of `from`.
 long long same_moment(long long k, const PictureTimes& from, const PictureTimes& to);
 
-/// A picture of this width, or the picture itself where it is not wider. Each pixel is the mean of those it covers, in
-/// sRGB as browsers do it.
-image::Image shrink(const image::Image& image, int width);
-
 }  // namespace weft::review

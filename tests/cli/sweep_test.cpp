@@ -8,7 +8,6 @@
 #include "cli/cached_run.hpp"
 #include "cli/sweep_plan.hpp"
 #include "image/png.hpp"
-#include "image/shrink.hpp"
 
 namespace weft::cli {
 namespace {
@@ -83,15 +82,6 @@ TEST_F(SweepList, MistakesNameTheirLine) {
   support::expect_error(ExitCode::asset_unreadable, "l.toml:2:", [&] { read("l.toml", "[[run]]\na = = 1\n"); });
   support::expect_error(ExitCode::asset_unreadable, "expected a table [[run]]", [&] { read("l.toml", "a = 1\n"); });
   support::expect_error(ExitCode::asset_unreadable, "names no run", [&] { read("l.csv", "a,b\n"); });
-}
-
-TEST(Shrink, PixelsAreTheMeanOfWhatTheyCover) {
-  image::Image image(4, 2);
-  for (std::size_t i = 0; i < image.rgb.size(); ++i) image.rgb[i] = static_cast<std::uint8_t>(10 * (i / 3) + i % 3);
-  const image::Image half = image::shrink(image, 2);
-  ASSERT_EQ(half.height, 1);
-  EXPECT_EQ(half.rgb, (std::vector<std::uint8_t>{25, 26, 27, 45, 46, 47}));  // of pixels 0 1 4 5, and 2 3 6 7
-  EXPECT_EQ(image::shrink(image, 4).rgb, image.rgb);
 }
 
 class Sweeps : public CachedRun {

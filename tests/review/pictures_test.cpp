@@ -125,19 +125,5 @@ TEST_F(Pictures, HeatOfWidePicturesKeepsItsBrightestPixel) {
   EXPECT_GE(pairs[0].heat.pixel(250, 5)[0], whole.pixel(1001, 20)[0]);
 }
 
-TEST(Shrink, IsTheMeanOfWhatAPixelCovers) {
-  image::Image image(4, 2);
-  for (int y = 0; y < 2; ++y) {
-    for (int x = 0; x < 4; ++x) image.pixel(x, y)[2] = static_cast<std::uint8_t>(10 * x + y);
-  }
-  const image::Image small = shrink(image, 2);
-  EXPECT_EQ(small.width, 2);
-  EXPECT_EQ(small.height, 1);
-  EXPECT_EQ(small.pixel(0, 0)[2], 6);   // 0 10 1 11: 5.5
-  EXPECT_EQ(small.pixel(1, 0)[2], 26);  // 20 30 21 31: 25.5
-  EXPECT_EQ(shrink(image, 4).rgb, image.rgb);
-  EXPECT_EQ(shrink(image, 9).width, 4) << "nothing is gained by larger ones";
-}
-
 }  // namespace
 }  // namespace weft::review
