@@ -195,7 +195,7 @@ bench::SpeedRun run_alone(const PlannedRun& planned, const bench::SpeedFrames& f
     drawing.quality = *options.drawing;
     drawing.threads = planned.setting.threads;
     const std::shared_ptr<FramePainter> painter = make_gl_painter(render_settings(planned.scene, drawing));
-    return [painter](const frame::FrameSnapshot& snapshot) { painter->draw(snapshot); };
+    return [painter](const frame::FrameSnapshot& snapshot) { painter->draw(snapshot, nullptr); };
   };
   const auto work = [&] {
     bench::SpeedRun run = bench::run_for_speed(planned.scene, planned.setting, frames,

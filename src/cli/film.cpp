@@ -15,6 +15,10 @@ namespace {
 // Enough for one stage to ride out a slow frame of another; a picture of 1280×720 takes 2.7 MB.
 constexpr std::size_t kQueueLength = 4;
 
+struct MadePair {
+  frame::SnapshotPtr snapshot, before;
+};
+
 struct DrawnFrame {
   frame::SnapshotPtr snapshot;
   Picture picture;
@@ -88,11 +92,20 @@ class Film {
       if (only_show) camera_->see(*made.snapshot);
       if (!wanted_.contains(frame) || parts_.drawn.contains(frame)) {
         log_.write("frame_done", frame_json(record(frame)));
-      } else if (!only_show && !snapshots_.push(std::move(made.snapshot))) {
+      } else if (!only_show && !hand_on(made.snapshot, &source)) {
         break;
       }
+      if (parts_.motion && (frame - wanted_.begin) % wanted_.step == 0) before_ = std::move(made.snapshot);
     }
     if (parts_.store) parts_.store->keep_last_state();
+  }
+
+  /// With the frame before, where that is asked for and is there.
+  bool hand_on(const frame::SnapshotPtr& snapshot, const FrameSource* source) {
+    const int frame = snapshot->frame - wanted_.step;
+    if (parts_.motion && !before_ && frame >= 0)
+      before_ = source ? source->earlier(frame) : parts_.store->stored(frame);
+    return snapshots_.push({snapshot, before_});
   }
 
   /// The camera sees all frames before the first is drawn. Whatever ends the making, what was made is handed on.
@@ -104,6 +117,7 @@ class Film {
       failure = std::current_exception();
     }
     camera_->find();
+    before_ = nullptr;
     const bool stopped = result_.interrupted;
     for (int frame = wanted_.begin; frame <= wanted_.last() && frame < made_.begin + made_so_far_;
          frame += wanted_.step) {
@@ -111,7 +125,9 @@ class Film {
         result_.interrupted = true;
         break;
       }
-      if (!snapshots_.push(parts_.store->stored(frame))) break;
+      const frame::SnapshotPtr snapshot = parts_.store->stored(frame);
+      if (!hand_on(snapshot, nullptr)) break;
+      if (parts_.motion) before_ = snapshot;
     }
     if (failure) std::rethrow_exception(failure);
   }
@@ -120,11 +136,12 @@ class Film {
     try {
       const std::unique_ptr<FramePainter> painter = parts_.open_painter ? parts_.open_painter() : nullptr;
       if (painter) result_.painter = painter->description();
-      while (frame::SnapshotPtr snapshot = snapshots_.pop().value_or(nullptr)) {
+      while (const std::optional<MadePair> made = snapshots_.pop()) {
+        const frame::SnapshotPtr& snapshot = made->snapshot;
         DrawnFrame drawn{snapshot, {}};
         if (painter) {
           if (camera_) painter->look_through(*std::exchange(camera_, std::nullopt));
-          drawn.picture = painter->draw(*snapshot);
+          drawn.picture = painter->draw(*snapshot, made->before.get());
           record(snapshot->frame).render = painter->last_time();
         }
         progress_.advance(Stage::draw);
@@ -185,9 +202,10 @@ class Film {
   const std::atomic<bool>& stop_;
   Progress& progress_;
   EventLog& log_;
-  BoundedQueue<frame::SnapshotPtr> snapshots_{kQueueLength};
+  BoundedQueue<MadePair> snapshots_{kQueueLength};
   BoundedQueue<DrawnFrame> pictures_{kQueueLength};
   std::optional<render::CameraPath> camera_;  // from the making to the drawing thread, before the first snapshot
+  frame::SnapshotPtr before_;                 // of the making thread: the frame before among those that are wanted
   int made_so_far_ = 0;                       // by the making thread; read after it has ended
   FilmResult result_;
 };

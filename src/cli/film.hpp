@@ -35,6 +35,7 @@ struct FilmParts {
   std::filesystem::path meshes;  ///< folder; empty: none
   std::set<int> drawn = {};      ///< wanted frames that an earlier run has drawn
   bool part_is_kept = true;      ///< where the source or the painter fails, what came before is finished
+  bool motion = false;           ///< whether the painter wants the frame before, too
   std::function<void(const MadeFrame&)> look = {};  ///< at each frame that is made, in order; may be empty
 };
 

@@ -25,6 +25,8 @@ class FrameSource {
   /// Shows the camera all frames of the run, whichever next() yields; false where they have to be made first.
   virtual bool show_all(render::CameraPath&) const { return false; }
   virtual std::vector<frame::ObjectInfo> objects() const { return {}; }
+  /// A frame before all that next() yields; null where it is not there.
+  virtual frame::SnapshotPtr earlier(int) const { return nullptr; }
 };
 
 /// Frames of a scene: those that the store has from an earlier run, with the looks of now, then those it simulates.
@@ -59,6 +61,9 @@ class CacheSource : public FrameSource {
   MadeFrame next() override;
   bool show_all(render::CameraPath& camera) const override;
   std::vector<frame::ObjectInfo> objects() const override { return reader_.manifest().objects; }
+  frame::SnapshotPtr earlier(int frame) const override {
+    return reader_.has(frame) ? reader_.snapshot(frame) : nullptr;
+  }
 
  private:
   const cache::Reader& reader_;

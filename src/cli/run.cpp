@@ -182,6 +182,7 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
     };
   }
   if (plan.draws() && plan.finds_camera) parts.camera.emplace(plan.settings.camera, plan.settings.aspect());
+  parts.motion = plan.settings.layers;
   parts.meshes = options_.meshes;
   parts.drawn = plan.drawn.frames;
   const int drawn = plan.draws() ? plan.wanted.count() - static_cast<int>(parts.drawn.size()) : 0;

@@ -62,8 +62,8 @@ ExitCode sheet(const SheetOptions& options) {
     std::vector<image::SheetPicture> pictures;
     for (const frame::SnapshotPtr& snapshot : snapshots) {
       const int k = snapshot->frame;
-      pictures.push_back(
-          {painter->draw(*snapshot).image, fmt::format("frame {}", k), fmt::format("{:.2f} s", snapshot->time)});
+      pictures.push_back({painter->draw(*snapshot, nullptr).image, fmt::format("frame {}", k),
+                          fmt::format("{:.2f} s", snapshot->time)});
       progress.advance(Stage::draw);
     }
     Metadata metadata = describe_pictures(stills->scene(), settings, painter->description());

@@ -28,8 +28,8 @@ class GlPainter : public FramePainter {
 
   void look_through(render::CameraPath path) override { renderer_.look_through(std::move(path)); }
 
-  Picture draw(const frame::FrameSnapshot& snapshot) override {
-    Picture picture{renderer_.draw(snapshot), renderer_.layers()};
+  Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) override {
+    Picture picture{renderer_.draw(snapshot, before), renderer_.layers()};
     if (!warned_ && shows_single_color(picture.image)) {
       warned_ = true;
       log::warn(fmt::format("frame {} shows a single color: does the camera look at the scene?", snapshot.frame));

@@ -29,7 +29,8 @@ class FramePainter {
   virtual ~FramePainter() = default;
   /// Takes cameras that were found; without them, what is not placed is found from the first frame that is drawn.
   virtual void look_through(render::CameraPath) {}
-  virtual Picture draw(const frame::FrameSnapshot& snapshot) = 0;
+  /// `before`: the frame drawn before, where motion is asked for and there is one.
+  virtual Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) = 0;
   virtual StageTime last_time() const = 0;
   virtual std::string description() const = 0;
 };

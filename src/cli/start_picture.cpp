@@ -129,7 +129,7 @@ std::vector<image::SheetPicture> draw_start(const simulation::StartView& start, 
   const auto add = [&](const frame::Camera& camera, std::string left, std::string right) {
     frame::FrameSnapshot copy = snapshot;
     copy.cameras = {camera};
-    pictures.push_back({painter.draw(copy).image, std::move(left), std::move(right)});
+    pictures.push_back({painter.draw(copy, nullptr).image, std::move(left), std::move(right)});
     outline(pictures.back().image, snapshot, camera, start.places);
   };
   add(render::camera_of(snapshot, settings.camera, aspect), "the start", "");

@@ -97,7 +97,7 @@ ExitCode thumbnail(const ThumbnailOptions& options) {
     const frame::FrameSnapshot& snapshot = *choice.snapshot;
     const std::unique_ptr<FramePainter> painter = make_gl_painter(stills->settings());
     painter->look_through(stills->camera());
-    const image::Image image = painter->draw(snapshot).image;
+    const image::Image image = painter->draw(snapshot, nullptr).image;
     progress.advance(Stage::draw);
     const Metadata about = describe_pictures(stills->scene(), stills->settings(), painter->description());
     image::write_png(file, image, describe_still(about, snapshot.frame, snapshot.time));

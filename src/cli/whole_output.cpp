@@ -4,6 +4,7 @@
 
 #include "cli/stages.hpp"
 #include "core/error.hpp"
+#include "image/exr.hpp"
 #include "image/png.hpp"
 #include "video/decoder.hpp"
 
@@ -38,10 +39,16 @@ State state_of_video(const fs::path& file, const FrameRange& frames, const rende
 
 State state_of_picture(const fs::path& file, int frame, const render::Settings& settings, Metadata expected) {
   expected["frame"] = fmt::format("{}", frame);
-  Metadata found;
-  const image::Image image = image::read_png(file, &found);
-  const bool fits = image.width == settings.width && image.height == settings.height;
-  return fits && agrees(found, std::move(expected)) ? State::whole : State::other;
+  image::ExrHeader found;
+  if (settings.layers) {
+    found = image::read_exr_header(file);
+  } else {
+    const image::Image image = image::read_png(file, &found.metadata);
+    found.width = image.width;
+    found.height = image.height;
+  }
+  const bool fits = found.width == settings.width && found.height == settings.height;
+  return fits && agrees(found.metadata, std::move(expected)) ? State::whole : State::other;
 }
 
 bool is_file(const fs::path& file) {

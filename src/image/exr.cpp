@@ -4,6 +4,7 @@
 #include <OpenEXR/ImfChromaticitiesAttribute.h>
 #include <OpenEXR/ImfFrameBuffer.h>
 #include <OpenEXR/ImfHeader.h>
+#include <OpenEXR/ImfInputFile.h>
 #include <OpenEXR/ImfOutputFile.h>
 #include <OpenEXR/ImfStandardAttributes.h>
 
@@ -59,6 +60,28 @@ void write_exr(const std::filesystem::path& file, const Layers& layers, const Me
     throw Error(ExitCode::output_failed, "{}: {}", file.string(), error.what());
   }
   temporary.commit();
+}
+
+ExrHeader read_exr_header(const std::filesystem::path& file) {
+  try {
+    Imf::InputFile in(file.c_str());
+    const Imath::Box2i& area = in.header().dataWindow();
+    ExrHeader found{area.max.x - area.min.x + 1, area.max.y - area.min.y + 1, {}};
+    // The last line is read, for the table of lines says nothing of a file that was cut off behind it.
+    std::vector<float> line(static_cast<std::size_t>(found.width));
+    Imf::FrameBuffer last;
+    for (auto channel = in.header().channels().begin(); channel != in.header().channels().end(); ++channel)
+      last.insert(channel.name(),
+                  Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(line.data() - area.min.x), sizeof(float), 0));
+    in.setFrameBuffer(last);
+    in.readPixels(area.max.y);
+    for (auto entry = in.header().begin(); entry != in.header().end(); ++entry)
+      if (const auto* text = dynamic_cast<const Imf::StringAttribute*>(&entry.attribute()))
+        found.metadata[entry.name()] = text->value();
+    return found;
+  } catch (const std::exception& error) {
+    throw Error(ExitCode::asset_unreadable, "{}: {}", file.string(), error.what());
+  }
 }
 
 }  // namespace weft::image

@@ -27,4 +27,12 @@ struct Layers {
 /// sRGB. Throws Error(output_failed) with the reason.
 void write_exr(const std::filesystem::path& file, const Layers& layers, const Metadata& metadata = {});
 
+/// What a file says of itself; `width` and `height` in pixels.
+struct ExrHeader {
+  int width = 0, height = 0;
+  Metadata metadata;
+};
+/// Throws Error(asset_unreadable) for what is no OpenEXR file, or not a whole one.
+ExrHeader read_exr_header(const std::filesystem::path& file);
+
 }  // namespace weft::image

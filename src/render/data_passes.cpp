@@ -43,6 +43,14 @@ struct Shown {
 
 }  // namespace
 
+const std::vector<Vec3>* Before::positions(const frame::Surface& surface, std::size_t count) const {
+  for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
+    const auto& found = snapshot.states[i].positions;
+    if (snapshot.surfaces[i]->name == surface.name && found.size() == count) return &found;
+  }
+  return nullptr;
+}
+
 void DataPasses::find(std::span<const SurfaceBuffers> surfaces, const View& view) {
   hits_.assign(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_), {});
   const auto place = [&](const Eigen::Vector4d& clip) {
@@ -75,7 +83,7 @@ Vec2 DataPasses::to_picture(const View& view, const Vec3& position) const {
 }
 
 void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
-                      image::Layers& layers) {
+                      const std::optional<Before>& before, image::Layers& layers) {
   find(surfaces, view);
   const auto add = [&](const char* name) {
     layers.channels.push_back({name, std::vector<float>(hits_.size())});
@@ -95,7 +103,9 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
     if (drawn.painted()) std::ranges::stable_sort(parts.back());
   }
 
-  const View& before = view_before_ ? *view_before_ : view;
+  std::vector<const std::vector<Vec3>*> positions_before;
+  for (const SurfaceBuffers& drawn : surfaces)
+    positions_before.push_back(before ? before->positions(drawn.surface(), drawn.state().positions.size()) : nullptr);
   for (int y = 0; y < height_; ++y) {
     for (int x = 0; x < width_; ++x) {
       const Vec2 here(x + 0.5, y + 0.5);
@@ -124,8 +134,8 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
         if (!surface.uv.empty()) shown.uv = blend(surface.uv);
         if (!drawn.state().heat.empty()) shown.heat = blend(drawn.state().heat);
         shown.position = view.eye + shown.depth * along;
-        const auto known = positions_before_.find(&surface);
-        was = known == positions_before_.end() ? shown.position : Vec3(blend(known->second));
+        const std::vector<Vec3>* known = positions_before[hit.surface];
+        was = known ? Vec3(blend(*known)) : shown.position;
       }
       if (floor) {
         const double depth = floor->normal.dot(floor->point - view.eye) / floor->normal.dot(along);
@@ -134,7 +144,7 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
           was = shown.position;
         }
       }
-      if (shown.object != kNothing && view_before_) shown.motion = here - to_picture(before, was);
+      if (shown.object != kNothing && before) shown.motion = here - to_picture(before->view, was);
       if (shown.motion.norm() < kRounding) shown.motion.setZero();  // noise does not compress
       const double values[] = {shown.depth,      shown.position.x(), shown.position.y(), shown.position.z(),
                                shown.normal.x(), shown.normal.y(),   shown.normal.z(),   shown.object,
@@ -145,9 +155,6 @@ void DataPasses::draw(std::span<const SurfaceBuffers> surfaces, const std::optio
         layers.channels[k].values[at] = static_cast<float>(values[k - first]);
     }
   }
-  view_before_ = view;
-  positions_before_.clear();
-  for (const SurfaceBuffers& drawn : surfaces) positions_before_[&drawn.surface()] = drawn.state().positions;
 }
 
 }  // namespace weft::render

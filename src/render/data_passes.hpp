@@ -1,7 +1,6 @@
 // What is seen at the centre of each pixel, in figures: what compositors ask for beside the picture.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <span>
 #include <vector>
@@ -11,6 +10,15 @@
 #include "render/view.hpp"
 
 namespace weft::render {
+
+/// A frame before, and how it was seen.
+struct Before {
+  const frame::FrameSnapshot& snapshot;
+  View view;
+
+  /// Of a surface of this name with as many vertices; null where there was none.
+  const std::vector<Vec3>* positions(const frame::Surface& surface, std::size_t count) const;
+};
 
 /// Works on the processor, in double precision: the triangle in front is found as shadow maps find it, and the ray of
 /// the pixel then meets that one exactly. Lace counts as solid.
@@ -23,11 +31,11 @@ class DataPasses {
   /// - position.X, .Y, .Z: world [m]; normal.X, .Y, .Z: world, unit, toward the viewer
   /// - id.object: 0 nothing, 1 the floor, 2 + i surface i of the picture; id.part: 1 + i part i of that, else 0
   /// - uv.U, .V: rest coordinates (weft, warp) [m]
-  /// - motion.X, .Y: to here from where the point was in the picture before [pixels, to the right and up]; 0 in the
-  /// first
+  /// - motion.X, .Y: to here from where the point was `before` [pixels, to the right and up]; 0 where that is not
+  ///   there
   /// - heat.V: strain or speed, where the stage asks for either
   void draw(std::span<const SurfaceBuffers> surfaces, const std::optional<Floor>& floor, const View& view,
-            image::Layers& layers);
+            const std::optional<Before>& before, image::Layers& layers);
 
  private:
   struct Hit {
@@ -39,9 +47,6 @@ class DataPasses {
 
   int width_, height_;
   std::vector<Hit> hits_;  // lowest row first
-  // Of the picture before.
-  std::map<const frame::Surface*, std::vector<Vec3>> positions_before_;
-  std::optional<View> view_before_;
 };
 
 }  // namespace weft::render

@@ -140,8 +140,8 @@ struct Renderer::Impl {
   void update_floor(const Plan& plan);
   void upload_frame(const Plan& plan);
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
-  image::Image draw(const frame::FrameSnapshot& snapshot);
-  void draw_layers(const Plan& plan, const image::Image& image);
+  image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before);
+  void draw_layers(const Plan& plan, const frame::FrameSnapshot* before, const image::Image& image);
 };
 
 Renderer::Impl::Impl(const Settings& wanted)
@@ -227,7 +227,7 @@ void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double h
 }
 
 /// Shadow maps, then what is seen, then its soft light at reduced size, then colours, then clean outlines.
-image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
+image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
   const Plan plan = make_plan(snapshot, choose_camera(snapshot), settings.aspect());
   update_surfaces(snapshot);
   update_floor(plan);
@@ -256,11 +256,11 @@ image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot) {
     outlines->smooth(seen, meshes, plan.floor, plan.view, area, rgba);
   }
   image::Image image = to_image(rgba, settings.width, settings.height);
-  if (data) draw_layers(plan, image);
+  if (data) draw_layers(plan, before, image);
   return image;
 }
 
-void Renderer::Impl::draw_layers(const Plan& plan, const image::Image& image) {
+void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* before, const image::Image& image) {
   layers = {settings.width, settings.height, {}};
   std::vector<Eigen::Vector4f> surfaces;
   outlines->cut_out(seen, unsmoothed, surfaces);
@@ -276,7 +276,9 @@ void Renderer::Impl::draw_layers(const Plan& plan, const image::Image& image) {
       for (int k = 0; k < 3; ++k) layers.channels[4 + k].values[at] = linear[image.pixel(x, y)[k]];
     }
   }
-  data->draw(passes->surfaces, plan.floor, plan.view, layers);
+  std::optional<Before> earlier;
+  if (before) earlier.emplace(Before{*before, make_plan(*before, choose_camera(*before), settings.aspect()).view});
+  data->draw(passes->surfaces, plan.floor, plan.view, earlier, layers);
 }
 
 Renderer::Renderer(const Settings& settings) : impl_(std::make_unique<Impl>(settings)) {}
@@ -286,12 +288,12 @@ void Renderer::look_through(CameraPath path) {
   impl_->path = std::move(path);
 }
 
-image::Image Renderer::draw(const frame::FrameSnapshot& snapshot) {
+image::Image Renderer::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
   check(snapshot);
   const WallTimer wall;
   const double cpu_start = process_cpu_seconds();
   const CurrentContext current(*impl_->context);
-  image::Image image = impl_->draw(snapshot);
+  image::Image image = impl_->draw(snapshot, before);
   check_errors(impl_->gl, "drawing");
   impl_->times = {wall.seconds(), process_cpu_seconds() - cpu_start};
   return image;

@@ -93,6 +93,18 @@ TEST_F(Completeness, RenderResumesToThePicturesAndMeshesOfOneThatWasNotStopped) 
   EXPECT_EQ(nothing_left.err, "note: p/{frame:05}.png is whole already: frames 0:21\n");
 }
 
+TEST_F(Completeness, LayersAreThoseOfOneRunAfterAResumeAndInParts) {
+  expect_well({"simulate", "s.toml", "--cache", "c"});
+  expect_well({"render", "c", "-o", "whole/{frame:05}.exr", "--frames", ":9"});
+  expect_well({"render", "c", "-o", "p/{frame:05}.exr", "--frames", "3:5"});
+  const auto drawn = fs::last_write_time(folder_ / "p/00003.exr");
+  expect_well({"render", "c", "-o", "p/{frame:05}.exr", "--frames", ":9", "--resume"});
+  EXPECT_EQ(fs::last_write_time(folder_ / "p/00003.exr"), drawn);
+  expect_same("whole", "p", ".exr", 9);  // motion is since the frame before, whoever has drawn that
+  support::write_bytes(folder_ / "p/00004.exr", support::read_bytes(folder_ / "p/00004.exr").substr(0, 2000));
+  EXPECT_EQ(weft({"render", "c", "-o", "p/{frame:05}.exr", "--frames", ":9", "--resume"}).exit_code, 6);
+}
+
 TEST_F(Completeness, RenderDoesNotGoOnWithOtherPictures) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   const Arguments render{"render", "c", "-o", kPictures, "--frames", ":4", "--resume"};

@@ -22,7 +22,9 @@ struct Script {
   std::atomic<bool>* stop = nullptr;
   int stop_at = kNever;  // requested while this frame is simulated
 
+  bool motion = false;
   std::vector<int> simulated, drawn, written;
+  std::vector<int> before;  // of each that is drawn: the frame before it, -1 where there is none
   int finished = 0, alive = 0, writers_made = 0;
   std::mutex mutex;
 };
@@ -71,7 +73,8 @@ class Source : public FrameSource {
 class Painter : public FramePainter {
  public:
   explicit Painter(Script& script) : script_(script), life_(script) {}
-  Picture draw(const frame::FrameSnapshot& snapshot) override {
+  Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) override {
+    script_.before.push_back(before ? before->frame : -1);
     if (snapshot.frame == script_.drawing_fails_at) fail(ExitCode::internal, "context lost");
     script_.drawn.push_back(snapshot.frame);
     image::Image image(1, 1);
@@ -106,22 +109,23 @@ class Writer : public FrameWriter {
 
 FilmResult play(Script& script, const FrameRange& wanted) {
   static std::atomic<bool> never{false};
-  const FilmParts parts{[&]() -> std::unique_ptr<FrameSource> {
-                          if (script.source_missing) fail(ExitCode::asset_unreadable, "no mesh");
-                          return std::make_unique<Source>(script);
-                        },
-                        [&]() -> std::unique_ptr<FramePainter> {
-                          if (script.painter_missing) fail(ExitCode::internal, "no OpenGL");
-                          return std::make_unique<Painter>(script);
-                        },
-                        [&](const std::string& description) -> std::unique_ptr<FrameWriter> {
-                          EXPECT_EQ(description, "brush");
-                          ++script.writers_made;
-                          return std::make_unique<Writer>(script);
-                        },
-                        nullptr,
-                        {},
-                        {}};
+  FilmParts parts{[&]() -> std::unique_ptr<FrameSource> {
+                    if (script.source_missing) fail(ExitCode::asset_unreadable, "no mesh");
+                    return std::make_unique<Source>(script);
+                  },
+                  [&]() -> std::unique_ptr<FramePainter> {
+                    if (script.painter_missing) fail(ExitCode::internal, "no OpenGL");
+                    return std::make_unique<Painter>(script);
+                  },
+                  [&](const std::string& description) -> std::unique_ptr<FrameWriter> {
+                    EXPECT_EQ(description, "brush");
+                    ++script.writers_made;
+                    return std::make_unique<Writer>(script);
+                  },
+                  nullptr,
+                  {},
+                  {}};
+  parts.motion = script.motion;
   Progress progress(Progress::Style::none, {});
   EventLog log("");
   FilmResult result =
@@ -165,6 +169,24 @@ TEST(Film, SimulatesFramesThatAreNotWantedButDoesNotDrawThem) {
   EXPECT_EQ(script.written, (std::vector<int>{3, 6, 9}));
   EXPECT_FALSE(result.frames[4].written);
   EXPECT_TRUE(result.frames[6].written);
+}
+
+TEST(Film, GivesThePainterTheFrameBeforeWhereMotionIsAskedFor) {
+  Script script;
+  play(script, {3, 10, 3});
+  EXPECT_EQ(script.before, (std::vector<int>{-1, -1, -1}));
+  script.before.clear();
+  script.simulated.clear();
+  script.written.clear();
+  script.motion = true;
+  play(script, {3, 10, 3});
+  EXPECT_EQ(script.before, (std::vector<int>{0, 3, 6})) << "also before the first that is wanted";
+  script.before.clear();
+  script.simulated.clear();
+  script.written.clear();
+  script.motion = true;
+  play(script, {0, 3, 1});
+  EXPECT_EQ(script.before, (std::vector<int>{-1, 0, 1}));
 }
 
 TEST(Film, EndsWithTheLastWantedFrame) {

@@ -71,6 +71,18 @@ TEST_F(ExrTest, HeaderHasNamesDepthsAndMetadata) {
   EXPECT_NE(header.find("chromaticities: 0.64, 0.33, 0.3, 0.6, 0.15, 0.06"), std::string::npos) << header;
 }
 
+TEST_F(ExrTest, HeaderIsReadBackAndBrokenFilesAreRefused) {
+  const std::filesystem::path file = folder_ / "a.exr";
+  write_exr(file, patterned(7, 3), {{"frame", "12"}});
+  const ExrHeader header = read_exr_header(file);
+  EXPECT_EQ(header.width, 7);
+  EXPECT_EQ(header.height, 3);
+  EXPECT_EQ(header.metadata, (Metadata{{"frame", "12"}}));
+  support::write_bytes(folder_ / "b.exr", "no picture");
+  expect_error(ExitCode::asset_unreadable, "b.exr", [&] { read_exr_header(folder_ / "b.exr"); });
+  expect_error(ExitCode::asset_unreadable, "c.exr", [&] { read_exr_header(folder_ / "c.exr"); });
+}
+
 TEST_F(ExrTest, NothingIsLeftOfWhatCannotBeWritten) {
   Layers layers = patterned(4, 4);
   layers.channels[1].values.pop_back();

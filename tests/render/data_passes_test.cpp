@@ -112,7 +112,7 @@ class DataPassesTest : public testing::Test {
     first_ = moment(0, nullptr), second_ = moment(1, &first_);
     renderer.draw(first_);
     still_ = renderer.layers();
-    picture_ = renderer.draw(second_);
+    picture_ = renderer.draw(second_, &first_);
     layers_ = renderer.layers();
   }
   static float value(const image::Layers& layers, const std::string& name, int x, int y) {
@@ -167,7 +167,7 @@ TEST_F(DataPassesTest, AreThoseOfASearchThroughAllTriangles) {
   EXPECT_GT(std::min({counts[1], counts[2], counts[3]}), 30) << "floor, sphere and sheet";
 }
 
-TEST_F(DataPassesTest, NothingMovesInTheFirstPicture) {
+TEST_F(DataPassesTest, NothingMovesWithoutAFrameBefore) {
   const std::vector<float> none(std::size_t{kWidth} * kHeight, 0.0f);
   int count = 0;
   for (const image::Layers::Channel& channel : still_.channels) {
