@@ -1,7 +1,8 @@
-// Interpolation of keyed vectors: piecewise linear, or a natural cubic spline.
+// Interpolation of keyed vectors: piecewise linear, or a cubic spline that stays between its keys.
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <span>
 #include <utility>
@@ -30,14 +31,36 @@ std::vector<Value> natural_second_derivatives(std::span<const double> h, std::sp
   return m;
 }
 
+/// Slopes at the keys of that spline, each component no steeper than keeps it between the values of any two
+/// neighbouring keys: none where the chords beside a key differ in sign, at most three times the flatter one else
+/// (Fritsch & Carlson, "Monotone piecewise cubic interpolation", SIAM J. Numer. Anal. 17, 1980; of a spline's slopes
+/// Hyman, SIAM J. Sci. Stat. Comput. 4, 1983). A natural spline alone swings back before a thing that stands begins to
+/// move.
+template <class Value>
+std::vector<Value> slopes_between_keys(std::span<const double> h, std::span<const Value> d) {
+  const std::size_t n = h.size();
+  const std::vector<Value> m = natural_second_derivatives(h, d);
+  std::vector<Value> slopes(n + 1, Value::Zero());
+  for (std::size_t i = 0; i <= n && n > 0; ++i) {
+    slopes[i] = i < n ? Value(d[i] - h[i] / 6 * (2 * m[i] + m[i + 1])) : Value(d[n - 1] + h[n - 1] / 6 * m[n - 1]);
+    const Value &before = d[i > 0 ? i - 1 : 0], &after = d[i < n ? i : n - 1];
+    for (Eigen::Index c = 0; c < slopes[i].size(); ++c) {
+      const double steepest = before[c] * after[c] > 0 ? 3 * std::min(std::abs(before[c]), std::abs(after[c])) : 0;
+      slopes[i][c] = after[c] > 0 ? std::clamp(slopes[i][c], 0.0, steepest) : std::clamp(slopes[i][c], -steepest, 0.0);
+    }
+  }
+  return slopes;
+}
+
 /// Segment of strictly increasing key times that holds t; the one to the right of a key. Call with
 /// times.front() <= t < times.back().
 inline std::size_t find_segment(std::span<const double> times, double t) {
   return static_cast<std::size_t>(std::upper_bound(times.begin(), times.end(), t) - times.begin()) - 1;
 }
 
-/// A vector-valued function of time through keys. Cubic: the natural cubic spline, twice continuously differentiable
-/// between the first and the last key. Outside of them the end value holds and derivatives vanish.
+/// A vector-valued function of time through keys. Cubic: the natural cubic spline, whose slopes are limited where it
+/// would leave the range of two neighbouring keys; its first derivative is continuous, and so is its second where
+/// nothing is limited. Outside of the keys the end value holds and derivatives vanish.
 template <int Dim>
 class Spline {
  public:
@@ -54,11 +77,9 @@ class Spline {
       : times_(std::move(times)), values_(std::move(values)) {
     for (std::size_t i = 0; i + 1 < times_.size(); ++i) {
       lengths_.push_back(times_[i + 1] - times_[i]);
-      slopes_.push_back((values_[i + 1] - values_[i]) / lengths_.back());
+      chords_.push_back((values_[i + 1] - values_[i]) / lengths_.back());
     }
-    second_derivatives_ = interpolation == scene::Interpolation::cubic
-                              ? natural_second_derivatives<Value>(lengths_, slopes_)
-                              : std::vector<Value>(times_.size(), Value::Zero());
+    if (interpolation == scene::Interpolation::cubic) slopes_ = slopes_between_keys<Value>(lengths_, chords_);
   }
 
   /// Time O(log keys); allocates nothing.
@@ -67,18 +88,19 @@ class Spline {
     if (t >= times_.back()) return {values_.back()};
     const std::size_t i = find_segment(times_, t);
     const double s = t - times_[i], h = lengths_[i];
-    const Value jerk = (second_derivatives_[i + 1] - second_derivatives_[i]) / h;
-    const Value start_slope = slopes_[i] - h / 6 * (2 * second_derivatives_[i] + second_derivatives_[i + 1]);
-    return {values_[i] + s * (start_slope + s * (second_derivatives_[i] / 2 + s / 6 * jerk)),
-            start_slope + s * (second_derivatives_[i] + s / 2 * jerk), second_derivatives_[i] + s * jerk};
+    if (slopes_.empty()) return {values_[i] + s * chords_[i], chords_[i]};
+    const Value bend = (6 * chords_[i] - 4 * slopes_[i] - 2 * slopes_[i + 1]) / h;
+    const Value jerk = 6 / (h * h) * (slopes_[i] + slopes_[i + 1] - 2 * chords_[i]);
+    return {values_[i] + s * (slopes_[i] + s * (bend / 2 + s / 6 * jerk)), slopes_[i] + s * (bend + s / 2 * jerk),
+            bend + s * jerk};
   }
 
  private:
   std::vector<double> times_;
   std::vector<Value> values_;
-  std::vector<double> lengths_;            ///< of the segments [s]
-  std::vector<Value> slopes_;              ///< of the chords
-  std::vector<Value> second_derivatives_;  ///< at the keys; zero for linear tracks
+  std::vector<double> lengths_;  ///< of the segments [s]
+  std::vector<Value> chords_;    ///< their slopes
+  std::vector<Value> slopes_;    ///< at the keys; none for linear tracks
 };
 
 }  // namespace weft::environment

@@ -83,19 +83,19 @@ RotationSpline::RotationSpline(scene::Interpolation interpolation, std::vector<d
     : interpolation_(interpolation), times_(std::move(times)), rotations_(std::move(rotations)) {
   const std::vector<Vec3> turns = turns_between(rotations_);
   std::vector<double> lengths;
-  std::vector<Vec3> slopes;
+  std::vector<Vec3> chords;
   for (std::size_t i = 0; i < turns.size(); ++i) {
     lengths.push_back(times_[i + 1] - times_[i]);
-    slopes.push_back(turns[i] / lengths[i]);
+    chords.push_back(turns[i] / lengths[i]);
   }
-  const std::vector<Vec3> second_derivatives = natural_second_derivatives<Vec3>(lengths, slopes);
+  const std::vector<Vec3> slopes = slopes_between_keys<Vec3>(lengths, chords);
   for (std::size_t i = 0; i < turns.size(); ++i) {
     const double h = lengths[i];
     Segment segment{times_[i], h, rotations_[i], Vec3::Zero(), turns[i], Vec3::Zero()};
     if (interpolation_ == scene::Interpolation::cubic) {
       // Angular velocities at both keys, times h/3: the arms of the Bézier curve; the middle takes up the rest.
-      segment.w1 = h / 3 * (slopes[i] - h / 6 * (2 * second_derivatives[i] + second_derivatives[i + 1]));
-      segment.w3 = h / 3 * (slopes[i] + h / 6 * (second_derivatives[i] + 2 * second_derivatives[i + 1]));
+      segment.w1 = h / 3 * slopes[i];
+      segment.w3 = h / 3 * slopes[i + 1];
       const Quat middle = exp(-segment.w3) * rotations_[i + 1] * rotations_[i].conjugate() * exp(-segment.w1);
       segment.w2 = log_near(middle, turns[i] - segment.w1 - segment.w3);
     }

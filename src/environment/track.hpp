@@ -30,8 +30,8 @@ struct PoseSample {
 /// before. Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit
 /// quaternions (Kim, Kim & Shin, "A general construction scheme for unit quaternion curves with simple high order
 /// derivatives", SIGGRAPH 1995), which has closed derivatives; angular velocity is continuous. Its values at the keys
-/// come from a natural spline over the turns between keys, so that motion about one axis is exactly the natural cubic
-/// spline of the angle.
+/// come from the spline (spline.hpp) over the turns between keys, so that motion about one axis is exactly that of the
+/// angle.
 class RotationSpline {
  public:
   struct Sample {

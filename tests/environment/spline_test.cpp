@@ -77,15 +77,33 @@ TEST(CubicSpline, OfThreeKeysIsTheKnownNaturalSpline) {
   }
 }
 
-TEST(CubicSpline, HasContinuousFirstAndSecondDerivativesAndStraightEnds) {
-  const Spline1 spline(Interpolation::cubic, kTimes, kValues);
+TEST(CubicSpline, HasContinuousFirstAndSecondDerivativesAndStraightEndsWhereNothingIsLimited) {
+  const Spline1 spline(Interpolation::cubic, kTimes, values_of({0, 0.7, 2.1, 2.4, 4.6}));
   for (std::size_t i = 1; i + 1 < kTimes.size(); ++i) {
     const double before = std::nextafter(kTimes[i], -1);
     EXPECT_NEAR(spline.at(before).first_derivative[0], spline.at(kTimes[i]).first_derivative[0], kRounding);
     EXPECT_NEAR(spline.at(before).second_derivative[0], spline.at(kTimes[i]).second_derivative[0], 10 * kRounding);
   }
-  EXPECT_EQ(spline.at(-0.5).second_derivative[0], 0);
+  EXPECT_NEAR(spline.at(-0.5).second_derivative[0], 0, 10 * kRounding);
   EXPECT_NEAR(spline.at(std::nextafter(4.5, 0)).second_derivative[0], 0, 10 * kRounding);
+}
+
+TEST(CubicSpline, StandsBetweenEqualKeysAndStaysBetweenOthers) {
+  const std::vector<double> times{0, 0.5, 2.5, 2.8, 4, 4.1};
+  const std::vector<double> numbers{1, 1, -3, -2.9, 5, 5};
+  const Spline1 spline(Interpolation::cubic, times, values_of(numbers));
+  double slope_before = 0;
+  for (std::size_t i = 0; i + 1 < times.size(); ++i) {
+    const auto [low, high] = std::minmax(numbers[i], numbers[i + 1]);
+    EXPECT_NEAR(spline.at(times[i]).first_derivative[0], slope_before, 10 * kRounding) << "at key " << i;
+    for (double share = 0; share < 1; share += 0.01) {
+      const Spline1::Sample at = spline.at(times[i] + share * (times[i + 1] - times[i]));
+      EXPECT_GE(at.value[0], low - kRounding) << "after key " << i;
+      EXPECT_LE(at.value[0], high + kRounding) << "after key " << i;
+      EXPECT_GE(at.first_derivative[0] * (numbers[i + 1] - numbers[i]), -10 * kRounding) << "turns back after " << i;
+    }
+    slope_before = spline.at(std::nextafter(times[i + 1], 0)).first_derivative[0];
+  }
 }
 
 TEST(CubicSpline, ReproducesALineThroughUnevenKeysInEveryComponent) {
