@@ -103,6 +103,7 @@ void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotio
   auto contact = build(push.way, share, push.way.distance + kHealingSpeed * motion.h, motion);
   if (!contact) return;
   contact->full_range = kNoLimit;  // no stiffer as it is deeper
+  contact->friction = contact->static_friction = 0;
   response.add(*contact, motion.x_t0);
 }
 

@@ -61,7 +61,8 @@ class ContactBuilder {
            ContactResponse& response);
 
   /// Adds the contact of pinched cloth and its obstacle, which pushes to the side that the cloth belongs to, at no more
-  /// than the speed of healing: softly while there is no room, which is nothing to clamp cloth for, else as others do.
+  /// than the speed of healing and without friction: softly while there is no room, which is nothing to clamp cloth
+  /// for, else as others do.
   void add_pinched(const PinchedPairs::Push& push, const StepMotion& motion, ContactResponse& response) const;
 
   /// Adds contacts of the closest features of two triangles that would meet; false if these push with all their

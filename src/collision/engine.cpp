@@ -86,7 +86,7 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   carried_.begin_step(x_t0, x_t1, motions);
   find_near(x_t0, x_t1, proximities_);
   if (!pinched_.empty()) {
-    pinched_.release(candidates_.hierarchies(), x_t0);
+    pinched_.renew(bodies_.triangles(), candidates_.hierarchies(), x_t0);
     pinched_pushes_ = pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.reach());
   }
   add_contacts(proximities_, {x_t0, x_t0, x_t1, h});

@@ -192,7 +192,11 @@ TEST(ContactBuilder, PinchedClothIsPushedBackSlowlyAndWithoutRoomSoftly) {
     builder.add_pinched({{{0, 6, 7, 8}, {1, -0.5, -0.3, -0.2}, -Vec3::UnitZ(), -0.002}, has_room}, scene.motion(),
                         response);
   ASSERT_EQ(response.springs().size(), 2U);
-  for (const auto& spring : response.springs()) EXPECT_DOUBLE_EQ(spring.range, -0.002 + 0.2 * kH);
+  for (const auto& spring : response.springs()) {
+    EXPECT_DOUBLE_EQ(spring.range, -0.002 + 0.2 * kH);
+    EXPECT_EQ(spring.friction, 0);
+    EXPECT_EQ(spring.static_friction, 0);
+  }
   EXPECT_DOUBLE_EQ(response.springs()[0].stiffness, 0.05e6);
   EXPECT_DOUBLE_EQ(response.springs()[1].stiffness, 1e6);
 }

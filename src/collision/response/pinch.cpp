@@ -45,13 +45,20 @@ bool PinchedPairs::concern(const std::array<Index, 4>& vertices) const {
   return false;
 }
 
+void PinchedPairs::add(const CornerPair& pair) {
+  const Key of_pair = key(pair);
+  origins_[of_pair].faces.push_back(pair.b);
+  for (Index particle : pair.a) particles_.try_emplace({particle, of_pair.body, of_pair.limb});
+}
+
 void PinchedPairs::list_particles() {
   particles_.clear();
   for (const auto& [key, origin] : origins_) {
     for (Index particle : key.cloth) {
       Origin& of_particle = particles_[{particle, key.body, key.limb}];
       of_particle.side = origin.side;
-      of_particle.faces.insert(of_particle.faces.end(), origin.faces.begin(), origin.faces.end());
+      for (const Triangle& face : origin.faces)
+        if (std::ranges::find(of_particle.faces, face) == of_particle.faces.end()) of_particle.faces.push_back(face);
     }
   }
 }
@@ -65,15 +72,24 @@ void PinchedPairs::note_origins(const BroadPhase& surfaces, std::span<const Vec3
   list_particles();
 }
 
-void PinchedPairs::release(const BroadPhase& surfaces, std::span<const Vec3> x) {
-  const std::size_t before = origins_.size();
-  std::erase_if(origins_, [&](const auto& pinched) {
+void PinchedPairs::renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x) {
+  std::map<Key, Origin> around = origins_;
+  for (const Triangle& cloth : triangles) {
+    if (cloth[0] >= first_obstacle_) break;
+    for (Index particle : cloth)
+      for (auto it = particles_.lower_bound({particle, 0, 0}); it != particles_.end(); ++it) {
+        if (it->first.particle != particle) break;
+        around.try_emplace({cloth, it->first.body, it->first.limb}, it->second);
+      }
+  }
+  std::erase_if(around, [&](const auto& pinched) {
     const auto& [key, origin] = pinched;
     return is_apart(key, surfaces, x) &&
            origin.side * nearest_point(x[key.cloth[0]], surfaces, key.body, x, Vec3::Zero(), is_of(key.limb)).height >
                0;
   });
-  if (origins_.size() != before) list_particles();
+  origins_ = std::move(around);
+  list_particles();
 }
 
 std::vector<PinchedPairs::Push> PinchedPairs::find_pushes(const BroadPhase& surfaces, std::span<const Vec3> x,

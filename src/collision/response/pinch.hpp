@@ -18,9 +18,10 @@
 namespace weft::collision {
 
 /// Triangles of cloth against limbs of obstacles. What is in here has no certificate: the triangle may be in the limb.
-/// It stays until it is found apart from the limb and on the side that it came from. Of two limbs that are in each
-/// other the cloth is in the one that came upon it, and rests on the other: as that comes out again so does the cloth,
-/// on the side that it went in.
+/// It stays until it is found apart from the limb and on the side that it came from. Nor have those that share a
+/// particle with it: a limb that moves along the cloth that goes through it does not take hold of it, what comes to
+/// meet it at the rim is in here from the next step on. Of two limbs that are in each other the cloth is in the one
+/// that came upon it, and rests on the other: as that comes out again so does the cloth, on the side that it went in.
 class PinchedPairs {
  public:
   struct Key {
@@ -49,12 +50,15 @@ class PinchedPairs {
 
   /// Whether the pair is one of cloth and obstacle; others are never exempted.
   bool may_hold(const CornerPair& pair) const { return pair.a[0] < first_obstacle_ && pair.b[0] >= first_obstacle_; }
-  bool holds(const CornerPair& pair) const {
-    return !origins_.empty() && may_hold(pair) && origins_.contains(key(pair));
+  /// Whether the pair has no certificate.
+  bool exempts(const CornerPair& pair) const {
+    return !origins_.empty() && may_hold(pair) && std::ranges::any_of(pair.a, [&](Index particle) {
+      return particles_.contains({particle, body_of(pair.b[0]), limb_of_[pair.b[0]]});
+    });
   }
   /// Whether two features with these vertices are of such cloth and its limb.
   bool concern(const std::array<Index, 4>& vertices) const;
-  void add(const CornerPair& pair) { origins_[key(pair)].faces.push_back(pair.b); }
+  void add(const CornerPair& pair);
   /// One whose origin is known.
   void add(const Key& key, const Origin& origin) {
     origins_.emplace(key, origin);
@@ -66,8 +70,9 @@ class PinchedPairs {
   /// Notes for pairs that were just exempted where their cloth was at x_t0 [m].
   void note_origins(const BroadPhase& surfaces, std::span<const Vec3> x_t0);
 
-  /// Lets go what is apart at x [m] and back on its side, so that it can be kept apart again.
-  void release(const BroadPhase& surfaces, std::span<const Vec3> x);
+  /// Lets go what is apart at x [m] and back on its side, so that it can be kept apart again, and takes in what is not
+  /// of the triangles around. `triangles`: of all surfaces, cloth first.
+  void renew(std::span<const Triangle> triangles, const BroadPhase& surfaces, std::span<const Vec3> x);
 
   /// How cloth gets back to its side at x [m]: each particle no more than `reach` [m] above the limb's surface along
   /// the way to the nearest point of it, inside of the limb of those faces that look as those that came upon it do now;

@@ -58,7 +58,7 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
   planes_.find_failing(reference_, x_t0, x_t1, moved_, changed_, failing_, carried);
   fans_.find_failing(x_t0, x_t1, moved_, changed_, failing_);
   if (pinched != nullptr && !pinched->empty())
-    std::erase_if(failing_, [&](const CornerPair& pair) { return pinched->holds(pair); });
+    std::erase_if(failing_, [&](const CornerPair& pair) { return pinched->exempts(pair); });
   return failing_;
 }
 
