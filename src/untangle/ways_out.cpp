@@ -100,10 +100,12 @@ std::vector<InsideRegion> find_inside(const Fabric& fabric, const Solid& solid, 
     InsideRegion region;
     region.cloth = fabric.bodies.body_of(first);
     region.body = solid.number();
+    for (std::size_t m = 0; m < members.size(); ++m) move_of[members[m]] = static_cast<Index>(m);
+    // It ends half-way to its neighbours: one particle of a coarse mesh is a region as wide as its cells.
     Box3 box;
-    for (std::size_t m = 0; m < members.size(); ++m) {
-      box.extend(x[members[m]]);
-      move_of[members[m]] = static_cast<Index>(m);
+    for (const Index i : members) {
+      box.extend(x[i]);
+      for (const Index j : fabric.neighbours[i]) box.extend(0.5 * (x[i] + x[j]));
     }
     region.centre = box.center();
     region.size = box.sizes().maxCoeff();

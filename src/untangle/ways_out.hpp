@@ -14,9 +14,9 @@ namespace weft::untangle {
 /// Particles inside an obstacle that hang together, and how they would best get out.
 struct InsideRegion {
   std::size_t cloth = 0, body = 0;
-  Vec3 centre = Vec3::Zero();                                 ///< [m]
-  double size = 0;                                            ///< longest side of the box around it [m]
-  double farthest = 0;                                        ///< most that a particle has to move [m]
+  Vec3 centre = Vec3::Zero();  ///< [m]
+  double size = 0;             ///< longest side of the box to half-way to its neighbours [m]
+  double farthest = 0;         ///< most that a particle has to move [m]
   double shortest = std::numeric_limits<double>::infinity();  ///< the same on the shortest way that nothing blocks [m]
   double cost = 0;                                            ///< see stretch_cost
   double blocked = 0;       ///< share of its threads that would still go through the body
