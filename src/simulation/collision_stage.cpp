@@ -312,6 +312,7 @@ void CollisionStage::take_over(const CollisionStage& before, std::span<const std
     for (collision::Triangle& face : of_faces.faces) move(face, key.body);
     engine_.exempt(moved, of_faces);
   }
+  for (const auto& [cloth, obstacle] : before.pinching_before_) pinching_before_.insert({here(cloth), here(obstacle)});
 }
 
 CollisionStage::Pinches CollisionStage::take_pinches(const Moment& last_start) {

@@ -131,6 +131,14 @@ YieldingPins::Lags YieldingPins::take_lags() {
   return std::exchange(seen_, {});
 }
 
+void YieldingPins::take_over(const YieldingPins& there, Index first_there, Index first, Index count) {
+  std::copy_n(there.lagged_.begin() + first_there, count, lagged_.begin() + first);
+  if (there.lagging_before_.empty()) return;
+  for (Index i = 0; i < count; ++i)
+    if (pins_.share(first + i) > 0 && there.lagging_before_.contains(there.pins_.of(first_there + i)))
+      lagging_before_.insert(pins_.of(first + i));
+}
+
 template <class Archive>
 void YieldingPins::serialize(Archive& archive) {
   if (pins_.empty()) return;

@@ -1,7 +1,6 @@
 // Pins as the step sees them: held exactly while nothing is in the way, pulled along while something is.
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 #include <map>
 #include <set>
@@ -44,10 +43,9 @@ class YieldingPins {
   };
   Lags take_lags();
 
-  /// Particles from `first` on lag as those of another scene with the same cloth do, from `first_there` on.
-  void take_over(const YieldingPins& there, Index first_there, Index first, Index count) {
-    std::copy_n(there.lagged_.begin() + first_there, count, lagged_.begin() + first);
-  }
+  /// Between two frames: particles from `first` on lag as those of another scene with the same cloth do, from
+  /// `first_there` on, and what was said of that is not said again.
+  void take_over(const YieldingPins& there, Index first_there, Index first, Index count);
 
   /// Which particles lag, and what was said of that.
   template <class Archive>
