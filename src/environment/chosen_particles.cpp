@@ -7,6 +7,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <optional>
 #include <queue>
 #include <utility>
 
@@ -49,10 +50,14 @@ class Chooser {
   /// `key`: of the part, for messages.
   std::vector<Chosen> part(const scene::ClothPart& part, const std::string& key) const {
     std::vector<double> shares(object_.fractions.size());
-    for (std::size_t i = 0; i < shares.size(); ++i)
-      shares[i] = part.holds(object_.fractions[i].x(), object_.fractions[i].y()) ? 1 : 0;
+    if (!part.panel.empty()) {
+      on_panel(part, key, shares);
+    } else {
+      for (std::size_t i = 0; i < shares.size(); ++i)
+        shares[i] = part.holds(object_.fractions[i].x(), object_.fractions[i].y()) ? 1 : 0;
+      if (part.mask) under_mask(image::read_picture(*part.mask), key, shares);
+    }
     if (!part.edge.empty()) on_edge(part.edge, key, shares);
-    if (part.mask) under_mask(image::read_picture(*part.mask), key, shares);
     if (part.vertex_color != scene::VertexColor::none) by_color(part.vertex_color, key, shares);
     if (!part.vertex_group.empty()) by_group(part.vertex_group, key, shares);
     std::vector<Chosen> chosen;
@@ -67,6 +72,26 @@ class Chooser {
     std::vector<double> on(shares.size());
     for (const Index i : edge) on[static_cast<std::size_t>(i)] = 1;
     multiply(on, shares);
+  }
+
+  // Between low and high and under the mask of one panel. Where its own edges meet in a dart, the largest share.
+  void on_panel(const scene::ClothPart& part, const std::string& key, std::vector<double>& shares) const {
+    const auto found = std::ranges::find(object_.panels, part.panel);
+    if (found == object_.panels.end()) refuse_name(part.panel, object_.panels, key, "panel", "a panel of its pattern");
+    const auto number = found - object_.panels.begin();
+    Vec2 low = Vec2::Constant(std::numeric_limits<double>::infinity()), high = -low;
+    const auto each_corner = [&](const auto& visit) {
+      for (std::size_t t = 0; t < object_.panel_of.size(); ++t)
+        for (std::size_t k = 0; k < 3 && object_.panel_of[t] == number; ++k)
+          visit(object_.paint_uv[t][k], shares[static_cast<std::size_t>(object_.mesh.topology.triangles[t][k])]);
+    };
+    each_corner([&](const Vec2& uv, double&) { low = low.cwiseMin(uv), high = high.cwiseMax(uv); });
+    std::optional<image::Picture> mask;
+    if (part.mask) mask = image::read_picture(*part.mask);
+    each_corner([&](const Vec2& uv, double& share) {
+      const Vec2 at = (uv - low).cwiseQuotient(high - low);
+      if (part.holds(at.x(), at.y())) share = std::max(share, mask ? grey_at(*mask, at) : 1.0);
+    });
   }
 
   // Where islands of UVs meet, the largest share.
@@ -106,6 +131,10 @@ class Chooser {
     if (const auto found = map.find(name); found != map.end()) return found->second;
     std::vector<std::string> names;
     for (const auto& [known, value] : map) names.push_back(known);
+    refuse_name(name, names, key, field, kind);
+  }
+  [[noreturn]] static void refuse_name(const std::string& name, const std::vector<std::string>& names,
+                                       const std::string& key, const char* field, const char* kind) {
     const std::string nearest = nearest_name(name, names);
     refuse(key, field,
            fmt::format("{}, such as {}, got \"{}\"{}", kind, names.front(), name,

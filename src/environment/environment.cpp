@@ -16,6 +16,7 @@
 #include "core/parallel.hpp"
 #include "environment/acting.hpp"
 #include "environment/chosen_particles.hpp"
+#include "garment/fit.hpp"
 #include "garment/garment.hpp"
 #include "garment/uv_rest.hpp"
 #include "mesh/caps.hpp"
@@ -90,8 +91,14 @@ mesh::Mesh turned_up(mesh::Mesh mesh, scene::UpAxis up) {
 void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where, Wearers& wearers,
                  ClothObject& object) {
   garment::Pattern pattern = garment::load_pattern(cloth.file, where);
-  pattern.scale_by(cloth.scale);
   const garment::Wearer* wearer = pattern.wraps() ? &wearers.of(cloth, where) : nullptr;
+  Vec2 factors(cloth.scale, cloth.scale);
+  if (cloth.fit) {
+    const Vec2 fit = garment::fit_factors(pattern, wearer != nullptr ? *wearer : wearers.of(cloth, where), where);
+    object.fitted = fmt::format("{:.3g} times as wide and {:.3g} times as long as drawn", fit.x(), fit.y());
+    factors = factors.cwiseProduct(fit);
+  }
+  pattern.scale_by(factors);
   garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);
   const Box3 box = mesh::bounding_box(garment.sheet.rest);
   for (const Vec3& x : garment.sheet.rest) {

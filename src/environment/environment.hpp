@@ -47,6 +47,7 @@ struct ClothObject {
   std::vector<Vec3> start;                         ///< positions of the particles [m]
   Vec3 velocity{0, 0, 0};                          ///< of all of them [m/s]
   double put_on = 0;      ///< time after the start of the simulation, its preroll included, at which it comes [s]
+  std::string fitted;     ///< of a pattern that was scaled to its wearer: how
   std::string rest_from;  ///< of a mesh file: what its shape at rest is taken from, and why
   std::vector<std::string> warnings;
 };

@@ -306,11 +306,23 @@ const scene::Table& pattern_rules() {
                                  .number("mass", &Hem::mass, within(0, 100), "kg/m", "beside that of the cloth")
                                  .number("bend", &Hem::bend, within(0, 1), "N·m²", "against bending of the edge")
                                  .build();
+  static const Table kMeasures =
+      TableBuilder<Measures>("Of the body that the pattern is drawn for; `fit` of a scene's cloth scales from them.")
+          .number("chest", &Measures::chest, scene::above(0, 100), "m", "widest girth below the armpits")
+          .by_default("not told")
+          .number("waist", &Measures::waist, scene::above(0, 100), "m", "narrowest girth")
+          .by_default("not told")
+          .number("hip", &Measures::hip, scene::above(0, 100), "m", "widest girth below the waist")
+          .by_default("not told")
+          .number("height", &Measures::height, scene::above(0, 100), "m", "from the floor to the crown")
+          .by_default("not told")
+          .build();
   static const Table kTable = TableBuilder<Pattern>("A sewing pattern.")
                                   .number("depth", &Pattern::depth, scene::above(0, 10), "m",
                                           "of the panels before and behind the wearer's coronal plane at the start")
                                   .number("gap", &Pattern::gap, scene::above(0, 1), "m",
                                           "of panels that start bent around the wearer from the skin")
+                                  .table("measures", &Pattern::measures, kMeasures)
                                   .list(Type::list, "panel", &Pattern::panels, panel_rules())
                                   .list(Type::list, "seam", &Pattern::seams, kSeams)
                                   .list(Type::list, "elastic", &Pattern::elastics, kElastics)
@@ -319,13 +331,13 @@ const scene::Table& pattern_rules() {
   return kTable;
 }
 
-void Pattern::scale_by(double factor) {
-  depth *= factor;
+void Pattern::scale_by(const Vec2& factors) {
+  depth *= factors.x();
   for (Panel& panel : panels) {
-    if (panel.position) *panel.position *= factor;
+    if (panel.position) *panel.position = panel.position->cwiseProduct(factors);
     for (PanelEdge& edge : panel.edges)
       for (Curve& curve : edge.curves)
-        for (Vec2& p : curve.control) p *= factor;
+        for (Vec2& p : curve.control) p = p.cwiseProduct(factors);
   }
 }
 

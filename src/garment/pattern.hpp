@@ -71,8 +71,14 @@ struct Hem {
   double bend = 2e-6;  ///< against bending of the edge in any direction [N·m²]
 };
 
+/// Of a body: girths, and from the floor to the crown [m].
+struct Measures {
+  std::optional<double> chest, waist, hip, height;
+};
+
 struct Pattern {
   std::filesystem::path file;
+  Measures measures;    ///< that it is drawn for, as far as it says
   double depth = 0.16;  ///< of the front panels before the wearer's coronal plane at the start, and of the back panels
                         ///< behind it, far from the seams that join both [m]
   double gap = 0.015;   ///< of panels that are bent around the wearer from the skin at the start [m]
@@ -84,7 +90,8 @@ struct Pattern {
   /// Whether panels start bent around parts of a wearer; else they lie before and behind it.
   bool wraps() const;
   /// Another size: outlines, and where panels start; seams and hems stay as they are.
-  void scale_by(double factor);
+  /// `factors`: across and up the drawings.
+  void scale_by(const Vec2& factors);
   /// The edge named "panel.edge": indices of panel and edge. The name exists in a checked pattern.
   std::pair<std::size_t, std::size_t> find(const std::string& name) const;
 };

@@ -72,9 +72,9 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
                     fmt::format("expected >= {}, the low end, got {}", part.low[axis], part.high[axis]));
     return;
   }
-  if (!part.edge.empty() && cloth.shape != ClothShape::pattern) {
-    findings.report(path + ".edge",
-                    "expected none of a cloth that is sewn from no pattern, got " + in_quotes(part.edge));
+  for (const auto& [key, name] : {std::pair(".panel", &part.panel), std::pair(".edge", &part.edge)}) {
+    if (name->empty() || cloth.shape == ClothShape::pattern) continue;
+    findings.report(path + key, "expected none of a cloth that is sewn from no pattern, got " + in_quotes(*name));
     return;
   }
   check_image(part.mask, path + ".mask", findings);

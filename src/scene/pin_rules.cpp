@@ -9,6 +9,10 @@ namespace {
 /// low and high of a part of a cloth.
 template <class S>
 void part_rows(TableBuilder<S>& rows) {
+  rows.plain(Type::text, "panel", &S::panel,
+             "of a sewing pattern, of which the part is; fractions and the mask are then of its own width and height, "
+             "along its grain")
+      .by_default("the whole cloth");
   rows.vector("low", &S::low, kWeftWarp, within(0, 1), "", "lower end of the part, in fractions of the size")
       .single_fills_all();
   rows.vector("high", &S::high, kWeftWarp, within(0, 1), "", "upper end of the part, in fractions of the size")

@@ -187,6 +187,9 @@ void cloth_shape_rows(TableBuilder<Cloth>& rows) {
                               .plain(Type::text, "wearer", &Cloth::wearer,
                                      "character that panels are bent around whose pattern names its parts")
                               .by_default("the only character")
+                              .plain(Type::boolean, "fit", &Cloth::fit,
+                                     "true scales the pattern from the measures that it names to those of the wearer, "
+                                     "and then by `scale`")
                               .number("sewing", &Cloth::sewing, within(0, 1000), "s",
                                       "time in which the panels, without weight, go to their own measures"));
 }

@@ -162,6 +162,7 @@ enum class VertexColor { none, red, green, blue, brightness };
 /// Particles of a cloth, in fractions of its rest size along weft and warp: those inside [low, high]. What else is
 /// given says which share of each of them; several such shares are multiplied.
 struct ClothPart {
+  std::string panel;  ///< of a pattern: only those of it, and fractions are of its own size; empty: all
   Vec2 low{0, 0}, high{1, 1};
   std::string edge;                              ///< of a pattern, as "panel.edge": only those on it; empty: all
   std::optional<std::filesystem::path> mask;     ///< picture whose greys are shares; absolute after checking
@@ -216,6 +217,7 @@ struct Cloth {
   std::optional<Vec2> uv_scale;           ///< metres per unit of its UVs; absent: measured against the mesh
   double edge_length = 0.02;              ///< of the mesh of a pattern [m]
   std::string wearer;                     ///< character that a pattern is put on; empty: the only one
+  bool fit = false;                       ///< whether a pattern is scaled to the wearer's measures
   double sewing = 1;                      ///< time in which what has flat panels goes to their measures [s]
   int line = 0, column = 0;               ///< where the scene names it, for errors of its file
   Pose pose;               ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y

@@ -122,6 +122,9 @@ void plan_rest_shapes(const Scene& scene, std::vector<PlanItem>& items) {
     if (cloth.shape == scene::ClothShape::mesh)
       items.push_back({fmt::format("preparation: rest shape of {}", cloth.name), true,
                        environment::make_cloth(scene, cloth, wearers).rest_from});
+    else if (cloth.fit && cloth.shape == scene::ClothShape::pattern)
+      items.push_back({fmt::format("preparation: fit of {}", cloth.name), true,
+                       environment::make_cloth(scene, cloth, wearers).fitted});
 }
 
 void plan_preparation(const Scene& scene, std::vector<PlanItem>& items) {

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 
@@ -125,6 +126,40 @@ TEST_F(ChosenParticles, OfMeshesAreTakenByUvsColoursAndGroups) {
   for (const auto& [particle, share] : shares_of(cloth.pins[3]))
     EXPECT_NEAR(share, (0.5 * x_of(particle) + 0.25 + 1) / 3, 1e-6);
   EXPECT_EQ(shares_of(cloth.weights[0]), red);
+}
+
+// Front and back lie behind each other: what one image of both would take of the back as well.
+TEST_F(ChosenParticles, OfOnePanelAreTakenInItsOwnFractions) {
+  std::string pattern;
+  for (const char* side : {"front", "back"})
+    pattern += fmt::format(
+        "[[panel]]\nname = '{0}'\nside = '{0}'\npath = 'M -0.2 0 L 0.2 0 L 0.2 0.4 L -0.2 0.4 Z'\n"
+        "edges = 'hem left top right'\nposition = [0, 1]\n",
+        side);
+  for (const char* edge : {"left", "right"})
+    pattern += fmt::format("[[seam]]\na = 'front.{0}'\nb = 'back.{0}'\n", edge);
+  support::write_bytes(folder_ / "tube.toml", pattern);
+  const std::string tube = "shape = 'pattern'\nedge_length = 0.05\nfile = '" + (folder_ / "tube.toml").string() + "'\n";
+  const ClothObject cloth = cloth_of(tube + "pin = [{ panel = 'front', mask = '" + row_of({255, 0}) +
+                                     "', high = [1, 0.5], strength = 1 }]\n");
+  std::map<Index, double> expected;
+  for (std::size_t t = 0; t < cloth.panel_of.size(); ++t)
+    for (std::size_t k = 0; k < 3; ++k) {
+      // Greys are 1 up to the middle of the left pixel, 0 from that of the right one.
+      const Vec2 at = (cloth.paint_uv[t][k] + Vec2(0.2, 0)) / 0.4;
+      const double share = std::clamp(1.5 - 2 * at.x(), 0.0, 1.0);
+      if (cloth.panel_of[t] == 0 && at.y() < 0.5 + 1e-9 && share > 0.5 / 255)
+        expected.emplace(cloth.mesh.topology.triangles[t][k], share);
+    }
+  const auto shares = shares_of(cloth.pins[0]);
+  ASSERT_EQ(shares.size(), expected.size());
+  ASSERT_GT(expected.size(), 10U);
+  for (const auto& [particle, share] : expected) EXPECT_NEAR(shares.at(particle), share, 1e-9) << particle;
+  support::expect_error(
+      ExitCode::scene_invalid,
+      "cloth.c.pin.0.panel: expected a panel of its pattern, such as front, got \"frnt\"; did you mean "
+      "front?",
+      [&] { cloth_of(tube + "pin = [{ panel = 'frnt' }]\n"); });
 }
 
 TEST_F(ChosenParticles, AreRefusedForWhatTheClothHasNot) {

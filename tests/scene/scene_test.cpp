@@ -177,6 +177,8 @@ TEST_F(EveryKey, OfAPinFillsItsMember) {
   EXPECT_EQ(scene_.cloths[0].pins[1].strength, 30);
   EXPECT_EQ(scene_.cloths[0].pins[1].fade, 0.07);
   EXPECT_EQ(following.mask, std::nullopt);
+  EXPECT_EQ(following.panel, "");
+  EXPECT_EQ(scene_.cloths.back().pins.at(0).panel, "front");
   EXPECT_EQ(scene_.cloths[0].pins[1].mask->filename(), "check.png");
   ASSERT_EQ(motion.keys.size(), 4u);
   EXPECT_EQ(motion.keys[0].time, 0.5);

@@ -1,0 +1,74 @@
+// A pattern for one body on another: what is measured, and what follows from that.
+#include "garment/fit.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "support/test_folder.hpp"
+
+namespace weft::garment {
+namespace {
+
+// Radii of a body of 1.7 m that is round everywhere: knees, hips, waist, chest, shoulders, neck [m].
+double radius(double z) {
+  const std::vector<std::pair<double, double>> places{{0, 0.08},    {0.5, 0.09}, {0.9, 0.16}, {1.1, 0.11}, {1.28, 0.15},
+                                                      {1.34, 0.15}, {1.42, 0.2}, {1.5, 0.06}, {1.7, 0.06}};
+  for (std::size_t k = 1; k < places.size(); ++k)
+    if (z <= places[k].first)
+      return std::lerp(places[k - 1].second, places[k].second,
+                       (z - places[k - 1].first) / (places[k].first - places[k - 1].first));
+  return 0.06;
+}
+
+Wearer round_wearer() {
+  constexpr int kAround = 96, kUp = 171;
+  Wearer wearer;
+  for (int j = 0; j < kUp; ++j)
+    for (int i = 0; i < kAround; ++i) {
+      const double angle = 2 * std::numbers::pi * i / kAround, z = 0.01 * j;
+      wearer.skin.emplace_back(radius(z) * std::cos(angle), radius(z) * std::sin(angle), z);
+    }
+  for (int j = 0; j + 1 < kUp; ++j)
+    for (int i = 0; i < kAround; ++i) {
+      const int a = j * kAround + i, b = j * kAround + (i + 1) % kAround;
+      wearer.triangles.push_back({a, b, a + kAround});
+      wearer.triangles.push_back({b, b + kAround, a + kAround});
+    }
+  wearer.regions.assign(wearer.skin.size(), Region::trunk);
+  wearer.neck = 1.46;
+  wearer.left_leg = Limb{Vec3(0.08, 0, 0.9), Vec3(0.08, 0, 0.5), Vec3(0.08, 0, 0.1)};
+  wearer.right_leg = Limb{Vec3(-0.08, 0, 0.9), Vec3(-0.08, 0, 0.5), Vec3(-0.08, 0, 0.1)};
+  return wearer;
+}
+
+// The shoulders are wider than the chest. Sections are 10 mm apart, over which the girth of a slope of 0.3 changes by
+// 19 mm; polygons of 96 corners are shorter than circles by 0.02 %.
+TEST(Fit, MeasuresGirthsOfHipsWaistAndChestAndTheHeight) {
+  const Measures measures = measure(round_wearer());
+  EXPECT_NEAR(*measures.hip, 2 * std::numbers::pi * 0.16, 0.02);
+  EXPECT_NEAR(*measures.waist, 2 * std::numbers::pi * 0.11, 0.02);
+  EXPECT_NEAR(*measures.chest, 2 * std::numbers::pi * 0.15, 0.03);
+  EXPECT_NEAR(*measures.height, 1.7, 0.011);
+}
+
+TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheHeights) {
+  const Wearer wearer = round_wearer();
+  const Measures own = measure(wearer);
+  Pattern pattern;
+  pattern.measures = {*own.chest / 1.1, *own.waist / 1.3, *own.hip / 0.9, {}};
+  EXPECT_LT((fit_factors(pattern, wearer, "cloth.c") - Vec2(1.3, 1)).norm(), 1e-12);
+  pattern.measures = {{}, {}, *own.hip / 0.9, *own.height / 1.2};
+  EXPECT_LT((fit_factors(pattern, wearer, "cloth.c") - Vec2(0.9, 1.2)).norm(), 1e-12);
+  pattern.measures = {{}, {}, {}, *own.height / 1.2};
+  EXPECT_LT((fit_factors(pattern, wearer, "cloth.c") - Vec2(1.2, 1.2)).norm(), 1e-12);
+  pattern.measures = {};
+  support::expect_error(ExitCode::scene_invalid, "cloth.c.fit: expected a pattern that names the measures",
+                        [&] { fit_factors(pattern, wearer, "cloth.c"); });
+}
+
+}  // namespace
+}  // namespace weft::garment
