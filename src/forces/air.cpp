@@ -56,7 +56,10 @@ void Air::push(const Faces<Corners>& faces, const Evaluation& at) const {
   const VecLanes n = (size > 0 ? 1 / size : lanes_of(0.0)) * area;
   VecLanes velocity = gather(at.v, faces.corners[0]);
   for (std::size_t k = 1; k < Corners; ++k) velocity = velocity + gather(at.v, faces.corners[k]);
-  const Lanes speed = dot(n, lanes_of(1.0 / Corners) * velocity - lanes_of(wind_));
+  if (!at.air.empty())
+    for (const Four& corner : faces.corners) velocity = velocity - gather(at.air, corner);
+  const VecLanes wind = lanes_of(at.air.empty() ? wind_ : Vec3(Vec3::Zero()));
+  const Lanes speed = dot(n, lanes_of(1.0 / Corners) * velocity - wind);
   const Lanes of_speed = coefficient_ / Corners * faces.counts * size * abs(speed);  // of one corner [kg/s]
   const VecLanes drag = of_speed * speed * n;
   for (const Four& corner : faces.corners) subtract(at.force, corner, drag);

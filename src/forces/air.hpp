@@ -12,7 +12,7 @@ namespace weft::forces {
 
 struct AirParameters {
   double density = 1.2;      ///< of the air [kg/m³]
-  Vec3 wind = Vec3::Zero();  ///< velocity of the air [m/s]
+  Vec3 wind = Vec3::Zero();  ///< velocity of the air [m/s], unless an evaluation brings its own
   double drag = 1.0;         ///< coefficient of the motion along the normal
 };
 

@@ -53,6 +53,8 @@ struct Evaluation {
   /// Which of the ranges that the force was cut into this is for; kAll: all in one go.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
   std::size_t range = kAll;
+  /// Velocity of the air at each particle [m/s], where it is not the same everywhere; else none.
+  std::span<const solver::Quad<double>> air = {};
 };
 
 /// A force on the particles of one cloth. `first` is the cloth's first particle in the global numbering.

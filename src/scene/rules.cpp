@@ -53,6 +53,17 @@ const Table& time_rules() {
   return kTable;
 }
 
+const Table& gust_rules() {
+  static const Table kTable =
+      TableBuilder<Gusts>("Turbulence of the air: eddies that the wind carries along, the same in every run.")
+          .number("speed", &Gusts::speed, within(0, 1000), "m/s",
+                  "root mean square of each component beside the wind; 0 for none")
+          .number("size", &Gusts::size, above(0, 1e5), "m", "of the eddies that carry most (integral length)")
+          .whole_number("seed", &Gusts::seed, within(0, 1e9), "another one gives other gusts")
+          .build();
+  return kTable;
+}
+
 const Table& physics_rules() {
   static const Table kTable =
       TableBuilder<Physics>("The world around the cloth.")
@@ -60,6 +71,7 @@ const Table& physics_rules() {
           .by_default("9.81 m/s² against the up axis")
           .number("air_density", &Physics::air_density, within(0, 1000), "kg/m³", "0 leaves the air out")
           .vector("wind", &Physics::wind, kXyz, within(-1000, 1000), "m/s", "velocity of the air")
+          .table("gusts", &Physics::gusts, gust_rules())
           .build();
   return kTable;
 }

@@ -37,10 +37,18 @@ struct Time {
   Integrator integrator = Integrator::implicit_euler;
 };
 
+/// Turbulence of the air, beside its mean velocity.
+struct Gusts {
+  double speed = 0;  ///< root mean square of each component [m/s]; 0: none
+  double size = 1;   ///< of the eddies that carry most: integral length [m]
+  int seed = 0;      ///< another one gives other gusts
+};
+
 struct Physics {
   Vec3 gravity{0, 0, -9.81};  ///< [m/s²]; the default follows the up axis
   double air_density = 1.2;   ///< [kg/m³]; 0 leaves the air out
   Vec3 wind{0, 0, 0};         ///< velocity of the air [m/s]
+  Gusts gusts;
 };
 
 struct Solver {

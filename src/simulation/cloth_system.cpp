@@ -105,6 +105,11 @@ double ease(double s) {
 
 }  // namespace
 
+bool blows_in_gusts(const scene::Scene& scene) {
+  const auto is_blown = [&](const scene::Cloth& cloth) { return meets_air(cloth.material, scene.physics); };
+  return scene.physics.gusts.speed > 0 && std::ranges::any_of(scene.cloths, is_blown);
+}
+
 bool bends(const scene::Material& material) {
   return material.bend > 0;
 }

@@ -25,6 +25,9 @@ namespace weft::simulation {
 /// friction of a fabric could damp.
 bool bends(const scene::Material& material);
 
+/// Whether the air acts on any cloth of the scene, and has gusts.
+bool blows_in_gusts(const scene::Scene& scene);
+
 /// Whether the threads of this material lock.
 bool locks(const scene::Material& material);
 

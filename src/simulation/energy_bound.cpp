@@ -29,7 +29,7 @@ bool is_alone(const scene::Scene& scene) {
   }
   const auto stands = [&](const scene::Obstacle& obstacle) { return !obstacle.collide || !moves(obstacle.motion); };
   if (!scene.characters.empty() || !std::ranges::all_of(scene.obstacles, stands)) return false;
-  return scene.physics.air_density == 0 || scene.physics.wind == Vec3::Zero();
+  return scene.physics.air_density == 0 || (scene.physics.wind == Vec3::Zero() && scene.physics.gusts.speed == 0);
 }
 
 double mechanical(const FrameReport& report) {

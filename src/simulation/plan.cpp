@@ -58,6 +58,9 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
   items.push_back(of_cloths(
       "force: air", scene, [&](const Cloth& c) { return scene.physics.air_density > 0 && c.material.drag > 0; },
       "air_density or drag is zero"));
+  items.push_back(when("force: gusts", blows_in_gusts(scene),
+                       fmt::format("{:g} m/s, eddies of {:g} m", scene.physics.gusts.speed, scene.physics.gusts.size),
+                       "physics.gusts.speed, air_density or drag is zero"));
 }
 
 void plan_constraints(const Scene& scene, std::vector<PlanItem>& items) {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "environment/environment.hpp"
+#include "environment/gusts.hpp"
 #include "integrator/step_control.hpp"
 #include "integrator/stepper.hpp"
 #include "scene/scene.hpp"
@@ -95,6 +96,7 @@ class StepLoop {
   Rejection attempt(double t, double h, int retries, bool last_try, FrameReport& report);
   Rejection attempt_with(double t, double h, int retries, bool last_try, bool may_give_way, FrameReport& report);
   bool is_short_enough(int retries, bool last_try) const;
+  void blow(double t, double h);
   Rejection correct(double h, int retries, bool last_try, bool may_give_way);
   double energy(const Moment& moment) const;
   double added_share(double before, double h) const;
@@ -116,6 +118,7 @@ class StepLoop {
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
   std::vector<integrator::HeldParticle> held_;
   std::optional<CollisionStage> collisions_;
+  std::optional<environment::Gusts> gusts_;
 };
 
 }  // namespace weft::simulation

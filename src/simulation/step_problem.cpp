@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "core/parallel.hpp"
 
@@ -52,6 +53,11 @@ void StepProblem::begin_step(double t, std::span<const integrator::HeldParticle>
     memory_.rate = 0;  // what the matrix begins with has changed too
   }
   memory_.contacts = {};
+}
+
+void StepProblem::blow(SolveMemory::Quads air) {
+  air_ = std::move(air);
+  forget();
 }
 
 void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force) {
@@ -132,6 +138,7 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int 
     forces::Evaluation evaluation{memory_.x, memory_.v, forces::ForceRows(memory_.force, begin, end)};
     evaluation.rate = at.rate;
     evaluation.range = number;
+    evaluation.air = air_;
     if (assemble) {
       evaluation.assembly = solver::AssemblyRows(memory_.assembly, begin, end);
       if (iteration >= kPlainIterations) evaluation.linearisation = forces::Linearisation::abs_projected;

@@ -47,6 +47,9 @@ class StepProblem final : public integrator::System {
   /// cloth on to there, and friction goes by the loads at the start. `pulls` must outlive the step.
   void begin_step(double t, std::span<const integrator::HeldParticle> pinned, std::span<const Pull> pulls = {});
 
+  /// Velocities of the air at all particles for the step that begins [m/s]; without, it is the same everywhere.
+  void blow(SolveMemory::Quads air);
+
   /// Within a step, where its contacts are others now.
   void forget_contacts() { memory_.contacts = {{}, {}, {}, memory_.contacts.updates}; }
 
@@ -75,6 +78,7 @@ class StepProblem final : public integrator::System {
   ClothSystem& cloth_;
   const collision::ContactResponse* contacts_ = nullptr;
   std::span<const Pull> pulls_;
+  SolveMemory::Quads air_;
   SolveMemory memory_;
   std::vector<char> chosen_;  // per cloth: is to be evaluated; scratch
 };

@@ -159,6 +159,7 @@ INSTANTIATE_TEST_SUITE_P(
         Kind{"at_rest_velocity_constraints", kAtRest, {"contact.response=velocity_constraints"}, {20, {5, 10, 18}}},
         Kind{"at_rest_separation_lists", kAtRest, {"contact.search.separation_lists=true"}, {20, {5, 10, 18}}},
         Kind{"at_rest_velocity_cones", kAtRest, {"contact.search.velocity_cones=true"}, {20, {5, 10, 18}}},
+        Kind{"gusts_one_thread_then_three", kFlag, {"physics.gusts.speed=1.5"}, {14, kSome, 3}},
         Kind{"flag", kFlag, {}, {14, {0, 3, 5, 9}}},
         Kind{"preroll", kDrape, {"time.preroll=0.4"}, {14, {4, 9, 10, 12}}}),
     [](const auto& kind) { return std::string(kind.param.name); });

@@ -5,6 +5,7 @@
 #include <tuple>
 
 #include "environment/environment.hpp"
+#include "environment/gusts.hpp"
 #include "forces/sheets.hpp"
 #include "integrator/stepper.hpp"
 #include "scene/fabrics.hpp"
@@ -104,6 +105,29 @@ TEST(SteadyAir, TerminalVelocityHangsNotOnTheStep) {
         const double expected = std::sqrt(2 * scene.cloths[0].material.density * 9.81 / (1.2 * drag));
         EXPECT_NEAR(speed, expected, 1e-3 * expected) << name_of(integrator) << ' ' << drag << ' ' << step;
       }
+}
+
+// In gusts so large that they are the same wherever the sheet comes in two seconds it falls as in still air beside them.
+TEST(GustsInARun, CarryASheetThatFalls) {
+  for (const scene::Integrator integrator : testing::kIntegrators) {
+    scene::Scene scene = testing::sheet_alone(0.2, 5, 0);
+    scene.time.integrator = integrator;
+    scene.physics.air_density = 1.2;
+    scene.physics.gusts = {.speed = 1, .size = 1e5, .seed = 3};
+    const double gust = environment::Gusts(scene.physics.gusts, Vec3::Zero()).at(Vec3::Zero(), 1).z();
+    ASSERT_GT(std::abs(gust), 0.2) << "something to see";
+    Simulation simulation(scene);
+    double before = 0, speed = 0;
+    for (int k = 1; k <= 50; ++k) {
+      simulation.advance();
+      const double z = testing::sheet_of(simulation.snapshot())[12].z();
+      speed = 25 * (before - z);
+      before = z;
+    }
+    const double in_still_air = std::sqrt(2 * scene.cloths[0].material.density * 9.81 / 1.2);
+    // The field changes by 1e-4 of itself on the way of some metres.
+    EXPECT_NEAR(speed, in_still_air - gust, 1e-3 * in_still_air) << name_of(integrator);
+  }
 }
 
 TEST(SteadyAir, ClothInSteadyWindComesToTheSameRestAtEveryStep) {

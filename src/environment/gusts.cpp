@@ -1,0 +1,66 @@
+#include "environment/gusts.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace weft::environment {
+namespace {
+
+// Shells of wave numbers, each so many times the one before, about k_e: from eddies of some sizes down to a thirtieth
+// of the size, finer than meshes of cloth are. A tenth of the spectrum's energy is below.
+constexpr int kShells = 13;
+constexpr double kRatio = 1.5;
+constexpr int kShellsBelow = 3;
+// k_e times the integral length: of the whole spectrum 0.747, of these shells, π/2 Σ E/k over 2/3 Σ E, this.
+constexpr double kLength = 0.837;
+// Of the rate at which eddies turn over (Fung et al., 1992, Section 2).
+constexpr double kUnsteadiness = 0.5;
+
+// Of von Kármán, but for a factor, at a wave number in shares of k_e.
+double spectrum(double k) {
+  return std::pow(k, 4) / std::pow(1 + k * k, 17.0 / 6);
+}
+
+}  // namespace
+
+Gusts::Gusts(const scene::Gusts& gusts, const Vec3& wind) {
+  const double k_e = kLength / gusts.size;
+  std::vector<double> wave_numbers, energies;
+  double sum = 0;
+  for (int shell = 0; shell < kShells; ++shell) {
+    wave_numbers.push_back(std::pow(kRatio, shell - kShellsBelow));
+    energies.push_back(spectrum(wave_numbers.back()) * wave_numbers.back());  // shells are as wide as they are far out
+    sum += energies.back();
+  }
+  // The generator is the same everywhere; what the library makes of it as distributions is not.
+  std::mt19937_64 generator(static_cast<std::uint64_t>(gusts.seed));
+  const auto random = [&] { return static_cast<double>(generator() >> 11) * 0x1p-53; };  // from 0 to 1
+  for (int shell = 0; shell < kShells; ++shell) {
+    const double k = wave_numbers[shell] * k_e;
+    // E(k) itself, whose integral is 3/2 speed²; the width of a shell is k ln(ratio).
+    const double energy = 1.5 * gusts.speed * gusts.speed * energies[shell] / sum / (k * std::log(kRatio));
+    const double turnover = std::sqrt(k * k * k * energy);
+    // Three waves along axes of their own, each across the next axis: the mean square is the same in all directions.
+    const double a = 2 * std::numbers::pi * random(), b = 2 * std::numbers::pi * random(), c = random();
+    const Mat3 axes = Quat(std::sqrt(1 - c) * std::sin(a), std::sqrt(1 - c) * std::cos(a), std::sqrt(c) * std::sin(b),
+                           std::sqrt(c) * std::cos(b))
+                          .toRotationMatrix();  // Shoemake, "Uniform random rotations", 1992
+    const double amplitude = gusts.speed * std::sqrt(2 * energies[shell] / sum);
+    for (int axis = 0; axis < 3; ++axis) {
+      const Vec3 wave_number = k * axes.col(axis);
+      const double own = kUnsteadiness * turnover * (random() < 0.5 ? -1 : 1);
+      waves_.push_back({wave_number, amplitude * axes.col((axis + 1) % 3), own - wave_number.dot(wind),
+                        2 * std::numbers::pi * random()});
+    }
+  }
+}
+
+Vec3 Gusts::at(const Vec3& x, double t) const {
+  Vec3 sum = Vec3::Zero();
+  for (const Wave& wave : waves_)
+    sum += std::cos(wave.wave_number.dot(x) + wave.rate * t + wave.phase) * wave.amplitude;
+  return sum;
+}
+
+}  // namespace weft::environment
