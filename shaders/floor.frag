@@ -3,7 +3,6 @@
 #include "shading.glsl"
 #include "soft_look_up.glsl"
 #include "open_floor.glsl"
-#include "dither.glsl"
 layout(location = 0) out vec4 color;
 
 // Tiles of 0.5 m as a faint two-tone pattern, averaged over the pixel (box filter of a triangle wave, as in Quilez,
@@ -32,7 +31,7 @@ void main() {
   vec3 linear = open_floor(albedo, ray_world);
 #else
   Softness soft = look_up_softness(distance_view, kFloor);
-  vec3 diffuse = ambient_light(n, soft.open) + shaded_light(0, soft, position_world, n);
+  vec3 diffuse = ambient_light(n, soft.open, albedo) + shaded_light(0, soft, position_world, n);
 #if LIGHTS > 1
   diffuse += shaded_light(1, soft, position_world, n);
 #endif
@@ -44,5 +43,5 @@ void main() {
 #endif
   vec3 linear = fade_out(albedo * diffuse, position_world, ray_world);
 #endif
-  color = vec4(encode(linear) + dither(gl_FragCoord.xy), 1.0);
+  color = vec4(encode(linear), 1.0);
 }

@@ -7,13 +7,18 @@ layout(std140, binding = 0) uniform Frame {
   vec4 center_world;       // of the subjects
   vec4 up_world;
   vec4 right_world;        // of the camera
-  vec4 sky_light;          // linear, times the sky's share of all light; w: reach of sky occlusion [m]
-  vec4 ground_light;       // the same from below; w: metres of one unit of depth of the sky maps
-  vec4 backdrop;           // linear colour at the horizon
+  vec4 sky;                // linear light from above; w: reach of sky occlusion [m]
+  vec4 horizon;            // from the sides; w: linear light that the look deepens
+  vec4 ground;             // from below; w: metres of one unit of depth of the sky maps
+  vec4 backdrop;           // linear colour at the horizon; w: share that it loses far from the subjects
+  vec4 backdrop_top;       // straight above; w: share of light that the floor reflects
   vec4 viewport;           // width, height [pixels], and their inverses
   vec4 frustum;            // tangents of half the opening, near, far [m]
   vec4 floor_plane_world;  // unit normal, upward; w: height of the eye above it [m]
-  vec4 floor_look;         // linear colour; w: 1 with a checker
+  vec4 floor_look;         // linear colour; w: exposure, a factor on all light
+  vec4 box_axes[3];        // unit; w: sharpness (surroundings.hpp)
+  vec4 box_lights[3];
+  vec4 irradiance[9];
 } frame;
 
 // What the geometry buffer says of a pixel: distance along the view axis [m] and number of the surface, half more where

@@ -9,6 +9,7 @@ layout(location = 4) in vec2 vertex_place;
 uniform vec3 picture_u, picture_v;  // rows of the map to the picture
 out vec2 place;
 #endif
+uniform float nearer;  // [m] by which it counts as nearer than other things
 out vec3 surface_normal_world;
 out vec2 surface_uv;
 out float surface_heat;
@@ -21,4 +22,8 @@ void main() {
   place = vec2(dot(picture_u, vec3(vertex_place, 1.0)), dot(picture_v, vec3(vertex_place, 1.0)));
 #endif
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);
+  if (nearer > 0.0 && gl_Position.w > frame.frustum.z) {
+    float n = frame.frustum.z, f = frame.frustum.w, distance_view = max(gl_Position.w - nearer, n);
+    gl_Position.z = gl_Position.w * (f + n - 2.0 * f * n / distance_view) / (f - n);
+  }
 }

@@ -1,6 +1,5 @@
 // What changes so slowly over the picture that it is lit at the corners of a grid: backdrop, open floor under suns.
 #include "frame.glsl"
-#include "dither.glsl"
 noperspective in vec3 shown;
 layout(location = 0) out vec4 color;
-void main() { color = vec4(shown + dither(gl_FragCoord.xy), 1.0); }
+void main() { color = vec4(shown, 1.0); }

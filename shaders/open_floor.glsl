@@ -23,7 +23,7 @@ float floor_distance(vec3 ray_world) {
 vec3 open_floor(vec3 albedo, vec3 ray_world) {
   vec3 n = frame.floor_plane_world.xyz;
   vec3 position_world = frame.eye_world.xyz + floor_distance(ray_world) * ray_world;
-  vec3 diffuse = ambient_light(n, 1.0) + light_on_floor(0, position_world, n);
+  vec3 diffuse = irradiance(n) + light_on_floor(0, position_world, n);
 #if LIGHTS > 1
   diffuse += light_on_floor(1, position_world, n);
 #endif

@@ -1,21 +1,27 @@
-// Light from the sky and the way to the screen; used by all that is drawn.
+// Light from around and the way to the screen; used by all that is drawn.
 #include "frame.glsl"
 #include "lights.glsl"
+#include "surroundings.glsl"
 
-// Light that a matte white surface takes from its surroundings: the sky above, the ground below, a little more from the
-// camera's left, as a big window would give, so that shadowed folds keep their relief.
-vec3 ambient_light(vec3 n_world, float open) {
-  float upward = 0.5 + 0.5 * dot(n_world, frame.up_world.xyz);
-  vec3 light = mix(frame.ground_light.rgb, frame.sky_light.rgb, upward);
-  light *= 1.0 - 0.18 * dot(n_world, frame.right_world.xyz) * (1.0 - abs(2.0 * upward - 1.0));
-  return light * open;
+// Light from around that a matte surface takes where only a share of them is open to it. Light that comes from what hides
+// the others has its color: in creases it is that of the surface itself (Jimenez et al., "Practical Realtime Strategies
+// for Accurate Indirect Occlusion", 2016, Eq. 5).
+vec3 ambient_light(vec3 n_world, float open, vec3 albedo) {
+  vec3 a = 2.0404 * albedo - 0.3324, b = -4.7951 * albedo + 0.6417, c = 2.7552 * albedo + 0.6903;
+  return irradiance(n_world) * max(vec3(open), ((open * a + b) * open + c) * open);
 }
 
-// Linear light to the sRGB bytes of the picture. Below 0.8 nothing changes; brighter light is bent towards 1 by its
-// strongest channel, all channels alike, so that no hue shifts.
+// Linear light to the sRGB bytes of the picture. Below 0.8 colors are as given, but for what film does to the dark where
+// the look wants that; brighter light is bent towards 1 by its strongest channel, and pales as it goes on.
 vec3 encode(vec3 linear) {
+  linear *= frame.floor_look.w;
+  float toe = frame.horizon.w;
+  linear *= (linear + toe) / (linear + 2.0 * toe + 1e-6);
   float peak = max(max(linear.r, linear.g), linear.b);
-  if (peak > 0.8) linear *= (1.0 - 0.2 * exp((0.8 - peak) * 5.0)) / peak;
+  if (peak > 0.8) {
+    float bent = 1.0 - 0.2 * exp((0.8 - peak) * 5.0);
+    linear = mix(linear * (bent / peak), vec3(bent), 1.0 - 1.0 / (0.15 * (peak - bent) + 1.0));
+  }
   // The curve of IEC 61966-2-1 by roots, fitted to within 0.1/255 on [0.0031, 1]: three powers cost 25 ns a pixel more.
   vec3 root = sqrt(linear);
   vec3 curve = 0.833761273 * root + 0.298103297 * sqrt(root) - 0.055321666 * linear - 0.076902919;

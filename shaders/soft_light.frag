@@ -45,7 +45,7 @@ float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, vec2 jitter, bool wante
 // Share of the sky left free by what the maps show above the point, taken as horizontal patches: one of area A at height
 // h and distance d covers A cos_receiver (h / d) / (pi d^2), its form factor.
 float sky_openness(vec3 p_world, vec3 n_world, float turn, bool wanted) {
-  float reach = frame.sky_light.w, depth_metres = frame.ground_light.w;
+  float reach = frame.sky.w, depth_metres = frame.ground.w;
   vec3 up = frame.up_world.xyz, across = frame.right_world.xyz, along = cross(up, across);
   vec3 above = (frame.above_from_world * vec4(p_world, 1.0)).xyz;
   mat2 above_axes = mat2((mat3(frame.above_from_world) * across).xy, (mat3(frame.above_from_world) * along).xy);
@@ -91,7 +91,7 @@ void main() {
   vec2 jitter = blur_jitter(gl_FragCoord.xy);
   // Far from all subjects nothing is hidden from anything.
   vec3 away = p_world - frame.center_world.xyz;
-  float beyond = frame.eye_world.w + frame.sky_light.w;
+  float beyond = frame.eye_world.w + frame.sky.w;
   float hidden = 1.0 - smoothstep(0.6, 1.0, dot(away, away) / (beyond * beyond));
   bool near = surface != kNothing && hidden > 0.0;
   float open = nearby_openness(uv, p_view, mat3(frame.view_from_world) * n_world, jitter, near);

@@ -1,7 +1,6 @@
 // Cloth and solid surfaces: direct light with soft shadows, light of the sky, and the sheen or gloss of the material.
 #include "shading.glsl"
 #include "soft_look_up.glsl"
-#include "dither.glsl"
 #ifdef CLOTH
 #include "weave.glsl"
 #endif
@@ -9,7 +8,8 @@ layout(binding = 4) uniform sampler2D normals_heat;
 layout(binding = 5) uniform sampler2D rest_uvs;
 layout(binding = 8) uniform sampler2D distances_surfaces;
 layout(binding = 7) uniform sampler2D materials;  // a row for each surface: front colour, roughness; back colour, thread
-                                                  // spacing; heat scale
+                                                  // spacing; heat scale; cloth: gloss, share of the warp,
+                                                  // fuzz, sheer
 layout(binding = 6) uniform sampler2D heat_colors;
 #ifdef PAINTED
 layout(binding = 10) uniform sampler2D paints;  // geometry.frag
@@ -25,14 +25,30 @@ float highlight(vec3 n, vec3 v, vec3 l, float alpha, float f0) {
   return fresnel * a_sq / (d * d) * 0.25 / mix(2.0 * n_l * n_v, n_l + n_v, alpha) * 2.0 * n_l;
 }
 
+#ifdef CLOTH
+// Highlight of threads that run along t: the facets of each lie around it, so that it is wide across and narrow along
+// (anisotropic GGX, Burley, "Physically-Based Shading at Disney", 2012).
+float thread_highlight(vec3 n, vec3 t, vec3 b, vec3 v, vec3 l) {
+  const float kAlong = 0.22, kAcross = 0.62;
+  vec3 h = normalize(v + l);
+  float h_t = dot(h, t) / kAlong, h_b = dot(h, b) / kAcross, h_n = dot(h, n), d = h_t * h_t + h_b * h_b + h_n * h_n;
+  float n_l = max(dot(n, l), 0.0), n_v = max(dot(n, v), 0.05);
+  d = max(d, 1.0);  // as it is where t, b and n are at right angles, which derivatives across outlines do not see to
+  return n_l / (kAlong * kAcross * d * d * 4.0 * (n_l + n_v - n_l * n_v));
+}
+#endif
+
 // What the pixel shows, as far as light on it needs to know.
 struct Point {
   vec3 position_world, n, n_smooth, v;
   float shine, alpha, f0;
+  vec3 weft, warp;   // unit, in the surface
+  vec4 finish;
 };
 struct LightSums {
   vec3 diffuse, through, gloss;
 };
+const float kThreadShine = 0.14;  // of the light that meets threads of full gloss
 
 void add_light(inout LightSums sums, int i, Point at, Softness soft) {
   float cone;
@@ -50,7 +66,10 @@ void add_light(inout LightSums sums, int i, Point at, Softness soft) {
 #ifdef CLOTH
   // Light on the far side shines through between the threads.
   sums.through += strength * max(-side, 0.0);
-  sums.gloss += strength * (at.shine * highlight(at.n, at.v, l, max(at.alpha, 0.2), at.f0) * step(0.0, side));
+  float threads = mix(thread_highlight(at.n, at.weft, at.warp, at.v, l), thread_highlight(at.n, at.warp, at.weft, at.v, l),
+                      at.finish.y);
+  sums.gloss += strength * (at.shine * step(0.0, side) *
+                            (highlight(at.n, at.v, l, max(at.alpha, 0.2), at.f0) + kThreadShine * at.finish.x * threads));
 #else
   sums.gloss += strength * (highlight(at.n, at.v, l, at.alpha, at.f0) * smoothstep(0.0, 0.06, side));
 #endif
@@ -93,14 +112,14 @@ void main() {
   }
 #endif
 #ifdef CLOTH
-  float spacing = back_spacing.w;
-  vec2 rest_uv = texelFetch(rest_uvs, pixel, 0).xy;
-  if (spacing > 0.0) {
-    Weave woven = weave(rest_uv, spacing, at.n, at.position_world);
-    at.n = woven.normal_world;
-    albedo *= woven.tone;
-    at.shine = woven.shine;
-  }
+  at.finish = texelFetch(materials, ivec2(3, row), 0);
+  at.finish.x *= at.finish.x * at.finish.x;  // between cotton and satin lie two orders
+  Weave woven = weave(texelFetch(rest_uvs, pixel, 0).xy, back_spacing.w, at.n, at.position_world);
+  at.n = woven.normal_world;
+  albedo *= woven.tone;
+  at.shine = woven.shine;
+  at.weft = normalize(woven.weft_world - dot(woven.weft_world, at.n) * at.n + 1e-6);
+  at.warp = normalize(woven.warp_world - dot(woven.warp_world, at.n) * at.n + 1e-6);
 #endif
   if (heat_scale > 0.0) {
     float hot = clamp(normal_heat.w * heat_scale, 0.0, 1.0);
@@ -111,7 +130,7 @@ void main() {
   }
 
   Softness soft = look_up_softness(distance_view, surface);
-  LightSums light = LightSums(ambient_light(at.n, soft.open), vec3(0.0), vec3(0.0));
+  LightSums light = LightSums(ambient_light(at.n, soft.open, albedo), vec3(0.0), vec3(0.0));
   add_light(light, 0, at, soft);
 #if LIGHTS > 1
   add_light(light, 1, at, soft);
@@ -126,15 +145,17 @@ void main() {
   float edge = 1.0 - max(dot(at.n_smooth, at.v), 0.0), rim = edge * edge * edge * edge;
 #ifdef CLOTH
   // Fibres that stand out catch light at grazing angles: a soft sheen in a paler tone of the cloth.
-  vec3 sheen = mix(albedo, vec3(0.5), 0.35) * 0.55 * rim * light.diffuse;
-  vec3 linear = albedo * (light.diffuse + 0.22 * behind * light.through) + sheen + light.gloss;
+  vec3 pale = mix(albedo, vec3(0.6), 0.35);
+  vec3 sheen = pale * light.diffuse * (at.finish.z * edge * edge * edge);
+  vec3 through = irradiance(-at.n_smooth) * soft.open + light.through;
+  // What the threads show of the surroundings.
+  vec3 around = surroundings(reflect(-at.v, at.n), 0.4) * (at.finish.x * soft.open * (0.04 + 0.3 * rim));
+  vec3 linear = albedo * (light.diffuse * (1.0 - 0.4 * max(at.finish.w - 0.3, 0.0)) + at.finish.w * behind * through) + sheen +
+                light.gloss + around;
 #else
-  // A studio seen in the gloss: bright above, darker towards the ground.
-  vec3 r = reflect(-at.v, at.n);
-  float r_up = dot(r, frame.up_world.xyz);
-  vec3 surroundings = mix(frame.ground_light.rgb * 0.6, frame.sky_light.rgb * 1.3, smoothstep(-0.25, 0.5, r_up));
   float mirror = (at.f0 + (1.0 - at.f0) * rim * (1.0 - roughness)) * soft.open;
-  vec3 linear = albedo * light.diffuse * (1.0 - mirror) + surroundings * mirror + light.gloss;
+  vec3 around = surroundings(reflect(-at.v, at.n), at.alpha);
+  vec3 linear = albedo * light.diffuse * (1.0 - mirror) + around * mirror + light.gloss;
 #endif
-  color = vec4(encode(linear) + dither(gl_FragCoord.xy), 1.0);
+  color = vec4(encode(linear), 1.0);
 }

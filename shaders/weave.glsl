@@ -1,6 +1,6 @@
 // A plain weave drawn in rest coordinates: threads alternate over and under, each a little different in tone. Every
 // feature fades to its mean before it gets smaller than two pixels, so that nothing shimmers.
-const float kUneven = 0.08;  // share of its tone by which a yarn differs at most, at each size
+const float kUneven = 0.04;  // share of its tone by which a yarn differs at most, at each size
 
 float thread_noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
 
@@ -24,17 +24,25 @@ struct Weave {
   vec3 normal_world;
   float tone;   // factor on the colour
   float shine;  // factor on the highlight
+  vec3 weft_world, warp_world;  // directions of the threads
 };
 
 // 1 while a feature of `size` is well above the pixel's footprint, 0 once it is below two pixels.
 float visible_feature(float footprint, float size) { return 1.0 - smoothstep(0.22, 0.5, footprint / size); }
 
 Weave weave(vec2 rest_uv, float spacing, vec3 n_world, vec3 p_world) {
-  // Pixels of other surfaces take part in the derivatives, with no spacing at all.
-  vec2 thread = rest_uv / max(spacing, 1e-6);
+  // Pixels of other surfaces take part in the derivatives, with no spacing at all; cloth without threads has a grain.
+  vec2 thread = rest_uv / (spacing > 0.0 ? spacing : 1e-3);
   vec2 across = dFdx(thread), down = dFdy(thread);
   float footprint = max(length(across), length(down));
-  Weave result = Weave(n_world, 1.0, 1.0);
+  // Gradients of weft and warp in the surface, from screen derivatives.
+  vec3 p_dx = dFdx(p_world), p_dy = dFdy(p_world);
+  vec3 weft = p_dx * down.y - p_dy * across.y, warp = p_dy * across.x - p_dx * down.x;
+  float area = across.x * down.y - across.y * down.x;
+  weft *= sign(area) * inversesqrt(max(dot(weft, weft), 1e-20));
+  warp *= sign(area) * inversesqrt(max(dot(warp, warp), 1e-20));
+  Weave result = Weave(n_world, 1.0, 1.0, weft, warp);
+  if (spacing <= 0.0) footprint = 1e6;
 
   // Yarns are uneven along their way, some threads wide and eight times as long: weft and warp, at three sizes, of
   // which those show that the picture can.
@@ -54,12 +62,6 @@ Weave weave(vec2 rest_uv, float spacing, vec3 n_world, vec3 p_world) {
     vec2 bend = vec2(0.9 * along_across.x, 1.5 * along_across.y);
     float height = 1.0 - 1.6 * along_across.y * along_across.y - 1.1 * along_across.x * along_across.x;
     vec2 tilt = weft_over ? bend : bend.yx;
-    // Gradients of weft and warp in the surface, from screen derivatives.
-    vec3 p_dx = dFdx(p_world), p_dy = dFdy(p_world);
-    vec3 weft = p_dx * down.y - p_dy * across.y, warp = p_dy * across.x - p_dx * down.x;
-    float area = across.x * down.y - across.y * down.x;
-    weft *= sign(area) * inversesqrt(max(dot(weft, weft), 1e-20));
-    warp *= sign(area) * inversesqrt(max(dot(warp, warp), 1e-20));
     result.normal_world = normalize(n_world + 0.75 * fine * (tilt.x * weft + tilt.y * warp));
     float yarn = weft_over ? thread_noise(cell.y + 0.5) : thread_noise(cell.x + 37.0);
     // 0.78 is the mean of the height over a cell: the tone stays when the threads fade.

@@ -48,6 +48,15 @@ void serialize_finite(Archive& archive, Vec3& vector) {
   for (double& number : vector) serialize_finite(archive, number);
 }
 
+template <class Archive, class Value>
+void serialize_optional(Archive& archive, std::optional<Value>& value) {
+  bool given = value.has_value();
+  serialize_flag(archive, given);
+  if (!given) return value.reset();
+  if (!value) value.emplace();
+  serialize_finite(archive, *value);
+}
+
 // In planes; the number of entries is known.
 template <class Entry>
 void serialize_planes(ByteWriter& archive, std::vector<Entry>& list) {
@@ -82,9 +91,12 @@ void check_end(const ByteReader& reader) {
 template <class Archive>
 void serialize(Archive& archive, frame::Stage& stage) {
   serialize_finite(archive, stage.up);
-  serialize_finite(archive, stage.sky_color);
-  serialize_finite(archive, stage.ground_color);
-  serialize_finite(archive, stage.sky_intensity);
+  serialize_byte(archive, stage.look, frame::Stage::Look::strain);
+  serialize_optional(archive, stage.sky_color);
+  serialize_optional(archive, stage.ground_color);
+  serialize_optional(archive, stage.sky_intensity);
+  serialize_finite(archive, stage.exposure);
+  serialize_finite(archive, stage.motion_blur);
   serialize_byte(archive, stage.heat, frame::Stage::Heat::speed);
   serialize_finite(archive, stage.heat_max);
 }
@@ -147,6 +159,8 @@ void serialize(Archive& archive, frame::Appearance& look, const Textures& textur
   serialize_finite(archive, look.back_color);
   serialize_finite(archive, look.roughness);
   serialize_finite(archive, look.thread_spacing);
+  for (double* number : {&look.finish.gloss, &look.finish.warp_share, &look.finish.fuzz, &look.finish.sheer})
+    serialize_finite(archive, *number);
   serialize_flag(archive, look.checker);
   serialize(archive, look.paint, textures);
   serialize_flag(archive, look.back_painted);
@@ -186,7 +200,8 @@ void serialize(Archive& archive, frame::Camera& camera) {
   serialize_byte(archive, camera.kind, frame::Camera::Kind::track);
   serialize_each(
       archive, camera.subjects, [&](std::string& name) { serialize_plain(archive, name); }, sizeof(std::size_t));
-  for (double* number : {&camera.azimuth, &camera.elevation, &camera.margin, &camera.smoothing})
+  for (double* number :
+       {&camera.azimuth, &camera.elevation, &camera.margin, &camera.smoothing, &camera.aperture, &camera.focus})
     serialize_finite(archive, *number);
 }
 
@@ -230,7 +245,7 @@ struct FrameHead {
 
 template <class Archive>
 void serialize(Archive& archive, FrameHead& head) {
-  constexpr std::size_t kLeastCamera = 105, kLeastLight = 129;  // [bytes], without a name
+  constexpr std::size_t kLeastCamera = 121, kLeastLight = 129;  // [bytes], without a name
   serialize_finite(archive, head.time);
   serialize_each(
       archive, head.cameras, [&](frame::Camera& camera) { serialize(archive, camera); }, kLeastCamera);

@@ -135,7 +135,11 @@ ExitCode diff(const DiffOptions& options) {
   }
   std::vector<Pair> pairs = all_pairs(options);
   const DiffLimits limits(options.limits, options.limits_file);
-  for (Pair& pair : pairs) pair.limits = limits.of(pair.name);
+  for (Pair& pair : pairs) {
+    pair.limits = limits.of(pair.name);
+    if (compare::is_lossy_video(pair.reference.value_or(fs::path())) || compare::is_lossy_video(pair.test))
+      pair.limits = compare::with_encoder_noise(pair.limits);
+  }
   check_outputs(options, pairs);
   std::vector<FileComparison> results;
   for (const Pair& pair : pairs) results.push_back(pair.compare(options));

@@ -13,6 +13,16 @@
 namespace weft::cli {
 
 inline constexpr int kMaxThreads = 1024;
+inline constexpr std::array kLooks{Choice<frame::Stage::Look>{"studio", frame::Stage::Look::studio},
+                                   Choice<frame::Stage::Look>{"stage", frame::Stage::Look::stage},
+                                   Choice<frame::Stage::Look>{"daylight", frame::Stage::Look::daylight},
+                                   Choice<frame::Stage::Look>{"clay", frame::Stage::Look::clay},
+                                   Choice<frame::Stage::Look>{"wire", frame::Stage::Look::wire},
+                                   Choice<frame::Stage::Look>{"strain", frame::Stage::Look::strain}};
+inline constexpr std::array kCodecs{Choice<video::Codec>{"h264", video::Codec::h264},
+                                    Choice<video::Codec>{"h264_lossless", video::Codec::h264_lossless},
+                                    Choice<video::Codec>{"ffv1", video::Codec::ffv1},
+                                    Choice<video::Codec>{"prores", video::Codec::prores}};
 inline constexpr std::array kQualities{Choice<render::Quality>{"draft", render::Quality::draft},
                                        Choice<render::Quality>{"preview", render::Quality::preview},
                                        Choice<render::Quality>{"final", render::Quality::final}};

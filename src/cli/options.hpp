@@ -13,6 +13,7 @@
 #include "core/progress.hpp"
 #include "export/export.hpp"
 #include "render/renderer.hpp"
+#include "video/encoder.hpp"
 
 namespace weft::cli {
 
@@ -23,10 +24,12 @@ struct PictureSize {
 /// What all commands that start from a scene share.
 struct SceneOptions {
   std::filesystem::path scene;
-  std::vector<std::string> overrides;  ///< of --set
-  std::optional<PictureSize> size;     ///< else that of the scene
-  std::optional<double> fps;           ///< else that of the scene
-  std::string camera;                  ///< empty: the scene's choice
+  std::vector<std::string> overrides;      ///< of --set
+  std::optional<PictureSize> size;         ///< else that of the scene
+  std::optional<double> fps;               ///< else that of the scene
+  std::string camera;                      ///< empty: the scene's choice
+  std::optional<frame::Stage::Look> look;  ///< else that of the scene
+  std::optional<double> motion_blur;       ///< angle of the shutter [degrees], else that of the scene
   render::Quality quality = render::Quality::final;
   render::Backend backend = render::Backend::automatic;
   int threads = 0;  ///< 0: all cores
@@ -42,6 +45,9 @@ struct RunOptions {
   std::filesystem::path stats;   ///< file; empty: none
   std::string log_json;          ///< file, "-" for standard output; empty: none
   bool resume = false;
+  int depth = 8;  ///< bits a channel of PNG pictures, 8 or 16
+  video::Codec codec = video::Codec::automatic;
+  std::optional<int> crf;                  ///< of H.264; else 18
   bool error = false, mesh_error = false;  ///< whether companions are to tell the error; the second: of the mesh too
 };
 

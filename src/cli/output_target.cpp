@@ -4,6 +4,7 @@
 #include <system_error>
 
 #include "core/error.hpp"
+#include "video/encoder.hpp"
 
 namespace weft::cli {
 namespace {
@@ -71,7 +72,7 @@ fs::path OutputTarget::file(int frame) const {
 OutputTarget parse_output(const std::string& text, const std::string& scene_name) {
   if (text.empty()) return {OutputTarget::Kind::video, (fs::path("output") / (scene_name + ".mp4")).string()};
   const std::string ending = fs::path(text).extension().string();
-  if (ending == ".mp4") {
+  if (video::is_written(ending)) {
     if (text.find_first_of("{}") != std::string::npos) {
       throw Error(ExitCode::usage, "-o: a video holds all frames, so its name has no {{frame}}, got {}", text);
     }
@@ -81,7 +82,8 @@ OutputTarget parse_output(const std::string& text, const std::string& scene_name
     (void)FramePattern(text);  // checked now, not at the first picture
     return {OutputTarget::Kind::images, text};
   }
-  throw Error(ExitCode::usage, "-o: expected a name ending in .mp4, or in .png or .exr with {{frame:05}} in it, got {}",
+  throw Error(ExitCode::usage,
+              "-o: expected a name ending in .mp4, .mov or .mkv, or in .png or .exr with {{frame:05}} in it, got {}",
               text);
 }
 

@@ -42,6 +42,8 @@ struct FilmPlan {
   std::vector<std::string> objects;  ///< names
   Drawn drawn = {};                  ///< by an earlier run that this one goes on with
 
+  bool blurs = false;  ///< whether pictures may want the frame before
+
   bool draws() const { return target.kind != Kind::none; }
 
   /// Also what is not wanted: a camera that is found from all frames shows the same in any range of them.
@@ -63,6 +65,20 @@ bool finds_camera(const scene::Scene& scene, const std::string& name) {
   return true;
 }
 
+/// Where the pictures go, and how they are written. Throws Error(usage) for options that do not go with it.
+void take_output(FilmPlan& plan, const RunOptions& options) {
+  plan.target = parse_output(options.output, plan.scene.scene);
+  plan.settings.layers = plan.target.layered();
+  plan.settings.deep = options.depth == 16;
+  const bool video = plan.target.kind == Kind::video;
+  if (options.depth == 16 && (video || plan.settings.layers))
+    throw Error(ExitCode::usage, "--depth: expected pictures (.png), got {}", plan.target.text);
+  if (!video && (options.codec != video::Codec::automatic || options.crf))
+    throw Error(ExitCode::usage, "--codec, --crf: expected a video, got {}", plan.target.text);
+  if (video && video::codec_of(plan.target.text, options.codec) != video::Codec::h264 && options.crf)
+    throw Error(ExitCode::usage, "--crf: expected h264, the other codecs are not for small files");
+}
+
 FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {
   FilmPlan plan;
   plan.settings = render_settings(scene, options.common);
@@ -72,6 +88,7 @@ FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {
   plan.made = {0, plan.wanted.last() + 1, 1};
   plan.simulated = scene.preroll_frames() + plan.made.count();
   plan.finds_camera = finds_camera(scene, plan.settings.camera);
+  plan.blurs = plan.settings.motion_blur.value_or(scene.render.motion_blur) > 0;
   for (const scene::Cloth& cloth : scene.cloths) plan.objects.push_back(cloth.name);
   for (const scene::Obstacle& obstacle : scene.obstacles) plan.objects.push_back(obstacle.name);
   for (const scene::Character& character : scene.characters) plan.objects.push_back(character.name);
@@ -87,8 +104,9 @@ FilmPlan plan_of(const cache::Reader& reader, const RenderOptions& options) {
   plan.wanted = plan.made = cached_frames(reader, options.frames, options.partial);
   plan.finds_camera = render::CameraPath::is_found(*reader.snapshot(plan.wanted.begin), plan.settings.camera);
   plan.whole_film = !options.frames.begin && !options.frames.end;
-  plan.target = parse_output(options.output, plan.scene.scene);
-  plan.settings.layers = plan.target.layered();
+  take_output(plan, options);
+  const frame::SnapshotPtr first = reader.snapshot(plan.wanted.begin);
+  plan.blurs = plan.settings.motion_blur.value_or(first->stage->motion_blur) > 0;
   for (const frame::ObjectInfo& object : plan.scene.objects) plan.objects.push_back(object.name);
   return plan;
 }
@@ -178,11 +196,12 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
     parts.open_painter = [&] { return make_gl_painter(plan.settings); };
     parts.open_writer = [&](const std::string& gl) {
       return make_writer({plan.target, plan.wanted, plan.settings.width, plan.settings.height, plan.scene.fps,
+                          options_.depth, options_.codec, options_.crf,
                           describe_pictures(plan.scene, plan.settings, gl)});
     };
   }
   if (plan.draws() && plan.finds_camera) parts.camera.emplace(plan.settings.camera, plan.settings.aspect());
-  parts.motion = plan.settings.layers;
+  parts.motion = plan.settings.layers || plan.blurs;
   parts.meshes = options_.meshes;
   parts.drawn = plan.drawn.frames;
   const int drawn = plan.draws() ? plan.wanted.count() - static_cast<int>(parts.drawn.size()) : 0;
@@ -323,8 +342,7 @@ ExitCode run(const RunOptions& options) {
   Session session(options);
   const scene::Scene scene = load_scene(options.common);
   FilmPlan plan = plan_of(scene, options);
-  plan.target = parse_output(options.output, scene.name);
-  plan.settings.layers = plan.target.layered();
+  take_output(plan, options);
   if (plan.finds_camera) plan.make_all(scene);
   PathLedger paths;
   add_inputs(paths, scene);

@@ -34,6 +34,8 @@ scene::Scene load_scene(const SceneOptions& options) {
   std::vector<std::string> overrides = options.overrides;
   // As an override, so that the scene's hash tells runs at other frame times apart.
   if (options.fps) overrides.push_back(fmt::format("time.fps={}", *options.fps));
+  // What is simulated depends on this one.
+  if (options.look == frame::Stage::Look::strain) overrides.emplace_back("render.look=\"strain\"");
   scene::LoadResult loaded = scene::load(options.scene, overrides);
   if (!loaded.ok()) throw Error(ExitCode::scene_invalid, mistakes_text(loaded));
   if (!options.camera.empty()) check_camera(camera_names(loaded.scene), options.camera);
@@ -56,6 +58,8 @@ render::Settings render_settings(const PictureSize& size, const std::string& cam
   settings.width = options.size ? options.size->width : size.width;
   settings.height = options.size ? options.size->height : size.height;
   settings.quality = options.quality;
+  settings.look = options.look;
+  settings.motion_blur = options.motion_blur;
   settings.backend = options.backend;
   settings.camera = options.camera.empty() ? camera : options.camera;
   settings.threads = options.threads;

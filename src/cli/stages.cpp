@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "cli/option_groups.hpp"
 #include "core/log.hpp"
 #include "core/version.hpp"
 #include "image/png.hpp"
@@ -24,12 +25,13 @@ bool shows_single_color(const image::Image& image) {
 
 class GlPainter : public FramePainter {
  public:
-  explicit GlPainter(const render::Settings& settings) : renderer_(settings) {}
+  explicit GlPainter(const render::Settings& settings) : renderer_(settings), deep_(settings.deep) {}
 
   void look_through(render::CameraPath path) override { renderer_.look_through(std::move(path)); }
 
   Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) override {
-    Picture picture{renderer_.draw(snapshot, before), renderer_.layers()};
+    Picture picture{renderer_.draw(snapshot, before), {}, renderer_.layers()};
+    if (deep_) picture.deep = renderer_.deep();
     if (!warned_ && shows_single_color(picture.image)) {
       warned_ = true;
       log::warn(fmt::format("frame {} shows a single color: does the camera look at the scene?", snapshot.frame));
@@ -46,7 +48,7 @@ class GlPainter : public FramePainter {
 
  private:
   render::Renderer renderer_;
-  bool warned_ = false;
+  bool deep_ = false, warned_ = false;
 };
 
 // What the figures of the layer id.object stand for.
@@ -70,6 +72,8 @@ class OutputWriter : public FrameWriter {
     const Metadata metadata = describe_still(settings_.metadata, snapshot.frame, snapshot.time);
     if (settings_.target.layered()) {
       image::write_exr(file, picture.layers, name_objects(metadata, snapshot));
+    } else if (settings_.depth == 16) {
+      image::write_png(file, picture.deep, metadata);
     } else {
       image::write_png(file, picture.image, metadata);
     }
@@ -86,6 +90,8 @@ class OutputWriter : public FrameWriter {
     video.height = settings_.height;
     // Every STEP-th frame: fewer pictures a second, so that the motion keeps its true speed.
     video.fps = settings_.fps / settings_.frames.step;
+    video.codec = settings_.codec;
+    video.crf = settings_.crf.value_or(video.crf);
     video.metadata = settings_.metadata;
     video.metadata["frames"] = settings_.frames.text();
     video_.emplace(settings_.target.file(0), video);
@@ -102,14 +108,17 @@ std::unique_ptr<FramePainter> make_gl_painter(const render::Settings& settings) 
 }
 
 Metadata describe_pictures(const cache::Manifest& scene, const render::Settings& settings, const std::string& gl) {
-  constexpr const char* kQualities[] = {"draft", "preview", "final"};
+  constexpr const char* kNames[] = {"draft", "preview", "final"};
   Metadata metadata{{"scene", scene.scene},
                     {"scene_hash", fmt::format("{:016x}", scene.scene_hash)},
                     {"weft_version", kVersion},
                     {"gl", gl},
                     {"fps", fmt::format("{}", scene.fps)},
                     {"scene_frames", fmt::format("{}", scene.frame_count)},
-                    {"quality", kQualities[static_cast<int>(settings.quality)]}};
+                    {"quality", kNames[static_cast<int>(settings.quality)]}};
+  const auto look = std::ranges::find_if(kLooks, [&](const auto& each) { return each.second == settings.look; });
+  if (look != kLooks.end()) metadata["look"] = look->first;
+  if (settings.motion_blur) metadata["motion_blur"] = fmt::format("{}", *settings.motion_blur);
   if (!settings.camera.empty()) metadata["camera"] = settings.camera;
   if (!scene.title.empty()) metadata["title"] = scene.title;
   return metadata;

@@ -14,12 +14,14 @@
 #include "image/exr.hpp"
 #include "image/image.hpp"
 #include "render/renderer.hpp"
+#include "video/encoder.hpp"
 
 namespace weft::cli {
 
 /// What is drawn of a frame.
 struct Picture {
   image::Image image;
+  image::Image16 deep;   ///< where it is asked for
   image::Layers layers;  ///< where they are asked for
 };
 
@@ -60,7 +62,10 @@ struct WriterSettings {
   FrameRange frames;
   int width = 0, height = 0;  ///< pixels
   double fps = 0;             ///< of the scene
-  Metadata metadata;
+  int depth = 8;              ///< bits a channel of PNG pictures
+  video::Codec codec = video::Codec::automatic;
+  std::optional<int> crf;
+  Metadata metadata = {};
 };
 
 /// Writes the video or the pictures.

@@ -61,6 +61,14 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
   return result;
 }
 
+Limits with_encoder_noise(Limits limits) {
+  constexpr Limits kDefault;
+  if (limits.pixel_budget == kDefault.pixel_budget) limits.pixel_budget = 0.011;
+  if (limits.flip == kDefault.flip) limits.flip = 0.022;
+  if (limits.spot == kDefault.spot) limits.spot = 0.4;
+  return limits;
+}
+
 Verdict verdict(const Figures& figures, const Limits& limits) {
   if (figures.pixels_changed == 0) return Verdict::same;
   const bool within =

@@ -21,6 +21,11 @@ struct Limits {
   double spot = 0.3;
 };
 
+/// Those of the limits that are the defaults, widened for videos that an encoder has changed: it makes much of little
+/// where it cuts gradients into blocks. Measured with pictures of another class of machines in H.264 at crf 18: up to
+/// 0.54 % of the pixels over the tolerance, FLIP 0.011, spots of 0.28; twice that, spots 0.4.
+Limits with_encoder_noise(Limits limits);
+
 struct Figures {
   int width = 0, height = 0;         ///< pixels
   std::int64_t pixels_changed = 0;   ///< pixels that differ at all

@@ -83,6 +83,15 @@ bool is_video(const std::filesystem::path& file) {
   return std::find(kVideoEndings.begin(), kVideoEndings.end(), file.extension()) != kVideoEndings.end();
 }
 
+bool is_lossy_video(const std::filesystem::path& file) {
+  if (!is_video(file)) return false;
+  try {
+    return video::Decoder(file).lossy();
+  } catch (const Error&) {
+    return false;
+  }
+}
+
 bool is_comparable(const std::filesystem::path& file) {
   return file.extension() == ".png" || is_video(file);
 }

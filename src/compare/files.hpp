@@ -10,6 +10,8 @@ namespace weft::compare {
 
 /// By its ending: .png, or one of .mp4 .mov .mkv .webm .avi.
 bool is_video(const std::filesystem::path& file);
+/// Whether it is a video whose encoder has changed its pictures; false for what cannot be read.
+bool is_lossy_video(const std::filesystem::path& file);
 bool is_comparable(const std::filesystem::path& file);
 
 struct FileComparison {

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -31,12 +32,21 @@ struct Paint {
   Alpha alpha = Alpha::ignored;  ///< cutout: transparent parts are holes
 };
 
+/// What cloth does with light beside showing its colour, each from 0 to 1.
+struct Finish {
+  double gloss = 0.15;      ///< highlights that threads give, wide across themselves and narrow along
+  double warp_share = 0.5;  ///< of the threads that lie on top: 0.5 of a plain weave, more of a satin
+  double fuzz = 0.4;        ///< fibres that stand out and catch light at grazing angles
+  double sheer = 0.25;      ///< light that comes through from the other side
+};
+
 /// How a surface looks. Colours are sRGB, 0 to 1.
 struct Appearance {
   Vec3 color{0.8, 0.8, 0.8};
   Vec3 back_color{0.8, 0.8, 0.8};  ///< cloth only: the side from which weft × warp points away
   double roughness = 0.6;          ///< 0 mirror-like to 1 matte
   double thread_spacing = 0;       ///< distance of two threads of the drawn weave [m]; 0 draws none
+  Finish finish;                   ///< cloth only
   bool checker = false;            ///< faint grid of 0.5 m tiles on the floor, to give scale
   Paint paint;                     ///< its picture is multiplied by `color`, but where that shows through it
   bool back_painted = true;        ///< the back shows the picture too, paler by `back_paleness`; else back_color
@@ -89,6 +99,8 @@ struct Camera {
   Vec3 position{0, -3, 1.5};  ///< [m]
   Vec3 target{0, 0, 0.5};     ///< point in the middle of the picture [m]
   double field_of_view = 35;  ///< vertical, degrees; 0: to be found
+  double aperture = 0;        ///< f-number, as of a film 24 mm high; 0: all is sharp
+  double focus = 0;           ///< distance along the axis that is sharp [m]; 0: that of the target
 
   /// Placed as above, or found from all frames of a run: standing so that all of it is in view; going along with its
   /// subjects, at one distance or as close as they allow; standing at `position` and turning after them.
@@ -118,10 +130,15 @@ struct Light {
 /// Surroundings that stay the same over a run.
 struct Stage {
   enum class Heat { none, strain, speed };
+  enum class Look { studio, stage, daylight, clay, wire, strain };
   Vec3 up{0, 0, 1};
-  Vec3 sky_color{0.95, 0.97, 1.0};      ///< sRGB; light from above and background near the horizon
-  Vec3 ground_color{0.78, 0.75, 0.71};  ///< sRGB; light reflected from below
-  double sky_intensity = 0.45;  ///< share of all light that comes from the sky, 0 to 1; the lights give the rest
+  Look look = Look::studio;
+  // Where absent, as the look has them.
+  std::optional<Vec3> sky_color;        ///< sRGB; light from above and background near the horizon
+  std::optional<Vec3> ground_color;     ///< sRGB; light reflected from below
+  std::optional<double> sky_intensity;  ///< share of all light that comes from around, 0 to 1; the lights give the rest
+  double exposure = 0;                  ///< stops by which the picture is brighter
+  double motion_blur = 0;               ///< angle of the shutter [degrees of 360 a frame]; 0: all is sharp
   Heat heat = Heat::none;
   double heat_max = 0;  ///< value at the hot end of the scale (strain: 1, speed: m/s); 0 follows the frame's largest
 };

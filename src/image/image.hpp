@@ -1,4 +1,4 @@
-// An 8-bit RGB picture in sRGB.
+// An RGB picture in sRGB.
 #pragma once
 
 #include <cstddef>
@@ -18,6 +18,12 @@ struct Image {
 
   std::uint8_t* pixel(int x, int y) { return rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x); }
   const std::uint8_t* pixel(int x, int y) const { return rgb.data() + 3 * (static_cast<std::size_t>(y) * width + x); }
+};
+
+/// The same with 16 bits a channel.
+struct Image16 {
+  int width = 0, height = 0;
+  std::vector<std::uint16_t> rgb;
 };
 
 }  // namespace weft::image

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cerrno>
 #include <csetjmp>
 #include <cstdint>
@@ -92,17 +93,26 @@ struct Reader {
   Reader& operator=(const Reader&) = delete;
 };
 
-bool write_all(const Writer& writer, const Image& image, std::FILE* file, png_text* texts, int text_count) {
+/// Rows of pixels, top row first; of 16 bits in the byte order of this machine.
+struct Rows {
+  int width, height, bits;
+  const png_byte* first;
+  std::size_t row_bytes() const { return static_cast<std::size_t>(width) * 3 * bits / 8; }
+};
+
+bool write_all(const Writer& writer, const Rows& rows, std::FILE* file, png_text* texts, int text_count) {
   if (setjmp(png_jmpbuf(writer.png))) return false;
   png_set_write_fn(writer.png, file, write_bytes, flush_bytes);
-  png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(image.width), static_cast<png_uint_32>(image.height),
-               8, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+  png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(rows.width), static_cast<png_uint_32>(rows.height),
+               rows.bits, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+               PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   if (text_count > 0) png_set_text(writer.png, writer.info, texts, text_count);
   png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, kFilter);
   png_set_compression_level(writer.png, kLevel);
   png_write_info(writer.png, writer.info);
-  for (int y = 0; y < image.height; ++y) png_write_row(writer.png, image.pixel(0, y));
+  if (rows.bits == 16 && std::endian::native == std::endian::little) png_set_swap(writer.png);
+  for (int y = 0; y < rows.height; ++y) png_write_row(writer.png, rows.first + y * rows.row_bytes());
   png_write_end(writer.png, nullptr);
   return true;
 }
@@ -204,13 +214,11 @@ void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax
   std::rewind(in);
 }
 
-}  // namespace
-
-void write_png(const std::filesystem::path& file, const Image& image, const Metadata& metadata) {
-  const bool in_range = image.width >= 1 && image.height >= 1 && image.width <= kMaxSide && image.height <= kMaxSide;
-  if (!in_range || image.rgb.size() != 3 * static_cast<std::size_t>(image.width) * image.height) {
+void write(const std::filesystem::path& file, const Rows& rows, std::size_t bytes, const Metadata& metadata) {
+  const bool in_range = rows.width >= 1 && rows.height >= 1 && rows.width <= kMaxSide && rows.height <= kMaxSide;
+  if (!in_range || bytes != rows.row_bytes() * static_cast<std::size_t>(rows.height)) {
     throw Error(ExitCode::output_failed, "{}: expected an image of 1 to {} pixels a side, got {}x{} with {} bytes",
-                file.string(), kMaxSide, image.width, image.height, image.rgb.size());
+                file.string(), kMaxSide, rows.width, rows.height, bytes);
   }
   std::vector<png_text> texts = text_chunks(file, metadata);
 
@@ -220,12 +228,23 @@ void write_png(const std::filesystem::path& file, const Image& image, const Meta
   Complaint complaint;
   const Writer writer(&complaint);
   if (!writer.info) fail_to_write(file, "libpng could not start");
-  if (!write_all(writer, image, out.get(), texts.data(), static_cast<int>(texts.size()))) {
+  if (!write_all(writer, rows, out.get(), texts.data(), static_cast<int>(texts.size()))) {
     fail_to_write(file, complaint.text.data());
   }
   // The last bytes reach the system only now, so a full disk may show only here.
   if (std::fclose(out.release()) != 0) fail_to_write(file, std::strerror(errno));
   temporary.commit();
+}
+
+}  // namespace
+
+void write_png(const std::filesystem::path& file, const Image& image, const Metadata& metadata) {
+  write(file, {image.width, image.height, 8, image.rgb.data()}, image.rgb.size(), metadata);
+}
+
+void write_png(const std::filesystem::path& file, const Image16& image, const Metadata& metadata) {
+  write(file, {image.width, image.height, 16, reinterpret_cast<const png_byte*>(image.rgb.data())},
+        2 * image.rgb.size(), metadata);
 }
 
 Image read_png(const std::filesystem::path& file, Metadata* metadata) {

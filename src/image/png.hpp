@@ -15,6 +15,9 @@ using Metadata = std::map<std::string, std::string>;
 /// Writes an sRGB PNG under a temporary name, then renames it. Throws Error(output_failed) with the system's reason.
 void write_png(const std::filesystem::path& file, const Image& image, const Metadata& metadata = {});
 
+/// The same with 16 bits a channel.
+void write_png(const std::filesystem::path& file, const Image16& image, const Metadata& metadata = {});
+
 /// Reads an 8-bit PNG (gray, palette and alpha are converted to RGB over white). Throws Error(asset_unreadable).
 Image read_png(const std::filesystem::path& file, Metadata* metadata = nullptr);
 

@@ -21,11 +21,19 @@ int laid(const frame::Appearance& look) {
   return 1;
 }
 
+// What is drawn finer than it is simulated leaves its faces by about as much [m], and must not be pierced for that by
+// what it lies on.
+constexpr float kNearer = 1.5e-3f;
+float nearer(const SurfaceBuffers& surface) {
+  return surface.refined() ? kNearer : 0.0f;
+}
+
 }  // namespace
 
 GeometryBuffer::Painting::PaintProgram::PaintProgram(const Gl& gl, const std::vector<std::string>& defines)
     : program(gl, "geometry.vert", "geometry.frag", defines),
       surface(program.uniform("surface")),
+      nearer(program.uniform("nearer")),
       picture_u(program.uniform("picture_u")),
       picture_v(program.uniform("picture_v")),
       laid(program.uniform("laid")),
@@ -44,6 +52,7 @@ GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
       height_(height),
       program_(gl, "geometry.vert", "geometry.frag"),
       surface_(program_.uniform("surface")),
+      nearer_(program_.uniform("nearer")),
       normal_heat_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
       uv_(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
       seen_(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
@@ -84,6 +93,7 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorB
       draw_painted(surfaces[i], number);
     } else {
       gl_->Uniform1f(surface_, number);
+      gl_->Uniform1f(nearer_, nearer(surfaces[i]));
       surfaces[i].draw();
     }
     if (cull) gl_->Disable(GL_CULL_FACE);
@@ -92,6 +102,7 @@ void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorB
     set_class(PixelClass::floor);
     program_.use();
     gl_->Uniform1f(surface_, kFloor);
+    gl_->Uniform1f(nearer_, 0);
     // From below one looks through the floor. Its normal is that of a plane, and it has no rest coordinates.
     gl_->Enable(GL_CULL_FACE);
     for (const GLuint unused : {0, 1, 3}) gl_->ColorMaski(unused, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -122,6 +133,7 @@ void GeometryBuffer::draw_painted(const SurfaceBuffers& surface, float number) {
     program.program.use();
     gl_->Uniform1f(program.surface, number);
     gl_->Uniform1i(program.laid, laid);
+    gl_->Uniform1f(program.nearer, nearer(surface));
   };
   if (surface.painted() == nullptr) {
     use(painting_->whole, 0);

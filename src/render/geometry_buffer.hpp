@@ -45,7 +45,7 @@ class GeometryBuffer {
   struct Painting {
     struct PaintProgram {
       Program program;
-      GLint surface, picture_u, picture_v, laid, color, back_color;
+      GLint surface, nearer, picture_u, picture_v, laid, color, back_color;
       PaintProgram(const Gl& gl, const std::vector<std::string>& defines);
     };
     PaintProgram whole, with_holes;
@@ -57,7 +57,7 @@ class GeometryBuffer {
   const Gl* gl_;
   int width_, height_;
   Program program_;
-  GLint surface_;
+  GLint surface_, nearer_;
   Texture normal_heat_, uv_, seen_, depth_stencil_;
   Framebuffer target_;
   std::optional<Painting> painting_;

@@ -74,8 +74,8 @@ ShadowView fit_spot(const frame::Light& light, std::span<const Vec3> casters, co
 
 }  // namespace
 
-std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, const ViewAxes& camera,
-                                           const Vec3& up) {
+std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, frame::Stage::Look look,
+                                           const ViewAxes& camera, const Vec3& up) {
   std::vector<frame::Light> lights = snapshot.lights;
   if (lights.size() > kMaxLights) lights.resize(kMaxLights);
   if (!lights.empty()) return lights;
@@ -85,8 +85,14 @@ std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot,
   key.name = "key";
   key.direction = 0.75 * camera.right + 0.45 * level_forward - 1.15 * up;
   key.color = Vec3(1.0, 0.985, 0.955);
-  key.softness = 5;
-  return {key};
+  key.softness = look == frame::Stage::Look::daylight ? 1 : 5;
+  if (look != frame::Stage::Look::stage) return {key};
+  frame::Light rim = key;
+  rim.name = "rim";
+  rim.direction = -0.8 * camera.right - 0.8 * level_forward - up;
+  rim.color = Vec3(0.78, 0.88, 1.0);
+  rim.intensity = 0.8;
+  return {key, rim};
 }
 
 LightSet light_set(std::span<const frame::Light> lights) {

@@ -14,9 +14,10 @@ namespace weft::render {
 /// More lights than this are left out: each costs a shadow map.
 inline constexpr int kMaxLights = 4;
 
-/// The snapshot's lights, at most kMaxLights; where it has none, one: a warm key light from above, beside the camera.
-std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, const ViewAxes& camera,
-                                           const Vec3& up);
+/// The snapshot's lights, at most kMaxLights; where it has none, those of the look: a warm key light from above, beside
+/// the camera; of a stage one from the other side, too.
+std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, frame::Stage::Look look,
+                                           const ViewAxes& camera, const Vec3& up);
 
 /// What shaders are compiled for.
 struct LightSet {

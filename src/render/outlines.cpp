@@ -5,9 +5,9 @@
 #include <cmath>
 #include <type_traits>
 
-#include "image/color.hpp"
 #include "render/depth_raster.hpp"
 #include "render/painted_mesh.hpp"
+#include "render/pixels.hpp"
 
 namespace weft::render {
 namespace {
@@ -42,10 +42,6 @@ struct Edge {
   }
   float at(float x, float y) const { return along * (x - from_x) + across * (y - from_y); }
 };
-
-Vec3 linear_of(std::uint32_t rgba) {
-  return image::linear_from_srgb(Vec3(rgba & 0xFF, rgba >> 8 & 0xFF, rgba >> 16 & 0xFF) / 255);
-}
 
 // Thresholds of the samples' opacity, in eighths: neighbours differ by much.
 constexpr int kThresholdOrder[] = {0, 4, 6, 2, 5, 1, 3, 7};
@@ -318,7 +314,7 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
 }
 
 void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
-                      const View& view, const PixelArea& area, std::span<std::uint32_t> picture) {
+                      const View& view, const PixelArea& area, std::span<std::uint64_t> picture) {
   if (area.width <= 0 || area.height <= 0) return;
   find(seen, area);
   number();
@@ -327,10 +323,10 @@ void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> mes
   // All are resolved before the first is written: they look at each other.
   resolved_.clear();
   for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
-    std::uint32_t sums[3] = {}, mean = 0;
+    std::uint64_t sums[3] = {}, mean = 0;
     for (const std::size_t source : find_sources(slot, seen))
-      for (int channel = 0; channel < 3; ++channel) sums[channel] += picture[source] >> (8 * channel) & 0xFF;
-    for (int channel = 0; channel < 3; ++channel) mean |= (sums[channel] + kSamples / 2) / kSamples << (8 * channel);
+      for (int channel = 0; channel < 3; ++channel) sums[channel] += picture[source] >> (16 * channel) & 0xFFFF;
+    for (int channel = 0; channel < 3; ++channel) mean |= (sums[channel] + kSamples / 2) / kSamples << (16 * channel);
     resolved_.push_back(mean);
   }
   for (std::size_t slot = 0; slot < pixels_.size(); ++slot) {
@@ -338,11 +334,9 @@ void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> mes
   }
 }
 
-void Outlines::cut_out(std::span<const Seen> seen, std::span<const std::uint32_t> unsmoothed,
+void Outlines::cut_out(std::span<const Seen> seen, std::span<const std::uint64_t> unsmoothed,
                        std::vector<Eigen::Vector4f>& surfaces) const {
-  const auto color = [&](std::size_t pixel) {
-    return Eigen::Vector4f(linear_of(unsmoothed[pixel]).cast<float>().homogeneous());
-  };
+  const auto color = [&](std::size_t pixel) { return Eigen::Vector4f(linear_of(unsmoothed[pixel]).homogeneous()); };
   surfaces.assign(seen.size(), Eigen::Vector4f::Zero());
   for (std::size_t i = 0; i < seen.size(); ++i)
     if (seen[i].surface >= kFirstSurface) surfaces[i] = color(i);

@@ -19,14 +19,14 @@ class Outlines {
  public:
   Outlines(int width, int height);
 
-  /// Antialiases `picture`, RGBA bytes with the lowest row first, inside `area`. `seen` tells what each of its pixels
-  /// shows; `meshes` are all surfaces but the floor, mesh i with the number kFirstSurface + i.
+  /// Antialiases `picture`, RGBA of 16 bits each with the lowest row first, inside `area`. `seen` tells what each of
+  /// its pixels shows; `meshes` are all surfaces but the floor, mesh i with the number kFirstSurface + i.
   void smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
-              const View& view, const PixelArea& area, std::span<std::uint32_t> picture);
+              const View& view, const PixelArea& area, std::span<std::uint64_t> picture);
 
   /// Of the last picture, without floor and backdrop: linear colours times what the surfaces cover of each pixel, and
   /// that share, lowest row first. `unsmoothed`: the picture before.
-  void cut_out(std::span<const Seen> seen, std::span<const std::uint32_t> unsmoothed,
+  void cut_out(std::span<const Seen> seen, std::span<const std::uint64_t> unsmoothed,
                std::vector<Eigen::Vector4f>& surfaces) const;
 
   /// Pixels of the last picture that were sampled.
@@ -65,7 +65,7 @@ class Outlines {
   std::vector<int> first_;      // for each word: samples of its lowest pixel
   std::vector<Pixel> pixels_;
   std::vector<Samples> samples_;
-  std::vector<std::uint32_t> resolved_;
+  std::vector<std::uint64_t> resolved_;
   std::vector<float> nearness_;
   std::vector<Eigen::Vector4d> clip_;
   std::vector<Vertex> vertices_;

@@ -12,6 +12,8 @@ struct QualitySettings {
   int filter_taps;   ///< of the penumbra itself
   int soft_divisor;  ///< the picture of soft light is this much smaller
   int nearby_taps, sky_taps;
+  int instants;        ///< sharp pictures that make one with motion blur or depth of field
+  bool refines;        ///< cloth of few triangles is drawn with finer ones
   bool crisp_shadows;  ///< search at full size along the edges of the first light's shadows on the subjects
 };
 

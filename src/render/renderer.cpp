@@ -1,17 +1,18 @@
 #include "render/renderer.hpp"
 
 #include <algorithm>
-#include <cstring>
 #include <deque>
 #include <optional>
 #include <utility>
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
-#include "image/color.hpp"
 #include "render/data_passes.hpp"
+#include "render/edges.hpp"
 #include "render/framing.hpp"
+#include "render/instants.hpp"
 #include "render/outlines.hpp"
+#include "render/pixels.hpp"
 #include "render/shading.hpp"
 #include "render/soft_light.hpp"
 #include "render/view.hpp"
@@ -19,6 +20,8 @@
 namespace weft::render {
 namespace {
 
+// Triangles of cloth that are drawn as four each; where there are more they are small enough.
+constexpr std::size_t kMostRefined = 20000;
 constexpr double kFloorReach = 60;  // half side of the drawn floor, in radii of the subjects
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
@@ -31,6 +34,22 @@ void check(const frame::FrameSnapshot& snapshot) {
     throw Error(ExitCode::internal, "frame {}: {} surfaces, but states of {}", snapshot.frame, snapshot.surfaces.size(),
                 snapshot.states.size());
   }
+}
+
+/// Clay has no heat, and the look of strain has to have it.
+frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage) {
+  using Look = frame::Stage::Look;
+  if (stage.look == Look::clay || stage.look == Look::wire) return frame::Stage::Heat::none;
+  if (stage.look != Look::strain) return stage.heat;
+  const auto has_heat = [](const frame::SurfaceState& state) { return !state.heat.empty(); };
+  if (stage.heat != frame::Stage::Heat::strain || std::ranges::none_of(snapshot.states, has_heat)) {
+    throw Error(
+        ExitCode::usage,
+        "frame {}: the look strain needs what only a simulation finds; expected frames that were simulated with "
+        "render.look=strain or render.heat=strain",
+        snapshot.frame);
+  }
+  return stage.heat;
 }
 
 /// 1 / value at the hot end of the scale, 0 where no heat is to be drawn.
@@ -54,9 +73,20 @@ struct Plan {
   std::optional<Floor> floor;
   View view;
   std::vector<frame::Light> lights;
-  Exposure exposure;
+  Lighting lighting;
   std::vector<Vec3> caster_positions;
 };
+
+/// A surface without colours of its own.
+frame::Appearance clay(const frame::Appearance& look) {
+  frame::Appearance plain = look;
+  plain.color = Vec3(0.74, 0.72, 0.69);
+  plain.back_color = Vec3(0.60, 0.58, 0.56);
+  plain.roughness = 0.7;
+  plain.thread_spacing = 0;
+  plain.finish = {0, 0.5, 0.2, 0};
+  return plain;
+}
 
 std::vector<Vec3> subject_positions(const frame::FrameSnapshot& snapshot) {
   std::vector<Vec3> all;
@@ -68,31 +98,19 @@ std::vector<Vec3> subject_positions(const frame::FrameSnapshot& snapshot) {
   return all;
 }
 
-Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Camera& camera, double aspect) {
+Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Stage& stage, const frame::Camera& camera,
+               double aspect) {
   Plan plan;
-  if (snapshot.stage) plan.stage = *snapshot.stage;
+  plan.stage = stage;
+  plan.stage.heat = heat_shown(snapshot, stage);
   plan.up = up_of(snapshot);
   plan.subjects = subject_bounds(snapshot);
   plan.floor = find_floor(snapshot, plan.up);
   plan.view = make_view(camera, plan.up, aspect, plan.subjects, plan.floor);
-  plan.lights = effective_lights(snapshot, plan.view.axes, plan.up);
-  const double direct_share = 1 - std::clamp(plan.stage.sky_intensity, 0.0, 1.0);
-  plan.exposure = expose(plan.stage, plan.floor, plan.lights, direct_share);
+  plan.lights = effective_lights(snapshot, plan.stage.look, plan.view.axes, plan.up);
+  plan.lighting = light_up(plan.stage, plan.up, plan.floor, plan.lights);
   plan.caster_positions = subject_positions(snapshot);
   return plan;
-}
-
-/// RGB, top row first, from RGBA with the lowest row first.
-image::Image to_image(std::span<const std::uint32_t> rgba, int width, int height) {
-  image::Image image(width, height);
-  for (int y = 0; y < height; ++y) {
-    const std::uint32_t* from = rgba.data() + static_cast<std::size_t>(height - 1 - y) * width;
-    std::uint8_t* to = image.pixel(0, y);
-    // Whole words, each over the spare byte of the one before; the last has no room for its own.
-    for (int x = 0; x < width - 1; ++x) std::memcpy(to + 3 * x, from + x, 4);
-    std::memcpy(to + 3 * (width - 1), from + width - 1, 3);
-  }
-  return image;
 }
 
 }  // namespace
@@ -129,7 +147,7 @@ struct Renderer::Impl {
   image::Layers layers;
 
   // The picture and what it shows, lowest row first; kept for their memory.
-  std::vector<std::uint32_t> rgba, unsmoothed;
+  std::vector<std::uint64_t> rgba, unsmoothed;
   std::vector<Seen> seen;
 
   explicit Impl(const Settings& wanted);
@@ -140,8 +158,10 @@ struct Renderer::Impl {
   void update_floor(const Plan& plan);
   void upload_frame(const Plan& plan);
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
-  image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before);
-  void draw_layers(const Plan& plan, const frame::FrameSnapshot* before, const image::Image& image);
+  Plan plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const;
+  void draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan);
+  void draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before);
+  void draw_layers(const Plan& plan, const frame::FrameSnapshot* before);
 };
 
 Renderer::Impl::Impl(const Settings& wanted)
@@ -170,6 +190,9 @@ Renderer::Impl::~Impl() {
 
 /// Brings the buffers in line with the snapshot's surfaces: kept where the surface is known, made where it is new.
 void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot) {
+  std::size_t cloth_triangles = 0;
+  for (const auto& surface : snapshot.surfaces)
+    if (surface->kind == frame::ObjectKind::cloth) cloth_triangles += surface->triangles.size();
   std::vector<SurfaceBuffers> next;
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const auto& surface = snapshot.surfaces[i];
@@ -180,7 +203,9 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot) {
       next.push_back(std::move(*known));
       passes->surfaces.erase(known);
     } else {
-      next.emplace_back(gl, surface);
+      const bool refines = quality.refines && !settings.layers && surface->kind == frame::ObjectKind::cloth &&
+                           cloth_triangles <= kMostRefined;
+      next.emplace_back(gl, surface, refines);
     }
     next.back().update(snapshot.states[i]);
   }
@@ -208,8 +233,8 @@ void Renderer::Impl::update_floor(const Plan& plan) {
 }
 
 void Renderer::Impl::upload_frame(const Plan& plan) {
-  const FrameUniform block = pack_frame(plan.view, plan.stage, plan.up, plan.subjects, plan.floor, plan.exposure,
-                                        settings.width, settings.height);
+  const FrameUniform block =
+      pack_frame(plan.view, plan.lighting, plan.subjects, plan.floor, settings.width, settings.height);
   gl.NamedBufferData(passes->frame_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
 }
@@ -218,17 +243,17 @@ void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double h
   std::vector<Shading::Material> materials;
   for (const SurfaceBuffers& surface : passes->surfaces) {
     materials.push_back({surface.surface().appearance, surface.surface().kind == frame::ObjectKind::cloth});
+    if (plan.lighting.style.plain) materials.back().appearance = clay(materials.back().appearance);
   }
   // Of more lights the small picture does not know where they shine.
   std::vector<PixelArea> shaded_floor{{0, 0, settings.width, settings.height}};
   if (plan.lights.size() <= kSoftLights) shaded_floor = passes->soft_light.shaded_floor();
   passes->shading.draw(materials, heat, light_set(plan.lights), plan.floor && plan.floor->look.checker,
-                       passes->geometry.painted(), subjects, shaded_floor);
+                       passes->geometry.painted() && !plan.lighting.style.plain, subjects, shaded_floor);
 }
 
 /// Shadow maps, then what is seen, then its soft light at reduced size, then colours, then clean outlines.
-image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
-  const Plan plan = make_plan(snapshot, choose_camera(snapshot), settings.aspect());
+void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan) {
   update_surfaces(snapshot);
   update_floor(plan);
   upload_frame(plan);
@@ -243,41 +268,70 @@ image::Image Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const fr
   }
   const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
 
-  passes->shadows.draw(plan.lights, plan.caster_positions, meshes, plan.up, plan.exposure.direct);
+  passes->shadows.draw(plan.lights, plan.caster_positions, meshes, plan.up, plan.lighting.exposure.direct);
   passes->geometry.draw(passes->surfaces, floor, plan.view.eye, plan.view.far);
   const SkyView above = fit_sky(plan.subjects, plan.up, sky_reach(plan.subjects));
   passes->soft_light.draw(meshes, above, light_set(plan.lights));
-  const PixelArea area = visible_area(plan.view, plan.caster_positions, settings.width, settings.height);
+  std::vector<Vec3> drawn;
+  for (const DrawnMesh& mesh : meshes) drawn.insert(drawn.end(), mesh.positions.begin(), mesh.positions.end());
+  const PixelArea area = visible_area(plan.view, drawn, settings.width, settings.height);
   shade(plan, area, heat_scale(snapshot, plan.stage));
   passes->shading.read(rgba);
-  if (outlines) {
-    passes->geometry.read_seen(seen);
-    if (data) unsmoothed = rgba;
-    outlines->smooth(seen, meshes, plan.floor, plan.view, area, rgba);
-  }
-  image::Image image = to_image(rgba, settings.width, settings.height);
-  if (data) draw_layers(plan, before, image);
-  return image;
+  if (!outlines && !plan.lighting.style.edges) return;
+  passes->geometry.read_seen(seen);
+  if (data) unsmoothed = rgba;
+  if (outlines) outlines->smooth(seen, meshes, plan.floor, plan.view, area, rgba);
+  if (plan.lighting.style.edges) draw_edges(passes->surfaces, plan.view, settings.width, settings.height, seen, rgba);
 }
 
-void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* before, const image::Image& image) {
+Plan Renderer::Impl::plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const {
+  frame::Stage stage = snapshot.stage ? *snapshot.stage : frame::Stage{};
+  stage.look = settings.look.value_or(stage.look);
+  return make_plan(snapshot, stage, camera, settings.aspect());
+}
+
+void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
+  const frame::Camera camera = choose_camera(snapshot);
+  const double scene_blur = snapshot.stage ? snapshot.stage->motion_blur : 0;
+  const double shutter = before ? settings.motion_blur.value_or(scene_blur) : 0;
+  // Compositors blur by the motion and the depth that their layers have.
+  const std::vector<Instant> moments =
+      data ? std::vector<Instant>{} : instants(shutter, camera.aperture > 0, quality.instants);
+  if (moments.empty()) {
+    const Plan plan = plan_of(snapshot, camera);
+    draw_sharp(snapshot, plan);
+    if (data) draw_layers(plan, before);
+    return;
+  }
+  const frame::Camera was = before ? choose_camera(*before) : camera;
+  std::vector<Eigen::Vector3f> sums(static_cast<std::size_t>(settings.width) * settings.height,
+                                    Eigen::Vector3f::Zero());
+  for (const Instant& moment : moments) {
+    const frame::FrameSnapshot moved = shutter > 0 ? between(snapshot, *before, moment.back) : snapshot;
+    draw_sharp(moved, plan_of(moved, through_lens(between(camera, was, moment.back), up_of(moved), moment.lens)));
+    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += linear_of(rgba[i]);
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i)
+    rgba[i] = encoded(Eigen::Vector3f(sums[i] / static_cast<float>(moments.size())));
+}
+
+void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* before) {
   layers = {settings.width, settings.height, {}};
   std::vector<Eigen::Vector4f> surfaces;
   outlines->cut_out(seen, unsmoothed, surfaces);
   for (const char* name : {"R", "G", "B", "A", "picture.R", "picture.G", "picture.B"})
     layers.channels.push_back({name, std::vector<float>(surfaces.size()), true});
-  std::array<float, 256> linear;
-  for (int k = 0; k < 256; ++k) linear[k] = static_cast<float>(image::linear_from_srgb(k / 255.0));
   for (int y = 0; y < settings.height; ++y) {
     for (int x = 0; x < settings.width; ++x) {
       const std::size_t at = static_cast<std::size_t>(y) * settings.width + x;
-      const Eigen::Vector4f& surface = surfaces[static_cast<std::size_t>(settings.height - 1 - y) * settings.width + x];
-      for (int k = 0; k < 4; ++k) layers.channels[k].values[at] = surface[k];
-      for (int k = 0; k < 3; ++k) layers.channels[4 + k].values[at] = linear[image.pixel(x, y)[k]];
+      const std::size_t from = static_cast<std::size_t>(settings.height - 1 - y) * settings.width + x;
+      const Eigen::Vector3f picture = linear_of(rgba[from]);
+      for (int k = 0; k < 4; ++k) layers.channels[k].values[at] = surfaces[from][k];
+      for (int k = 0; k < 3; ++k) layers.channels[4 + k].values[at] = picture[k];
     }
   }
   std::optional<Before> earlier;
-  if (before) earlier.emplace(Before{*before, make_plan(*before, choose_camera(*before), settings.aspect()).view});
+  if (before) earlier.emplace(Before{*before, plan_of(*before, choose_camera(*before)).view});
   data->draw(passes->surfaces, plan.floor, plan.view, earlier, layers);
 }
 
@@ -293,7 +347,8 @@ image::Image Renderer::draw(const frame::FrameSnapshot& snapshot, const frame::F
   const WallTimer wall;
   const double cpu_start = process_cpu_seconds();
   const CurrentContext current(*impl_->context);
-  image::Image image = impl_->draw(snapshot, before);
+  impl_->draw(snapshot, before);
+  image::Image image = to_image(impl_->rgba, impl_->settings.width, impl_->settings.height);
   check_errors(impl_->gl, "drawing");
   impl_->times = {wall.seconds(), process_cpu_seconds() - cpu_start};
   return image;
@@ -301,6 +356,10 @@ image::Image Renderer::draw(const frame::FrameSnapshot& snapshot, const frame::F
 
 image::Layers Renderer::layers() {
   return std::move(impl_->layers);
+}
+
+image::Image16 Renderer::deep() {
+  return to_image16(impl_->rgba, impl_->settings.width, impl_->settings.height);
 }
 
 DrawTimes Renderer::last_times() const {

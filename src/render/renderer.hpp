@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "frame/frame_snapshot.hpp"
@@ -18,9 +19,12 @@ struct Settings {
   int width = 1280, height = 720;  ///< pixels
   Quality quality = Quality::final;
   Backend backend = Backend::automatic;
-  std::string camera;   ///< by name; empty: the first, or one that has all of the run in view
-  int threads = 0;      ///< of the software rasteriser; 0: its own choice
-  bool layers = false;  ///< whether layers() are asked for
+  std::string camera;                      ///< by name; empty: the first, or one that has all of the run in view
+  int threads = 0;                         ///< of the software rasteriser; 0: its own choice
+  bool layers = false;                     ///< whether layers() are asked for
+  bool deep = false;                       ///< whether deep() is asked for
+  std::optional<frame::Stage::Look> look;  ///< else that of the scene
+  std::optional<double> motion_blur;       ///< angle of the shutter [degrees], else that of the scene
 
   double aspect() const { return static_cast<double>(width) / height; }
 };
@@ -46,6 +50,8 @@ class Renderer {
   /// The last picture for compositors, linear: R, G, B, A of the surfaces alone, colours times coverage; picture.R, .G,
   /// .B with floor and backdrop; and all of DataPasses.
   image::Layers layers();
+  /// The last picture with 16 bits a channel.
+  image::Image16 deep();
   DrawTimes last_times() const;
 
   /// Vendor, renderer and version of the GL in use, and which backend was loaded and why.

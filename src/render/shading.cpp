@@ -77,7 +77,7 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
       quality_(quality),
       backdrop_(gl, "backdrop.vert", "grid.frag", shading_defines(quality, {}, false)),
       areas_(gl, "areas.vert", ""),
-      picture_(make_texture(gl, GL_RGBA8, width, height, GL_NEAREST)),
+      picture_(make_texture(gl, GL_RGBA16, width, height, GL_NEAREST)),
       heat_colors_(make_heat_colors(gl)),
       target_(gl),
       no_vertices_(gl),
@@ -98,7 +98,7 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
   check_framebuffer(gl, target_, "picture");
 }
 
-// The first lights' shadows on the floor are as soft as the small picture has them. What a sun gives to open floor, and
+// What a sun gives to open floor, and
 // how it fades out, changes so slowly over the picture that it may be interpolated; the edge of a spot or a checker
 // not.
 Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const LightSet& lights, bool checker,
@@ -111,7 +111,7 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
   cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, cloth_paint));
   solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, paint));
   const char* pattern = checker ? "CHECKER" : "PLAIN";
-  shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, many, {pattern}));
+  shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, crisp, {pattern}));
   open_floor = floor_on_grid ? Program(gl, "open_floor.vert", "grid.frag", shading_defines(quality, lights, false))
                              : Program(gl, "fullscreen.vert", "floor.frag",
                                        shading_defines(quality, lights, false, {pattern, "OPEN"}));
@@ -125,12 +125,14 @@ const Shading::Programs& Shading::programs(const LightSet& lights, bool checker,
 }
 
 void Shading::upload_materials(std::span<const Material> materials, double heat_scale) {
-  constexpr int kColumns = 3;  // of shading.glsl
+  constexpr int kColumns = 4;  // of surface.frag
   std::vector<Eigen::Vector4f> texels;
   for (const auto& [look, cloth] : materials) {
     texels.push_back(texel(look.color, std::clamp(look.roughness, 0.0, 1.0)));
     texels.push_back(texel(look.back_color, look.thread_spacing));
     texels.emplace_back(cloth ? static_cast<float>(heat_scale) : 0.0f, 0.0f, 0.0f, 0.0f);
+    const frame::Finish& finish = look.finish;
+    texels.push_back(Eigen::Vector4d(finish.gloss, finish.warp_share, finish.fuzz, finish.sheer).cast<float>());
   }
   const int rows = static_cast<int>(materials.size());
   if (rows > material_rows_) {
@@ -193,9 +195,9 @@ void Shading::draw(std::span<const Material> materials, double heat_scale, const
   gl_->Disable(GL_STENCIL_TEST);
 }
 
-void Shading::read(std::vector<std::uint32_t>& rgba) const {
+void Shading::read(std::vector<std::uint64_t>& rgba) const {
   rgba.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  gl_->GetTextureImage(picture_.name(), 0, GL_RGBA, GL_UNSIGNED_BYTE, static_cast<GLsizei>(4 * rgba.size()),
+  gl_->GetTextureImage(picture_.name(), 0, GL_RGBA, GL_UNSIGNED_SHORT, static_cast<GLsizei>(8 * rgba.size()),
                        rgba.data());
 }
 

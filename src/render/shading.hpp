@@ -28,8 +28,8 @@ class Shading {
   void draw(std::span<const Material> materials, double heat_scale, const LightSet& lights, bool checker, bool painted,
             const PixelArea& subjects, std::span<const PixelArea> shaded_floor);
 
-  /// Reads the picture: RGBA bytes in sRGB, lowest row first.
-  void read(std::vector<std::uint32_t>& rgba) const;
+  /// Reads the picture: RGBA of 16 bits each in sRGB, lowest row first.
+  void read(std::vector<std::uint64_t>& rgba) const;
 
  private:
   void upload_materials(std::span<const Material> materials, double heat_scale);

@@ -41,9 +41,10 @@ void describe_vertices(const Gl& gl, const VertexArray& array, const Buffer& ver
 
 }  // namespace
 
-SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface)
+SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, bool refines)
     : gl_(&gl), surface_(std::move(surface)), array_(gl), vertices_(gl), triangles_(gl), places_(gl) {
   closed_ = surface_->kind != frame::ObjectKind::cloth && !has_holes(*surface_) && is_closed(surface_->triangles);
+  if (refines) refinement_.emplace();
   describe_vertices(gl, array_, vertices_);
   gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
   if (!frame::is_painted(*surface_)) return;
@@ -87,8 +88,25 @@ void SurfaceBuffers::update(const frame::SurfaceState& state) {
                    has_uv ? surface_->uv[v].cast<float>().eval() : Eigen::Vector2f::Zero(),
                    has_heat ? state.heat[v] : 0.0f};
   }
+  if (refinement_) {
+    refinement_->update(mesh_.triangles, vertices.size());
+    for (const auto& [a, b] : refinement_->edges()) {
+      const Middle here = middle(positions_[a], positions_[b], mesh_.normals[a], mesh_.normals[b]);
+      positions_.push_back(here.position);
+      vertices.push_back({here.position.cast<float>(), here.normal.cast<float>(),
+                          0.5f * (vertices[a].rest_uv + vertices[b].rest_uv),
+                          0.5f * (vertices[a].heat + vertices[b].heat)});
+      if (painted_) painted_->places.push_back(0.5f * (painted_->places[a] + painted_->places[b]));
+    }
+    if (painted_) {
+      for (PaintedRange& range : painted_->ranges) {
+        range.first *= 4;
+        range.count *= 4;
+      }
+    }
+  }
   upload<DrawnVertex>(*gl_, vertices_, vertices);
-  upload<Triangle>(*gl_, triangles_, mesh_.triangles);
+  upload<Triangle>(*gl_, triangles_, triangles());
   if (painted_) upload<Eigen::Vector2f>(*gl_, places_, painted_->places);
 }
 
@@ -100,9 +118,9 @@ void SurfaceBuffers::draw(const PaintedRange& range) const {
 }
 
 void SurfaceBuffers::draw() const {
-  if (mesh_.triangles.empty()) return;
+  if (triangles().empty()) return;
   gl_->BindVertexArray(array_.name());
-  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * mesh_.triangles.size()), GL_UNSIGNED_INT, nullptr);
+  gl_->DrawElements(GL_TRIANGLES, static_cast<GLsizei>(3 * triangles().size()), GL_UNSIGNED_INT, nullptr);
 }
 
 FloorBuffers::FloorBuffers(const Gl& gl) : gl_(&gl), array_(gl), vertices_(gl) {

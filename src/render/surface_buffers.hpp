@@ -7,6 +7,7 @@
 #include "frame/frame_snapshot.hpp"
 #include "render/gl/objects.hpp"
 #include "render/painted_mesh.hpp"
+#include "render/refinement.hpp"
 #include "render/shaded_mesh.hpp"
 
 namespace weft::render {
@@ -15,9 +16,11 @@ namespace weft::render {
 /// the paint.
 class SurfaceBuffers {
  public:
-  SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface);
+  /// `refines`: what is drawn is finer than the surface, and mesh() then the coarser one.
+  SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, bool refines);
 
   const frame::Surface& surface() const { return *surface_; }
+  bool refined() const { return refinement_.has_value(); }
 
   /// Takes over the positions of a frame. Throws Error(internal) where their number is not that of the surface.
   void update(const frame::SurfaceState& state);
@@ -30,7 +33,9 @@ class SurfaceBuffers {
   bool hides_its_backs(const Vec3& eye) const { return outward_ && !bounds_.contains(eye); }
   /// World position of each drawn vertex [m], and triangles of them.
   std::span<const Vec3> positions() const { return positions_; }
-  std::span<const Triangle> triangles() const { return mesh_.triangles; }
+  std::span<const Triangle> triangles() const {
+    return refinement_ ? refinement_->triangles() : std::span<const Triangle>(mesh_.triangles);
+  }
   /// And what they stand for.
   const ShadedMesh& mesh() const { return mesh_; }
   const frame::SurfaceState& state() const { return state_; }
@@ -45,6 +50,7 @@ class SurfaceBuffers {
   VertexArray array_;
   Buffer vertices_, triangles_, places_;
   ShadedMesh mesh_;
+  std::optional<Refinement> refinement_;
   std::optional<PaintedMesh> painted_;
   std::vector<Vec3> positions_;
   frame::SurfaceState state_;  // of the last frame

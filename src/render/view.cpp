@@ -13,7 +13,7 @@ namespace {
 const Vec3 kLuminance(0.2126, 0.7152, 0.0722);
 constexpr double kBrightest = 1.8;  // gain of direct light; scenes darker than that are meant to be dark
 constexpr double kBalance = 0.08;   // share of a channel that white balance may take or add
-constexpr double kHorizon = 0.76;   // of the floor's brightness: how far the studio falls off behind the subjects
+constexpr double kBounce = 0.9;     // of the floor's light that comes from below, for each share of light from around
 
 }  // namespace
 
@@ -82,10 +82,10 @@ double sky_reach(const Box3& subjects) {
   return 0.4 * subjects.diagonal().norm();
 }
 
-Exposure expose(const frame::Stage& stage, const std::optional<Floor>& floor, std::span<const frame::Light> lights,
-                double share) {
-  const Vec3 sky_color = image::linear_from_srgb(stage.sky_color), sky = (1 - share) * sky_color;
-  if (!floor) return {Vec3::Constant(share), 0.62 * sky_color};
+Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights) {
+  const double share = 1 - style.sky_intensity;
+  const Vec3 sky = style.sky_intensity * style.sky_color;
+  if (!floor) return {Vec3::Constant(share), 0.8 * style.sky_color};
   Vec3 direct = Vec3::Zero();
   for (const frame::Light& each : lights) {
     // Far away no spot reaches.
@@ -93,45 +93,74 @@ Exposure expose(const frame::Stage& stage, const std::optional<Floor>& floor, st
     const double facing = std::max(0.0, -each.direction.normalized().dot(floor->normal));
     direct += share * each.intensity * facing * image::linear_from_srgb(each.color);
   }
-  const Vec3 missing = (Vec3::Ones() - sky).cwiseQuotient(direct.cwiseMax(1e-6));
-  const double level = kLuminance.dot(Vec3::Ones() - sky) / std::max(kLuminance.dot(direct), 1e-6);
-  const Vec3 tint = (missing / std::max(level, 1e-6)).cwiseMax(1 - kBalance).cwiseMin(1 + kBalance);
-  const Vec3 gain = std::clamp(level, 1.0, kBrightest) * tint;
-  return {share * gain,
-          kHorizon * image::linear_from_srgb(floor->look.color).cwiseProduct(sky + gain.cwiseProduct(direct))};
+  Vec3 gain = Vec3::Ones();
+  if (style.exposes) {
+    const Vec3 missing = (Vec3::Ones() - sky).cwiseQuotient(direct.cwiseMax(1e-6));
+    const double level = kLuminance.dot(Vec3::Ones() - sky) / std::max(kLuminance.dot(direct), 1e-6);
+    const Vec3 tint = (missing / std::max(level, 1e-6)).cwiseMax(1 - kBalance).cwiseMin(1 + kBalance);
+    gain = std::clamp(level, 1.0, kBrightest) * tint;
+  }
+  return {share * gain, image::linear_from_srgb(floor->look.color).cwiseProduct(sky + gain.cwiseProduct(direct))};
 }
 
-FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,
-                        const std::optional<Floor>& floor, const Exposure& exposure, int width, int height) {
+Lighting light_up(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
+                  std::span<const frame::Light> lights) {
+  Lighting lighting;
+  lighting.style = style_of(stage);
+  lighting.exposure = expose(lighting.style, floor, lights);
+  lighting.gain = std::exp2(stage.exposure);
+  // Floor sends back a part of what lights it, and the subjects stand in the way of that.
+  Vec3 ground = stage.ground_color ? image::linear_from_srgb(*stage.ground_color)
+                : floor            ? Vec3(kBounce * lighting.style.floor_tint * lighting.exposure.floor)
+                                   : Vec3::Constant(0.55);
+  lighting.around = surround(lighting.style, stage, up, lights, lighting.style.sky_intensity * ground);
+  return lighting;
+}
+
+FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects,
+                        const std::optional<Floor>& floor, int width, int height) {
   const auto four = [](const Vec3& v, double w) {
     return Eigen::Vector4f(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
                            static_cast<float>(w));
   };
+  const Style& style = lighting.style;
+  const Surroundings& around = lighting.around;
   const double radius = 0.5 * subjects.diagonal().norm(), reach = sky_reach(subjects);
-  const double share = std::clamp(stage.sky_intensity, 0.0, 1.0);
-  const SkyView above = fit_sky(subjects, up, reach);
-  const Vec3 sky = image::linear_from_srgb(stage.sky_color), ground = image::linear_from_srgb(stage.ground_color);
+  const SkyView above = fit_sky(subjects, around.up, reach);
+  const bool sky = style.horizon.minCoeff() < style.horizon.maxCoeff();
+  const Vec3 shown = style.floor_tint * lighting.exposure.floor;
+  // A sky has its own color, a backdrop that of the floor.
+  const auto behind = [&](const Vec3& color) -> Vec3 { return sky ? color : shown.cwiseProduct(color); };
 
   FrameUniform frame;
   frame.clip_from_world = view.clip_from_world.cast<float>();
   frame.view_from_world = view.view_from_world.cast<float>();
   frame.eye_world = four(view.eye, radius);
   frame.center_world = four(subjects.center(), 0);
-  frame.up_world = four(up, 0);
+  frame.up_world = four(around.up, 0);
   frame.right_world = four(view.axes.right, 0);
-  frame.sky_light = four(share * sky, reach);
-  frame.ground_light = four(share * ground, above.depth_metres);
-  frame.backdrop = four(exposure.backdrop, 0);
+  frame.sky = four(around.sky, reach);
+  frame.horizon = four(around.horizon, style.toe);
+  frame.ground = four(around.ground, above.depth_metres);
+  frame.backdrop = four(behind(style.horizon), style.glow);
+  frame.backdrop_top = four(behind(style.zenith), style.mirror);
   frame.viewport = {static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),
                     1.0f / static_cast<float>(height)};
   frame.frustum = {static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height),
                    static_cast<float>(view.near), static_cast<float>(view.far)};
   if (floor) {
     frame.floor_plane_world = four(floor->normal, floor->normal.dot(view.eye - floor->point));
-    frame.floor_look = four(image::linear_from_srgb(floor->look.color), floor->look.checker ? 1 : 0);
+    frame.floor_look = four(style.floor_tint * image::linear_from_srgb(floor->look.color), lighting.gain);
   } else {
-    frame.floor_plane_world = frame.floor_look = Eigen::Vector4f::Zero();
+    frame.floor_plane_world = Eigen::Vector4f::Zero();
+    frame.floor_look = four(Vec3::Zero(), lighting.gain);
   }
+  for (int i = 0; i < Surroundings::kBoxes; ++i) {
+    frame.box_axes[i] = four(around.boxes[i].axis, around.boxes[i].sharpness);
+    frame.box_lights[i] = four(around.boxes[i].light, 0);
+  }
+  const Irradiance irradiance = irradiance_of(around);
+  for (std::size_t i = 0; i < irradiance.size(); ++i) frame.irradiance[i] = four(irradiance[i], 0);
   frame.above_from_world = (texture_from_clip() * above.clip_from_world).cast<float>();
   return frame;
 }

@@ -7,6 +7,7 @@
 
 #include "frame/frame_snapshot.hpp"
 #include "render/lighting.hpp"
+#include "render/surroundings.hpp"
 #include "render/transforms.hpp"
 
 namespace weft::render {
@@ -47,26 +48,37 @@ struct FrameUniform {
   // Matrices first: Eigen aligns them to 16 or 32 bytes, as the CPU level has it, std140 to 16.
   Eigen::Matrix4f clip_from_world, view_from_world, above_from_world;
   Eigen::Vector4f eye_world, center_world, up_world, right_world;
-  Eigen::Vector4f sky_light, ground_light, backdrop, viewport, frustum, floor_plane_world, floor_look;
+  Eigen::Vector4f sky, horizon, ground, backdrop, backdrop_top, viewport, frustum, floor_plane_world, floor_look;
+  std::array<Eigen::Vector4f, Surroundings::kBoxes> box_axes, box_lights;
+  std::array<Eigen::Vector4f, 9> irradiance;
 };
-static_assert(offsetof(FrameUniform, eye_world) == 3 * 64 && offsetof(FrameUniform, floor_look) == 3 * 64 + 10 * 16);
+static_assert(offsetof(FrameUniform, eye_world) == 3 * 64 && offsetof(FrameUniform, box_axes) == 3 * 64 + 13 * 16);
 
 /// How far the sky occlusion looks for things overhead [m].
 double sky_reach(const Box3& subjects);
 
 /// How strong the light is, and what the studio looks like in it.
 struct Exposure {
-  Vec3 direct = Vec3::Ones();    ///< scales every light, for each channel
-  Vec3 backdrop = Vec3::Zero();  ///< linear colour of the studio at the horizon
+  Vec3 direct = Vec3::Ones();  ///< scales every light, for each channel
+  Vec3 floor = Vec3::Zero();   ///< linear colour that open floor shows; without one, of light from around
 };
 
 /// Exposes for the floor, as for a product on white: direct light is turned up, never down, until open floor shows its
 /// own colour, and warmed against a bluish sky. Darkness and hues beyond a slight tint are left to the scene, as is all
-/// without a floor. Lights are those of the picture, `share` their part of all light.
-Exposure expose(const frame::Stage& stage, const std::optional<Floor>& floor, std::span<const frame::Light> lights,
-                double share);
+/// without a floor or where the style does not expose. Lights are those of the picture.
+Exposure expose(const Style& style, const std::optional<Floor>& floor, std::span<const frame::Light> lights);
 
-FrameUniform pack_frame(const View& view, const frame::Stage& stage, const Vec3& up, const Box3& subjects,
-                        const std::optional<Floor>& floor, const Exposure& exposure, int width, int height);
+/// What lights a picture and how it is shown.
+struct Lighting {
+  Style style;
+  Surroundings around;
+  Exposure exposure;
+  double gain = 1;  ///< factor on all light
+};
+Lighting light_up(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
+                  std::span<const frame::Light> lights);
+
+FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects,
+                        const std::optional<Floor>& floor, int width, int height);
 
 }  // namespace weft::render

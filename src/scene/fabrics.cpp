@@ -70,6 +70,7 @@ struct Row {
   Pair drape = {};           // least and most [%]
   double contact = 2;        // contact thickness [mm]
   double friction = 0.3;
+  std::optional<Finish> finish = {};  // else that of the fibre
 };
 
 constexpr const char* kMatsudaira =
@@ -108,7 +109,8 @@ constexpr Row kRows[] = {
      .hysteresis = 43,
      .drape = {{70, 90}},
      .contact = 2.5,
-     .friction = 0.45},
+     .friction = 0.45,
+     .finish = Finish{0.06, 0.7, 0.35, 0.04}},
     {.name = "canvas",
      .what = "cotton duck",
      .source = "weight and thickness in Codim-IPC, which names no source",
@@ -116,8 +118,14 @@ constexpr Row kRows[] = {
      .hand = Hand::stiff,
      .thickness = 0.53,
      .contact = 2.5,
-     .friction = 0.4},
-    {.name = "linen", .what = "shirt weight plain weave", .source = kNone, .density = {170, true}, .hand = Hand::firm},
+     .friction = 0.4,
+     .finish = Finish{0.05, 0.5, 0.35, 0.06}},
+    {.name = "linen",
+     .what = "shirt weight plain weave",
+     .source = kNone,
+     .density = {170, true},
+     .hand = Hand::firm,
+     .finish = Finish{0.2, 0.5, 0.3, 0.2}},
     {.name = "jersey",
      .what = "single jersey knit",
      .source = "drape: jerseys of 25 cm, VaT 2018(1), which 30 cm would lower",
@@ -125,7 +133,8 @@ constexpr Row kRows[] = {
      .hand = Hand::limp,
      .weave = Weave::knitted,
      .drape = {{18, 31}},
-     .friction = 0.35},
+     .friction = 0.35,
+     .finish = Finish{0.08, 0.5, 0.55, 0.22}},
     {.name = "wool",
      .what = "tropical, a light plain worsted",
      .source = "Matsudaira et al., as poplin; extension and shear of another, 168 g/m², from a student's FAST report "
@@ -148,7 +157,8 @@ constexpr Row kRows[] = {
      .extension = {{10.7, 4.0}},
      .shear = 24,
      .drape = {{40, 70}},
-     .friction = 0.35},
+     .friction = 0.35,
+     .finish = Finish{0.12, 0.6, 0.7, 0.06}},
     {.name = "felt",
      .what = "pressed wool, 1 mm",
      .source = kNone,
@@ -157,7 +167,8 @@ constexpr Row kRows[] = {
      .hand = Hand::stiff,
      .weave = Weave::none,
      .contact = 3,
-     .friction = 0.5},
+     .friction = 0.5,
+     .finish = Finish{0, 0.5, 1, 0.03}},
     {.name = "silk",
      .what = "light dress silk",
      .source = "weight and thickness in Codim-IPC, which names no source; drape: target of ZOZO's ppf-contact-solver",
@@ -167,7 +178,8 @@ constexpr Row kRows[] = {
      .thickness = 0.18,
      .drape = {{20, 40}},
      .contact = 1,
-     .friction = 0.2},
+     .friction = 0.2,
+     .finish = Finish{0.7, 0.6, 0.1, 0.3}},
     {.name = "satin",
      .what = "five-thread satin",
      .source = "weight and drape of those of 186 to 304 g/m², VaT 2018(1)",
@@ -175,7 +187,8 @@ constexpr Row kRows[] = {
      .fibre = Fibre::filament,
      .hand = Hand::soft,
      .drape = {{43, 70}},
-     .friction = 0.2},
+     .friction = 0.2,
+     .finish = Finish{1, 0.85, 0.05, 0.15}},
     {.name = "chiffon",
      .what = "sheer plain weave, 8 momme",
      .source = kNone,
@@ -183,7 +196,8 @@ constexpr Row kRows[] = {
      .fibre = Fibre::filament,
      .hand = Hand::soft,
      .contact = 1,
-     .friction = 0.25},
+     .friction = 0.25,
+     .finish = Finish{0.3, 0.5, 0.2, 0.9}},
     {.name = "polyester",
      .what = "tropical, plain weave",
      .source = kMatsudaira,
@@ -213,7 +227,8 @@ constexpr Row kRows[] = {
      .hand = Hand::firm,
      .thickness = 0.10,
      .contact = 1,
-     .friction = 0.2},
+     .friction = 0.2,
+     .finish = Finish{0.5, 0.5, 0.05, 0.5}},
     {.name = "leather",
      .what = "sheep garment leather",
      .source = "thickness and drape: Memon et al., Materials 14(16) 4553, 2021",
@@ -224,8 +239,17 @@ constexpr Row kRows[] = {
      .thickness = 0.80,
      .drape = {{47.4, 69.9}},
      .contact = 3,
-     .friction = 0.5},
+     .friction = 0.5,
+     .finish = Finish{0.35, 0.5, 0.1, 0}},
 };
+
+// Cotton scatters, wool is fuzzy, filaments shine; how much lets light through goes by weight and opening.
+Finish finish_of(const Row& row) {
+  if (row.finish) return *row.finish;
+  return row.fibre == Fibre::cotton ? Finish{0.1, 0.5, 0.4, 0.2}
+         : row.fibre == Fibre::wool ? Finish{0.06, 0.5, 0.85, 0.1}
+                                    : Finish{0.4, 0.5, 0.12, 0.2};
+}
 
 double two_digits(double value) {
   const double unit = std::pow(10, std::floor(std::log10(value)) - 1);
@@ -308,7 +332,7 @@ Fabric fabric(const Row& row) {
   material.bend_friction = two_digits(m.hysteresis.value * bend);
   material.thickness = 1e-3 * row.contact;
   material.friction = row.friction;
-  return {material, m, row.what, row.source};
+  return {material, m, finish_of(row), row.what, row.source};
 }
 
 }  // namespace

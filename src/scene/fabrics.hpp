@@ -30,6 +30,7 @@ struct Measurements {
 struct Fabric {
   Material material;  ///< its `fabric` is the name; made of `measured`
   Measurements measured;
+  Finish finish;       ///< chosen by us, by fibre and weave
   std::string what;    ///< weave and kind
   std::string source;  ///< of its figures
 };

@@ -126,6 +126,12 @@ const Table& cloth_look_rules() {
       TableBuilder<Look>("How the cloth is drawn.")
           .with(paint_rows<Look>)
           .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
+          .number("gloss", &Look::gloss, within(0, 1), "", "highlights of its threads, 1 as of satin")
+          .by_default("that of its fabric")
+          .number("fuzz", &Look::fuzz, within(0, 1), "", "fibres that stand out, 1 as of felt")
+          .by_default("that of its fabric")
+          .number("sheer", &Look::sheer, within(0, 1), "", "light that comes through, 0.9 as of chiffon")
+          .by_default("that of its fabric")
           .number("thread_spacing", &Look::thread_spacing, within(0, 10), "m", "of the drawn weave; 0 draws none")
           .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture")
           .list(Type::list, "panel", &Look::panels, panel_look_rules(),

@@ -128,12 +128,19 @@ struct PanelPaint : Paint {
   std::string name;
 };
 
+/// What cloth does with light beside showing its colour, each from 0 to 1; see frame::Finish.
+struct Finish {
+  double gloss, warp_share, fuzz, sheer;
+};
+
 struct Look : Paint {
   std::vector<PanelPaint> panels;  ///< of a pattern
   bool as_file = true;             ///< characters: colours and pictures are those of the file, where it has some
   double roughness = 0.6;
-  double thread_spacing = 0.0006;  ///< of the drawn weave [m]; cloth only; 0 draws none
-  bool checker = false;            ///< floors only
+  std::optional<double> gloss, fuzz, sheer;  ///< cloth only; those of the fabric where absent
+  double warp_share = 0.5;                   ///< of the gloss; of the fabric
+  double thread_spacing = 0.0006;            ///< of the drawn weave [m]; cloth only; 0 draws none
+  bool checker = false;                      ///< floors only
   bool visible = true;
 };
 
@@ -406,6 +413,8 @@ struct Camera {
   double orbit = 0;        ///< by which the azimuth grows [degrees/s]
   double margin = 0.14;    ///< share of each half picture that is left free around the subject
   double smoothing = 0.5;  ///< of the ways of the subject and the eye [s]
+  double aperture = 0;     ///< f-number of a camera with 24 mm of film; 0: all is sharp
+  double focus = 0;        ///< distance that is sharp [m]; 0: that of the target
 };
 
 struct LightKey {
@@ -424,11 +433,16 @@ struct Light {
   Interpolation interpolation = Interpolation::cubic;
 };
 
+enum class StageLook { studio, stage, daylight, clay, wire, strain };
+
 struct Render {
   int width = 1280, height = 720;
-  std::string camera;                           ///< name; empty: the first, or automatic framing where there is none
-  std::optional<Vec3> sky_color, ground_color;  ///< sRGB; the renderer's own where absent
+  std::string camera;  ///< name; empty: the first, or automatic framing where there is none
+  StageLook look = StageLook::studio;
+  std::optional<Vec3> sky_color, ground_color;  ///< sRGB; those of the look where absent
   std::optional<double> sky_intensity;
+  double exposure = 0;     ///< stops
+  double motion_blur = 0;  ///< angle of the shutter [degrees]
   HeatQuantity heat = HeatQuantity::none;
   double heat_max = 0;
 };

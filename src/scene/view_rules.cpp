@@ -61,6 +61,13 @@ void placed_camera_rows(TableBuilder<Camera>& rows) {
       .written_if(moves<Camera>);
 }
 
+void lens_rows(TableBuilder<Camera>& rows) {
+  rows.number("aperture", &Camera::aperture, within(0, 1000), "",
+              "f-number that blurs what is out of focus, as of a camera with 24 mm of film; 0: all is sharp")
+      .number("focus", &Camera::focus, within(0, 1e5), "m", "distance that is sharp")
+      .by_default("that of what is in the middle of the picture");
+}
+
 /// What cameras that are found are told of their subject.
 void subject_rows(TableBuilder<Camera>& rows) {
   rows.plain(Type::texts, "subject", &Camera::subjects, "names of cloths, obstacles and characters that it shows")
@@ -130,6 +137,7 @@ const Table& camera_rules() {
                 if (c.kind == CameraKind::track) c.keys.front().field_of_view = 0;
               })
           .selects()
+          .with(lens_rows)
           .variant("placed", Rows().with(placed_camera_rows))
           .variant("whole", Rows().with(direction_rows))
           .variant("follow", Rows().with(direction_rows).with(smoothing_row))
@@ -197,14 +205,26 @@ const Table& render_rules() {
           .plain(Type::text, "camera", &Render::camera, "name of the camera that is looked through")
           .by_default("the first camera; automatic framing where there is none")
           .not_simulated()
+          .choice("look", &Render::look, {"studio", "stage", "daylight", "clay", "wire", "strain"},
+                  "surroundings and style: a photographer's studio, a dark stage, sun and sky; for review clay without "
+                  "colors, clay with the edges of its faces, or colors of strain")
+          .when_given([](Render& render) {
+            if (render.look == StageLook::strain) render.heat = HeatQuantity::strain;
+          })
+          .not_simulated()
+          .number("exposure", &Render::exposure, within(-10, 10), "stops", "by which the picture is brighter")
+          .not_simulated()
+          .number("motion_blur", &Render::motion_blur, within(0, 360), "degrees",
+                  "angle of the shutter, 180 as of film; 0: all is sharp")
+          .not_simulated()
           .color("sky_color", &Render::sky_color, "of the light from above")
-          .by_default("the renderer's own")
+          .by_default("that of the look")
           .not_simulated()
           .color("ground_color", &Render::ground_color, "of the light from below")
-          .by_default("the renderer's own")
+          .by_default("that of the floor, or of the look")
           .not_simulated()
-          .number("sky_intensity", &Render::sky_intensity, within(0, 100), "", "share of light from the sky")
-          .by_default("the renderer's own")
+          .number("sky_intensity", &Render::sky_intensity, within(0, 100), "", "share of light from around")
+          .by_default("that of the look")
           .not_simulated()
           .choice("heat", &Render::heat, {"none", "strain", "speed"}, "quantity that colors the cloth")
           .number("heat_max", &Render::heat_max, within(0, 1e6), "",

@@ -184,6 +184,13 @@ std::vector<PlanItem> plan(const Scene& scene) {
   items.push_back({"integrator: " + std::string(method), true, fmt::format("{}, {} fps", steps, scene.time.fps)});
   items.push_back(when("render: heat colours", scene.render.heat != scene::HeatQuantity::none,
                        scene.render.heat == scene::HeatQuantity::strain ? "strain" : "speed", "render.heat is none"));
+  constexpr const char* kLooks[] = {"studio", "stage", "daylight", "clay", "wire", "strain"};
+  items.push_back({fmt::format("render: look {}", kLooks[static_cast<int>(scene.render.look)]), true, "render.look"});
+  items.push_back(when("render: motion blur", scene.render.motion_blur > 0,
+                       fmt::format("{:.4g} degrees of shutter", scene.render.motion_blur), "render.motion_blur is 0"));
+  items.push_back(when("render: depth of field",
+                       std::ranges::any_of(scene.cameras, [](const scene::Camera& each) { return each.aperture > 0; }),
+                       "a camera has an aperture", "no camera has an aperture"));
   const bool camera = !scene.cameras.empty();
   items.push_back(when("render: automatic framing", !camera, "no camera named",
                        fmt::format("{} camera{}", scene.cameras.size(), scene.cameras.size() == 1 ? "" : "s")));

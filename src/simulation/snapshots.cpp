@@ -10,6 +10,7 @@
 #include "core/log.hpp"
 #include "image/color.hpp"
 #include "image/picture.hpp"
+#include "scene/fabrics.hpp"
 
 namespace weft::simulation {
 namespace {
@@ -26,9 +27,22 @@ constexpr double kBackPaleness = 0.35;
 frame::Appearance appearance(const scene::Look& look) {
   frame::Appearance result;
   result.roughness = look.roughness;
+  result.finish = {look.gloss.value_or(0), look.warp_share, look.fuzz.value_or(0), look.sheer.value_or(0)};
   result.thread_spacing = look.thread_spacing;
   result.checker = look.checker;
   return result;
+}
+
+/// With the finish of the fabric where the scene leaves it open.
+scene::Look look_of(const scene::Cloth& cloth) {
+  scene::Look look = cloth.look;
+  const scene::Fabric* fabric = scene::find_fabric(cloth.material.fabric);
+  const scene::Finish finish = fabric ? fabric->finish : scene::fabrics().front().finish;
+  look.gloss = look.gloss.value_or(finish.gloss);
+  look.fuzz = look.fuzz.value_or(finish.fuzz);
+  look.sheer = look.sheer.value_or(finish.sheer);
+  look.warp_share = finish.warp_share;
+  return look;
 }
 
 /// Lays a picture along weft and warp, or leaves colours alone.
@@ -126,9 +140,12 @@ std::shared_ptr<const frame::Surface> make_body_surface(const environment::BodyO
 std::shared_ptr<const frame::Stage> make_stage(const scene::Scene& scene) {
   auto stage = std::make_shared<frame::Stage>();
   stage->up = scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
-  stage->sky_color = scene.render.sky_color.value_or(stage->sky_color);
-  stage->ground_color = scene.render.ground_color.value_or(stage->ground_color);
-  stage->sky_intensity = scene.render.sky_intensity.value_or(stage->sky_intensity);
+  stage->look = static_cast<frame::Stage::Look>(scene.render.look);
+  stage->sky_color = scene.render.sky_color;
+  stage->ground_color = scene.render.ground_color;
+  stage->sky_intensity = scene.render.sky_intensity;
+  stage->exposure = scene.render.exposure;
+  stage->motion_blur = scene.render.motion_blur;
   switch (scene.render.heat) {
     case scene::HeatQuantity::none:
       stage->heat = frame::Stage::Heat::none;
@@ -177,7 +194,7 @@ std::shared_ptr<const frame::Texture> Pictures::of_file(const std::filesystem::p
 }
 
 Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
-  for (const auto& cloth : scene.cloths) looks_[cloth.name] = cloth.look;
+  for (const auto& cloth : scene.cloths) looks_[cloth.name] = look_of(cloth);
   for (const auto& obstacle : scene.obstacles) looks_[obstacle.name] = obstacle.look;
   for (const auto& character : scene.characters) looks_[character.name] = character.look;
   for (const scene::Camera& camera : scene.cameras) {
@@ -188,6 +205,8 @@ Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
                         .elevation = camera.elevation,
                         .margin = camera.margin,
                         .smoothing = camera.smoothing});
+    cameras_.back().aperture = camera.aperture;
+    cameras_.back().focus = camera.focus;
     camera_tracks_.push_back(camera_track(camera));
     orbits_.push_back(camera.orbit);
   }
@@ -251,7 +270,7 @@ std::shared_ptr<const frame::Surface> Looks::dressed(const frame::Surface& surfa
 SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment) : looks_(scene) {
   Pictures pictures;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c)
-    surfaces_.push_back(make_cloth_surface(environment.cloths[c], scene.cloths[c].look, pictures));
+    surfaces_.push_back(make_cloth_surface(environment.cloths[c], look_of(scene.cloths[c]), pictures));
   for (const environment::BodyObject& body : environment.bodies) surfaces_.push_back(make_body_surface(body, pictures));
 }
 

@@ -1,6 +1,12 @@
 #include "video/decoder.hpp"
 
+#include <algorithm>
 #include <array>
+#include <cctype>
+
+extern "C" {
+#include <libavutil/pixdesc.h>
+}
 
 #include "core/error.hpp"
 #include "video/libav.hpp"
@@ -34,6 +40,12 @@ ScalerPtr make_scaler(const AVFrame& frame, const std::filesystem::path& file) {
   return scaler;
 }
 
+/// Matroska keeps keys in capitals; ours have none.
+std::string lower_case(std::string key) {
+  std::ranges::transform(key, key.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return key;
+}
+
 }  // namespace
 
 struct Decoder::Impl {
@@ -63,7 +75,7 @@ struct Decoder::Impl {
     if (codec->width < 1 || codec->height < 1) fail_to_read(file, "it does not tell its size");
     const AVDictionaryEntry* entry = nullptr;
     while ((entry = av_dict_get(opened->metadata, "", entry, AV_DICT_IGNORE_SUFFIX)))
-      metadata[entry->key] = entry->value;
+      metadata[lower_case(entry->key)] = entry->value;
   }
 
   // Hands the decoder the next packet of the stream, or the news that there is none.
@@ -104,6 +116,15 @@ int Decoder::width() const {
 
 int Decoder::height() const {
   return impl_->codec->height;
+}
+
+bool Decoder::lossy() const {
+  const AVCodecDescriptor* codec = avcodec_descriptor_get(impl_->codec->codec_id);
+  const bool lossless = codec && codec->props & AV_CODEC_PROP_LOSSLESS;
+  if (!lossless || !(codec->props & AV_CODEC_PROP_LOSSY)) return !lossless;
+  // H.264 can be both; RGB is only written to keep all.
+  const AVPixFmtDescriptor* format = av_pix_fmt_desc_get(impl_->codec->pix_fmt);
+  return !(format && format->flags & AV_PIX_FMT_FLAG_RGB);
 }
 
 double Decoder::fps() const {

@@ -22,6 +22,8 @@ class Decoder {
 
   int width() const;   ///< pixels
   int height() const;  ///< pixels
+  /// Whether its encoder has changed the pictures.
+  bool lossy() const;
   double fps() const;  ///< frames a second, 0 where the file does not tell
   const std::map<std::string, std::string>& metadata() const;
 

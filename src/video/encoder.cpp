@@ -10,6 +10,7 @@ extern "C" {
 #include <optional>
 #include <string_view>
 #include <utility>
+#include <vector>
 
 #include "core/error.hpp"
 #include "core/temporary_file.hpp"
@@ -22,6 +23,25 @@ namespace weft::video {
 namespace {
 
 constexpr const char* kCodecName = "libx264";
+
+/// How libav is asked for a codec, and files that may hold it: first the one that takes it by default.
+struct CodecKind {
+  Codec codec;
+  const char *name, *encoder;
+  AVPixelFormat format;
+  std::vector<std::string> endings;
+};
+const std::vector<CodecKind>& codec_kinds() {
+  static const std::vector<CodecKind> kKinds{
+      {Codec::h264, "h264", kCodecName, AV_PIX_FMT_YUV420P, {".mp4", ".mov", ".mkv"}},
+      {Codec::h264_lossless, "h264_lossless", "libx264rgb", AV_PIX_FMT_RGB24, {".mkv", ".mp4", ".mov"}},
+      {Codec::ffv1, "ffv1", "ffv1", AV_PIX_FMT_BGR0, {".mkv"}},
+      {Codec::prores, "prores", "prores_ks", AV_PIX_FMT_YUV422P10, {".mov", ".mkv"}}};
+  return kKinds;
+}
+const CodecKind& kind_of(Codec codec) {
+  return *std::ranges::find(codec_kinds(), codec, &CodecKind::codec);
+}
 constexpr int kMaxSide = 16384;  // pixels; the limit of x264
 
 constexpr std::array<std::string_view, 10> kPresets = {"ultrafast", "superfast", "veryfast", "faster",   "fast",
@@ -52,8 +72,11 @@ void check_settings(const std::filesystem::path& file, const Settings& settings)
 
 CodecPtr open_codec(const std::filesystem::path& file, const Settings& settings, const AVFrame& format,
                     AVRational rate) {
-  const AVCodec* codec = avcodec_find_encoder_by_name(kCodecName);
-  if (!codec) fail(file, "encode H.264", "this libavcodec has no libx264; install Debian's libavcodec59");
+  const CodecKind& kind = kind_of(settings.codec);
+  const AVCodec* codec = avcodec_find_encoder_by_name(kind.encoder);
+  if (!codec)
+    fail(file, fmt::format("encode {}", kind.name),
+         fmt::format("this libavcodec has no {}; install Debian's libavcodec59", kind.encoder));
   CodecPtr context = check_allocated(CodecPtr(avcodec_alloc_context3(codec)), file);
   context->width = format.width;
   context->height = format.height;
@@ -69,9 +92,24 @@ CodecPtr open_codec(const std::filesystem::path& file, const Settings& settings,
   context->gop_size = key_frame_distance(settings.fps);
   context->thread_count = settings.threads;
   context->flags |= AV_CODEC_FLAG_GLOBAL_HEADER;  // MP4 keeps the stream's parameters in its header
-  check(av_opt_set(context->priv_data, "preset", settings.preset.c_str(), 0), file, "choose the x264 preset");
-  check(av_opt_set_double(context->priv_data, "crf", settings.crf, 0), file, "choose the quality");
-  check(avcodec_open2(context.get(), codec, nullptr), file, "start x264");
+  const bool x264 = settings.codec == Codec::h264 || settings.codec == Codec::h264_lossless;
+  if (x264) check(av_opt_set(context->priv_data, "preset", settings.preset.c_str(), 0), file, "choose the x264 preset");
+  switch (settings.codec) {
+    case Codec::h264:
+      check(av_opt_set_double(context->priv_data, "crf", settings.crf, 0), file, "choose the quality");
+      break;
+    case Codec::h264_lossless:
+      check(av_opt_set_int(context->priv_data, "qp", 0, 0), file, "choose the quality");
+      break;
+    case Codec::ffv1:
+      context->level = 3;     // slices with checksums
+      context->gop_size = 1;  // every frame stands alone
+      break;
+    default:
+      check(av_opt_set(context->priv_data, "profile", "hq", 0), file, "choose the profile");
+      check(av_opt_set(context->priv_data, "vendor", "apl0", 0), file, "choose the profile");
+  }
+  check(avcodec_open2(context.get(), codec, nullptr), file, "start the encoder");
   return context;
 }
 
@@ -101,7 +139,7 @@ Encoder::Impl::Impl(const std::filesystem::path& f, const Settings& s)
       settings(s),
       rate(frame_rate(s.fps)),
       fragments(std::in_place, partial_name(f)),
-      converter(s.width, s.height, f),
+      converter(s.width, s.height, f, kind_of(s.codec).format),
       frame(converter.make_frame()),
       packet(check_allocated(PacketPtr(av_packet_alloc()), f)),
       codec(open_codec(f, s, *frame, rate)) {
@@ -132,7 +170,9 @@ void Encoder::Impl::publish() {
   whole.commit();
 }
 
-Encoder::Encoder(const std::filesystem::path& file, const Settings& settings) {
+Encoder::Encoder(const std::filesystem::path& file, const Settings& wanted) {
+  Settings settings = wanted;
+  settings.codec = codec_of(file, wanted.codec);
   collect_log();
   check_settings(file, settings);
   check_writable(file);
@@ -181,8 +221,23 @@ int Encoder::frames() const {
   return impl_->frames;
 }
 
+bool is_written(const std::string& ending) {
+  const std::vector<std::string>& all = codec_kinds().front().endings;
+  return std::ranges::find(all, ending) != all.end();
+}
+
+Codec codec_of(const std::filesystem::path& file, Codec codec) {
+  const std::string ending = file.extension().string();
+  if (codec == Codec::automatic) return ending == ".mov" ? Codec::prores : ending == ".mkv" ? Codec::ffv1 : Codec::h264;
+  const CodecKind& kind = kind_of(codec);
+  if (std::ranges::find(kind.endings, ending) == kind.endings.end())
+    throw Error(ExitCode::usage, "--codec: {} is kept in files ending in {}, got {}", kind.name,
+                fmt::join(kind.endings, " or "), file.string());
+  return codec;
+}
+
 std::filesystem::path partial_name(const std::filesystem::path& file) {
-  return std::filesystem::path(file).replace_filename(file.stem().string() + ".partial.mp4");
+  return std::filesystem::path(file).replace_filename(file.stem().string() + ".partial" + file.extension().string());
 }
 
 std::string encoder_description() {

@@ -17,7 +17,7 @@ namespace {
 constexpr int kChromaLeft = 0;
 constexpr int kChromaBetweenRows = 128;
 
-ScalerPtr make_scaler(int width, int height, const std::filesystem::path& file) {
+ScalerPtr make_scaler(int width, int height, AVPixelFormat format, bool rgb, const std::filesystem::path& file) {
   ScalerPtr scaler = check_allocated(ScalerPtr(sws_alloc_context()), file);
   const auto set = [&](const char* name, int value) {
     check(av_opt_set_int(scaler.get(), name, value, 0), file, "set up the colour conversion");
@@ -27,39 +27,45 @@ ScalerPtr make_scaler(int width, int height, const std::filesystem::path& file) 
   set("src_format", AV_PIX_FMT_RGB24);
   set("dstw", width);
   set("dsth", height);
-  set("dst_format", AV_PIX_FMT_YUV420P);
+  set("dst_format", format);
   // Full chroma input: the filter sees every column. It is the faster way too: 1.5 against 2.6 ms at 1280×720.
   set("sws_flags", SWS_BICUBIC | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INP);
   set("src_range", 1);
-  set("dst_range", 0);
-  set("dst_h_chr_pos", kChromaLeft);
-  set("dst_v_chr_pos", kChromaBetweenRows);
+  set("dst_range", rgb);
+  if (format == AV_PIX_FMT_YUV420P) {
+    set("dst_h_chr_pos", kChromaLeft);
+    set("dst_v_chr_pos", kChromaBetweenRows);
+  }
   const int* bt709 = sws_getCoefficients(SWS_CS_ITU709);
   constexpr int kUnit = 1 << 16;  // contrast and saturation 1 in 16.16 fixed point
-  check(sws_setColorspaceDetails(scaler.get(), bt709, 1, bt709, 0, 0, kUnit, kUnit), file, "choose BT.709 colours");
+  check(sws_setColorspaceDetails(scaler.get(), bt709, 1, bt709, rgb, 0, kUnit, kUnit), file, "choose BT.709 colours");
   check(sws_init_context(scaler.get(), nullptr, nullptr), file, "set up the colour conversion");
   return scaler;
 }
 
 }  // namespace
 
-FrameConverter::FrameConverter(int width, int height, std::filesystem::path file)
-    : width_(width), height_(height), file_(std::move(file)) {
-  scaler_ = make_scaler(padded_width(), padded_height(), file_);
-  if (width % 2 != 0 || height % 2 != 0) padded_ = image::Image(padded_width(), padded_height());
+FrameConverter::FrameConverter(int width, int height, std::filesystem::path file, AVPixelFormat format)
+    : width_(width),
+      height_(height),
+      format_(format),
+      rgb_(format == AV_PIX_FMT_RGB24 || format == AV_PIX_FMT_BGR0),
+      file_(std::move(file)) {
+  scaler_ = make_scaler(padded_width(), padded_height(), format_, rgb_, file_);
+  if (padded_width() != width || padded_height() != height) padded_ = image::Image(padded_width(), padded_height());
 }
 
 FramePtr FrameConverter::make_frame() const {
   FramePtr frame = check_allocated(FramePtr(av_frame_alloc()), file_);
-  frame->format = AV_PIX_FMT_YUV420P;
+  frame->format = format_;
   frame->width = padded_width();
   frame->height = padded_height();
-  frame->color_range = AVCOL_RANGE_MPEG;
-  frame->colorspace = AVCOL_SPC_BT709;
+  frame->color_range = rgb_ ? AVCOL_RANGE_JPEG : AVCOL_RANGE_MPEG;
+  frame->colorspace = rgb_ ? AVCOL_SPC_RGB : AVCOL_SPC_BT709;
   frame->color_primaries = AVCOL_PRI_BT709;
   // BT.709 and sRGB share their primaries; players show this transfer tag as they show sRGB.
   frame->color_trc = AVCOL_TRC_BT709;
-  frame->chroma_location = AVCHROMA_LOC_LEFT;
+  if (!rgb_) frame->chroma_location = AVCHROMA_LOC_LEFT;
   check(av_frame_get_buffer(frame.get(), 0), file_, "get memory for a frame");
   return frame;
 }

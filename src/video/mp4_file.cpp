@@ -15,6 +15,15 @@ namespace {
 constexpr const char* kFragmentedFlags = "+frag_every_frame+empty_moov+default_base_moof+use_metadata_tags";
 constexpr const char* kFastStartFlags = "+faststart+use_metadata_tags";
 
+/// The container that the ending of the user's name stands for.
+const char* container_of(const std::filesystem::path& file) {
+  const std::filesystem::path ending = file.extension();
+  return ending == ".mkv" ? "matroska" : ending == ".mov" ? "mov" : "mp4";
+}
+bool is_matroska(const std::filesystem::path& file) {
+  return file.extension() == ".mkv";
+}
+
 // A dictionary that libav may replace while reading it.
 struct Dictionary {
   AVDictionary* entries = nullptr;
@@ -26,8 +35,9 @@ struct Dictionary {
 
 InputPtr open_video(const std::filesystem::path& file, const std::filesystem::path& reported_file) {
   AVFormatContext* opened = nullptr;
-  check(avformat_open_input(&opened, file.c_str(), av_find_input_format("mp4"), nullptr), reported_file,
-        "read the frames back");
+  check(avformat_open_input(&opened, file.c_str(),
+                            av_find_input_format(is_matroska(reported_file) ? "matroska" : "mp4"), nullptr),
+        reported_file, "read the frames back");
   InputPtr input(opened);
   if (input->nb_streams != 1) fail(reported_file, "read the frames back", "expected one stream");
   return input;
@@ -64,7 +74,8 @@ Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path re
                      const std::map<std::string, std::string>& metadata)
     : reported_file_(std::move(reported_file)), frame_duration_(av_inv_q(rate)) {
   AVFormatContext* allocated = nullptr;
-  check(avformat_alloc_output_context2(&allocated, nullptr, "mp4", file.c_str()), reported_file_, "start an MP4 file");
+  check(avformat_alloc_output_context2(&allocated, nullptr, container_of(reported_file_), file.c_str()), reported_file_,
+        "start a file");
   output_.reset(allocated);
 
   AVStream* stream = check_allocated(avformat_new_stream(output_.get(), nullptr), reported_file_);
@@ -81,7 +92,9 @@ Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path re
   check(avio_open(&output_->pb, output_->url, AVIO_FLAG_WRITE), reported_file_, "create the file");
   Dictionary options;
   const char* flags = layout == Mp4Layout::fragmented ? kFragmentedFlags : kFastStartFlags;
-  check(av_dict_set(&options.entries, "movflags", flags, 0), reported_file_, "choose the layout of the file");
+  // Matroska is played from whatever of it is there.
+  if (!is_matroska(reported_file_))
+    check(av_dict_set(&options.entries, "movflags", flags, 0), reported_file_, "choose the layout of the file");
   check(avformat_write_header(output_.get(), &options.entries), reported_file_, "write the header");
   if (av_dict_count(options.entries) != 0) fail(reported_file_, "write the header", "libav ignores movflags");
 }
@@ -144,7 +157,8 @@ void verify_frames(const std::filesystem::path& file, const std::filesystem::pat
   int count = 0;
   while (read_packet(*input, *packet, reported_file)) {
     const std::int64_t frame = av_rescale_q(packet->pts, unit, av_inv_q(rate));
-    const bool on_time = av_compare_ts(packet->pts, unit, frame, av_inv_q(rate)) == 0;
+    // Matroska counts milliseconds.
+    const bool on_time = is_matroska(reported_file) || av_compare_ts(packet->pts, unit, frame, av_inv_q(rate)) == 0;
     const bool new_frame = frame >= 0 && frame < frames && !seen[frame];
     if (!on_time || !new_frame) {
       fail(reported_file, "verify the frames", fmt::format("packet {} is not one of {} frames", count, frames));

@@ -54,6 +54,16 @@ TEST_F(PngTest, RoundTripKeepsEveryByte) {
   }
 }
 
+TEST_F(PngTest, SixteenBitsAreKeptHighByteFirst) {
+  Image16 image{3, 2, {}};
+  for (int k = 0; k < 18; ++k) image.rgb.push_back(static_cast<std::uint16_t>(257 * 13 * k + 5));
+  write_png((folder_ / "deep.png"), image);
+  const std::string bytes = read_bytes((folder_ / "deep.png"));
+  EXPECT_EQ(bytes[24], 16) << "bit depth in the header";
+  const Image read = read_png((folder_ / "deep.png"));
+  for (int k = 0; k < 18; ++k) EXPECT_EQ(read.rgb[k], 13 * k) << "rounded to bytes";
+}
+
 TEST_F(PngTest, MetadataComesBackInAnyLanguage) {
   const Metadata metadata = {{"Weft scene hash", "8f31"}, {"GL", "Mesa 22.3.6"}, {"Scene", "scenes/Tücher 布.toml"}};
   write_png(folder_ / "a.png", patterned(4, 4), metadata);

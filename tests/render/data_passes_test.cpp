@@ -195,7 +195,7 @@ TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
   }
   EXPECT_GT(whole, 1000);
   // Where surfaces fold, as half of so small a picture does, that averages their encoded colours, this the linear ones.
-  EXPECT_GT(same, 0.5 * whole);
+  EXPECT_GT(same, 0.45 * whole);
   EXPECT_GT(partly, 100) << "outlines are smooth";
 }
 

@@ -9,7 +9,7 @@ namespace weft::render {
 namespace {
 
 constexpr int kWidth = 96, kHeight = 64;
-constexpr std::uint32_t kWhite = 0xFFFFFF, kBlack = 0;
+constexpr std::uint64_t kWhite = 0xFFFFFFFFFFFF, kBlack = 0;
 
 /// A view along +y from the origin with a half width of one at one metre: a pixel is a 48th of the distance.
 View test_view() {
@@ -32,13 +32,13 @@ Vec3 at(double x, double y, double distance) {
 struct Thing {
   std::vector<Vec3> positions;
   std::vector<Triangle> triangles;
-  std::uint32_t color;
+  std::uint64_t color;
 };
 
 struct Scene {
   std::vector<Thing> things;
   std::vector<Seen> seen = std::vector<Seen>(kWidth * kHeight, Seen{100, kNothing});
-  std::vector<std::uint32_t> picture = std::vector<std::uint32_t>(kWidth * kHeight, kBlack);
+  std::vector<std::uint64_t> picture = std::vector<std::uint64_t>(kWidth * kHeight, kBlack);
 
   /// Adds a thing that covers the pixels for which `covers(x, y)` of their centre is true.
   template <class Covers>
@@ -57,12 +57,12 @@ struct Scene {
     for (const Thing& thing : things) meshes.push_back({thing.positions, thing.triangles});
     Outlines(kWidth, kHeight).smooth(seen, meshes, floor, test_view(), {0, 0, kWidth, kHeight}, picture);
   }
-  int red(int x, int y) const { return static_cast<int>(picture[y * kWidth + x] & 0xFF); }
+  int red(int x, int y) const { return static_cast<int>((picture[y * kWidth + x] & 0xFFFF) / 257); }
 };
 
 const std::vector<Triangle> kQuad = {{0, 1, 2}, {0, 2, 3}};
 
-Thing quad(double x0, double y0, double x1, double y1, double distance, std::uint32_t color) {
+Thing quad(double x0, double y0, double x1, double y1, double distance, std::uint64_t color) {
   return {{at(x0, y0, distance), at(x1, y0, distance), at(x1, y1, distance), at(x0, y1, distance)}, kQuad, color};
 }
 
@@ -85,7 +85,7 @@ TEST(Outlines, EdgePixelsShowTheirCoveredShareToHalfASample) {
 // Two sheets half a millimetre apart at 2 m: 1 / distance has no step that counts, but their numbers differ.
 TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
   Scene scene;
-  scene.add(quad(0, 0, kWidth, kHeight, 2.0005, 0x404040), 2.0005f, [](double, double) { return true; });
+  scene.add(quad(0, 0, kWidth, kHeight, 2.0005, 0x404040404040), 2.0005f, [](double, double) { return true; });
   // Its border rises one pixel in eight.
   const auto border = [](double x) { return 20 + x / 8; };
   const Thing sheet{{at(0, 0, 2), at(kWidth, 0, 2), at(kWidth, border(kWidth), 2), at(0, border(0), 2)}, kQuad, kWhite};
@@ -146,7 +146,7 @@ TEST(Outlines, NearerHidesFartherInEitherOrder) {
                 [](double x, double y) { return x > 10 && x < 40.25 && y > 10 && y < 50; });
     };
     const auto far = [&] {
-      scene.add(quad(0, 0, kWidth, kHeight, 2, 0x404040), 2,
+      scene.add(quad(0, 0, kWidth, kHeight, 2, 0x404040404040), 2,
                 [&](double x, double y) { return !near_first || x < 10 || x > 40.25 || y < 10 || y > 50; });
     };
     if (near_first) near();
@@ -171,7 +171,7 @@ TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
       const double center = x + 0.5, share = center < 40.25 ? (center - 10) / 30.25 : (80 - center) / 39.75;
       // 1 / distance is linear over the picture of each side.
       scene.seen[y * kWidth + x].distance = static_cast<float>(1 / (1 / 3.0 + share * (1 / 2.0 - 1 / 3.0)));
-      if (center > 40.25) scene.picture[y * kWidth + x] = 0x404040;
+      if (center > 40.25) scene.picture[y * kWidth + x] = 0x404040404040;
     }
   }
   scene.smooth();
@@ -207,7 +207,7 @@ TEST(Outlines, FloorFillsWhatLiesBehind) {
     for (int x = 0; x < kWidth; ++x) {
       const double nearness = (32 - y - 0.5) / 48;
       if (nearness > 0) scene.seen[y * kWidth + x] = {static_cast<float>(1 / nearness), kFloor};
-      scene.picture[y * kWidth + x] = nearness > 0 ? 0x606060 : kBlack;
+      scene.picture[y * kWidth + x] = nearness > 0 ? 0x606060606060 : kBlack;
     }
   }
   scene.add(quad(10, 4, 40.75, 20, 1, kWhite), 1,
@@ -218,7 +218,7 @@ TEST(Outlines, FloorFillsWhatLiesBehind) {
 
 TEST(Outlines, APictureOfOneFlatThingIsLeftAlone) {
   Scene scene;
-  scene.add(quad(-10, -10, kWidth + 10, kHeight + 10, 2, 0x123456), 2, [](double, double) { return true; });
+  scene.add(quad(-10, -10, kWidth + 10, kHeight + 10, 2, 0x121234345656), 2, [](double, double) { return true; });
   Outlines outlines(kWidth, kHeight);
   const std::vector<DrawnMesh> meshes = {{scene.things[0].positions, scene.things[0].triangles}};
   outlines.smooth(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kWidth, kHeight}, scene.picture);

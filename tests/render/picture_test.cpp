@@ -250,7 +250,9 @@ TEST(Picture, ThinStripAboveTheFloorLeavesTheSkyOpenAllRound) {
     snapshot.cameras = {camera_at(Vec3(0, -3, 5), Vec3::Zero(), 40)};
     const image::Image image = Renderer(settings(quality)).draw(snapshot);
     for (const int x_pixel : {20, 80, 120, 200, 240, 300}) {
-      EXPECT_NEAR(image.pixel(x_pixel, 100)[1], 255 * snapshot.surfaces[0]->appearance.color[1], 3) << x_pixel;
+      // 2.4 m away, at the borders of the picture, the studio falls off by 4 levels.
+      const double tolerance = std::abs(x_pixel - 160) > 100 ? 5 : 3;
+      EXPECT_NEAR(image.pixel(x_pixel, 100)[1], 255 * snapshot.surfaces[0]->appearance.color[1], tolerance) << x_pixel;
     }
   }
 }

@@ -1,0 +1,168 @@
+// Motion blur, depth of field, looks, and cloth drawn finer than it is simulated.
+#include "render/instants.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "core/error.hpp"
+#include "render/refinement.hpp"
+#include "render/renderer.hpp"
+#include "render/snapshots.hpp"
+
+namespace weft::render {
+namespace {
+
+using Look = frame::Stage::Look;
+constexpr int kWidth = 200, kHeight = 100;
+
+Settings small_settings() {
+  Settings settings;
+  settings.width = kWidth;
+  settings.height = kHeight;
+  return settings;
+}
+
+/// A white square of 0.2 m before black, 2 m from the camera; a pixel is 7.3 mm there.
+frame::FrameSnapshot square_at(double x, double distance = 2) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  auto stage = std::make_shared<frame::Stage>(*snapshot.stage);
+  stage->sky_color = Vec3::Zero();
+  snapshot.stage = stage;
+  add_square(snapshot, frame::ObjectKind::obstacle, Vec3(x, distance, 0), -Vec3::UnitY(), Vec3::UnitX(), 0.1)
+      .appearance.color = Vec3::Ones();
+  snapshot.cameras = {camera_at(Vec3::Zero(), Vec3(0, 2, 0), 20)};
+  snapshot.lights = {sun(Vec3::UnitY())};
+  return snapshot;
+}
+
+double linear_at(const image::Image16& image, int x) {
+  const double encoded = image.rgb[3 * (static_cast<std::size_t>(kHeight / 2) * kWidth + x) + 1] / 65535.0;
+  return std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+// The shutter of 180 degrees closes at the frame: a square that moved by 40 pixels is seen over the last 20, and its
+// edges are ramps of light as long as that.
+TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
+  const double pixel = 2 * 2 * std::tan(10 * std::numbers::pi / 180) / kHeight;
+  const frame::FrameSnapshot now = square_at(20 * pixel), before = square_at(-20 * pixel);
+  Settings settings = small_settings();
+  settings.motion_blur = 180;
+  Renderer renderer(settings);
+  renderer.draw(now, &before);
+  const image::Image16 image = renderer.deep();
+  const double white = linear_at(image, 110);
+  EXPECT_GT(white, 0.8);
+  // 0.1 m are 14.2 pixels: the right edge went from 114.2 to 134.2, the left one from 85.8 to 105.8.
+  EXPECT_NEAR(linear_at(image, 124) / white, 0.5, 0.06);
+  EXPECT_NEAR(linear_at(image, 119) / white, 0.75, 0.06);
+  EXPECT_NEAR(linear_at(image, 95) / white, 0.5, 0.06);
+  EXPECT_LT(linear_at(image, 84), 0.02);
+  EXPECT_LT(linear_at(image, 136), 0.02);
+}
+
+TEST(Instants, NothingIsBlurredUnasked) {
+  const frame::FrameSnapshot now = square_at(0.1), before = square_at(-0.1);
+  Renderer renderer(small_settings());
+  EXPECT_EQ(renderer.draw(now, &before).rgb, renderer.draw(now).rgb);
+  EXPECT_TRUE(instants(0, false, 16).empty());
+}
+
+// Of what lies at twice the distance that is sharp, an edge is as wide as the lens looks from there: the aperture times
+// half, in the plane that is sharp.
+TEST(Instants, LensBlursWhatIsOutOfFocus) {
+  frame::FrameSnapshot snapshot = square_at(0, 4);
+  snapshot.cameras[0].aperture = 0.5;  // 12 mm / tan 10 / 0.5 = 136 mm wide
+  const double width = 0.136 / 2 / (2 * 2 * std::tan(10 * std::numbers::pi / 180) / kHeight);  // 9.6 pixels
+  Renderer renderer(small_settings());
+  const auto middle_of_edge = [&] {
+    renderer.draw(snapshot);
+    const image::Image16 image = renderer.deep();
+    int shaded = 0;
+    for (int x = kWidth / 2; x < kWidth; ++x)
+      shaded += linear_at(image, x) > 0.03 && linear_at(image, x) < 0.97 * linear_at(image, kWidth / 2);
+    return shaded;
+  };
+  EXPECT_NEAR(middle_of_edge(), width, 2.5);
+  snapshot.cameras[0].focus = 4;
+  EXPECT_LE(middle_of_edge(), 2);
+}
+
+TEST(Looks, ClayHasNoColorsAndWireShowsEdges) {
+  frame::FrameSnapshot snapshot = square_at(0, 1);
+  auto surface = std::make_shared<frame::Surface>(*snapshot.surfaces[0]);
+  surface->appearance.color = Vec3(1, 0, 0);
+  snapshot.surfaces[0] = surface;
+  Settings settings = small_settings();
+  settings.look = Look::clay;
+  const image::Image clay = Renderer(settings).draw(snapshot);
+  const std::uint8_t* pixel = clay.pixel(100, 40);
+  EXPECT_LT(pixel[0] - pixel[2], 20) << "gray, a little warm";
+  EXPECT_GT(pixel[2], 100);
+  settings.look = Look::wire;
+  const image::Image wire = Renderer(settings).draw(snapshot);
+  // The diagonal of the two triangles goes through the middle.
+  int darkest = 255;
+  for (int x = 95; x < 105; ++x) darkest = std::min<int>(darkest, wire.pixel(x, 50)[1]);
+  EXPECT_LT(darkest, 0.75 * clay.pixel(100, 40)[1]);
+  EXPECT_NEAR(wire.pixel(90, 20)[1], clay.pixel(90, 20)[1], 2) << "between edges as clay";
+}
+
+TEST(Looks, StrainNeedsFramesThatHaveIt) {
+  frame::FrameSnapshot snapshot = square_at(0);
+  Settings settings = small_settings();
+  settings.look = Look::strain;
+  Renderer renderer(settings);
+  EXPECT_THROW(renderer.draw(snapshot), Error);
+}
+
+TEST(Looks, ExposureIsInStops) {
+  frame::FrameSnapshot snapshot = square_at(0);
+  auto surface = std::make_shared<frame::Surface>(*snapshot.surfaces[0]);
+  surface->appearance.color = Vec3(0.5, 0.5, 0.5);
+  snapshot.surfaces[0] = surface;
+  const auto light = [&](double stops) {
+    auto stage = std::make_shared<frame::Stage>(*snapshot.stage);
+    stage->exposure = stops;
+    snapshot.stage = stage;
+    Renderer renderer(small_settings());
+    renderer.draw(snapshot);
+    return linear_at(renderer.deep(), 100);
+  };
+  // The fitted curve of sRGB is off by 0.1 levels, 0.2 % here.
+  EXPECT_NEAR(light(1) / light(0), 2, 0.01);
+  EXPECT_NEAR(light(-1) / light(0), 0.5, 0.005);
+}
+
+// Chords of a circle: the middle of each is on it, to the fourth order of the angle; 0.26 rad: 1.1e-4.
+TEST(Refinement, MiddlesOfChordsLieOnTheCircle) {
+  const double angle = std::numbers::pi / 12;
+  const Vec3 a(1, 0, 0), b(std::cos(angle), std::sin(angle), 0);
+  const Middle half = middle(a, b, a, b);
+  EXPECT_NEAR(half.position.norm(), 1, 1.5e-4);
+  EXPECT_LT((half.normal - half.position.normalized()).norm(), 1e-12);
+  // A plane stays one, and normals that have nothing to do with it make no spike.
+  EXPECT_LT((middle(a, b, Vec3::UnitZ(), Vec3::UnitZ()).position - 0.5 * (a + b)).norm(), 1e-15);
+  const double length = (b - a).norm();
+  EXPECT_LE((middle(a, b, (b - a).normalized(), Vec3::UnitZ()).position - 0.5 * (a + b)).norm(), 0.051 * length);
+}
+
+TEST(Refinement, NeighboursShareTheirMiddles) {
+  Refinement refinement;
+  const Triangle triangles[] = {{0, 1, 2}, {2, 1, 3}};
+  refinement.update(triangles, 4);
+  EXPECT_EQ(refinement.edges().size(), 5u);
+  ASSERT_EQ(refinement.triangles().size(), 8u);
+  // Edge 1 2 is halved once: its middle is in three small triangles of either side.
+  std::array<int, 9> uses{};
+  for (const Triangle& triangle : refinement.triangles())
+    for (const Index vertex : triangle) ++uses[vertex];
+  int shared = 0;
+  for (int vertex = 4; vertex < 9; ++vertex) shared += uses[vertex] == 6;
+  EXPECT_EQ(shared, 1);
+}
+
+}  // namespace
+}  // namespace weft::render
