@@ -1,5 +1,9 @@
 #include "export/export.hpp"
 
+#include <algorithm>
+#include <array>
+#include <optional>
+
 #include "cache/reader.hpp"
 #include "cli/cached_frames.hpp"
 #include "cli/commands.hpp"
@@ -8,6 +12,8 @@
 #include "cli/signals.hpp"
 #include "core/log.hpp"
 #include "export/obj.hpp"
+#include "render/lighting.hpp"
+#include "render/transforms.hpp"
 
 namespace weft::cli {
 
@@ -21,6 +27,54 @@ void remove_stale(const exporter::Request& request, const cache::Manifest& scene
     FramePattern((request.folder / (object.name + "_")).string(), 5, ending).remove_others(frames);
 }
 
+bool places_cameras(exporter::Format format) {
+  return format == exporter::Format::usd || format == exporter::Format::blender;
+}
+
+/// All cameras of a scene, first that which pictures show; where it names none, the one that is found for it.
+class Cameras {
+ public:
+  Cameras(const cache::Reader& reader, const frame::FrameSnapshot& first) {
+    const cache::Manifest& scene = reader.manifest();
+    std::vector<std::string> names = scene.cameras;
+    if (names.empty()) names.emplace_back();
+    std::ranges::stable_partition(names, [&](const std::string& name) { return name == scene.camera; });
+    for (const std::string& name : names) {
+      render::CameraPath path(name, static_cast<double>(scene.width) / scene.height);
+      if (render::CameraPath::is_found(first, name)) {
+        show_frames(reader, path);
+        path.find();
+      }
+      paths_.emplace_back(name.empty() ? "camera" : name, std::move(path));
+    }
+  }
+
+  std::vector<exporter::View> at(const frame::FrameSnapshot& snapshot) const {
+    std::vector<exporter::View> views;
+    for (const auto& [name, path] : paths_) {
+      const frame::Camera camera = path.at(snapshot);
+      const render::ViewAxes view = axes(camera, *snapshot.stage);
+      render::Mat4 world_from_view = render::Mat4::Identity();
+      world_from_view.topRows<3>() << view.right, view.up, -view.forward, camera.position;
+      views.push_back({name, world_from_view, camera.field_of_view});
+    }
+    return views;
+  }
+
+  /// Of a frame: its lights, or that which pictures have where there are none.
+  std::vector<frame::Light> lights(const frame::FrameSnapshot& snapshot) const {
+    const frame::Camera camera = paths_.front().second.at(snapshot);
+    return render::effective_lights(snapshot, axes(camera, *snapshot.stage), snapshot.stage->up);
+  }
+
+ private:
+  static render::ViewAxes axes(const frame::Camera& camera, const frame::Stage& stage) {
+    return render::view_axes(camera.target - camera.position, stage.up);
+  }
+
+  std::vector<std::pair<std::string, render::CameraPath>> paths_;
+};
+
 }  // namespace
 
 ExitCode export_frames(const ExportOptions& options) {
@@ -32,6 +86,8 @@ ExitCode export_frames(const ExportOptions& options) {
   request.folder = options.output;
   request.name = manifest.scene;
   request.fps = manifest.fps;
+  request.width = manifest.width;
+  request.height = manifest.height;
   const FrameRange frames = cached_frames(reader, options.frames, options.partial);
   for (int frame = frames.begin; frame < frames.end; frame += frames.step) request.frames.push_back(frame);
 
@@ -42,11 +98,20 @@ ExitCode export_frames(const ExportOptions& options) {
   // Parts of a film share its materials.
   std::erase_if(files, [](const auto& file) { return file.extension() == ".mtl"; });
   paths.writes("-o", options.output, files);
-  if (request.format == exporter::Format::obj || request.format == exporter::Format::pc2)
+  const bool has_materials =
+      std::ranges::any_of(std::array{exporter::Format::obj, exporter::Format::pc2, exporter::Format::blender},
+                          [&](exporter::Format format) { return format == request.format; });
+  if (has_materials)
     for (const auto& surface : first->surfaces)
       paths.writes_content("-o", request.folder / (surface->name + ".mtl"), exporter::mtl_text(*surface));
   paths.check_absent(options.overwrite);
   paths.check_writable();
+  std::optional<Cameras> cameras;
+  if (places_cameras(request.format)) {
+    cameras.emplace(reader, *first);
+    request.views = [&](const frame::FrameSnapshot& snapshot) { return cameras->at(snapshot); };
+    request.lights = cameras->lights(*first);
+  }
   const bool whole = exporter::write(
       request, [&](int frame) { return reader.snapshot(frame); }, [&] { return signals.requested().load(); });
   if (!whole) return ExitCode::interrupted;

@@ -10,9 +10,12 @@ constexpr std::array kBenches{Choice<BenchOptions::Kind>{"stability", BenchOptio
                               Choice<BenchOptions::Kind>{"accuracy", BenchOptions::Kind::accuracy},
                               Choice<BenchOptions::Kind>{"speed", BenchOptions::Kind::speed},
                               Choice<BenchOptions::Kind>{"fabrics", BenchOptions::Kind::fabrics}};
-constexpr std::array kFormats{
-    Choice<exporter::Format>{"ply", exporter::Format::ply}, Choice<exporter::Format>{"obj", exporter::Format::obj},
-    Choice<exporter::Format>{"pc2", exporter::Format::pc2}, Choice<exporter::Format>{"gltf", exporter::Format::gltf}};
+constexpr std::array kFormats{Choice<exporter::Format>{"ply", exporter::Format::ply},
+                              Choice<exporter::Format>{"obj", exporter::Format::obj},
+                              Choice<exporter::Format>{"pc2", exporter::Format::pc2},
+                              Choice<exporter::Format>{"gltf", exporter::Format::gltf},
+                              Choice<exporter::Format>{"usd", exporter::Format::usd},
+                              Choice<exporter::Format>{"blender", exporter::Format::blender}};
 
 }  // namespace
 
@@ -204,7 +207,7 @@ void Parser::add_review() {
 void Parser::add_export() {
   CLI::App& command = *app.add_subcommand("export", "Write the frames of a cache as files for other programs");
   command.add_option("CACHE", exported.cache, "Folder of weft simulate --cache")->required()->type_name("");
-  add_value(command, "--format", "ply|obj|pc2|gltf", "Form of the files [gltf]",
+  add_value(command, "--format", "ply|obj|pc2|gltf|usd|blender", "Form of the files [gltf]",
             [this](const std::string& text) { exported.format = parse_choice("--format", text, kFormats); });
   command.add_option("-o,--output", exported.output, "Folder of the files")->required()->type_name("DIR");
   add_value(command, "--frames", "A:B[:STEP]", "Frames A up to but without B, counted from 0 [all]",
@@ -215,8 +218,11 @@ void Parser::add_export() {
       "\nExamples:\n"
       "  weft export band.cache --format gltf -o band\n"
       "  weft export band.cache --format ply -o band --frames 0:126:25\n"
+      "  weft export band.cache --format blender -o band && blender -P band/falling_band.py\n"
       "\nply, obj: a file for each object and frame; pc2: for each object an OBJ file and a point cache that moves\n"
-      "its vertices; gltf: one file with all that is visible, its colours and its motion (morph targets).");
+      "its vertices; gltf: one file with all that is visible, its colours and its motion (morph targets);\n"
+      "usd: one text file with all that is visible, its colours, its motion and the cameras; blender: as pc2, and a\n"
+      "script that loads all of it with cameras, lights, frame rate and picture size.");
 }
 
 }  // namespace weft::cli

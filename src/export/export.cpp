@@ -6,9 +6,11 @@
 #include <optional>
 
 #include "core/temporary_file.hpp"
+#include "export/blender.hpp"
 #include "export/gltf.hpp"
 #include "export/obj.hpp"
 #include "export/pc2.hpp"
+#include "export/usd.hpp"
 #include "mesh/ply.hpp"
 
 namespace weft::exporter {
@@ -30,6 +32,13 @@ Path cache_file(const Request& request, const std::string& object) {
 }
 Path gltf_file(const Request& request) {
   return request.folder / (request.name + ".glb");
+}
+
+Path usd_file(const Request& request) {
+  return request.folder / (request.name + ".usda");
+}
+Path script_file(const Request& request) {
+  return request.folder / (request.name + ".py");
 }
 
 // As OBJ files are read where nothing else is said, by Blender too: y up, the front towards z.
@@ -67,15 +76,30 @@ class Sink {
         return add_to_caches(snapshot);
       case Format::gltf:
         return add_to_gltf(snapshot);
+      case Format::usd:
+        if (!usd_)
+          usd_.emplace(snapshot, request_.name, request_.fps, static_cast<double>(request_.width) / request_.height);
+        return usd_->add(snapshot, views(snapshot));
+      case Format::blender:
+        if (!script_)
+          script_.emplace(snapshot, request_.lights, request_.name, request_.fps, request_.width, request_.height);
+        script_->add(snapshot.frame, views(snapshot));
+        return add_to_caches(snapshot);
     }
   }
 
   void finish() {
     for (const auto& cache : caches_) cache->commit();
     if (gltf_) gltf_->write(gltf_file(request_), request_.name);
+    if (usd_) usd_->write(usd_file(request_));
+    if (script_) write_file(script_file(request_), script_->text(), Flush::no);
   }
 
  private:
+  std::vector<View> views(const frame::FrameSnapshot& snapshot) const {
+    return request_.views ? request_.views(snapshot) : std::vector<View>{};
+  }
+
   void add_to_caches(const frame::FrameSnapshot& snapshot) {
     const bool first = caches_.empty();
     const int step = request_.frames.size() > 1 ? request_.frames[1] - request_.frames[0] : 1;
@@ -102,15 +126,19 @@ class Sink {
   const Request& request_;
   std::vector<std::unique_ptr<PointCache>> caches_;  // by object
   std::optional<GltfFile> gltf_;
+  std::optional<UsdFile> usd_;
+  std::optional<BlenderScript> script_;
 };
 
 }  // namespace
 
 std::vector<Path> files(const Request& request, const frame::FrameSnapshot& first) {
   if (request.format == Format::gltf) return {gltf_file(request)};
+  if (request.format == Format::usd) return {usd_file(request)};
   std::vector<Path> result;
+  if (request.format == Format::blender) result.push_back(script_file(request));
   for (const auto& surface : first.surfaces) {
-    if (request.format == Format::pc2) {
+    if (request.format == Format::pc2 || request.format == Format::blender) {
       result.push_back(shape_file(request, surface->name));
       result.push_back(cache_file(request, surface->name));
       result.push_back(material_file(request, surface->name));

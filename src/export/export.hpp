@@ -6,23 +6,30 @@
 #include <string>
 #include <vector>
 
+#include "export/view.hpp"
 #include "frame/frame_snapshot.hpp"
 
 namespace weft::exporter {
 
 enum class Format {
-  ply,   ///< a file for each object and frame: triangles, positions as double
-  obj,   ///< likewise: faces as simulated, with weft and warp as texture coordinates, normals, and a material (MTL)
-  pc2,   ///< a point cache for each object, and the object in the first frame as OBJ, which it applies to; y is up
-  gltf,  ///< one file with all visible objects, their colours and their motion
+  ply,      ///< a file for each object and frame: triangles, positions as double
+  obj,      ///< likewise: faces as simulated, with weft and warp as texture coordinates, normals, and a material (MTL)
+  pc2,      ///< a point cache for each object, and the object in the first frame as OBJ, which it applies to; y is up
+  gltf,     ///< one file with all visible objects, their colours and their motion
+  usd,      ///< likewise, as text, and cameras; in the axes of the scene
+  blender,  ///< pc2, and a script that loads all of it with cameras and lights
 };
 
 struct Request {
   Format format = Format::gltf;
   std::filesystem::path folder;
-  std::string name;         ///< of the scene, which names the file of all objects
-  double fps = 25;          ///< of the scene
-  std::vector<int> frames;  ///< ascending, at least one, all as far apart
+  std::string name;                ///< of the scene, which names the file of all objects
+  double fps = 25;                 ///< of the scene
+  std::vector<int> frames;         ///< ascending, at least one, all as far apart
+  int width = 1280, height = 720;  ///< of its pictures
+  /// Of a frame, the first that which pictures show; of usd and blender, and asked once for each frame, in order.
+  std::function<std::vector<View>(const frame::FrameSnapshot&)> views = nullptr;
+  std::vector<frame::Light> lights = {};  ///< of blender
 };
 
 /// All files that will be written; `first` is the first frame asked for.

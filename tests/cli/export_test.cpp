@@ -31,6 +31,12 @@ TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
   EXPECT_EQ(contents("pc2", ".pc2").size(), 3U);
   expect_exported({"c", "--format", "gltf", "-o", "gltf"});
   EXPECT_EQ(contents("gltf", ".glb").size(), 1U);
+  expect_exported({"c", "--format", "usd", "-o", "usd"});
+  const std::string usd = contents("usd", ".usda").at("s.usda");
+  EXPECT_NE(usd.find("def Camera \"camera\""), std::string::npos) << "that which is found where the scene names none";
+  expect_exported({"c", "--format", "blender", "-o", "blender"});
+  expect_same("pc2", "blender", ".pc2", 3);
+  EXPECT_EQ(contents("blender", ".py").size(), 1U);
 }
 
 TEST_F(ExportCommand, RefusesWithTheCodesOfTheContract) {

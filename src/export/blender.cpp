@@ -1,0 +1,76 @@
+#include "export/blender.hpp"
+
+#include <fmt/format.h>
+
+#include "core/version.hpp"
+#include "embedded_export.hpp"
+#include "image/color.hpp"
+
+namespace weft::exporter {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json list(const Vec3& vector) {
+  return {vector.x(), vector.y(), vector.z()};
+}
+
+Json light_json(const frame::Light& light, double share) {
+  const bool sun = light.kind == frame::Light::Kind::sun;
+  return {{"name", light.name},
+          {"kind", sun ? "sun" : "spot"},
+          {"position", list(sun ? Vec3(0, 0, 0) : light.position)},
+          {"direction", list(sun ? light.direction : Vec3(light.target - light.position))},
+          {"color", list(image::linear_from_srgb(light.color))},
+          {"strength", light.intensity * share},
+          {"cone_angle", light.cone_angle},
+          {"softness", light.softness}};
+}
+
+}  // namespace
+
+BlenderScript::BlenderScript(const frame::FrameSnapshot& first, const std::vector<frame::Light>& lights,
+                             std::string name, double fps, int width, int height) {
+  const frame::Stage& stage = *first.stage;
+  film_ = {{"name", std::move(name)},
+           {"fps", fps},
+           {"size", {width, height}},
+           {"z_up", stage.up.z() > 0.5},
+           {"first", first.frame},
+           {"last", first.frame},
+           {"frames", Json::array()},
+           {"objects", Json::array()},
+           {"cameras", Json::array()},
+           {"lights", Json::array()},
+           {"sky", {{"color", list(image::linear_from_srgb(stage.sky_color))}, {"strength", stage.sky_intensity}}}};
+  for (const auto& surface : first.surfaces)
+    film_["objects"].push_back({{"name", surface->name}, {"visible", surface->visible}});
+  for (const frame::Light& light : lights) film_["lights"].push_back(light_json(light, 1 - stage.sky_intensity));
+}
+
+void BlenderScript::add(int frame, const std::vector<View>& views) {
+  film_["last"] = frame;
+  film_["frames"].push_back(frame);
+  Json& cameras = film_["cameras"];
+  for (std::size_t c = 0; c < views.size(); ++c) {
+    if (c == cameras.size()) cameras.push_back({{"name", views[c].name}, {"frames", Json::array()}});
+    Json key{views[c].field_of_view};
+    for (int row = 0; row < 3; ++row) {
+      const Eigen::RowVector4d r = views[c].world_from_view.row(row);
+      key.push_back({r[0], r[1], r[2], r[3]});
+    }
+    cameras[c]["frames"].push_back(std::move(key));
+  }
+}
+
+std::string BlenderScript::text() const {
+  // JSON in ASCII has no three quotes in a row, so it ends where it should.
+  const std::string data = film_.dump(-1, ' ', true);
+  std::string text = fmt::format("# {}, by Weft {}.\nFILM_TEXT = r\"\"\"{}\"\"\"\n\n",
+                                 film_["name"].dump(-1, ' ', true), kVersion, data);
+  for (const EmbeddedFile& file : kEmbeddedExport)
+    if (file.name == "blender.py") text += file.text;
+  return text;
+}
+
+}  // namespace weft::exporter

@@ -1,0 +1,187 @@
+// What stands in USD files and scripts for Blender, by small readers of the tests' own. tests/export/blender_test.py
+// has Blender itself load the script.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <regex>
+
+#include "export/export.hpp"
+#include "image/color.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::exporter {
+namespace {
+
+// To the last bit of single precision at a metre.
+constexpr double kSingle = 1.2e-7;
+
+// Two panels of one triangle each, sewn along their common edge, that flutter from frame 3 on; a bent sheet that stands
+// still; something that is not to be seen.
+class Staged : public support::TestFolder {
+ protected:
+  void SetUp() override {
+    TestFolder::SetUp();
+    frame::Surface dress;
+    dress.name = "red-dress";
+    dress.crease_angle = 180;
+    dress.triangles = {{0, 1, 2}, {0, 2, 3}};
+    dress.paint_uv = {{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}, {Vec2(5, 5), Vec2(6, 6), Vec2(5, 6)}};
+    dress.appearance.color = {0.8, 0.2, 0.1};
+    dress.appearance.roughness = 0.7;
+    dress.parts = {{"front", dress.appearance}, {"back", {}}};
+    dress.part_of_triangle = {0, 1};
+    frame::Surface body;
+    body.name = "red_dress";  // the same name, as USD writes it
+    body.kind = frame::ObjectKind::character;
+    body.triangles = {{0, 1, 2}, {0, 2, 3}};
+    frame::Surface hidden = body;
+    hidden.name = "hidden";
+    hidden.visible = false;
+    for (const auto& surface : {dress, body, hidden}) surfaces_.push_back(std::make_shared<frame::Surface>(surface));
+    request_.folder = folder_ / "out";
+    request_.name = "1st film";
+    request_.fps = 23.976;
+    request_.width = 400;
+    request_.height = 200;
+    request_.frames = {2, 3, 4};
+    request_.views = [](const frame::FrameSnapshot& shown) {
+      View view{"eye", Eigen::Matrix4d::Identity(), 90};
+      view.world_from_view.col(3).head<3>() = Vec3(shown.frame, 2, 3);
+      return std::vector{view};
+    };
+    request_.lights.push_back({.name = "sun", .intensity = 2});
+  }
+
+  static std::vector<Vec3> points(int k) { return {{1.0 / 3, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, k < 4 ? 0.1 : 0.25}}; }
+
+  frame::SnapshotPtr snapshot(int k) const {
+    auto snapshot = std::make_shared<frame::FrameSnapshot>();
+    snapshot->frame = k;
+    snapshot->time = k / request_.fps;
+    snapshot->stage = stage_;
+    snapshot->surfaces = surfaces_;
+    const std::vector<Vec3> roof{{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}};
+    snapshot->states = {{points(k), {}}, {roof, {}}, {roof, {}}};
+    return snapshot;
+  }
+
+  std::string written(Format format, const std::string& name) {
+    request_.format = format;
+    EXPECT_TRUE(exporter::write(request_, [&](int k) { return snapshot(k); }));
+    return support::read_bytes(request_.folder / name);
+  }
+
+  Request request_;
+  std::shared_ptr<const frame::Stage> stage_ = std::make_shared<frame::Stage>();
+  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
+};
+
+/// What stands between the braces after `head`.
+std::string block(const std::string& text, const std::string& head) {
+  const auto start = text.find(head);
+  if (start == std::string::npos) return "";
+  std::size_t at = text.find('{', start), depth = 0;
+  const std::size_t open = at;
+  for (; at < text.size(); ++at) {
+    depth += text[at] == '{' ? 1 : 0;
+    if (text[at] == '}' && --depth == 0) break;
+  }
+  return text.substr(open, at - open);
+}
+
+std::vector<double> numbers(const std::string& text) {
+  const std::regex number("-?[0-9][0-9.e+-]*");
+  std::vector<double> found;
+  for (std::sregex_iterator i(text.begin(), text.end(), number), end; i != end; ++i)
+    found.push_back(std::stod(i->str()));
+  return found;
+}
+
+/// Of `name = ...` up to the end of the line.
+std::vector<double> value(const std::string& text, const std::string& name) {
+  const auto start = text.find(name + " = ");
+  EXPECT_NE(start, std::string::npos) << name;
+  return numbers(text.substr(start + name.size(), text.find('\n', start) - start - name.size()));
+}
+
+TEST_F(Staged, UsdFilesHoldPointsOfEachFrameAtItsTimeCode) {
+  const std::string text = written(Format::usd, "1st film.usda");
+  EXPECT_TRUE(text.starts_with("#usda 1.0\n"));
+  for (const char* line : {"startTimeCode = 2\n", "endTimeCode = 4\n", "timeCodesPerSecond = 23.976\n",
+                           "metersPerUnit = 1\n", "upAxis = \"Z\"\n", "defaultPrim = \"_1st_film\"\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << line;
+  EXPECT_EQ(text.find("hidden"), std::string::npos) << "what is not visible is left out";
+  const std::string dress = block(text, "def Mesh \"red_dress\"");
+  const std::string samples = block(dress, "points.timeSamples");
+  std::smatch sample;
+  for (int k : request_.frames) {
+    ASSERT_TRUE(std::regex_search(samples, sample, std::regex(fmt::format("\n +{}: (\\[.*\\])", k)))) << k;
+    const std::vector<double> came = numbers(sample[1]);
+    ASSERT_EQ(came.size(), 12U);
+    for (std::size_t i = 0; i < came.size(); ++i)
+      EXPECT_NEAR(came[i], points(k)[i / 3][static_cast<Index>(i % 3)], kSingle) << k;
+  }
+  EXPECT_EQ(block(text, "def Mesh \"red_dress_2\"").find("timeSamples"), std::string::npos) << "it stands still";
+}
+
+TEST_F(Staged, UsdFilesHavePanelsNormalsAndMaterials) {
+  const std::string text = written(Format::usd, "1st film.usda");
+  const std::string dress = block(text, "def Mesh \"red_dress\""), body = block(text, "def Mesh \"red_dress_2\"");
+  EXPECT_EQ(value(dress, "faceVertexIndices"), (std::vector<double>{0, 1, 2, 0, 2, 3}));
+  const std::vector<double> st = value(dress, "primvars:st"), at = value(dress, "primvars:st:indices");
+  ASSERT_EQ(at.size(), 6U);
+  for (std::size_t c = 0; c < 6; ++c) {
+    const Vec2& uv = surfaces_[0]->paint_uv[c / 3][c % 3];
+    const auto place = static_cast<std::size_t>(at[c]);
+    EXPECT_EQ(Vec2(st[2 * place], st[2 * place + 1]), uv) << c;
+  }
+  // One normal a vertex for cloth; a bent sheet whose crease is sharp has them by corner, those of its triangles.
+  EXPECT_EQ(value(dress, "normal3f[] normals").size(), 12U);
+  const std::vector<double> normals = value(body, "normal3f[] normals");
+  ASSERT_EQ(normals.size(), 18U);
+  const Vec3 first = Vec3(1, 0, 1).cross(Vec3(1, 1, 0)).normalized();
+  for (std::size_t c = 0; c < 3; ++c)
+    EXPECT_LT((Vec3(normals[3 * c], normals[3 * c + 1], normals[3 * c + 2]) - first).norm(), 1e-5);
+  const std::string front = block(text, "def Material \"red_dress_0_front\"");
+  const std::vector<double> color = value(front, "inputs:diffuseColor");
+  const Vec3 expected = image::linear_from_srgb(surfaces_[0]->parts[0].appearance.color);
+  EXPECT_LT((Vec3(color[0], color[1], color[2]) - expected).norm(), 1e-6);
+  EXPECT_EQ(value(front, "inputs:roughness"), std::vector{0.7});
+  EXPECT_EQ(value(block(dress, "def GeomSubset \"red_dress_1_back\""), "indices"), std::vector{1.0});
+  EXPECT_NE(block(dress, "def GeomSubset \"red_dress_1_back\"").find("</_1st_film/materials/red_dress_1_back>"),
+            std::string::npos);
+}
+
+TEST_F(Staged, UsdCamerasStandAndSeeAsTheFramesDo) {
+  const std::string camera = block(written(Format::usd, "1st film.usda"), "def Camera \"eye\"");
+  const double aperture = value(camera, "verticalAperture")[0], focal = value(camera, "focalLength")[0];
+  EXPECT_NEAR(2 * std::atan(aperture / 2 / focal), std::numbers::pi / 2, 1e-8);
+  EXPECT_NEAR(value(camera, "horizontalAperture")[0] / aperture, 2, 1e-8);
+  const std::vector<double> samples = numbers(block(camera, "transform.timeSamples"));
+  ASSERT_EQ(samples.size(), 3U * 17);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_EQ(samples[17 * k], 2.0 + static_cast<double>(k));
+    // The last row is where it stands.
+    EXPECT_EQ(Vec3(samples[17 * k + 13], samples[17 * k + 14], samples[17 * k + 15]), Vec3(samples[17 * k], 2, 3));
+  }
+}
+
+TEST_F(Staged, TheScriptForBlenderNamesAllThatItLoads) {
+  const std::string text = written(Format::blender, "1st film.py");
+  const auto start = text.find("r\"\"\"") + 4;
+  const auto film = nlohmann::json::parse(text.substr(start, text.find("\"\"\"", start) - start));
+  EXPECT_EQ(film["fps"], 23.976);
+  EXPECT_EQ(film["size"], nlohmann::json({400, 200}));
+  EXPECT_EQ(film["frames"], nlohmann::json({2, 3, 4}));
+  EXPECT_EQ(film["objects"][2], nlohmann::json({{"name", "hidden"}, {"visible", false}}));
+  EXPECT_EQ(film["cameras"][0]["frames"][1], nlohmann::json({90, {1, 0, 0, 3}, {0, 1, 0, 2}, {0, 0, 1, 3}}));
+  EXPECT_NEAR(film["lights"][0]["strength"].get<double>(), 2 * (1 - stage_->sky_intensity), 1e-12);
+  for (const char* file : {"red-dress.obj", "red-dress.pc2", "hidden.pc2"})
+    EXPECT_TRUE(std::filesystem::exists(request_.folder / file)) << file;
+}
+
+}  // namespace
+}  // namespace weft::exporter
