@@ -1,11 +1,13 @@
 #include <fmt/format.h>
 
 #include <cstdio>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/estimate.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/table.hpp"
 #include "core/error.hpp"
@@ -76,10 +78,16 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
     log::info(mistakes.lines);
     return mistakes.code;
   }
-  const simulation::Simulation begun(loaded.scene);  // all that a run does before its first step
+  // All that a run does before its first step, and some steps where they are asked for.
+  std::optional<Estimate> estimate;
+  if (options.estimate)
+    estimate = estimate_run(loaded.scene, render_settings(loaded.scene, {}));
+  else
+    const simulation::Simulation begun(loaded.scene);
   fmt::print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
   for (const std::string& doubt : simulation::doubts(loaded.scene)) fmt::print("{}: note: {}\n", file.string(), doubt);
   if (options.plan) fmt::print("{}", plan_table(loaded.scene));
+  if (estimate) fmt::print("{}: {}\n", file.string(), describe(*estimate));
   return ExitCode::ok;
 }
 

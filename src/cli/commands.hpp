@@ -31,6 +31,18 @@ ExitCode join(const JoinOptions& options);
 /// Runs a scene with many values; ends with the exit code of the first run that failed.
 ExitCode sweep(const SweepOptions& options);
 
+/// Hands runs and sweeps to a Slurm cluster, tells how far they are, takes them back.
+ExitCode farm(const FarmOptions& options);
+
+/// Writes a first scene to go on from.
+ExitCode make_new(const NewOptions& options);
+
+/// What make_new() can take.
+std::vector<std::string> template_names();
+
+/// Draws a scene again whenever one of its files changes, until it is interrupted.
+ExitCode watch(const WatchOptions& options);
+
 /// Prints what this machine offers and tries it.
 ExitCode doctor(const DoctorOptions& options);
 

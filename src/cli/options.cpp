@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "cli/manual.hpp"
 #include "cli/option_values.hpp"
 #include "cli/parser.hpp"
 #include "core/error.hpp"
@@ -52,6 +53,16 @@ void check_command_name(const Parser& parser, const std::vector<std::string>& ar
               prefix);
 }
 
+FarmOptions checked(FarmOptions farm) {
+  const bool submits = farm.action == FarmOptions::Action::submit;
+  if (submits && farm.sweep.output.empty())
+    throw Error(ExitCode::usage, "weft farm submit: expected -o DIR, a folder that all machines share");
+  if (!submits && !farm.sweep.output.empty())
+    throw Error(ExitCode::usage, "weft farm: -o is for weft farm submit; expected the folder of the runs alone");
+  if (!submits) farm.sweep.output = farm.sweep.scene;
+  return farm;
+}
+
 }  // namespace
 
 Command parse_command_line(const std::vector<std::string>& arguments) {
@@ -92,6 +103,11 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
       throw Error(ExitCode::usage, "weft sweep: expected --set KEY=A,B,... or --list; see weft sweep --help");
     return parser.sweep;
   }
+  if (name == "farm") return checked(parser.farm);
+  if (name == "new") return parser.fresh;
+  if (name == "watch") return parser.watch;
+  if (name == "completion") return PrintText{completion(parser.app, parser.shell)};
+  if (name == "man") return PrintText{manual(parser.app)};
   if (name == "schema") return parser.schema;
   if (name == "bench") return parser.bench;
   if (name == "diff") return parser.diff;

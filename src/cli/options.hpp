@@ -64,6 +64,7 @@ struct CheckOptions {
   std::vector<std::filesystem::path> scenes;
   std::vector<std::string> overrides;
   bool plan = false;
+  bool estimate = false;  ///< also of time and memory
 };
 
 struct ThumbnailOptions {
@@ -97,7 +98,35 @@ struct SweepOptions {
   std::vector<std::string> passed_on;  ///< to each run, checked
   int jobs = 1;                        ///< runs at once
   std::optional<int> frame;            ///< of the sheet, else the last
+  bool gather = false;                 ///< makes no run, only sheet, table and page of what is there
   bool overwrite = false;
+};
+
+struct FarmOptions {
+  enum class Action { submit, status, cancel };
+  Action action = Action::status;
+  SweepOptions sweep;  ///< of submit: its scene, and its folder in all cases
+  FrameSelection frames;
+  int part = 50;                           ///< frames that one task draws
+  int threads = 1;                         ///< of a task
+  int retries = 3;                         ///< of a task that was killed or found no room
+  std::optional<int> memory, minutes;      ///< of a task [MB, min]; else from a trial
+  std::vector<std::string> for_scheduler;  ///< options of sbatch
+  bool dry_run = false;                    ///< writes the scripts and prints them
+};
+
+struct NewOptions {
+  std::string name;            ///< of the scene, with its folder
+  std::string kind = "drape";  ///< of the template
+  bool overwrite = false;
+};
+
+struct WatchOptions {
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;  ///< of --set
+  std::vector<std::string> passed_on;  ///< to what draws, checked
+  bool film = false;                   ///< the whole video, not a still
+  int times = 0;                       ///< ends after so many; 0: when it is interrupted
 };
 
 struct SchemaOptions {
@@ -158,9 +187,10 @@ struct PrintText {
   std::string text;
 };
 
-using Command = std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SheetOptions,
-                             JoinOptions, SweepOptions, SchemaOptions, DoctorOptions, BenchOptions, DiffOptions,
-                             AcceptOptions, ReviewOptions, ExportOptions, PrintText>;
+using Command =
+    std::variant<RunOptions, SimulateOptions, RenderOptions, CheckOptions, ThumbnailOptions, SheetOptions, JoinOptions,
+                 SweepOptions, FarmOptions, NewOptions, WatchOptions, SchemaOptions, DoctorOptions, BenchOptions,
+                 DiffOptions, AcceptOptions, ReviewOptions, ExportOptions, PrintText>;
 
 /// `arguments` without the program's name. Throws Error(usage) with what was expected and the nearest known name.
 Command parse_command_line(const std::vector<std::string>& arguments);

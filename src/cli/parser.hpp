@@ -19,6 +19,10 @@ struct Parser {
   SheetOptions sheet;
   JoinOptions join;
   SweepOptions sweep;
+  FarmOptions farm;
+  NewOptions fresh;
+  WatchOptions watch;
+  std::string shell;  // of completion
   SchemaOptions schema;
   DoctorOptions doctor;
   BenchOptions bench;
@@ -38,6 +42,10 @@ struct Parser {
   void add_sheet();
   void add_join();
   void add_sweep();
+  void add_farm();
+  void add_new();
+  void add_watch();
+  void add_completion();
   void add_schema();
   void add_doctor();
   void add_bench();

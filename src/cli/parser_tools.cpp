@@ -23,59 +23,10 @@ void Parser::add_check() {
   CLI::App& command = *app.add_subcommand("check", "Print every mistake of one or more scenes");
   command.add_option("SCENE", check.scenes, "Scenes, TOML files")->required()->type_name("");
   command.add_flag("--plan", check.plan, "Also print which parts the scene needs and which are left out");
+  command.add_flag("--estimate", check.estimate,
+                   "Also simulate some seconds, and tell what a run takes of time and memory");
   add_overrides(command, check.overrides);
   command.footer("\nExample:\n  weft check scenes/*.toml");
-}
-
-void Parser::add_sweep() {
-  CLI::App& command =
-      *app.add_subcommand("sweep", "Run a scene with many values, side by side on a sheet and in a table");
-  command.add_option("SCENE", sweep.scene, "The scene, a TOML file")->required()->type_name("");
-  command
-      .add_option_function<std::vector<std::string>>(
-          "--set",
-          [this](const std::vector<std::string>& texts) {
-            for (const std::string& text : texts) sweep.axes.push_back(parse_axis(text));
-          },
-          "Values of one key of the scene; given several times: all combinations")
-      ->type_name("KEY=A,B,...")
-      ->allow_extra_args(false);
-  add_value(command, "--list", "FILE", "Runs one by one: CSV with keys in its first line, or TOML with [[run]]",
-            [this](const std::string& text) { sweep.list = text; });
-  command.add_option("-o,--output", sweep.output, "Folder of all runs")->required()->type_name("DIR");
-  add_value(command, "--jobs", "N", "Runs at once [1]",
-            [this](const std::string& text) { sweep.jobs = parse_integer("--jobs", text, 1, kMaxThreads); });
-  add_value(command, "--frame", "N", "Which picture of each run the sheet shows, counted from 0 [the last]",
-            [this](const std::string& text) { sweep.frame = parse_integer("--frame", text, 0, 1'000'000'000); });
-  const auto passed_on = [&](const char* name, const char* value, const char* description,
-                             std::function<void(const std::string&)> examine) {
-    add_value(command, name, value, description, [this, name, examine](const std::string& text) {
-      examine(text);
-      sweep.passed_on.insert(sweep.passed_on.end(), {name, text});
-    });
-  };
-  passed_on("--frames", "A:B[:STEP]", "Draw frames A up to but without B, counted from 0 [all]", parse_frames);
-  passed_on("--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]", parse_size);
-  passed_on("--camera", "NAME", "A camera of the scene [its choice, or automatic framing]", [](const std::string&) {});
-  passed_on("--quality", "draft|preview|final", "Care taken in drawing [final]",
-            [](const std::string& text) { parse_choice("--quality", text, kQualities); });
-  passed_on("--threads", "N", "Threads of each run at most [all cores]; results do not depend on it",
-            [](const std::string& text) { parse_integer("--threads", text, 1, kMaxThreads); });
-  command.add_flag_callback(
-      "--error", [this] { sweep.passed_on.emplace_back("--error"); },
-      "Also tell how far off each run is, by simulating it with other steps, solver settings and starts");
-  command.add_flag("--overwrite", sweep.overwrite, "Make all runs anew");
-  command.footer(
-      "\nExamples:\n"
-      "  weft sweep scenes/falling_band.toml --set cloth.band.material.bend=1e-6,1e-5,1e-4 -o bends --quality draft\n"
-      "  weft sweep scenes/falling_band.toml --set cloth.band.material.fabric=silk,denim --set time.step=0.01,0.02 -o "
-      "s\n"
-      "  weft sweep scenes/falling_band.toml --list runs.csv -o runs\n"
-      "\nEach run has a folder named by its values; beside them lie sheet.png, table.csv, table.md and "
-      "page/index.html.\n"
-      "The same command goes on with what was stopped, and passes over what is done. Runs that fail are named, and "
-      "the\n"
-      "exit code is that of the first of them.");
 }
 
 void Parser::add_schema() {

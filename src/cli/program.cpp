@@ -31,6 +31,9 @@ struct Dispatch {
   ExitCode operator()(const SheetOptions& options) const { return sheet(options); }
   ExitCode operator()(const JoinOptions& options) const { return join(options); }
   ExitCode operator()(const SweepOptions& options) const { return sweep(options); }
+  ExitCode operator()(const FarmOptions& options) const { return farm(options); }
+  ExitCode operator()(const NewOptions& options) const { return make_new(options); }
+  ExitCode operator()(const WatchOptions& options) const { return watch(options); }
   ExitCode operator()(const SchemaOptions& options) const {
     return print(
         (options.pattern ? scene::json_schema(garment::pattern_rules(), "Weft pattern") : scene::json_schema()) + "\n");

@@ -1,20 +1,16 @@
 // weft sweep: many runs of one scene. Each is `weft run` in a process of its own, so that what befalls one is nothing
 // to the others, and anybody can do one of them again.
-#include <fcntl.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <fstream>
-#include <iterator>
-#include <map>
 
+#include "cli/child_process.hpp"
 #include "cli/commands.hpp"
-#include "cli/path_ledger.hpp"
-#include "cli/scene_input.hpp"
 #include "cli/signals.hpp"
+#include "cli/sweep_jobs.hpp"
 #include "cli/sweep_report.hpp"
 #include "core/log.hpp"
 #include "core/progress.hpp"
@@ -26,42 +22,16 @@ namespace weft::cli {
 namespace {
 
 namespace fs = std::filesystem;
-using Json = nlohmann::ordered_json;
 
-constexpr const char* kIndexFile = "sweep.json";  // also the mark of a folder that sweeps fill
-constexpr auto kPause = 20'000;                   // between looks at the processes [microseconds]
-
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-Json read_json(const fs::path& file) {
-  Json json = Json::parse(read_text(file), nullptr, false);
-  return json.is_discarded() ? Json() : json;
-}
+constexpr auto kPause = 20'000;  // between looks at the processes [microseconds]
 
 /// A run and its process.
-struct Job {
-  SweepRun run;
-  std::uint64_t scene_hash = 0;
-  const Job* twin = nullptr;  ///< an earlier run of the same scene, which is not simulated again
-  fs::path folder = {};
-  std::string scene = {};
+struct Job : SweepJob {
   pid_t process = -1;
   ExitCode code = ExitCode::ok;
   bool tried = false;
 
-  fs::path video() const { return folder / (scene + ".mp4"); }
-  fs::path stats() const { return folder / (scene + ".json"); }
   fs::path log() const { return folder / "run.log"; }
-
-  /// Of this very scene, to its end.
-  bool is_done() const {
-    const Json json = read_json(stats());
-    return fs::exists(video()) && json.is_object() && json.value("exit_code", -1) == 0 &&
-           json.value("scene_hash", "") == fmt::format("{:016x}", scene_hash);
-  }
 
   std::string last_words() const {
     std::string last;
@@ -75,65 +45,25 @@ struct Job {
 class Sweep {
  public:
   explicit Sweep(const SweepOptions& options) : options_(options) {
-    const std::vector<Changes> list = options.list.empty() ? std::vector<Changes>{} : read_list(options.list);
-    for (SweepRun& run : plan_sweep(list, options.axes)) jobs_.push_back({.run = std::move(run)});
-    check_scenes();
-    check_folder();
+    plan_ = read_sweep(options_, paths_);
+    for (const SweepJob& job : plan_) jobs_.push_back({job});
+    check_sweep_folder(options_, paths_);
   }
 
   ExitCode make() {
-    write_file(options_.output / kIndexFile, index().dump(2) + "\n");
-    run_all();
+    if (!options_.gather) {
+      write_sweep_index(options_, plan_);
+      run_all();
+    }
     const std::vector<SweepResult> results = collect();
     write_reports(results);
     return tell(results);
   }
 
  private:
-  /// Reads all scenes before the first is run: what is wrong with one ends the sweep at once.
-  void check_scenes() {
-    std::string mistakes;
-    std::map<std::uint64_t, const Job*> known;
-    for (Job& job : jobs_) {
-      const scene::LoadResult loaded = scene::load(options_.scene, overrides(job));
-      if (!loaded.ok()) {
-        mistakes += (mistakes.empty() ? "" : "\n") + mistakes_text(loaded);
-        continue;
-      }
-      job.scene_hash = loaded.scene.hash;
-      job.scene = loaded.scene.name;
-      job.folder = options_.output / job.run.name;
-      const auto [twin, fresh] = known.emplace(job.scene_hash, &job);
-      if (!fresh) job.twin = twin->second;
-      if (&job == &jobs_.front()) add_inputs(paths_, loaded.scene);
-    }
-    if (!mistakes.empty()) throw Error(ExitCode::scene_invalid, mistakes);
-  }
-
-  void check_folder() {
-    if (!options_.list.empty()) paths_.reads(options_.list, "the list of runs");
-    paths_.fills("-o", options_.output);
-    const fs::path& folder = options_.output;
-    if (!fs::exists(folder) || fs::is_empty(folder)) return;
-    const Json before = read_json(folder / kIndexFile);
-    if (!before.is_object())
-      throw Error(ExitCode::output_failed, "{}: is no folder of a sweep, and not empty; give another name",
-                  folder.string());
-    if (!options_.overwrite && before["options"] != Json(options_.passed_on))
-      throw Error(ExitCode::output_failed,
-                  "{}: holds runs with other options ({}); give these, --overwrite to start again, or another name",
-                  folder.string(), fmt::join(before.value("options", std::vector<std::string>{}), " "));
-  }
-
-  static std::vector<std::string> overrides(const Job& job) {
-    std::vector<std::string> texts;
-    for (const auto& [key, value] : job.run.changes) texts.push_back(fmt::format("{}={}", key, value));
-    return texts;
-  }
-
   std::vector<std::string> command(const Job& job) const {
-    std::vector<std::string> words{"weft", "run", options_.scene.string()};
-    for (const std::string& text : overrides(job)) words.insert(words.end(), {"--set", text});
+    std::vector<std::string> words{own_program().string(), "run", options_.scene.string()};
+    for (const std::string& text : job.overrides()) words.insert(words.end(), {"--set", text});
     words.insert(words.end(), options_.passed_on.begin(), options_.passed_on.end());
     words.insert(words.end(), {"-o", job.video().string(), "--stats", job.stats().string(), "--progress", "none"});
     words.emplace_back(options_.overwrite ? "--overwrite" : "--resume");
@@ -142,19 +72,7 @@ class Sweep {
 
   void start(Job& job) const {
     fs::create_directories(job.folder);
-    std::vector<std::string> words = command(job);
-    std::vector<char*> arguments;
-    for (std::string& word : words) arguments.push_back(word.data());
-    arguments.push_back(nullptr);
-    posix_spawn_file_actions_t files;
-    posix_spawn_file_actions_init(&files);
-    posix_spawn_file_actions_addopen(&files, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-    posix_spawn_file_actions_addopen(&files, STDOUT_FILENO, job.log().c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    posix_spawn_file_actions_adddup2(&files, STDOUT_FILENO, STDERR_FILENO);
-    const int problem = ::posix_spawn(&job.process, "/proc/self/exe", &files, nullptr, arguments.data(), environ);
-    posix_spawn_file_actions_destroy(&files);
-    if (problem != 0)
-      throw Error(ExitCode::internal, "{}: cannot be started: {}", job.run.name, std::strerror(problem));
+    job.process = start_process(command(job), job.log());
   }
 
   void run_all() {
@@ -174,7 +92,7 @@ class Sweep {
         const bool done = !job.twin && !options_.overwrite && job.is_done();
         if (job.twin || done) {
           log::info(fmt::format("[{}/{}] {}: {}", ++ended, jobs_.size(), label_of(job.run),
-                                done ? "done already" : "the same scene as " + label_of(job.twin->run)));
+                                done ? "done already" : "the same scene as " + label_of(jobs_[*job.twin].run)));
           continue;
         }
         start(job);
@@ -198,21 +116,12 @@ class Sweep {
   std::vector<SweepResult> collect() const {
     std::vector<SweepResult> results;
     for (const Job& job : jobs_) {
-      const Job& made = job.twin ? *job.twin : job;
-      const ExitCode code = made.tried ? made.code : ExitCode::interrupted;
+      const Job& made = job.twin ? jobs_[*job.twin] : job;
+      ExitCode code = made.tried ? made.code : ExitCode::interrupted;
+      if (options_.gather) code = made.is_done() ? ExitCode::ok : ExitCode::not_whole;
       results.push_back({job.run, made.video(), read_json(made.stats()), code});
     }
     return results;
-  }
-
-  Json index() const {
-    Json runs = Json::array();
-    for (const Job& job : jobs_) {
-      Json set = Json::object();
-      for (const auto& [key, value] : job.run.changes) set[key] = value;
-      runs.push_back({{"folder", (job.twin ? job.twin : &job)->run.name}, {"set", std::move(set)}});
-    }
-    return {{"scene", options_.scene.string()}, {"options", options_.passed_on}, {"runs", std::move(runs)}};
   }
 
   void write_reports(const std::vector<SweepResult>& results) const {
@@ -239,9 +148,12 @@ class Sweep {
     }
     log::info(where);
     if (failed == results.end()) return ExitCode::ok;
-    log::info(fmt::format("weft: {} of {} runs failed:", count, results.size()));
+    log::info(
+        fmt::format("weft: {} of {} runs {}:", count, results.size(), options_.gather ? "are not done" : "failed"));
     for (const SweepResult& result : results)
-      if (result.code != ExitCode::ok)
+      if (result.code != ExitCode::ok && options_.gather)
+        log::info(fmt::format("  {}", label_of(result.run)));
+      else if (result.code != ExitCode::ok)
         log::info(fmt::format("  {}: exit code {}, {}", label_of(result.run), static_cast<int>(result.code),
                               (options_.output / result.run.name / "run.log").string()));
     return failed->code;
@@ -249,6 +161,7 @@ class Sweep {
 
   const SweepOptions& options_;
   const StopSignals stop_{"ending the runs after their current frames"};
+  std::vector<SweepJob> plan_;
   std::vector<Job> jobs_;
   PathLedger paths_;
 };

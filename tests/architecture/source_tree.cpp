@@ -49,7 +49,8 @@ std::vector<fs::path> written_files(const fs::path& root, const std::vector<std:
 }
 
 // Headers that the build writes.
-const std::set<std::string> kGeneratedHeaders = {"embedded_shaders.hpp", "embedded_review.hpp"};
+const std::set<std::string> kGeneratedHeaders = {"embedded_shaders.hpp", "embedded_review.hpp", "embedded_cli.hpp",
+                                                 "embedded_templates.hpp", "embedded_export.hpp"};
 
 const std::vector<std::string> kCodeFolders = {"src", "shaders", "tests"};
 const std::vector<std::string> kAllFolders = {"src", "shaders", "tests", "scenes", ".ci"};

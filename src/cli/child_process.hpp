@@ -1,0 +1,27 @@
+// Other programs, and this one again.
+#pragma once
+
+#include <sys/types.h>
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace weft::cli {
+
+/// The file that this process runs.
+std::filesystem::path own_program();
+
+/// Starts `words[0]`, looked up as a shell does, without input; what it prints goes to `log`, empty: where ours does.
+/// Throws Error(internal).
+pid_t start_process(const std::vector<std::string>& words, const std::filesystem::path& log);
+
+struct ProcessResult {
+  int exit_code = 0;   ///< 127: there is no such program; 128 and more: ended by a signal
+  std::string output;  ///< what it printed; its errors go where ours go
+};
+
+/// Waits for its end.
+ProcessResult run_process(const std::vector<std::string>& words);
+
+}  // namespace weft::cli

@@ -1,0 +1,248 @@
+// weft farm: runs and sweeps as jobs of a Slurm cluster. The tasks are weft commands that go on where they were
+// stopped; all that is known of them lies in the folder of the sweep, which the machines share.
+#include <algorithm>
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include "cache/reader.hpp"
+#include "cli/child_process.hpp"
+#include "cli/commands.hpp"
+#include "cli/estimate.hpp"
+#include "cli/farm_scripts.hpp"
+#include "cli/scene_input.hpp"
+#include "cli/sweep_report.hpp"
+#include "cli/table.hpp"
+#include "core/log.hpp"
+#include "core/temporary_file.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+// What is asked of the scheduler, by what a trial took: frames with contacts take longer than the first ones, and what
+// runs out of time goes on later, while what runs out of memory is killed.
+constexpr double kTimeFactor = 4, kMemoryFactor = 1.5;
+constexpr int kLeastMinutes = 10, kMoreMemory = 256;  // [min], [MB]
+
+void need_slurm(const char* program, const ProcessResult& result) {
+  if (result.exit_code == 127)
+    throw Error(
+        ExitCode::output_failed,
+        "{} is not found: expected a machine that hands jobs to Slurm; weft farm submit --dry-run writes scripts "
+        "for others",
+        program);
+}
+
+/// Numbers of jobs with their names, those handed in last at the end.
+std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folder) {
+  std::vector<std::pair<std::string, std::string>> jobs;
+  std::ifstream in(folder / "farm/jobs");
+  for (std::string line; std::getline(in, line);)
+    if (const auto tab = line.find('\t'); tab != std::string::npos)
+      jobs.emplace_back(line.substr(0, tab), line.substr(tab + 1));
+  return jobs;
+}
+
+/// Those that wait or run, with their number: `1234_5`, or `1234_[0-3]` of those that wait in an array.
+std::vector<std::string> active_jobs(const fs::path& folder, std::map<std::string, int>& states) {
+  std::vector<std::string> numbers;
+  for (const auto& [number, name] : read_jobs(folder)) numbers.push_back(number);
+  std::vector<std::string> active;
+  if (numbers.empty()) return active;
+  const ProcessResult queue = run_process({"squeue", "--noheader", "--array", "--format=%A %F %T"});
+  if (queue.exit_code == 127) return active;
+  std::istringstream lines(queue.output);
+  for (std::string own, array, state; lines >> own >> array >> state;) {
+    if (std::ranges::find(numbers, array) == numbers.end()) continue;
+    ++states[state];
+    if (std::ranges::find(active, array) == active.end()) active.push_back(array);
+  }
+  return active;
+}
+
+/// How far a run is.
+struct State {
+  std::string text;
+  bool done = false;
+};
+
+int count_files(const fs::path& folder, const char* ending) {
+  int count = 0;
+  std::error_code none;
+  for (const auto& entry : fs::directory_iterator(folder, none)) count += entry.path().extension() == ending ? 1 : 0;
+  return count;
+}
+
+State state_of(const fs::path& folder, const nlohmann::ordered_json& run) {
+  const std::string scene = run.value("scene", "");
+  const nlohmann::ordered_json stats = read_json(folder / (scene + ".json"));
+  const bool simulated = stats.is_object() && stats.value("exit_code", -1) == 0;
+  if (simulated && fs::exists(folder / (scene + ".mp4"))) return {"done", true};
+  const int frames = run.value("frames", 0);
+  if (simulated) return {fmt::format("{} of {} frames drawn", count_files(folder / "frames", ".png"), frames), false};
+  try {
+    return {fmt::format("{} of {} frames simulated", cache::Reader(folder / "cache").frames().size(), frames), false};
+  } catch (const Error&) {
+    return {"not begun", false};
+  }
+}
+
+class Farm {
+ public:
+  explicit Farm(const FarmOptions& options) : options_(options), folder_(options.sweep.output) {}
+
+  ExitCode submit() {
+    PathLedger paths;
+    plan_.jobs = read_sweep(options_.sweep, paths);
+    check_sweep_folder(options_.sweep, paths);
+    paths.check_writable();
+    std::map<std::string, int> states;
+    if (!options_.dry_run && !active_jobs(folder_, states).empty())
+      throw Error(ExitCode::output_failed, "{}: has jobs that wait or run; weft farm cancel {} ends them",
+                  folder_.string(), folder_.string());
+    for (std::size_t i = 0; i < plan_.jobs.size(); ++i) {
+      plan_.frames.push_back(resolve_frames(options_.frames, plan_.jobs[i].frame_count));
+      if (!plan_.jobs[i].twin && !plan_.jobs[i].is_done()) plan_.submitted.push_back(i);
+    }
+    plan_.part = options_.part;
+    for (const FrameRange& frames : plan_.frames) plan_.part = std::max(plan_.part, (frames.count() + 999) / 1000);
+    if (plan_.submitted.empty()) {
+      log::info(fmt::format("{}: all runs are done", folder_.string()));
+      return ExitCode::ok;
+    }
+    find_needs();
+    write();
+    if (options_.dry_run) return ExitCode::ok;
+    const ProcessResult handed_in = run_process({"sh", (folder_ / "farm/submit.sh").string()});
+    need_slurm("sbatch", handed_in);
+    if (handed_in.exit_code != 0)
+      throw Error(ExitCode::output_failed, "{}: ended with {}; weft farm cancel {} takes back what was handed in",
+                  (folder_ / "farm/submit.sh").string(), handed_in.exit_code, folder_.string());
+    log::info(fmt::format("{}: {} of {} runs handed in; weft farm status {} tells how far they are", folder_.string(),
+                          plan_.submitted.size(), plan_.jobs.size(), folder_.string()));
+    return ExitCode::ok;
+  }
+
+  ExitCode status() const {
+    const nlohmann::ordered_json index = read_index();
+    std::vector<std::vector<std::string>> rows;
+    std::size_t done = 0;
+    for (const auto& run : index["runs"]) {
+      const std::string name = run.value("folder", "");
+      const State state = state_of(folder_ / name, run);
+      done += state.done ? 1 : 0;
+      rows.push_back({name, state.text});
+    }
+    fmt::print("{}", format_table(rows, "ll", 2));
+    for (const std::string& line : failures()) fmt::print("{}\n", line);
+    std::map<std::string, int> states;
+    active_jobs(folder_, states);
+    std::string queue;
+    for (const auto& [state, count] : states) queue += fmt::format(", {} {}", count, state);
+    fmt::print("{} of {} runs are done{}\n", done, rows.size(), queue);
+    return done == rows.size() ? ExitCode::ok : ExitCode::not_whole;
+  }
+
+  ExitCode cancel() const {
+    read_index();
+    std::map<std::string, int> states;
+    std::vector<std::string> words{"scancel"};
+    for (const std::string& job : active_jobs(folder_, states)) words.push_back(job);
+    if (words.size() > 1) {
+      const ProcessResult result = run_process(words);
+      need_slurm("scancel", result);
+      if (result.exit_code != 0)
+        throw Error(ExitCode::output_failed, "scancel ended with {}; its own words stand above", result.exit_code);
+    }
+    log::info(
+        fmt::format("{}: {} jobs taken back; what they have made is kept, and weft farm submit goes on from there",
+                    folder_.string(), words.size() - 1));
+    return ExitCode::ok;
+  }
+
+ private:
+  nlohmann::ordered_json read_index() const {
+    nlohmann::ordered_json index = read_json(folder_ / "sweep.json");
+    if (!index.is_object() || !index.contains("runs"))
+      throw Error(ExitCode::asset_unreadable, "{}: expected the folder that weft farm submit was given with -o",
+                  folder_.string());
+    return index;
+  }
+
+  /// Tasks that ended with another exit code than 0, and where they say why.
+  std::vector<std::string> failures() const {
+    std::vector<std::string> lines;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder_ / "farm/log", none)) {
+      if (entry.path().extension() != ".code") continue;
+      int code = 0;
+      std::ifstream(entry.path()) >> code;
+      if (code == 0) continue;
+      lines.push_back(fmt::format("{} ended with exit code {}: {}", entry.path().stem().string(), code,
+                                  fs::path(entry.path()).replace_extension(".log").string()));
+    }
+    std::ranges::sort(lines);
+    return lines;
+  }
+
+  // By the first run and the last, which have the smallest and the largest of what is swept.
+  void find_needs() {
+    plan_.needs.simulate_minutes = plan_.needs.draw_minutes = options_.minutes.value_or(0);
+    plan_.needs.memory = options_.memory.value_or(0);
+    if (options_.minutes && options_.memory) return;
+    double simulate = 0, picture = 0, peak = 0;
+    for (const std::size_t i : {plan_.submitted.front(), plan_.submitted.back()}) {
+      SceneOptions scene;
+      scene.scene = options_.sweep.scene;
+      scene.overrides = plan_.jobs[i].overrides();
+      const scene::Scene loaded = load_scene(scene);
+      const Estimate estimate = estimate_run(loaded, render_settings(loaded, scene));
+      simulate = std::max(simulate, estimate.simulate_total());
+      picture = std::max(picture, estimate.draw);
+      peak = std::max(peak, static_cast<double>(estimate.peak));
+      if (plan_.submitted.size() == 1) break;
+    }
+    const auto minutes = [](double seconds) { return kLeastMinutes + static_cast<int>(kTimeFactor * seconds / 60); };
+    if (!options_.minutes) plan_.needs.simulate_minutes = minutes(simulate);
+    if (!options_.minutes) plan_.needs.draw_minutes = minutes(picture * plan_.part);
+    if (!options_.memory) plan_.needs.memory = kMoreMemory + static_cast<int>(kMemoryFactor * 1e-6 * peak);
+    log::info(fmt::format("by a trial: {} min at most to simulate a run, {} min to draw {} frames, {} MB",
+                          plan_.needs.simulate_minutes, plan_.needs.draw_minutes, plan_.part, plan_.needs.memory));
+  }
+
+  void write() const {
+    fs::create_directories(folder_ / "farm/log");
+    write_sweep_index(options_.sweep, plan_.jobs);
+    for (const std::size_t i : plan_.submitted) fs::create_directories(folder_ / plan_.jobs[i].run.name);
+    for (const auto& [name, text] :
+         {std::pair("task.sh", task_script(options_, plan_)), std::pair("submit.sh", submit_script(options_, plan_)),
+          std::pair("tasks.tsv", task_list(options_, plan_))}) {
+      write_file(folder_ / "farm" / name, text);
+      if (options_.dry_run) fmt::print("==> {} <==\n{}\n", (folder_ / "farm" / name).string(), text);
+    }
+    write_file(folder_ / "farm/jobs", "");
+  }
+
+  const FarmOptions& options_;
+  const fs::path folder_;
+  FarmPlan plan_;
+};
+
+}  // namespace
+
+ExitCode farm(const FarmOptions& options) {
+  Farm farm(options);
+  switch (options.action) {
+    case FarmOptions::Action::submit:
+      return farm.submit();
+    case FarmOptions::Action::status:
+      return farm.status();
+    case FarmOptions::Action::cancel:
+      break;
+  }
+  return farm.cancel();
+}
+
+}  // namespace weft::cli

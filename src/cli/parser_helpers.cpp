@@ -1,0 +1,85 @@
+// Commands for those who write scenes.
+#include "cli/commands.hpp"
+#include "cli/option_groups.hpp"
+#include "cli/parser.hpp"
+#include "core/error.hpp"
+
+namespace weft::cli {
+namespace {
+
+// One of some words; throws Error(usage) with the nearest.
+std::string chosen(const char* name, const std::string& text, const std::vector<std::string>& words) {
+  if (std::ranges::find(words, text) != words.end()) return text;
+  throw Error(ExitCode::usage, "{}: expected {}, got {}{}", name, fmt::join(words, ", "), text,
+              did_you_mean(text, words));
+}
+
+}  // namespace
+
+void Parser::add_new() {
+  CLI::App& command = *app.add_subcommand("new", "Write a first scene to go on from");
+  command.add_option("NAME", fresh.name, "Of the scene: NAME.toml is written, and its schema beside it")
+      ->required()
+      ->type_name("");
+  add_value(command, "--template", fmt::format("{}", fmt::join(template_names(), "|")).c_str(),
+            fmt::format("What it shows [{}]", fresh.kind),
+            [this](const std::string& text) { fresh.kind = chosen("--template", text, template_names()); });
+  command.add_flag("--overwrite", fresh.overwrite, "Replace a scene that exists already");
+  command.footer(
+      "\nExample:\n  weft new dress --template cape && weft watch dress.toml\n"
+      "\nThe first line of the scene names the schema, by which editors complete keys and mark mistakes.");
+}
+
+void Parser::add_watch() {
+  CLI::App& command = *app.add_subcommand("watch", "Draw a scene again whenever one of its files changes");
+  command.add_option("SCENE", watch.scene, "The scene, a TOML file")->required()->type_name("");
+  const auto passed_on = [&](const char* name, const char* value, const std::string& description,
+                             std::function<void(const std::string&)> examine) {
+    const std::string_view names = name;
+    const std::string first(names.substr(0, names.find(',')));
+    add_value(command, name, value, description, [this, first, examine](const std::string& text) {
+      examine(text);
+      watch.passed_on.insert(watch.passed_on.end(), {first, text});
+    });
+  };
+  const auto anything = [](const std::string&) {};
+  passed_on("--output,-o", "FILE.png|FILE.mp4", "What is drawn [output/<scene>.png, with --film .mp4]", anything);
+  passed_on("--size", "WxH", "Size of the picture in pixels [the scene's, or 1280x720]", parse_size);
+  passed_on("--camera", "NAME", "A camera of the scene [its choice, or automatic framing]", anything);
+  passed_on("--frame", "N", "Which frame the still shows, counted from 0 [the one that tells most]",
+            [](const std::string& text) { parse_integer("--frame", text, 0, 1'000'000'000); });
+  passed_on("--frames", "A:B[:STEP]", "Of --film: frames A up to but without B, counted from 0 [all]", parse_frames);
+  passed_on("--quality", "draft|preview|final", "Care taken in drawing [final]",
+            [](const std::string& text) { parse_choice("--quality", text, kQualities); });
+  command.add_flag("--film", watch.film, "The whole video instead of a still");
+  command.add_flag(
+      "--start", [this](std::int64_t) { watch.passed_on.emplace_back("--start"); },
+      "Of a still: how the scene is given, with all that touches or crosses marked in red");
+  add_overrides(command, watch.overrides);
+  add_value(command, "--times", "N", "End after so many drawings [when interrupted]",
+            [this](const std::string& text) { watch.times = parse_integer("--times", text, 1, 1'000'000'000); });
+  command.footer(
+      "\nExamples:\n  weft watch dress.toml --frame 20 --quality draft -o dress.png\n"
+      "  weft watch dress.toml --film --quality draft --size 320x180\n"
+      "\nA drawing that is not done when a file changes is given up. Viewers that follow the file show the last one.");
+}
+
+void Parser::add_completion() {
+  CLI::App& command = *app.add_subcommand("completion", "Print what lets a shell complete commands and options");
+  command
+      .add_option_function<std::string>(
+          "SHELL",
+          [this](const std::string& text) {
+            shell = chosen("SHELL", text, {"bash", "zsh", "fish"});
+          },
+          "bash, zsh or fish")
+      ->required()
+      ->type_name("");
+  command.footer(
+      "\nExamples:\n  source <(weft completion bash)\n"
+      "  weft completion fish > ~/.config/fish/completions/weft.fish");
+  CLI::App& man = *app.add_subcommand("man", "Print the manual page");
+  man.footer("\nExample:\n  weft man > weft.1 && man ./weft.1");
+}
+
+}  // namespace weft::cli

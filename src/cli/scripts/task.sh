@@ -1,0 +1,62 @@
+# The rest is the same for all: task.sh simulate RUN | draw RUN PART | join RUN | report
+#
+# A task that is whole already ends at once, one that was stopped goes on, and two at once do no harm: what is written
+# gets its name when it is whole. Numbers that are left out are those of the task in an array of Slurm.
+pause=${WEFT_PAUSE:-10} # before the next try, times the number of the try [s]
+stopped= child=
+
+echo "== $(date -u '+%F %T') $label on $(uname -n)"
+rm -f "farm/log/$label.code"
+
+# A time limit comes near: the frame in hand is finished, and the task goes on in a new place in the queue. Schedulers
+# that end a task tell all its processes themselves.
+trap 'stopped=again; [ -z "$child" ] || kill -TERM "$child"' USR1
+trap 'stopped=yes' TERM INT
+
+# Again where another try may help: a process that was killed, or a disk that was full.
+attempt() {
+  tries=0
+  while :; do
+    "$@" </dev/null &
+    child=$!
+    wait "$child"
+    code=$?
+    while [ "$code" -gt 128 ] && kill -0 "$child" 2>/dev/null; do
+      wait "$child"
+      code=$?
+    done
+    case $code in 0 | 2 | 3 | 4 | 5 | 9) return ;; esac
+    tries=$((tries + 1))
+    if [ -n "$stopped" ] || [ "$tries" -gt "$retries" ]; then return; fi
+    echo "exit code $code: try $tries of $retries follows in $((pause * tries)) s"
+    sleep $((pause * tries))
+  done
+}
+
+case $task in
+  simulate)
+    mkdir -p "$name"
+    attempt simulate "$@" --cache "$name/cache" --stats "$name/$scene.json" --frames "$begin:$end:$step" --resume \
+      --progress none
+    ;;
+  draw)
+    from=$((begin + part * frames_each * step))
+    to=$((from + frames_each * step))
+    if [ "$to" -gt "$end" ]; then to=$end; fi
+    attempt draw "$name/cache" --frames "$from:$to:$step" -o "$name/frames/{frame:05}.png" --resume --progress none
+    ;;
+  join) attempt join "$name/frames" --frames "$begin:$end:$step" -o "$name/$scene.mp4" --overwrite ;;
+  report) attempt report ;;
+  *)
+    echo "expected simulate, draw, join or report, got $task" >&2
+    code=2
+    ;;
+esac
+
+if [ "$stopped" = again ] && [ "$code" = 75 ] && [ "${SLURM_RESTART_COUNT:-0}" -lt 100 ]; then
+  echo "the time limit is near: the task goes on from here in a new place in the queue"
+  scontrol requeue "$SLURM_JOB_ID" && exit 75
+fi
+echo "exit code $code"
+echo "$code" >"farm/log/$label.code"
+exit "$code"

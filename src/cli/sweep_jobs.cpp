@@ -1,0 +1,95 @@
+#include "cli/sweep_jobs.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <iterator>
+#include <map>
+
+#include "cli/scene_input.hpp"
+#include "core/error.hpp"
+#include "core/temporary_file.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kIndexFile = "sweep.json";
+
+}  // namespace
+
+std::vector<std::string> SweepJob::overrides() const {
+  std::vector<std::string> texts;
+  for (const auto& [key, value] : run.changes) texts.push_back(fmt::format("{}={}", key, value));
+  return texts;
+}
+
+bool SweepJob::is_done() const {
+  const Json json = read_json(stats());
+  return fs::exists(video()) && json.is_object() && json.value("exit_code", -1) == 0 &&
+         json.value("scene_hash", "") == fmt::format("{:016x}", scene_hash);
+}
+
+std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths) {
+  const std::vector<Changes> list = options.list.empty() ? std::vector<Changes>{} : read_list(options.list);
+  std::vector<SweepJob> jobs;
+  for (SweepRun& run : plan_sweep(list, options.axes)) jobs.push_back({.run = std::move(run)});
+  std::string mistakes;
+  std::map<std::uint64_t, std::size_t> known;
+  for (std::size_t i = 0; i < jobs.size(); ++i) {
+    SweepJob& job = jobs[i];
+    const scene::LoadResult loaded = scene::load(options.scene, job.overrides());
+    if (!loaded.ok()) {
+      mistakes += (mistakes.empty() ? "" : "\n") + mistakes_text(loaded);
+      continue;
+    }
+    job.scene_hash = loaded.scene.hash;
+    job.scene = loaded.scene.name;
+    job.frame_count = loaded.scene.frame_count();
+    job.folder = options.output / job.run.name;
+    const auto [twin, fresh] = known.emplace(job.scene_hash, i);
+    if (!fresh) job.twin = twin->second;
+    if (i == 0) add_inputs(paths, loaded.scene);
+  }
+  if (!mistakes.empty()) throw Error(ExitCode::scene_invalid, mistakes);
+  if (!options.list.empty()) paths.reads(options.list, "the list of runs");
+  return jobs;
+}
+
+void check_sweep_folder(const SweepOptions& options, PathLedger& paths) {
+  paths.fills("-o", options.output);
+  const fs::path& folder = options.output;
+  if (!fs::exists(folder) || fs::is_empty(folder)) return;
+  const Json before = read_json(folder / kIndexFile);
+  if (!before.is_object())
+    throw Error(ExitCode::output_failed, "{}: is no folder of a sweep, and not empty; give another name",
+                folder.string());
+  if (!options.overwrite && before["options"] != Json(options.passed_on))
+    throw Error(ExitCode::output_failed,
+                "{}: holds runs with other options ({}); give these, --overwrite to start again, or another name",
+                folder.string(), fmt::join(before.value("options", std::vector<std::string>{}), " "));
+}
+
+void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>& jobs) {
+  Json runs = Json::array();
+  for (const SweepJob& job : jobs) {
+    Json set = Json::object();
+    for (const auto& [key, value] : job.run.changes) set[key] = value;
+    runs.push_back({{"folder", (job.twin ? jobs[*job.twin] : job).run.name},
+                    {"scene", job.scene},
+                    {"frames", job.frame_count},
+                    {"set", std::move(set)}});
+  }
+  const Json index{{"scene", options.scene.string()}, {"options", options.passed_on}, {"runs", std::move(runs)}};
+  write_file(options.output / kIndexFile, index.dump(2) + "\n");
+}
+
+Json read_json(const fs::path& file) {
+  std::ifstream in(file, std::ios::binary);
+  Json json = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}), nullptr, false);
+  return json.is_discarded() ? Json() : json;
+}
+
+}  // namespace weft::cli

@@ -1,0 +1,102 @@
+// weft farm without a scheduler: its scripts, one task after the other. tests/farm/farm_test.py has a Slurm.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "cli/cached_run.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Farms : public CachedRun {
+ protected:
+  static constexpr const char* kRadius = "obstacle.ball.radius=0.1,0.11";
+
+  Outcome farm(Arguments more) const {
+    more.insert(more.begin(), "farm");
+    return run_weft(more, folder_);
+  }
+  Outcome submit(const Arguments& more = {}) const {
+    Arguments arguments{"submit",    "s.toml",   "-o",       "a b",    "--set",  kRadius, "--size", "64x36",
+                        "--quality", "draft",    "--frames", "0:21:2", "--part", "4",     "--set",  "time.duration=0.8",
+                        "--dry-run", "--memory", "100",      "--time", "10"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    return farm(arguments);
+  }
+  /// All tasks that `farm/tasks.tsv` lists, in their order; returns the exit codes that are not 0.
+  std::vector<int> do_tasks(const std::string& environment = "") const {
+    std::vector<int> codes;
+    std::ifstream in(folder_ / "a b/farm/tasks.tsv");
+    std::string line;
+    std::getline(in, line);
+    while (std::getline(in, line)) {
+      const int code = std::system((environment + " " + line.substr(line.rfind('\t') + 1)).c_str());
+      if (code != 0) codes.push_back(WEXITSTATUS(code));
+    }
+    return codes;
+  }
+  std::string log(const std::string& task) const {
+    return support::read_bytes(folder_ / "a b/farm/log" / (task + ".log"));
+  }
+};
+
+TEST_F(Farms, TasksMakeWhatOneSweepMakes) {
+  ASSERT_EQ(submit().exit_code, 0);
+  EXPECT_EQ(farm({"status", "a b"}).exit_code, 9);
+  EXPECT_TRUE(do_tasks().empty()) << log("simulate_0");
+  const Outcome status = farm({"status", "a b"});
+  EXPECT_EQ(status.exit_code, 0);
+  EXPECT_NE(status.out.find("2 of 2 runs are done"), std::string::npos) << status.out;
+  const Outcome sweep = run_weft({"sweep", "s.toml", "-o", "one", "--set", kRadius, "--size", "64x36", "--quality",
+                                  "draft", "--frames", "0:21:2", "--set", "time.duration=0.8"},
+                                 folder_);
+  EXPECT_EQ(sweep.exit_code, 0) << sweep.err;
+  for (const char* run : {"radius=0.1", "radius=0.11"})
+    EXPECT_TRUE(support::read_bytes(folder_ / "one" / run / "s.mp4") ==
+                support::read_bytes(folder_ / "a b" / run / "s.mp4"))
+        << run;
+  for (const char* file : {"sheet.png", "table.csv", "page/index.html"})
+    EXPECT_TRUE(fs::exists(folder_ / "a b" / file));
+  const Outcome again = submit();
+  EXPECT_NE(again.err.find("all runs are done"), std::string::npos) << again.err;
+  fs::remove(folder_ / "a b/radius=0.1/s.mp4");
+  const Outcome partly = submit();
+  EXPECT_NE(partly.out.find("--array=0\n"), std::string::npos) << "only what is missing: " << partly.out;
+}
+
+// A program that is killed once works at the second try; one that finds a mistake is not tried again.
+TEST_F(Farms, TasksThatWereKilledAreTriedAgain) {
+  ASSERT_EQ(submit().exit_code, 0);
+  support::write_bytes(folder_ / "killed",
+                       "#!/bin/sh\nif [ ! -e \"$0_once\" ]; then : >\"$0_once\"; kill -9 $$; fi\nexec '" WEFT_PROGRAM
+                       "' \"$@\"\n");
+  fs::permissions(folder_ / "killed", fs::perms::owner_all);
+  const std::string environment = "WEFT_PAUSE=0 WEFT='" + (folder_ / "killed").string() + "'";
+  EXPECT_TRUE(do_tasks(environment).empty());
+  EXPECT_NE(log("simulate_0").find("exit code 137: try 1 of 3"), std::string::npos) << log("simulate_0");
+
+  fs::remove_all(folder_ / "a b");
+  ASSERT_EQ(submit().exit_code, 0);
+  support::write_bytes(folder_ / "s.toml", "[time]\nduration = -1\n");
+  const std::vector<int> codes = do_tasks(environment);
+  ASSERT_FALSE(codes.empty());
+  EXPECT_EQ(codes.front(), 3);
+  EXPECT_EQ(log("simulate_0").find("try 1"), std::string::npos);
+  const Outcome status = farm({"status", "a b"});
+  EXPECT_EQ(status.exit_code, 9);
+  EXPECT_NE(status.out.find("simulate_0 ended with exit code 3"), std::string::npos) << status.out;
+}
+
+TEST_F(Farms, RefuseWhatTheyCannotDo) {
+  EXPECT_EQ(farm({"submit", "s.toml"}).exit_code, 2) << "no folder";
+  EXPECT_EQ(farm({"status", "s.toml", "-o", "x"}).exit_code, 2);
+  EXPECT_EQ(farm({"status", "none"}).exit_code, 4);
+  EXPECT_EQ(farm({"wait", "none"}).exit_code, 2);
+  EXPECT_EQ(farm({"submit", "s.toml", "-o", "x", "--set", "time.step=0.01,-1"}).exit_code, 3);
+  EXPECT_FALSE(fs::exists(folder_ / "x"));
+}
+
+}  // namespace
+}  // namespace weft::cli

@@ -1,0 +1,95 @@
+// What helps those who write scenes and commands: templates, watching, completion, the manual, the estimate.
+#include <gtest/gtest.h>
+
+#include <thread>
+
+#include "cli/cached_run.hpp"
+#include "cli/commands.hpp"
+#include "cli/manual.hpp"
+#include "cli/parser.hpp"
+
+namespace weft::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Helpers : public CachedRun {};
+
+std::string output_of(const std::string& command) {
+  const std::unique_ptr<FILE, int (*)(FILE*)> pipe(popen(command.c_str(), "r"), pclose);
+  std::string text;
+  for (int c = 0; pipe && (c = std::fgetc(pipe.get())) != EOF;) text += static_cast<char>(c);
+  return text;
+}
+
+TEST_F(Helpers, EveryTemplateIsASceneWithItsSchemaBesideIt) {
+  for (const std::string& name : template_names()) {
+    const Outcome made = run_weft({"new", "my " + name, "--template", name}, folder_);
+    EXPECT_EQ(made.exit_code, 0) << made.err;
+    const Outcome checked = run_weft({"check", "my " + name + ".toml"}, folder_);
+    EXPECT_EQ(checked.exit_code, 0) << checked.err;
+    EXPECT_EQ(checked.out.find("note:"), std::string::npos) << "nothing to doubt: " << checked.out;
+    EXPECT_TRUE(support::read_bytes(folder_ / ("my " + name + ".toml")).starts_with("#:schema ./weft.schema.json\n"));
+  }
+  EXPECT_EQ(support::read_bytes(folder_ / "weft.schema.json"), run_weft({"schema"}, folder_).out);
+  EXPECT_EQ(run_weft({"new", "my drape"}, folder_).exit_code, 6) << "it is there already";
+  EXPECT_EQ(run_weft({"new", "other", "--template", "dress"}, folder_).exit_code, 2);
+}
+
+TEST_F(Helpers, WatchDrawsAgainWhenTheSceneChanges) {
+  std::thread change([&] {
+    for (int i = 0; i < 600 && !fs::exists(folder_ / "s.png"); ++i)
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    fs::rename(folder_ / "s.png", folder_ / "first.png");
+    support::write_bytes(folder_ / "s.toml",
+                         support::read_bytes(folder_ / "s.toml") + "\nlook = { color = \"#000000\" }\n");
+  });
+  const Outcome watched = run_weft(
+      {"watch", "s.toml", "-o", "s.png", "--frame", "1", "--size", "64x36", "--quality", "draft", "--times", "2"},
+      folder_);
+  change.join();
+  EXPECT_EQ(watched.exit_code, 0) << watched.err;
+  EXPECT_TRUE(fs::exists(folder_ / "s.png")) << watched.err;
+  EXPECT_NE(support::read_bytes(folder_ / "first.png"), support::read_bytes(folder_ / "s.png"));
+}
+
+TEST_F(Helpers, CompletionAndManualKnowAllThatHelpKnows) {
+  const Parser parser;
+  const std::string man = manual(parser.app), bash = completion(parser.app, "bash"),
+                    zsh = completion(parser.app, "zsh"), fish = completion(parser.app, "fish");
+  for (const CLI::App* command : parser.app.get_subcommands([](const CLI::App*) { return true; })) {
+    const std::string& name = command->get_name();
+    EXPECT_NE(man.find(".SH " + name + "\n"), std::string::npos) << name;
+    EXPECT_NE(fish.find("-a " + name + " -d"), std::string::npos) << name;
+    for (const CLI::Option* option : command->get_options())
+      for (const std::string& word : option->get_lnames()) {
+        EXPECT_NE(zsh.find("'*--" + word + "["), std::string::npos) << word;
+        EXPECT_NE(fish.find("from " + name + "' "), std::string::npos) << word;
+        EXPECT_NE(fish.find("-l " + word + " "), std::string::npos) << word;
+      }
+  }
+  support::write_bytes(folder_ / "weft.bash", bash);
+  const auto completed = [&](const std::string& words, int at) {
+    return output_of("bash -c '. \"" + (folder_ / "weft.bash").string() + "\"; COMP_WORDS=(" + words +
+                     "); COMP_CWORD=" + std::to_string(at) + "; _weft; echo \"${COMPREPLY[*]}\"'");
+  };
+  EXPECT_EQ(completed("weft thu", 1), "thumbnail\n");
+  EXPECT_EQ(completed("weft run s.toml --qual", 3), "--quality\n");
+  EXPECT_EQ(completed("weft run --quality \"\"", 3), "draft preview final\n");
+  EXPECT_EQ(completed("weft run --output \"\"", 3), "\n") << "names of files, by the shell itself";
+}
+
+TEST_F(Helpers, TwoDashesEndTheOptions) {
+  fs::copy(folder_ / "s.toml", folder_ / "-s.toml");
+  EXPECT_EQ(run_weft({"check", "--", "-s.toml"}, folder_).exit_code, 0);
+  EXPECT_EQ(run_weft({"check", "-s.toml"}, folder_).exit_code, 2);
+}
+
+TEST_F(Helpers, CheckEstimatesWhatARunTakes) {
+  const Outcome outcome = run_weft({"check", "--estimate", "s.toml"}, folder_);
+  EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_NE(outcome.out.find("MB of memory, by 10 frames"), std::string::npos) << outcome.out;
+}
+
+}  // namespace
+}  // namespace weft::cli

@@ -1,0 +1,160 @@
+"""A sweep of 24 runs on a Slurm of three nodes that die, a task that is killed, a cancelled farm: in the end there is, to
+the bit, what one process makes.
+
+farm_test.py WEFT    ends with 77 where Slurm is not installed.
+"""
+import csv
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+from slurm import Slurm, missing
+
+SCENE = """
+[time]
+duration = 0.8
+fps = 25
+step = 0.01
+[render]
+width = 64
+height = 36
+[[cloth]]
+name = "cloth"
+size = [0.5, 0.5]
+particles = [31, 31]
+position = [0, 0, 0.3]
+[[obstacle]]
+name = "ball"
+shape = "sphere"
+radius = 0.1
+segments = 8
+"""
+FRAMES = 21
+RUNS = 24
+ELSEWHERE = b"goes on from here in a new place in the queue"
+SWEEP = ("s.toml", "--quality", "draft", "--set", "obstacle.ball.radius=0.1,0.11,0.12,0.13", "--set",
+         "cloth.cloth.material.density=0.1,0.2,0.3", "--set", "obstacle.ball.position=[0,0,0],[0.1,0,0]")
+
+
+class Test:
+    def __init__(self, weft, folder):
+        self.weft, self.folder, self.told = weft, folder, 0
+        os.environ["WEFT_PAUSE"] = "1"
+        with open(os.path.join(folder, "s.toml"), "w", encoding="utf-8") as file:
+            file.write(SCENE)
+
+    def run(self, *words, code=0):
+        done = subprocess.run([self.weft, *words], cwd=self.folder, capture_output=True, text=True, check=False)
+        assert done.returncode == code, f"{words}: {done.returncode}\n{done.stdout}{done.stderr}"
+        return done.stdout + done.stderr
+
+    def status(self):
+        done = subprocess.run([self.weft, "farm", "status", "farm"], cwd=self.folder, capture_output=True, text=True,
+                              check=False)
+        return done.returncode, done.stdout
+
+    def done(self):
+        return self.status()[1].count("  done\n")
+
+    def read(self, *names):
+        with open(os.path.join(self.folder, *names), "rb") as file:
+            return file.read()
+
+    def table(self, sweep):
+        """What came of the runs, without what they cost."""
+        rows = list(csv.DictReader(self.read(sweep, "table.csv").decode().splitlines()))
+        return [{key: value for key, value in row.items() if not key.startswith("CPU")} for row in rows]
+
+    def submit(self, code=0):
+        return self.run("farm", "submit", *SWEEP, "-o", "farm", "--part", "8", code=code)
+
+    def queue_is_empty(self):
+        return not subprocess.run(["squeue", "-h"], capture_output=True, text=True, check=True).stdout
+
+    def logs(self):
+        folder = os.path.join(self.folder, "farm/farm/log")
+        return b"".join(self.read(folder, log) for log in os.listdir(folder))
+
+    def one_goes_on_elsewhere(self, slurm):
+        """Tells a script on n1, unless the last one was told just now."""
+        if ELSEWHERE in self.logs():
+            return True
+        programs = slurm.tasks("n1", " simulate /")
+        if programs and time.monotonic() > self.told + 5:
+            self.told = time.monotonic()
+            with open(f"/proc/{programs[-1]}/stat", encoding="utf-8") as file:
+                os.kill(int(file.read().rsplit(")", 1)[1].split()[1]), signal.SIGUSR1)
+        return False
+
+    def check(self):
+        slurm = None
+        try:
+            self.run("sweep", *SWEEP, "-o", "one", "--threads", "1")
+            slurm = Slurm(os.path.join(self.folder, "slurm"), ["n1", "n2", "n3"])
+            self.submit()
+            assert "weft farm cancel" in self.submit(code=6), "jobs that run already are told"
+
+            # A process is killed: its task tries again.
+            slurm.wait(lambda: slurm.tasks("n1", " simulate /"), "a simulation on n1")
+            os.kill(slurm.tasks("n1", " simulate /")[-1], signal.SIGKILL)
+            # Its time is nearly over, which Slurm tells the script (--signal=B:USR1@60), and the task goes on in a new place in the queue.
+            slurm.wait(lambda: self.one_goes_on_elsewhere(slurm), "a task that goes on in a new place")
+            # A daemon dies and its tasks work on, until they are given to another node as well.
+            slurm.wait(lambda: slurm.tasks("n2", " simulate /"), "a simulation on n2")
+            slurm.kill_node("n2", with_tasks=False)
+            # A machine dies.
+            slurm.wait(lambda: slurm.tasks("n3", " simulate /"), "a simulation on n3")
+            slurm.kill_node("n3", with_tasks=True)
+            slurm.wait(lambda: self.done() >= 3, "the first runs", 300)
+            self.run("farm", "cancel", "farm")
+            slurm.wait(self.queue_is_empty, "an empty queue")
+            code, text = self.status()
+            assert code == 9 and 3 <= text.count("  done\n") < RUNS, text
+            print("after cancel:", text.splitlines()[-1])
+
+            for node in ("n2", "n3"):
+                slurm.start_node(node)
+            self.submit()
+            slurm.wait(lambda: self.status()[0] == 0 and self.queue_is_empty(), "all runs", 600)
+            print("at the end:", self.status()[1].splitlines()[-1])
+            assert "all runs are done" in self.submit(), "nothing is done twice"
+        finally:
+            if slurm:
+                slurm.stop()
+        self.compare()
+
+    def compare(self):
+        assert self.table("farm") == self.table("one"), "tables differ"
+        assert len(self.table("one")) == RUNS
+        for words in (b"exit code 137: try 1 of 3", ELSEWHERE):
+            assert words in self.logs(), f"expected in a log: {words}"
+        for row in self.table("one"):
+            name = row["run"]
+            assert self.read("one", name, "s.mp4") == self.read("farm", name, "s.mp4"), f"{name}: another video"
+            pictures = sorted(os.listdir(os.path.join(self.folder, "farm", name, "frames")))
+            expected = [f"{frame:05}.png" for frame in range(FRAMES)]
+            assert [picture for picture in pictures if picture.endswith(".png")] == expected, pictures
+
+
+def main(weft):
+    reason = missing()
+    if reason:
+        print(reason)
+        return 77
+    folder = tempfile.mkdtemp()
+    try:
+        os.mkdir(os.path.join(folder, "slurm"))
+        Test(weft, folder).check()
+    except AssertionError as problem:
+        print(f"{problem}; what there is lies in {folder}")
+        return 1
+    shutil.rmtree(folder)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(os.path.abspath(sys.argv[1])))
