@@ -38,7 +38,7 @@ std::vector<std::string> choices_of(const std::string& value) {
 std::vector<Option> options_of(const CLI::App& command) {
   std::vector<Option> options;
   for (const CLI::Option* option : command.get_options()) {
-    if (option->nonpositional() == false) continue;
+    if (!option->nonpositional()) continue;
     Option entry;
     for (const std::string& name : option->get_snames()) entry.names.push_back("-" + name);
     for (const std::string& name : option->get_lnames()) entry.names.push_back("--" + name);

@@ -35,6 +35,7 @@ segments = 8
 """
 FRAMES = 21
 RUNS = 24
+RETRY = b"exit code 137: try 1 of 3"
 ELSEWHERE = b"goes on from here in a new place in the queue"
 SWEEP = ("s.toml", "--quality", "draft", "--set", "obstacle.ball.radius=0.1,0.11,0.12,0.13", "--set",
          "cloth.cloth.material.density=0.1,0.2,0.3", "--set", "obstacle.ball.position=[0,0,0],[0.1,0,0]")
@@ -101,6 +102,7 @@ class Test:
             # A process is killed: its task tries again.
             slurm.wait(lambda: slurm.tasks("n1", " simulate /"), "a simulation on n1")
             os.kill(slurm.tasks("n1", " simulate /")[-1], signal.SIGKILL)
+            slurm.wait(lambda: RETRY in self.logs(), "another try")
             # Its time is nearly over, which Slurm tells the script (--signal=B:USR1@60), and the task goes on in a new place in the queue.
             slurm.wait(lambda: self.one_goes_on_elsewhere(slurm), "a task that goes on in a new place")
             # A daemon dies and its tasks work on, until they are given to another node as well.
@@ -130,7 +132,7 @@ class Test:
     def compare(self):
         assert self.table("farm") == self.table("one"), "tables differ"
         assert len(self.table("one")) == RUNS
-        for words in (b"exit code 137: try 1 of 3", ELSEWHERE):
+        for words in (RETRY, ELSEWHERE):
             assert words in self.logs(), f"expected in a log: {words}"
         for row in self.table("one"):
             name = row["run"]
