@@ -30,7 +30,7 @@ class GlPainter : public FramePainter {
   void look_through(render::CameraPath path) override { renderer_.look_through(std::move(path)); }
 
   Picture draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) override {
-    Picture picture{renderer_.draw(snapshot, before), {}, renderer_.layers()};
+    Picture picture{renderer_.draw(snapshot, before), renderer_.layers()};
     if (deep_) picture.deep = renderer_.deep();
     if (!warned_ && shows_single_color(picture.image)) {
       warned_ = true;

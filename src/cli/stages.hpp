@@ -21,8 +21,8 @@ namespace weft::cli {
 /// What is drawn of a frame.
 struct Picture {
   image::Image image;
-  image::Image16 deep;   ///< where it is asked for
-  image::Layers layers;  ///< where they are asked for
+  image::Layers layers = {};  ///< where they are asked for
+  image::Image16 deep = {};   ///< where it is asked for
 };
 
 /// Draws frames.
