@@ -114,7 +114,9 @@ void main() {
 #ifdef CLOTH
   at.finish = texelFetch(materials, ivec2(3, row), 0);
   at.finish.x *= at.finish.x * at.finish.x;  // between cotton and satin lie two orders
-  Weave woven = weave(texelFetch(rest_uvs, pixel, 0).xy, back_spacing.w, at.n, at.position_world);
+  // Beside cloth, where derivatives look too, there is what an earlier picture left.
+  vec2 rest_uv = row < 0 ? vec2(0.0) : texelFetch(rest_uvs, pixel, 0).xy;
+  Weave woven = weave(rest_uv, row < 0 ? 0.0 : back_spacing.w, at.n, at.position_world);
   at.n = woven.normal_world;
   albedo *= woven.tone;
   at.shine = woven.shine;

@@ -32,7 +32,7 @@ float visible_feature(float footprint, float size) { return 1.0 - smoothstep(0.2
 
 Weave weave(vec2 rest_uv, float spacing, vec3 n_world, vec3 p_world) {
   // Pixels of other surfaces take part in the derivatives, with no spacing at all; cloth without threads has a grain.
-  vec2 thread = rest_uv / (spacing > 0.0 ? spacing : 1e-3);
+  vec2 thread = rest_uv / max(spacing, 1e-6);
   vec2 across = dFdx(thread), down = dFdy(thread);
   float footprint = max(length(across), length(down));
   // Gradients of weft and warp in the surface, from screen derivatives.
