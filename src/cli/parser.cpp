@@ -18,12 +18,12 @@ Parser::Parser() {
       "  weft thumbnail scenes/falling_band.toml -o band.png --frame 60\n"
       "\nExit codes: 0 well, 1 our own fault, 2 command line, 3 scene, 4 asset, 5 simulation,\n"
       "  6 output or encoder, 7 images differ, 8 reference missing,\n  9 frames missing, 75 interrupted.");
-  add_new();
-  add_watch();
   add_run();
   add_simulate();
   add_render();
   add_check();
+  add_new();
+  add_watch();
   add_thumbnail();
   add_sheet();
   add_join();

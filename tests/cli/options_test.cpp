@@ -97,8 +97,8 @@ TEST(Options, UnknownValuesAreRefusedNamingTheAllowedOnes) {
 
 TEST(Options, MisspeltOptionsAndCommandsNameTheNearest) {
   const std::string commands =
-      "run, simulate, render, check, thumbnail, sheet, join, sweep, schema, doctor, bench, diff, accept, review, "
-      "export";
+      "run, simulate, render, check, new, watch, thumbnail, sheet, join, sweep, farm, schema, doctor, bench, diff, "
+      "accept, review, export, completion, man";
   EXPECT_EQ(refusal({"run", "a.toml", "--sise", "64x36"}),
             "weft run: unknown option --sise; did you mean --size?; see weft run --help");
   EXPECT_EQ(refusal({"thumbnial", "a.toml"}),
