@@ -38,7 +38,7 @@ class Cameras {
     const cache::Manifest& scene = reader.manifest();
     std::vector<std::string> names = scene.cameras;
     if (names.empty()) names.emplace_back();
-    std::ranges::stable_partition(names, [&](const std::string& name) { return name == scene.camera; });
+    std::stable_partition(names.begin(), names.end(), [&](const std::string& name) { return name == scene.camera; });
     for (const std::string& name : names) {
       render::CameraPath path(name, static_cast<double>(scene.width) / scene.height);
       if (render::CameraPath::is_found(first, name)) {
