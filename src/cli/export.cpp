@@ -13,6 +13,7 @@
 #include "core/log.hpp"
 #include "export/obj.hpp"
 #include "render/lighting.hpp"
+#include "render/surroundings.hpp"
 #include "render/transforms.hpp"
 
 namespace weft::cli {
@@ -61,10 +62,13 @@ class Cameras {
     return views;
   }
 
-  /// Of a frame: its lights, or that which pictures have where there are none.
-  std::vector<frame::Light> lights(const frame::FrameSnapshot& snapshot) const {
+  /// Of a frame, as its pictures have it.
+  exporter::Lighting lighting(const frame::FrameSnapshot& snapshot) const {
     const frame::Camera camera = paths_.front().second.at(snapshot);
-    return render::effective_lights(snapshot, axes(camera, *snapshot.stage), snapshot.stage->up);
+    const frame::Stage& stage = *snapshot.stage;
+    const render::Style style = render::style_of(stage);
+    return {render::effective_lights(snapshot, stage.look, axes(camera, stage), stage.up), style.sky_color,
+            style.sky_intensity};
   }
 
  private:
@@ -110,7 +114,7 @@ ExitCode export_frames(const ExportOptions& options) {
   if (places_cameras(request.format)) {
     cameras.emplace(reader, *first);
     request.views = [&](const frame::FrameSnapshot& snapshot) { return cameras->at(snapshot); };
-    request.lights = cameras->lights(*first);
+    request.lighting = cameras->lighting(*first);
   }
   const bool whole = exporter::write(
       request, [&](int frame) { return reader.snapshot(frame); }, [&] { return signals.requested().load(); });

@@ -29,23 +29,23 @@ Json light_json(const frame::Light& light, double share) {
 
 }  // namespace
 
-BlenderScript::BlenderScript(const frame::FrameSnapshot& first, const std::vector<frame::Light>& lights,
-                             std::string name, double fps, int width, int height) {
-  const frame::Stage& stage = *first.stage;
+BlenderScript::BlenderScript(const frame::FrameSnapshot& first, const Lighting& lighting, std::string name, double fps,
+                             int width, int height) {
   film_ = {{"name", std::move(name)},
            {"fps", fps},
            {"size", {width, height}},
-           {"z_up", stage.up.z() > 0.5},
+           {"z_up", first.stage->up.z() > 0.5},
            {"first", first.frame},
            {"last", first.frame},
            {"frames", Json::array()},
            {"objects", Json::array()},
            {"cameras", Json::array()},
            {"lights", Json::array()},
-           {"sky", {{"color", list(image::linear_from_srgb(stage.sky_color))}, {"strength", stage.sky_intensity}}}};
+           {"sky", {{"color", list(lighting.sky_color)}, {"strength", lighting.sky_share}}}};
   for (const auto& surface : first.surfaces)
     film_["objects"].push_back({{"name", surface->name}, {"visible", surface->visible}});
-  for (const frame::Light& light : lights) film_["lights"].push_back(light_json(light, 1 - stage.sky_intensity));
+  for (const frame::Light& light : lighting.lights)
+    film_["lights"].push_back(light_json(light, 1 - lighting.sky_share));
 }
 
 void BlenderScript::add(int frame, const std::vector<View>& views) {

@@ -14,8 +14,8 @@ namespace weft::exporter {
 class BlenderScript {
  public:
   /// `width`, `height`: of the pictures [pixels].
-  BlenderScript(const frame::FrameSnapshot& first, const std::vector<frame::Light>& lights, std::string name,
-                double fps, int width, int height);
+  BlenderScript(const frame::FrameSnapshot& first, const Lighting& lighting, std::string name, double fps, int width,
+                int height);
 
   /// The next frame, the first too.
   void add(int frame, const std::vector<View>& views);

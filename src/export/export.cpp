@@ -82,7 +82,7 @@ class Sink {
         return usd_->add(snapshot, views(snapshot));
       case Format::blender:
         if (!script_)
-          script_.emplace(snapshot, request_.lights, request_.name, request_.fps, request_.width, request_.height);
+          script_.emplace(snapshot, request_.lighting, request_.name, request_.fps, request_.width, request_.height);
         script_->add(snapshot.frame, views(snapshot));
         return add_to_caches(snapshot);
     }

@@ -29,7 +29,7 @@ struct Request {
   int width = 1280, height = 720;  ///< of its pictures
   /// Of a frame, the first that which pictures show; of usd and blender, and asked once for each frame, in order.
   std::function<std::vector<View>(const frame::FrameSnapshot&)> views = nullptr;
-  std::vector<frame::Light> lights = {};  ///< of blender
+  Lighting lighting = {};  ///< of blender
 };
 
 /// All files that will be written; `first` is the first frame asked for.

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/types.hpp"
+#include "frame/frame_snapshot.hpp"
 
 namespace weft::exporter {
 
@@ -12,6 +14,13 @@ struct View {
   std::string name;
   Eigen::Matrix4d world_from_view = Eigen::Matrix4d::Identity();  ///< columns: right, up, backward; position [m]
   double field_of_view = 35;                                      ///< vertical, degrees
+};
+
+/// What lights a film, as its pictures show it.
+struct Lighting {
+  std::vector<frame::Light> lights = {};
+  Vec3 sky_color = Vec3::Ones();  ///< linear
+  double sky_share = 0.45;        ///< of all light; the lights give the rest
 };
 
 }  // namespace weft::exporter

@@ -52,7 +52,7 @@ class Staged : public support::TestFolder {
       view.world_from_view.col(3).head<3>() = Vec3(shown.frame, 2, 3);
       return std::vector{view};
     };
-    request_.lights.push_back({.name = "sun", .intensity = 2});
+    request_.lighting.lights.push_back({.name = "sun", .intensity = 2});
   }
 
   static std::vector<Vec3> points(int k) { return {{1.0 / 3, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, k < 4 ? 0.1 : 0.25}}; }
@@ -178,7 +178,7 @@ TEST_F(Staged, TheScriptForBlenderNamesAllThatItLoads) {
   EXPECT_EQ(film["frames"], nlohmann::json({2, 3, 4}));
   EXPECT_EQ(film["objects"][2], nlohmann::json({{"name", "hidden"}, {"visible", false}}));
   EXPECT_EQ(film["cameras"][0]["frames"][1], nlohmann::json({90, {1, 0, 0, 3}, {0, 1, 0, 2}, {0, 0, 1, 3}}));
-  EXPECT_NEAR(film["lights"][0]["strength"].get<double>(), 2 * (1 - stage_->sky_intensity), 1e-12);
+  EXPECT_NEAR(film["lights"][0]["strength"].get<double>(), 2 * (1 - request_.lighting.sky_share), 1e-12);
   for (const char* file : {"red-dress.obj", "red-dress.pc2", "hidden.pc2"})
     EXPECT_TRUE(std::filesystem::exists(request_.folder / file)) << file;
 }
