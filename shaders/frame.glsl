@@ -11,7 +11,7 @@ layout(std140, binding = 0) uniform Frame {
   vec4 horizon;            // from the sides; w: linear light that the look deepens
   vec4 ground;             // from below; w: metres of one unit of depth of the sky maps
   vec4 backdrop;           // linear colour at the horizon; w: share that it loses far from the subjects
-  vec4 backdrop_top;       // straight above; w: share of light that the floor reflects
+  vec4 backdrop_top;       // straight above
   vec4 viewport;           // width, height [pixels], and their inverses
   vec4 frustum;            // tangents of half the opening, near, far [m]
   vec4 floor_plane_world;  // unit normal, upward; w: height of the eye above it [m]

@@ -35,7 +35,6 @@ Style of_look(Look look) {
       style.horizon = Vec3::Constant(0.74);
       style.zenith = Vec3::Constant(0.34);
       style.glow = 0.35;
-      style.mirror = 0.03;
       break;
     case Look::stage:
       style.sky_color = linear(0.62, 0.66, 0.78);
@@ -44,7 +43,6 @@ Style of_look(Look look) {
       style.zenith = linear(0.09, 0.09, 0.115);
       style.glow = 0.9;
       style.floor_tint = 0.2;
-      style.mirror = 0.22;
       style.toe = 0.006;
       style.exposes = false;
       break;

@@ -143,7 +143,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   frame.horizon = four(around.horizon, style.toe);
   frame.ground = four(around.ground, above.depth_metres);
   frame.backdrop = four(behind(style.horizon), style.glow);
-  frame.backdrop_top = four(behind(style.zenith), style.mirror);
+  frame.backdrop_top = four(behind(style.zenith), 0);
   frame.viewport = {static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),
                     1.0f / static_cast<float>(height)};
   frame.frustum = {static_cast<float>(view.tan_half_width), static_cast<float>(view.tan_half_height),
