@@ -31,7 +31,7 @@ struct Settings {
 class Encoder {
  public:
   /// Opens the temporary file. Throws Error(output_failed) for settings out of range and places not to be written.
-  Encoder(const std::filesystem::path& file, const Settings& settings);
+  Encoder(const std::filesystem::path& file, const Settings& wanted);
   ~Encoder();  ///< without finish(): removes the temporary file
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;

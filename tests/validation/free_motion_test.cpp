@@ -107,7 +107,8 @@ TEST(SteadyAir, TerminalVelocityHangsNotOnTheStep) {
       }
 }
 
-// In gusts so large that they are the same wherever the sheet comes in two seconds it falls as in still air beside them.
+// In gusts so large that they are the same wherever the sheet comes in two seconds it falls as in still air beside
+// them.
 TEST(GustsInARun, CarryASheetThatFalls) {
   for (const scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.2, 5, 0);
