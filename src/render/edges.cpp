@@ -17,8 +17,7 @@ std::vector<std::pair<Index, Index>> edges_of(const frame::Surface& surface) {
   };
   surface.quads.empty() ? add(surface.triangles) : add(surface.quads);
   std::ranges::sort(edges);
-  const auto same = std::ranges::unique(edges);
-  edges.erase(same.begin(), same.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
 }
 
