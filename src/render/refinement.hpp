@@ -29,8 +29,8 @@ class Refinement {
 };
 
 /// Position in the middle of an edge, on the curve that has the normals of its ends (Vlachos et al., "Curved PN
-/// Triangles", 2001), and the mean of these: their quadratic normals waver along sharp folds. It leaves the edge by a
-/// twentieth of its length at most: so layers that lie on each other go the same way, and wild normals make no spikes.
+/// Triangles", 2001), and the mean of these: their quadratic normals waver along sharp folds. It leaves the edge by
+/// 0.2 mm at most: so layers that lie on each other stay apart, and wild normals make no spikes.
 struct Middle {
   Vec3 position, normal;
 };

@@ -136,17 +136,17 @@ TEST(Looks, ExposureIsInStops) {
   EXPECT_NEAR(light(-1) / light(0), 0.5, 0.005);
 }
 
-// Chords of a circle: the middle of each is on it, to the fourth order of the angle; 0.26 rad: 1.1e-4.
+// Chords of a circle of 1 cm: the middle of each is on it, to the fourth order of the angle; 0.26 rad: 1.1e-4 of it.
 TEST(Refinement, MiddlesOfChordsLieOnTheCircle) {
   const double angle = std::numbers::pi / 12;
-  const Vec3 a(1, 0, 0), b(std::cos(angle), std::sin(angle), 0);
-  const Middle half = middle(a, b, a, b);
-  EXPECT_NEAR(half.position.norm(), 1, 1.5e-4);
+  const double radius = 0.01;  // m
+  const Vec3 from(1, 0, 0), to(std::cos(angle), std::sin(angle), 0), a = radius * from, b = radius * to;
+  const Middle half = middle(a, b, from, to);
+  EXPECT_NEAR(half.position.norm(), radius, 1.5e-4 * radius);
   EXPECT_LT((half.normal - half.position.normalized()).norm(), 1e-12);
   // A plane stays one, and normals that have nothing to do with it make no spike.
   EXPECT_LT((middle(a, b, Vec3::UnitZ(), Vec3::UnitZ()).position - 0.5 * (a + b)).norm(), 1e-15);
-  const double length = (b - a).norm();
-  EXPECT_LE((middle(a, b, (b - a).normalized(), Vec3::UnitZ()).position - 0.5 * (a + b)).norm(), 0.051 * length);
+  EXPECT_LE((middle(from, to, (b - a).normalized(), Vec3::UnitZ()).position - 0.5 * (from + to)).norm(), 2.001e-4);
 }
 
 TEST(Refinement, NeighboursShareTheirMiddles) {
