@@ -4,10 +4,10 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
-#include <stdexcept>
 #include <utility>
 
 #include "assets/character_reader.hpp"
+#include "assets/import.hpp"
 #include "assets/source.hpp"
 
 namespace weft::assets {
@@ -19,9 +19,7 @@ constexpr int kUsualUp = 1;
 ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, !with_mesh);
-  const aiScene* scene = importer.ReadFile(file.string(), 0);
-  if (scene == nullptr || scene->mRootNode == nullptr) throw std::runtime_error(importer.GetErrorString());
-  return to_character(*scene, with_mesh ? file : std::filesystem::path());
+  return to_character(import(importer, file, 0), with_mesh ? file : std::filesystem::path());
 }
 
 /// Warnings of a file get its name; it is turned to the scene's axes and scaled to metres.

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "assets/clip_reader.hpp"
+#include "assets/import.hpp"
 #include "assets/material_reader.hpp"
 #include "assets/soup.hpp"
 #include "mesh/polygon.hpp"
@@ -354,11 +355,9 @@ class CharacterReader {
 
   /// FBX says what it measures in; the readers of other formats turn them to y up, and metres where they know.
   void read_units() {
-    double centimetres = 0;
+    read_.metres_per_unit = metres_per_unit(scene_);
     std::int32_t up = 0;
     if (scene_.mMetaData == nullptr) return;
-    if (scene_.mMetaData->Get("UnitScaleFactor", centimetres) && std::isfinite(centimetres) && centimetres > 0)
-      read_.metres_per_unit = 0.01 * centimetres;
     if (scene_.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) read_.up = up;
   }
 

@@ -115,6 +115,19 @@ struct ClipReader {
   }
 };
 
+/// Assimp splits some nodes of FBX into a line of helpers, named after them, above them. Where a channel has the whole
+/// transform of such a node nevertheless, its helpers add nothing to it while the clip plays.
+void silence_helpers(const aiNodeAnim& from, const ClipTargets& targets, std::set<Index>& moved,
+                     character::Clip& clip) {
+  if (from.mNumPositionKeys == 0 || from.mNumRotationKeys == 0) return;
+  const std::string start = std::string(from.mNodeName.C_Str()) + "_$AssimpFbx$_";
+  for (auto helper = targets.nodes.lower_bound(start);
+       helper != targets.nodes.end() && helper->first.starts_with(start); ++helper)
+    if (moved.insert(helper->second).second)
+      clip.channels.push_back(
+          {helper->second, {{0}, {Vec3::Zero()}}, {{0}, {Quat::Identity()}}, {{0}, {Vec3::Ones()}}});
+}
+
 /// assimp adds "*0" and the like to names of meshes that several parts share.
 std::string plain_name(const std::string& name) {
   return name.substr(0, name.find('*'));
@@ -142,6 +155,8 @@ character::Clip to_clip(const aiAnimation& animation, const ClipTargets& targets
                                      channel->mNodeName.C_Str()));
     }
   }
+  for (const aiNodeAnim* channel : std::span(animation.mChannels, animation.mNumChannels))
+    silence_helpers(*channel, targets, moved, clip);
   for (const aiMeshMorphAnim* channel : std::span(animation.mMorphMeshChannels, animation.mNumMorphMeshChannels)) {
     const auto [begin, end] = targets.morphs.equal_range(plain_name(channel->mName.C_Str()));
     if (begin == end) lost.push_back(channel->mName.C_Str());

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <fstream>
 #include <iterator>
@@ -12,6 +13,8 @@
 #include <span>
 #include <string_view>
 #include <system_error>
+
+#include "image/picture.hpp"
 
 namespace weft::assets {
 namespace {
@@ -43,7 +46,26 @@ Material::Wrap to_wrap(int mode) {
 }
 
 bool is_picture(std::string_view bytes) {
-  return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff");
+  return bytes.starts_with("\x89PNG\r\n\x1a\n") || bytes.starts_with("\xff\xd8\xff") || image::is_targa(bytes);
+}
+
+/// Folders beside a file in which programs put its pictures, in the order of their names.
+std::vector<fs::path> picture_folders(const fs::path& file) {
+  const std::string stem = file.stem().string();
+  std::vector<fs::path> folders;
+  for (const fs::path& place : {file.parent_path(), file.parent_path().parent_path()}) {
+    const std::size_t first = folders.size();
+    std::error_code error;
+    for (const fs::directory_entry& entry : fs::directory_iterator(place.empty() ? "." : place, error)) {
+      std::string name = entry.path().filename().string();
+      const bool own = name == stem || name == stem + ".fbm";
+      std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
+      if (own || name == "textures" || name == "texture" || name == "images" || name == "tex")
+        folders.push_back(entry.path());
+    }
+    std::sort(folders.begin() + static_cast<std::ptrdiff_t>(first), folders.end());
+  }
+  return folders;
 }
 
 /// FBX and Collada name files of the machine on which they were made: as it is named, then the same name beside the
@@ -52,9 +74,9 @@ std::optional<fs::path> find_file(const std::string& named, const fs::path& file
   std::string plain = named.starts_with("file://") ? named.substr(7) : named;
   std::ranges::replace(plain, '\\', '/');
   const fs::path folder = file.parent_path(), name = fs::path(plain).filename();
-  for (const fs::path& at : {folder / plain, folder / name, folder / "textures" / name, folder / file.stem() / name,
-                             folder / (file.stem().string() + ".fbm") / name, folder.parent_path() / "textures" / name,
-                             folder.parent_path() / "images" / name}) {
+  std::vector<fs::path> places{folder / plain, folder / name};
+  for (const fs::path& each : picture_folders(file)) places.push_back(each / name);
+  for (const fs::path& at : places) {
     std::error_code error;
     if (fs::is_regular_file(at, error)) return at;
   }
@@ -85,7 +107,7 @@ std::string read_picture(const aiScene& scene, const aiString& named, const fs::
     bytes.assign(std::istreambuf_iterator<char>(in), {});
   }
   if (is_picture(bytes)) return bytes;
-  reason = "it is neither PNG nor JPEG";
+  reason = "it is neither PNG, JPEG nor TGA";
   return {};
 }
 

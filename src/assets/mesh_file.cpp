@@ -4,15 +4,23 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
 
 #include "assets/soup.hpp"
+#include "core/disjoint_sets.hpp"
+#include "mesh/topology.hpp"
 
 namespace weft::assets {
 namespace {
+
+std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
 
 /// For each vertex the first one at exactly the same place.
 std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
@@ -86,7 +94,76 @@ std::vector<std::array<Vec2, 3>> corners_of(const Soup& soup) {
   return corners;
 }
 
+/// A vertex of a border, and how near others are to it that are taken for the same [m].
+struct BorderVertex {
+  Index vertex;
+  double reach;
+};
+
+std::vector<BorderVertex> border_of(const mesh::Mesh& mesh, double share) {
+  std::vector<double> shortest(mesh.positions.size(), std::numeric_limits<double>::infinity());
+  for (const auto& [a, b] : mesh::inspect(mesh.topology.triangles, mesh.positions.size()).border)
+    for (const Index v : {a, b})
+      shortest[at(v)] = std::min(shortest[at(v)], (mesh.positions[at(a)] - mesh.positions[at(b)]).norm());
+  std::vector<BorderVertex> border;
+  for (std::size_t v = 0; v < shortest.size(); ++v)
+    if (std::isfinite(shortest[v])) border.push_back({static_cast<Index>(v), share * shortest[v]});
+  return border;
+}
+
 }  // namespace
+
+Welded weld_borders(LoadedMesh& loaded, double share) {
+  const std::vector<Vec3>& x = loaded.mesh.positions;
+  std::vector<BorderVertex> border = border_of(loaded.mesh, share);
+  // Along x, so that only neighbours in this order are compared.
+  std::ranges::stable_sort(border, {}, [&](const BorderVertex& b) { return x[at(b.vertex)].x(); });
+  DisjointSets sets(x.size());
+  Welded welded;
+  for (std::size_t i = 0; i < border.size(); ++i)
+    for (std::size_t j = i + 1; j < border.size(); ++j) {
+      const Vec3 apart = x[at(border[j].vertex)] - x[at(border[i].vertex)];
+      if (apart.x() > border[i].reach) break;
+      if (apart.norm() > std::min(border[i].reach, border[j].reach)) continue;
+      sets.join(border[i].vertex, border[j].vertex);
+      welded.widest = std::max(welded.widest, apart.norm());
+    }
+  std::vector<Index> renamed(x.size());
+  LoadedMesh result = loaded;
+  result.mesh.positions.clear();
+  std::vector<int> copies;
+  for (std::size_t v = 0; v < x.size(); ++v) {
+    const auto first = at(sets.root(static_cast<Index>(v)));
+    if (first == v) {
+      renamed[v] = static_cast<Index>(copies.size());
+      result.mesh.positions.push_back(x[v]);
+      copies.push_back(1);
+      continue;
+    }
+    ++welded.vertices;
+    renamed[v] = renamed[first];
+    result.mesh.positions[at(renamed[v])] += x[v];
+    ++copies[at(renamed[v])];
+  }
+  if (welded.vertices == 0) return welded;
+  for (std::size_t v = 0; v < copies.size(); ++v) result.mesh.positions[v] /= copies[v];
+  for (auto& quad : result.mesh.topology.quads)
+    for (Index& v : quad) v = renamed[at(v)];
+  for (auto& triangle : result.mesh.topology.triangles)
+    for (Index& v : triangle) v = renamed[at(v)];
+  if (!mesh::inspect(result.mesh.topology.triangles, copies.size()).manifold()) return {};
+  if (!loaded.colors.empty()) result.colors.assign(copies.size(), Vec3::Zero());
+  for (std::size_t v = 0; v < loaded.colors.size(); ++v)
+    result.colors[at(renamed[v])] = result.colors[at(renamed[v])].cwiseMax(loaded.colors[v]);
+  for (auto& [name, weights] : result.groups) {
+    weights.assign(copies.size(), 0);
+    const std::vector<double>& before = loaded.groups.at(name);
+    for (std::size_t v = 0; v < before.size(); ++v)
+      weights[at(renamed[v])] = std::max(weights[at(renamed[v])], before[v]);
+  }
+  loaded = std::move(result);
+  return welded;
+}
 
 LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& where,
                      const std::string& object) {

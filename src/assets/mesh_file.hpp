@@ -28,11 +28,22 @@ struct LoadedMesh {
 };
 
 /// Reads every surface of the file, or those named `object` (OBJ, PLY, STL, glTF and what else assimp knows), all
-/// meshes merged with the transforms of their nodes, in the bind pose where the file is animated. Positions are
-/// multiplied by `scale` (metres per unit of the file). Points and lines are ignored; equal positions become one
-/// vertex, so that a closed body is watertight. `where` names what refers to the file, such as "scenes/a.toml:12:8:
-/// obstacle.chair". Throws Error(asset_unreadable) with `where`, the file and assimp's own words.
+/// meshes merged with the transforms of their nodes, in the bind pose where the file is animated. Positions are in
+/// metres where the file says its unit (FBX, Collada), and multiplied by `scale`. Points and lines are ignored; equal
+/// positions become one vertex, so that a closed body is watertight. `where` names what refers to the file, such as
+/// "scenes/a.toml:12:8: obstacle.chair". Throws Error(asset_unreadable) with `where`, the file and assimp's own words.
 LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& where,
                      const std::string& object = {});
+
+/// What weld_borders() did.
+struct Welded {
+  std::size_t vertices = 0;  ///< that became one with others
+  double widest = 0;         ///< distance between two of them [m]
+};
+
+/// Joins vertices of borders that nearly meet, as the sides of seams do in files that keep their panels apart: those
+/// nearer to each other than a `share` of the shortest edge of the border at either, in their middle. Where that would
+/// leave an edge of three triangles, or of two that face both ways, nothing is done.
+Welded weld_borders(LoadedMesh& loaded, double share);
 
 }  // namespace weft::assets

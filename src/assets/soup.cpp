@@ -8,15 +8,13 @@
 #include <assimp/Importer.hpp>
 #include <cstddef>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <limits>
-#include <optional>
 #include <set>
 #include <span>
 #include <stdexcept>
 #include <utility>
 
+#include "assets/import.hpp"
 #include "mesh/geometry.hpp"
 #include "mesh/polygon.hpp"
 #include "mesh/quads.hpp"
@@ -90,23 +88,6 @@ void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
   }
 }
 
-/// Assimp 5.2 takes a line feed at the start of binary PLY data, a byte of some number, for a part of the header's end
-/// and loses it. Such a file with one more line feed, which is lost instead; nothing for all other files.
-std::optional<std::string> shielded_ply(const std::filesystem::path& file) {
-  constexpr std::size_t kHeaderBytes = 1 << 16;
-  constexpr std::string_view kBinary = "\nformat binary_", kEnd = "\nend_header\n";
-  std::ifstream in(file, std::ios::binary);
-  std::string bytes(kHeaderBytes, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
-  const std::size_t data = bytes.find(kEnd) + kEnd.size();
-  const bool ply = bytes.starts_with("ply\n") && bytes.find(kBinary) < data;
-  if (!ply || data < kEnd.size() || data >= bytes.size() || bytes[data] != '\n') return std::nullopt;
-  bytes.append(std::istreambuf_iterator<char>(in), {});
-  bytes.insert(data, 1, '\n');
-  return bytes;
-}
-
 template <class T>
 void put(std::string& bytes, const std::vector<T>& list) {
   const std::size_t count = list.size();
@@ -138,11 +119,7 @@ void append_face(Soup& soup, std::span<const Index> corners) {
 
 Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   Assimp::Importer importer;
-  const std::optional<std::string> ply = shielded_ply(file);
-  const aiScene* scene =
-      ply ? importer.ReadFileFromMemory(ply->data(), ply->size(), aiProcess_ValidateDataStructure, "ply")
-          : importer.ReadFile(file.string(), aiProcess_ValidateDataStructure);
-  if (scene == nullptr || scene->mRootNode == nullptr) throw std::runtime_error(importer.GetErrorString());
+  const aiScene* scene = &import(importer, file, aiProcess_ValidateDataStructure);
   Soup soup;
   std::set<std::string> names;
   // The walk keeps its own stack: files can nest nodes deeper than ours is.
@@ -169,6 +146,8 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
         fmt::format("expected a mesh or node named \"{}\", got {}", object,
                     names.empty() ? "none with a name" : fmt::format("{}", fmt::join(names, ", "))));
   }
+  if (const auto metres = metres_per_unit(*scene))
+    for (Vec3& x : soup.positions) x *= *metres;
   return soup;
 }
 

@@ -15,7 +15,7 @@ namespace weft::assets {
 
 /// Triangles and quads over vertices that may repeat; all indices are in range.
 struct Soup {
-  std::vector<Vec3> positions;  ///< in the unit of the file
+  std::vector<Vec3> positions;  ///< in metres where the file says its unit
   std::vector<Vec2> uv;         ///< per position, v upward; NaN where its mesh has none
   std::vector<Vec3> colors;     ///< likewise; NaN where its mesh has none
   /// Weights of the groups of vertices, or bones: number among group_names, place among positions, and weight.

@@ -78,12 +78,13 @@ AVPixelFormat plain_format(int format) {
   }
 }
 
-Owned<AVFrame> decode_jpeg_frame(std::string_view bytes) {
-  const AVCodec* codec = avcodec_find_decoder(AV_CODEC_ID_MJPEG);
+/// The one picture of a file, by libav.
+Owned<AVFrame> decode_frame(std::string_view bytes, AVCodecID kind) {
+  const AVCodec* codec = avcodec_find_decoder(kind);
   const Owned<AVCodecContext> context(codec ? avcodec_alloc_context3(codec) : nullptr);
   Owned<AVFrame> frame(av_frame_alloc());
   const Owned<AVPacket> packet(av_packet_alloc());
-  if (!context || !frame || !packet) fail("libavcodec has no decoder of JPEG");
+  if (!context || !frame || !packet) fail(fmt::format("libavcodec has no decoder of {}", avcodec_get_name(kind)));
   context->log_level_offset = AV_LOG_TRACE;  // its words go into the error, not beside it
   context->err_recognition = AV_EF_EXPLODE | AV_EF_CRCCHECK | AV_EF_BITSTREAM;
   context->thread_count = 1;
@@ -101,35 +102,49 @@ Owned<AVFrame> decode_jpeg_frame(std::string_view bytes) {
   return frame;
 }
 
+Picture to_picture(const AVFrame& frame) {
+  check_size(frame.width, frame.height);
+  const Owned<SwsContext> scaler(
+      sws_getContext(frame.width, frame.height, plain_format(frame.format), frame.width, frame.height, AV_PIX_FMT_RGBA,
+                     SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_BITEXACT, nullptr, nullptr, nullptr));
+  if (!scaler) fail("its way of storing colors is not known");
+  constexpr int kFullRange = 1, kUnchanged = 1 << 16;
+  const int* coefficients = sws_getCoefficients(SWS_CS_ITU601);
+  sws_setColorspaceDetails(scaler.get(), coefficients, kFullRange, coefficients, kFullRange, 0, kUnchanged, kUnchanged);
+  Picture picture{frame.width, frame.height, {}};
+  picture.rgba.resize(4 * static_cast<std::size_t>(frame.width) * static_cast<std::size_t>(frame.height));
+  std::uint8_t* const planes[] = {picture.rgba.data()};
+  const int strides[] = {4 * picture.width};
+  if (sws_scale(scaler.get(), frame.data, frame.linesize, 0, frame.height, planes, strides) != frame.height)
+    fail("its colors could not be converted");
+  return picture;
+}
+
 Picture decode_jpeg(std::string_view bytes) {
   // A file that ends too early decodes to grey where it is missing.
   if (bytes.substr(bytes.size() - std::min<std::size_t>(bytes.size(), 1024)).rfind("\xff\xd9") ==
       std::string_view::npos)
     fail("the file ends too early");
-  const Owned<AVFrame> frame = decode_jpeg_frame(bytes);
-  check_size(frame->width, frame->height);
-  const Owned<SwsContext> scaler(sws_getContext(
-      frame->width, frame->height, plain_format(frame->format), frame->width, frame->height, AV_PIX_FMT_RGBA,
-      SWS_BILINEAR | SWS_ACCURATE_RND | SWS_FULL_CHR_H_INT | SWS_BITEXACT, nullptr, nullptr, nullptr));
-  if (!scaler) fail("its way of storing colors is not known");
-  constexpr int kFullRange = 1, kUnchanged = 1 << 16;
-  const int* coefficients = sws_getCoefficients(SWS_CS_ITU601);
-  sws_setColorspaceDetails(scaler.get(), coefficients, kFullRange, coefficients, kFullRange, 0, kUnchanged, kUnchanged);
-  Picture picture{frame->width, frame->height, {}};
-  picture.rgba.resize(4 * static_cast<std::size_t>(frame->width) * static_cast<std::size_t>(frame->height));
-  std::uint8_t* const planes[] = {picture.rgba.data()};
-  const int strides[] = {4 * picture.width};
-  if (sws_scale(scaler.get(), frame->data, frame->linesize, 0, frame->height, planes, strides) != frame->height)
-    fail("its colors could not be converted");
-  return picture;
+  return to_picture(*decode_frame(bytes, AV_CODEC_ID_MJPEG));
 }
 
 }  // namespace
 
+bool is_targa(std::string_view bytes) {
+  constexpr std::size_t kHeader = 18;
+  if (bytes.size() <= kHeader) return false;
+  const auto at = [&](std::size_t k) { return static_cast<unsigned char>(bytes[k]); };
+  const unsigned kind = at(2) & 7U, depth = at(16);  // with or without run lengths
+  const bool known = at(1) <= 1 && (at(2) & ~8U) == kind && kind >= 1 && kind <= 3;
+  return known && (depth == 8 || depth == 15 || depth == 16 || depth == 24 || depth == 32) && (at(17) & 0xc0U) == 0 &&
+         (at(12) | at(13)) != 0 && (at(14) | at(15)) != 0;
+}
+
 Picture decode_picture(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG")) return decode_png(bytes);
   if (bytes.starts_with("\xff\xd8\xff")) return decode_jpeg(bytes);
-  fail(bytes.empty() ? "the file is empty" : "it begins like neither of them");
+  if (is_targa(bytes)) return to_picture(*decode_frame(bytes, AV_CODEC_ID_TARGA));
+  fail(bytes.empty() ? "the file is empty" : "it begins like none of them");
 }
 
 Picture read_picture(const std::filesystem::path& file) {

@@ -1,4 +1,4 @@
-// Pictures to lay on surfaces, from PNG and JPEG files.
+// Pictures to lay on surfaces, from PNG, JPEG and TGA files.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +17,11 @@ struct Picture {
 /// Pixels along one side that a picture may have: what every OpenGL takes.
 inline constexpr int kMaxPictureSide = 16384;
 
-/// Decodes a PNG (any depth, palette, with or without alpha) or a JPEG file. Throws std::runtime_error, which says what
-/// is wrong.
+/// Whether bytes begin like a TGA file, which has no mark of its own: by all of its header that is not free.
+bool is_targa(std::string_view bytes);
+
+/// Decodes a PNG (any depth, palette, with or without alpha), a JPEG or a TGA file. Throws std::runtime_error, which
+/// says what is wrong.
 Picture decode_picture(std::string_view bytes);
 
 /// The same of a file, likewise.

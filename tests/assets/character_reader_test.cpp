@@ -218,6 +218,43 @@ TEST_F(Scenes, WithKeysPastTheEndOrForNoNodeAreTakenWithAWarning) {
   EXPECT_EQ(warning(), "clip \"walk\": 1 channel left out, which name no part of the file: \"tail\"");
 }
 
+// Nodes of FBX whose transform is in parts stand in a line, of which the last has the name of the file; a clip that
+// moves that one has the whole of it.
+TEST_F(Scenes, OfFbxWithTransformsInPartsPlayClipsThatHaveThemWhole) {
+  auto* helper = node("knee_$AssimpFbx$_Translation");
+  helper->mTransformation.a4 = 7;
+  helper->mChildren = new aiNode* [1] { knee_ };
+  helper->mNumChildren = 1;
+  root_->mChildren[1] = helper;
+  helper->mParent = root_;
+  knee_->mParent = helper;
+  knee_->mTransformation = aiMatrix4x4();
+  const auto place_of_knee = [&] {
+    const character::Character body = read().character;
+    const auto at = character::global_transforms(body, character::pose_at(body, body.clips[0], 0));
+    for (std::size_t n = 0; n < body.nodes.size(); ++n)
+      if (body.nodes[n].name == "knee") return Vec3(at[n].translation());
+    return Vec3(Vec3::Zero());
+  };
+  EXPECT_EQ(place_of_knee(), Vec3(8, 0, 0)) << "a way alone does not tell";
+  channel_->mRotationKeys = new aiQuatKey[1]{{0, aiQuaternion()}};
+  channel_->mNumRotationKeys = 1;
+  EXPECT_EQ(place_of_knee(), Vec3(1, 0, 0));
+  EXPECT_TRUE(read().warnings.empty());
+}
+
+// Assimp 5.2 tells the unit as a float, others as a double.
+TEST_F(Scenes, OfFbxSayTheirUnit) {
+  EXPECT_FALSE(read().metres_per_unit);
+  scene_.mMetaData = new aiMetadata;
+  scene_.mMetaData->Add("UnitScaleFactor", 2.5F);
+  EXPECT_EQ(read().metres_per_unit, 0.025);
+  scene_.mMetaData->mValues[0].mType = AI_DOUBLE;
+  delete static_cast<float*>(scene_.mMetaData->mValues[0].mData);
+  scene_.mMetaData->mValues[0].mData = new double(100);
+  EXPECT_EQ(read().metres_per_unit, 1);
+}
+
 TEST_F(Scenes, WithMorphTargetsAreBlendedByTheirChannels) {
   auto* target = new aiAnimMesh;
   target->mName = "swell";

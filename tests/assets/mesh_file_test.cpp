@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <filesystem>
@@ -159,6 +160,52 @@ TEST_F(MeshFiles, OfGltfFollowTheirNodesAndFaceOutwardThoughMirrored) {
   const Box3 box = mesh::bounding_box(loaded.mesh.positions);
   EXPECT_EQ(Vec3(box.min()), Vec3(0, 0, 1));
   EXPECT_EQ(Vec3(box.max()), Vec3(1, 1, 2));
+}
+
+TEST_F(MeshFiles, ThatSayTheirUnitAreInMetresWithTheirTextureCoordinates) {
+  for (const auto& [name, bytes] : {std::pair{"cm.fbx", fbx_square()}, {"inch.dae", collada_square()}}) {
+    const LoadedMesh loaded = load(name, bytes, 2);
+    const Box3 box = mesh::bounding_box(loaded.mesh.positions);
+    EXPECT_LT((box.max() - Vec3(2, 2, 0)).norm(), 1e-5) << name << ": " << box.max().transpose();
+    EXPECT_LT(box.min().norm(), 1e-5) << name;
+    ASSERT_EQ(loaded.uv.size(), 2U) << name;
+    for (const auto& corners : loaded.uv)
+      for (const Vec2& uv : corners) EXPECT_TRUE(uv.x() * (1 - uv.x()) == 0 && uv.y() * (1 - uv.y()) == 0) << name;
+  }
+}
+
+// Binary glTF under another name, as VRM is.
+TEST_F(MeshFiles, OfBinaryGltfAreReadWhateverTheyAreCalled) {
+  for (const char* name : {"body.vrm", "body.VRM", "body.glb"})
+    EXPECT_NEAR(volume(load(name, glb_tetrahedron())), 1.0 / 6, 1e-15) << name;
+}
+
+/// Two squares of 0.1 m side by side, so far apart.
+std::string two_squares(double apart) {
+  const double x = 0.1 + apart;
+  return "v 0 0 0\nv 0.1 0 0\nv 0.1 0.1 0\nv 0 0.1 0\nv " + std::to_string(x) + " 0 0.001\nv 0.3 0 0\nv 0.3 0.1 0\nv " +
+         std::to_string(x) + " 0.1 0 1 0 0\nf 1 2 3 4\nf 5 6 7 8\n";
+}
+
+TEST_F(MeshFiles, AreWeldedWhereBordersNearlyMeet) {
+  LoadedMesh near = load("near.obj", two_squares(0.004));
+  const Welded welded = weld_borders(near, 0.1);
+  EXPECT_EQ(welded.vertices, 2U);
+  EXPECT_NEAR(welded.widest, std::hypot(0.004, 0.001), 1e-8);
+  EXPECT_EQ(near.mesh.positions.size(), 6U);
+  EXPECT_EQ(inspected(near).border.size(), 6U);
+  EXPECT_NEAR(near.mesh.positions[1].x(), 0.102, 1e-8) << "in the middle";
+  ASSERT_EQ(near.mesh.topology.quads.size(), 2U);
+  EXPECT_EQ(near.mesh.topology.quads[1][0], near.mesh.topology.quads[0][1]);
+  LoadedMesh far = load("far.obj", two_squares(0.012));
+  EXPECT_EQ(weld_borders(far, 0.1).vertices, 0U);
+  EXPECT_EQ(far.mesh.positions.size(), 8U);
+}
+
+TEST_F(MeshFiles, AreNotWeldedWhereThreeSheetsWouldMeet) {
+  LoadedMesh three = load("three.obj", two_squares(0.004) + "v 0.102 0 0\nv 0.102 0.1 0\nv 0.1 0 0.1\nf 9 10 11\n");
+  EXPECT_EQ(weld_borders(three, 0.1).vertices, 0U);
+  EXPECT_EQ(three.mesh.positions.size(), 11U);
 }
 
 TEST_F(MeshFiles, WithSeveralMeshesAreMergedAndJoinedWhereTheyTouch) {

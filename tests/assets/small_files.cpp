@@ -54,18 +54,112 @@ std::string stl_tetrahedron() {
   return bytes;
 }
 
-std::string gltf_tetrahedron() {
+namespace {
+
+std::string tetrahedron_buffer() {
   std::string buffer;
   for (const auto& corner : kCorners) append(buffer, corner);
   for (const auto& face : kFaces) append(buffer, face);
+  return buffer;
+}
+
+/// `uri`: where the buffer is, as a member of it.
+std::string tetrahedron_json(const std::string& uri) {
   return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
 "nodes":[{"mesh":0,"scale":[1,1,-1],"translation":[0,0,2]}],
 "meshes":[{"primitives":[{"attributes":{"POSITION":0},"indices":1}]}],
-"buffers":[{"byteLength":72,"uri":"data:application/octet-stream;base64,)" +
-         base64(buffer) + R"("}],
+"buffers":[{"byteLength":72)" +
+         uri + R"(}],
 "bufferViews":[{"buffer":0,"byteLength":48},{"buffer":0,"byteOffset":48,"byteLength":24}],
 "accessors":[{"bufferView":0,"componentType":5126,"count":4,"type":"VEC3","min":[0,0,0],"max":[1,1,1]},
 {"bufferView":1,"componentType":5123,"count":12,"type":"SCALAR"}]})";
+}
+
+}  // namespace
+
+std::string gltf_tetrahedron() {
+  return tetrahedron_json(R"(,"uri":"data:application/octet-stream;base64,)" + base64(tetrahedron_buffer()) + '"');
+}
+
+std::string glb_tetrahedron() {
+  std::string json = tetrahedron_json("");
+  json.resize((json.size() + 3) / 4 * 4, ' ');
+  const std::string buffer = tetrahedron_buffer();
+  std::string bytes = "glTF";
+  const auto number = [&](std::size_t value) { append(bytes, static_cast<std::uint32_t>(value)); };
+  number(2);
+  number(28 + json.size() + buffer.size());
+  number(json.size());
+  bytes += "JSON" + json;
+  number(buffer.size());
+  return bytes + std::string("BIN\0", 4) + buffer;
+}
+
+std::string fbx_square() {
+  return R"(; FBX 7.3.0 project file
+FBXHeaderExtension:  {
+	FBXVersion: 7300
+}
+GlobalSettings:  {
+	Version: 1000
+	Properties70:  {
+		P: "UnitScaleFactor", "double", "Number", "",1
+	}
+}
+Objects:  {
+	Geometry: 100, "Geometry::cloth", "Mesh" {
+		Vertices: *12 {
+			a: 0,0,0,100,0,0,100,100,0,0,100,0
+		}
+		PolygonVertexIndex: *4 {
+			a: 0,1,2,-4
+		}
+		GeometryVersion: 124
+		LayerElementUV: 0 {
+			Version: 101
+			Name: "map"
+			MappingInformationType: "ByPolygonVertex"
+			ReferenceInformationType: "Direct"
+			UV: *8 {
+				a: 0,0,1,0,1,1,0,1
+			}
+		}
+		Layer: 0 {
+			Version: 100
+			LayerElement:  {
+				Type: "LayerElementUV"
+				TypedIndex: 0
+			}
+		}
+	}
+	Model: 200, "Model::cloth", "Mesh" {
+		Version: 232
+	}
+}
+Connections:  {
+	C: "OO",200,0
+	C: "OO",100,200
+}
+)";
+}
+
+std::string collada_square() {
+  return R"(<?xml version="1.0"?>
+<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
+<asset><unit name="inch" meter="0.0254"/><up_axis>Y_UP</up_axis></asset>
+<library_geometries><geometry id="g"><mesh>
+<source id="p"><float_array id="pa" count="12">0 0 0 39.3701 0 0 39.3701 39.3701 0 0 39.3701 0</float_array>
+<technique_common><accessor source="#pa" count="4" stride="3"><param name="X" type="float"/><param name="Y" type="float"/><param name="Z" type="float"/></accessor></technique_common></source>
+<source id="t"><float_array id="ta" count="8">0 0 1 0 1 1 0 1</float_array>
+<technique_common><accessor source="#ta" count="4" stride="2"><param name="S" type="float"/><param name="T" type="float"/></accessor></technique_common></source>
+<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
+<polylist count="1"><input semantic="VERTEX" source="#v" offset="0"/><input semantic="TEXCOORD" source="#t" offset="1" set="0"/>
+<vcount>4</vcount><p>0 0 1 1 2 2 3 3</p></polylist>
+</mesh></geometry></library_geometries>
+<library_visual_scenes><visual_scene id="s"><node id="n"><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
+<scene><instance_visual_scene url="#s"/></scene>
+</COLLADA>
+)";
 }
 
 }  // namespace weft::assets

@@ -16,5 +16,11 @@ std::string stl_tetrahedron();
 
 /// The same as self-contained glTF; one node mirrors it by a scale of -1 along z and moves it up by 2.
 std::string gltf_tetrahedron();
+/// And as binary glTF.
+std::string glb_tetrahedron();
+
+/// A square of 1 m as FBX in centimetres, and as Collada in inches, each with texture coordinates.
+std::string fbx_square();
+std::string collada_square();
 
 }  // namespace weft::assets

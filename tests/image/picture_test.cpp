@@ -84,6 +84,16 @@ TEST(PictureFile, GrayPngIsOpaque) {
   EXPECT_EQ(picture.rgba, (std::vector<std::uint8_t>{10, 10, 10, 255, 200, 200, 200, 255}));
 }
 
+TEST(PictureFile, TgaKeepsColorsAndAlphaAndItsFirstRowIsTheLowestUnlessItSaysSo) {
+  // Of 24 bits as blue, green, red; of 32 with alpha and from the top, in runs.
+  const std::string plain = {0, 0, 2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 1, 0, 2, 0, 24, 0, 30, 20, 10, 60, 50, 40};
+  EXPECT_EQ(decode_picture(plain).rgba, (std::vector<std::uint8_t>{40, 50, 60, 255, 10, 20, 30, 255}));
+  const std::string runs = {0,  0,  10, 0, 0, 0, 0, 0, 0, 0, 0, 0, 2, 0, 1, 0, 32, 0x28, static_cast<char>(0x81),
+                            30, 20, 10, 5};
+  EXPECT_EQ(decode_picture(runs).rgba, (std::vector<std::uint8_t>{10, 20, 30, 5, 10, 20, 30, 5}));
+  EXPECT_NE(complaint(plain.substr(0, 20)), "");
+}
+
 // The encoder keeps even halves to within two levels; black and white come out as such only where the full range of
 // values is taken for what it is: else 16 and 235.
 TEST(PictureFile, JpegHasTheFullRangeWhateverItsColorsAreStoredLike) {
@@ -106,7 +116,7 @@ TEST(PictureFile, WhatIsBrokenOrSomethingElseIsRefusedWithTheReason) {
   const std::string png = png_bytes(20, 20, PNG_FORMAT_RGBA, std::vector<std::uint8_t>(1600, 77));
   const std::string jpeg = jpeg_bytes(64, 32, AV_PIX_FMT_YUVJ420P);
   EXPECT_EQ(complaint(""), "the file is empty");
-  EXPECT_EQ(complaint("GIF89a..."), "it begins like neither of them");
+  EXPECT_EQ(complaint("GIF89a..."), "it begins like none of them");
   EXPECT_NE(complaint(png.substr(0, png.size() / 2)), "");
   EXPECT_NE(complaint(png.substr(0, 12)), "");
   EXPECT_EQ(complaint(jpeg.substr(0, jpeg.size() / 2)), "the file ends too early");

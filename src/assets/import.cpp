@@ -1,0 +1,74 @@
+#include "assets/import.hpp"
+
+#include <assimp/scene.h>
+
+#include <array>
+#include <assimp/Importer.hpp>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+namespace weft::assets {
+namespace {
+
+/// Assimp 5.2 takes a line feed at the start of binary PLY data, a byte of some number, for a part of the header's end
+/// and loses it. Such a file with one more line feed, which is lost instead; nothing for all other files.
+std::optional<std::string> shielded_ply(const std::filesystem::path& file) {
+  constexpr std::size_t kHeaderBytes = 1 << 16;
+  constexpr std::string_view kBinary = "\nformat binary_", kEnd = "\nend_header\n";
+  std::ifstream in(file, std::ios::binary);
+  std::string bytes(kHeaderBytes, '\0');
+  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  const std::size_t data = bytes.find(kEnd) + kEnd.size();
+  const bool ply = bytes.starts_with("ply\n") && bytes.find(kBinary) < data;
+  if (!ply || data < kEnd.size() || data >= bytes.size() || bytes[data] != '\n') return std::nullopt;
+  bytes.append(std::istreambuf_iterator<char>(in), {});
+  bytes.insert(data, 1, '\n');
+  return bytes;
+}
+
+/// The bytes of a binary glTF file that has another ending, such as .vrm: assimp takes it for OBJ.
+std::optional<std::string> renamed_gltf(const std::filesystem::path& file) {
+  constexpr std::string_view kStart = "glTF";
+  std::array<char, kStart.size()> start{};
+  std::ifstream in(file, std::ios::binary);
+  in.read(start.data(), start.size());
+  if (std::string_view(start.data(), start.size()) != kStart || file.extension() == ".glb") return std::nullopt;
+  std::string bytes(start.data(), start.size());
+  bytes.append(std::istreambuf_iterator<char>(in), {});
+  return bytes;
+}
+
+}  // namespace
+
+const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps) {
+  const aiScene* scene = nullptr;
+  if (const auto ply = shielded_ply(file))
+    scene = importer.ReadFileFromMemory(ply->data(), ply->size(), steps, "ply");
+  else if (const auto gltf = renamed_gltf(file))
+    scene = importer.ReadFileFromMemory(gltf->data(), gltf->size(), steps, "glb");
+  else
+    scene = importer.ReadFile(file.string(), steps);
+  if (scene == nullptr || scene->mRootNode == nullptr) throw std::runtime_error(importer.GetErrorString());
+  return *scene;
+}
+
+std::optional<double> metres_per_unit(const aiScene& scene) {
+  if (scene.mMetaData == nullptr) return std::nullopt;
+  // Assimp 5.2 stores a float, other versions a double.
+  float single = 0;
+  double centimetres = 0;
+  if (scene.mMetaData->Get("UnitScaleFactor", single))
+    centimetres = single;
+  else if (!scene.mMetaData->Get("UnitScaleFactor", centimetres))
+    return std::nullopt;
+  if (!std::isfinite(centimetres) || !(centimetres > 0)) return std::nullopt;
+  return 0.01 * centimetres;
+}
+
+}  // namespace weft::assets
