@@ -24,8 +24,8 @@ constexpr double kMaxCoordinate = 1e5;
 constexpr double kDefaultUnits = 100;  // to the metre
 // Height of the origin of the forerunner's body, between pelvis and chest, above its floor [m].
 constexpr double kOldOrigin = 1.12;
-// The body that the dataset's patterns are drawn for: chest and height [m].
-constexpr double kChest = 1.00, kHeight = 1.72;
+// The body that the dataset's patterns are drawn for [m].
+constexpr double kChest = 0.998, kWaist = 0.843, kHip = 1.035, kHeight = 1.72;
 // Lowest panel of a pattern that is measured from the floor [m]: trousers end below the heel before they are worn.
 constexpr double kBelowFloor = -0.2;
 // Least height above the floor that they start at [m].
@@ -384,6 +384,8 @@ class Reader {
 
   void write(Pattern& pattern) const {
     pattern.measures.chest = kChest;
+    pattern.measures.waist = kWaist;
+    pattern.measures.hip = kHip;
     pattern.measures.height = kHeight;
     constexpr double kDegree = std::numbers::pi / 180;
     double lowest = std::numeric_limits<double>::infinity();
