@@ -186,6 +186,12 @@ assets::LoadedMesh use_mesh_file(const scene::Cloth& cloth, const std::string& w
   if (cloth.rest != scene::ClothRest::mesh) rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale);
   if (cloth.rest == scene::ClothRest::mesh) object.rest_from = "the mesh: the scene says so";
   const bool panels = cloth.rest != scene::ClothRest::mesh && takes_uv(cloth, rest, where, object);
+  if (panels) {
+    constexpr double kWelded = 0.1;  // of the edges there: what programs leave between the sides of a seam is less
+    if (const assets::Welded welded = assets::weld_borders(loaded, kWelded); welded.vertices > 0)
+      object.rest_from += fmt::format("; {} vertices of its borders are joined to others, at most {:.2g} mm away",
+                                      welded.vertices, 1e3 * welded.widest);
+  }
   use_triangles(std::move(loaded.mesh), object);
   if (panels) {
     object.sheet.material = std::move(rest.material);
