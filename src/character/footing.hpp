@@ -27,7 +27,7 @@ struct Footsteps {
 Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> postures, std::span<const double> times,
                          const Vec3& up);
 
-/// A leg at a key.
+/// A leg at a key; to reach() also an arm, with shoulder, elbow, wrist and hinge.
 struct Leg {
   Vec3 hip, knee, ankle;
   Vec3 ball, heel;  ///< of the sole, below the toe joint and below the ankle

@@ -137,6 +137,22 @@ bool is_whole(const std::vector<Index>& joints) {
       [&](Joint left) { return joints[place_of(left)] >= 0 && joints[place_of(on_side(left, true))] >= 0; });
 }
 
+/// What names of this many nodes begin with may be the name of a rig: of a body and nothing else.
+constexpr std::size_t kRig = 15;
+
+/// Beginnings of names up to a mark, which so many nodes share, the longest first.
+std::vector<std::string> shared_beginnings(std::span<const Node> nodes) {
+  std::map<std::string, std::size_t> counts;
+  for (const Node& node : nodes)
+    for (std::size_t i = 1; i < node.name.size(); ++i)
+      if (std::isalnum(static_cast<unsigned char>(node.name[i - 1])) == 0) ++counts[node.name.substr(0, i)];
+  std::vector<std::string> beginnings;
+  for (const auto& [text, count] : counts)
+    if (count >= kRig) beginnings.push_back(text);
+  std::ranges::stable_sort(beginnings, std::greater(), &std::string::size);
+  return beginnings;
+}
+
 }  // namespace
 
 std::string_view name(Joint joint) {
@@ -206,8 +222,36 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes) {
   return joints;
 }
 
+namespace {
+
+/// Joints by name; where these do not say all, by what follows the name of a rig ("UnityChan_LeftArm",
+/// "rig_DEF-thigh_L"), of several rigs that of which most joints hold skin or move.
+std::vector<Index> find_prefixed_joints(const Character& character) {
+  std::vector<Index> best = find_named_joints(character.nodes);
+  if (is_whole(best)) return best;
+  std::vector<bool> acts(character.nodes.size(), false);
+  for (const Bone& bone : character.bones) acts[bone.node] = true;
+  for (const Clip& clip : character.clips)
+    for (const Channel& channel : clip.channels) acts[channel.node] = true;
+  std::size_t most = 0;
+  for (const std::string& beginning : shared_beginnings(character.nodes)) {
+    std::vector<Node> nodes = character.nodes;
+    for (Node& node : nodes)
+      node.name = node.name.starts_with(beginning) ? node.name.substr(beginning.size()) : std::string();
+    std::vector<Index> joints = find_named_joints(nodes);
+    const auto count =
+        static_cast<std::size_t>(std::ranges::count_if(joints, [&](Index node) { return node >= 0 && acts[node]; }));
+    if (!is_whole(joints) || count <= most) continue;
+    most = count;
+    best = std::move(joints);
+  }
+  return best;
+}
+
+}  // namespace
+
 std::vector<Index> find_joints(const Character& character) {
-  std::vector<Index> joints = find_named_joints(character.nodes);
+  std::vector<Index> joints = find_prefixed_joints(character);
   if (is_whole(joints)) return joints;
   const std::vector<Index> nameless = find_nameless_joints(character);
   for (std::size_t j = 0; j < joints.size(); ++j)

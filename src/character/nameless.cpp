@@ -22,6 +22,9 @@ constexpr int kFingers = 3;
 /// are recordings with collarbones of 13 and forearms of 9 cm; hands have less than half of a forearm up to the
 /// fingers.
 constexpr double kElbow = 0.6;
+/// Halves of a bone differ by less, and upper and lower bones of limbs by no more than this factor (those of adults by
+/// 1.0 to 1.3).
+constexpr double kSameHalf = 0.01, kHalves = 1.5;
 /// Bones of necks that do not bend are shorter than this share of a leg; those that are longer are heads.
 constexpr double kNeckBone = 0.17;
 /// Of a clip so many moments say how somebody stands.
@@ -150,16 +153,23 @@ class NamelessFinder {
             pairs.push_back({static_cast<Index>(n), a, b, std::min(reach_[a], reach_[b])});
         }
     std::ranges::stable_sort(pairs, std::greater(), &Pair::reach);
-    for (std::size_t second = 1; second < pairs.size(); ++second) {
-      const Pair &p = pairs[0], &q = pairs[second];
-      const auto meet = [&](Index x, Index y) { return is_below(x, y) || is_below(y, x); };
-      if (meet(p.a, q.a) || meet(p.a, q.b) || meet(p.b, q.a) || meet(p.b, q.b)) continue;
-      const bool p_above = p.from != q.from && is_below(q.from, p.from);
-      const bool q_above = p.from != q.from && is_below(p.from, q.from);
-      const bool p_longer = chain_of(p.a, 1).length > chain_of(q.a, 1).length;
-      return p_above || (!q_above && p_longer) ? std::pair{p, q} : std::pair{q, p};
-    }
+    // A spine may be like a leg: what it is paired with meets all others.
+    for (std::size_t first = 0; first < pairs.size(); ++first)
+      for (std::size_t second = first + 1; second < pairs.size(); ++second)
+        if (apart(pairs[first], pairs[second])) return legs_and_arms(pairs[first], pairs[second]);
     return {};
+  }
+
+  bool apart(const Pair& p, const Pair& q) const {
+    const auto meet = [&](Index x, Index y) { return is_below(x, y) || is_below(y, x); };
+    return !meet(p.a, q.a) && !meet(p.a, q.b) && !meet(p.b, q.a) && !meet(p.b, q.b);
+  }
+
+  std::pair<Pair, Pair> legs_and_arms(const Pair& p, const Pair& q) const {
+    const bool p_above = p.from != q.from && is_below(q.from, p.from);
+    const bool q_above = p.from != q.from && is_below(p.from, q.from);
+    const bool p_longer = chain_of(p.a, 1).length > chain_of(q.a, 1).length;
+    return p_above || (!q_above && p_longer) ? std::pair{p, q} : std::pair{q, p};
   }
 
   /// `outer`: how much shorter bones may be to be preferred because they lie farther out.
@@ -174,21 +184,40 @@ class NamelessFinder {
     }
     if (hand >= 2) last = hand;
     if (last < 2) last = nodes.size() - 1;  // an arm without a hand
+    join_halves(nodes, last);
     Chain chain;
     double longest = 0;
     for (std::size_t i = 0; i + 2 <= last; ++i) {
-      const double shorter = std::min(length_[nodes[i + 1]], length_[nodes[i + 2]]);
+      const double upper = length_between(nodes[i], nodes[i + 1]), lower = length_between(nodes[i + 1], nodes[i + 2]);
+      const double shorter = std::min(upper, lower);
       if (shorter <= outer * longest) continue;
       longest = std::max(longest, shorter);
       const auto joint = [&](std::size_t k) { return k < nodes.size() && is_joint_[nodes[k]] ? nodes[k] : -1; };
-      chain = {i > 0 ? nodes[i - 1] : -1,
-               nodes[i],
-               nodes[i + 1],
-               joint(i + 2),
-               joint(i + 3),
-               length_[nodes[i + 1]] + length_[nodes[i + 2]]};
+      chain = {i > 0 ? nodes[i - 1] : -1, nodes[i], nodes[i + 1], joint(i + 2), joint(i + 3), upper + lower};
     }
     return chain;
+  }
+
+  /// The length of the bones from a node to one below it.
+  double length_between(Index above, Index below) const {
+    double sum = 0;
+    for (; below != above; below = character_.nodes[below].parent) sum += length_[below];
+    return sum;
+  }
+
+  /// Upper and lower bones that are in two halves, as twists of rigs want them, become whole: four bones of which two
+  /// and two are as long, and one pair is not much longer than the other.
+  void join_halves(std::vector<Index>& nodes, std::size_t& last) const {
+    for (std::size_t i = 0; i + 4 <= last; ++i) {
+      const auto bone = [&](std::size_t k) { return length_[nodes[i + k]]; };
+      const auto same = [](double a, double b) { return std::abs(a - b) < kSameHalf * std::max(a, b); };
+      const double ratio = bone(3) / bone(1);
+      if (!same(bone(1), bone(2)) || !same(bone(3), bone(4)) || !(ratio > 1 / kHalves && ratio < kHalves)) continue;
+      nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i + 3));
+      nodes.erase(nodes.begin() + static_cast<std::ptrdiff_t>(i + 1));
+      last -= 2;
+      return;
+    }
   }
 
   /// The mean of a figure over what the first clip shows, or at rest. `figure`: by the places of all nodes.

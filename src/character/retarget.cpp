@@ -12,6 +12,7 @@
 #include "character/footing.hpp"
 #include "character/parts.hpp"
 #include "character/pose.hpp"
+#include "character/touching.hpp"
 
 namespace weft::character {
 namespace {
@@ -32,6 +33,11 @@ constexpr double kToesBack = 150 * kDegree;
 
 /// Soles that miss the floor by more are warned about [m].
 constexpr double kFloorMissed = 0.05;
+
+/// Rounds in which hands come to what they touch, which may be the other hand or its elbow.
+constexpr int kRounds = 3;
+/// Hands that are off by less are left where they are [m].
+constexpr double kTouching = 1e-4;
 
 template <class Value>
 using PerJoint = std::array<Value, kJointCount>;
@@ -120,6 +126,7 @@ class Retargeter {
     for (std::size_t k = 0; k < times_.size(); ++k) frames.push_back(frame_at(k));
     Retargeted result;
     if (!same_ && can_stand()) stand(frames, result.doubts);
+    if (!same_) touch(frames);
     if (!same_) check_joints(result.doubts);
     result.clip = {clip_.name, clip_.duration, {}, {}};
     for (std::size_t n = 0; n < joint_of_.size(); ++n)
@@ -280,7 +287,7 @@ class Retargeter {
         Leg leg = legs[k][right];
         const Vec3 ankle = leg.ankle + stance.shift[right];
         for (Vec3* joint : {&leg.hip, &leg.knee, &leg.ankle}) *joint += stance.rise * up_;
-        if (ankle != leg.ankle) bend_leg(frames[k], leg, ankle, right);
+        if (ankle != leg.ankle) bend_limb(frames[k], leg, ankle, on_side(Joint::left_upper_leg, right));
         bend_toes(frames[k], legs[k][right].ball + stance.shift[right], sole, right);
       }
     }
@@ -311,12 +318,56 @@ class Retargeter {
                                    kFloorMissed));
   }
 
-  static void bend_leg(Frame& frame, const Leg& leg, const Vec3& ankle, bool right) {
-    const LegTurns turns = reach(leg, ankle);
-    Quat& upper = frame.turned[place_of(on_side(Joint::left_upper_leg, right))];
-    Quat& lower = frame.turned[place_of(on_side(Joint::left_lower_leg, right))];
+  /// A leg, or likewise an arm.
+  static void bend_limb(Frame& frame, const Leg& limb, const Vec3& end, Joint upper_joint) {
+    const LegTurns turns = reach(limb, end);
+    Quat& upper = frame.turned[place_of(upper_joint)];
+    Quat& lower = frame.turned[place_of(upper_joint) + 1];
     upper = (turns.upper * upper).normalized();
     lower = (turns.lower * lower).normalized();
+  }
+
+  /// Mean length of the arms from shoulder to wrist; 0 without them.
+  static double arm_length(const Skeleton& skeleton, const Posture& posture) {
+    double sum = 0;
+    for (const bool right : {false, true})
+      for (const Joint left : {Joint::left_upper_arm, Joint::left_lower_arm}) {
+        const Joint joint = on_side(left, right);
+        if (!skeleton.has(joint) || !skeleton.has(static_cast<Joint>(place_of(joint) + 1))) return 0;
+        sum += skeleton.bone(posture, joint).norm();
+      }
+    return sum / 2;
+  }
+
+  /// Hands that are near something in the motion stay as near.
+  void touch(std::vector<Frame>& frames) const {
+    double trunk = 0;  // of the motion where it is most upright
+    for (const Posture& posture : postures_) trunk = std::max(trunk, theirs_.trunk(posture).norm());
+    const double our_arm = arm_length(ours_, rest_), their_arm = arm_length(theirs_, postures_.front());
+    if (our_arm == 0 || their_arm == 0 || trunk == 0) return;
+    const Proportions proportions{our_arm / their_arm, ours_.trunk(rest_).norm() / trunk, their_arm};
+    PerJoint<bool> both{};
+    for (std::size_t j = 0; j < kJointCount; ++j) both[j] = moves_[j] && theirs_.has(static_cast<Joint>(j));
+    const auto rests = find_rests(postures_, times_, their_arm);
+    for (std::size_t k = 0; k < frames.size(); ++k) {
+      Places theirs, ours;
+      for (std::size_t j = 0; j < kJointCount; ++j) theirs[j] = face_ * postures_[k].places[j];
+      for (int round = 0; round < kRounds; ++round) {
+        const std::vector<Affine> nodes = globals(frames[k]);
+        for (std::size_t j = 0; j < kJointCount; ++j)
+          ours[j] = both[j] ? Vec3(nodes[body_.joints[j]].translation()) : Vec3(Vec3::Zero());
+        const std::array<Vec3, 2> pull = pull_hands(theirs, ours, both, proportions, rests[k]);
+        if (std::max(pull[0].norm(), pull[1].norm()) < kTouching) break;
+        for (const bool right : {false, true}) {
+          const std::size_t upper = place_of(on_side(Joint::left_upper_arm, right));
+          if (pull[right].isZero()) continue;
+          Leg arm;
+          arm.hip = ours[upper], arm.knee = ours[upper + 1], arm.ankle = ours[upper + 2];
+          arm.hinge = frames[k].axes[upper + 1] * Vec3::UnitX();
+          bend_limb(frames[k], arm, arm.ankle + pull[right], static_cast<Joint>(upper));
+        }
+      }
+    }
   }
 
   /// Toes do not reach below the floor.

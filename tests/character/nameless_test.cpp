@@ -79,6 +79,25 @@ TEST(NamelessJoints, OfLongCollarbonesAndLargeHandsAreFound) {
   expect_all_found(somebody(false, false, 0.15, 0.3));
 }
 
+// As rigs have them that twist by halves: a node in the middle of upper and lower arms and legs.
+TEST(NamelessJoints, OfBonesInTwoHalvesAreTheirEnds) {
+  const Sticks whole = somebody(false, true);
+  Sticks s;
+  std::vector<Index> now;
+  for (std::size_t n = 0; n < whole.parts.size(); ++n) {
+    const Node& node = whole.body.nodes[n];
+    const std::string& part = whole.parts[n];
+    Index parent = node.parent < 0 ? -1 : now[static_cast<std::size_t>(node.parent)];
+    Vec3 offset = node.local.translation();
+    if (part.ends_with("LowerLeg") || part.ends_with("Foot") || part.ends_with("LowerArm") || part.ends_with("Hand")) {
+      offset /= 2;
+      parent = s.add("", parent, offset);
+    }
+    now.push_back(s.add(part, parent, offset));
+  }
+  expect_all_found(s);
+}
+
 TEST(NamelessJoints, OfTheMannequinAreThoseThatItsNamesSay) {
   Character body = make_mannequin({.edge_length = 0.1});
   const std::vector<Index> named = find_joints(body);

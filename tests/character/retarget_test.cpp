@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <numbers>
 #include <string>
 
 #include "character/joints.hpp"
+#include "character/mannequin.hpp"
 #include "character/pose.hpp"
 
 namespace weft::character {
@@ -284,6 +286,72 @@ TEST(Joints, OfRigifyAndBipedAreFoundInTheirTrees) {
   EXPECT_EQ(name_of(Joint::hips), "Bip01 Pelvis");
   EXPECT_EQ(name_of(Joint::chest), "Bip01 Spine1");
   EXPECT_EQ(name_of(Joint::neck), "Bip01 Neck");
+}
+
+TEST(Joints, OfRigsWhoseNameStandsBeforeAllNodesAreFound) {
+  const Character plain = make_mannequin({.edge_length = 0.1});
+  const std::vector<Index> expected = find_joints(plain);
+  for (const std::string rig : {"UnityChan_", "rig_DEF-"}) {
+    Character body = plain;
+    for (Node& node : body.nodes) node.name = rig + node.name;
+    EXPECT_EQ(find_joints(body), expected) << rig;
+    // A rig that holds nothing stands before it.
+    const auto shift = static_cast<Index>(plain.nodes.size());
+    for (Node& node : body.nodes) node.parent += node.parent < 0 ? 0 : shift;
+    for (Bone& bone : body.bones) bone.node += shift;
+    std::vector<Node> two = plain.nodes;
+    for (Node& node : two) node.name = "metarig_" + node.name;
+    two.insert(two.end(), body.nodes.begin(), body.nodes.end());
+    body.nodes = two;
+    const std::vector<Index> found = find_joints(body);
+    for (std::size_t j = 0; j < kJointCount; ++j) EXPECT_EQ(found[j], expected[j] + shift) << rig << joint_names()[j];
+  }
+}
+
+/// Local rotations that point upper and lower arms of a mannequin at rest in such directions.
+Clip arms_along(const Character& body, const std::array<std::array<Vec3, 2>, 2>& directions) {
+  Clip clip{"arms", 1, {}, {}};
+  const auto joints = find_joints(body);
+  const auto at = global_transforms(body, rest_pose(body));
+  for (const bool right : {false, true}) {
+    Quat above = to_placement(at[body.nodes[joints[place_of(on_side(Joint::left_upper_arm, right))]].parent]).rotation;
+    for (std::size_t k = 0; k < 2; ++k) {
+      const std::size_t joint = place_of(on_side(Joint::left_upper_arm, right)) + k;
+      const Vec3 bone = at[joints[joint + 1]].translation() - at[joints[joint]].translation();
+      const Quat turned = Quat::FromTwoVectors(bone, directions[right][k]) * to_placement(at[joints[joint]]).rotation;
+      Channel channel;
+      channel.node = joints[joint];
+      const Quat local = above.conjugate() * turned;
+      channel.rotation = {{0, 1}, {local, local}};
+      clip.channels.push_back(channel);
+      above = turned;
+    }
+  }
+  return clip;
+}
+
+// Arms of the motion are longer below the elbow; without the other hand in mind ours are 10 cm farther apart.
+TEST(Retarget, KeepsHandsTogetherThatAreTogetherInTheMotion) {
+  const Character body = make_mannequin({.edge_length = 0.1});
+  Character motion = body;
+  const auto joints = find_joints(body);
+  for (const bool right : {false, true})
+    motion.nodes[joints[place_of(on_side(Joint::left_hand, right))]].local.translation() *= 1.4;
+  const auto way = [](double x, double y, double z) { return Vec3(x, y, z).normalized(); };
+  const Clip clip =
+      arms_along(motion, {{{way(0.1, -0.6, -0.8), way(-0.42, -0.9, 0)}, {way(-0.1, -0.6, -0.8), way(0.42, -0.9, 0)}}});
+  const auto apart = [&](const Character& of, const Clip& by) {
+    const auto at = global_transforms(of, pose_at(of, by, 0.5));
+    const auto hand = [&](Joint joint) -> Vec3 { return at[joints[place_of(joint)]].translation(); };
+    return Vec3(hand(Joint::left_hand) - hand(Joint::right_hand));
+  };
+  const auto arm = [&](const Character& of) {
+    const auto length = [&](Joint joint) { return of.nodes[joints[place_of(joint)]].local.translation().norm(); };
+    return length(Joint::left_lower_arm) + length(Joint::left_hand);
+  };
+  ASSERT_LT(apart(motion, clip).norm(), 0.24 * arm(motion)) << "they are together";
+  const Retargeted result = retarget({body, joints}, {motion, joints}, clip, Vec3::UnitZ());
+  EXPECT_LT((apart(body, result.clip) - arm(body) / arm(motion) * apart(motion, clip)).norm(), 1e-3);
 }
 
 TEST(Retarget, DoubtsWhatNoBodyDoes) {

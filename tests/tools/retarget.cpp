@@ -40,6 +40,10 @@ struct Follows {
   double below = 0, above = 0;       // of the lowest vertex under and over the floor, with a foot on it [m]
   std::size_t steps = 0, keys = 0;
   double when = 0;
+  // Root of the mean square by which a hand is elsewhere against the other hand, or the hips, than that of the motion
+  // in the proportions of the body, over the keys in which it is near it [m].
+  double hands = 0, hips = 0;
+  std::size_t hands_keys = 0, hips_keys = 0;
 };
 
 /// Height of the lowest vertex of the feet.
@@ -133,6 +137,57 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
   return result;
 }
 
+double arm_length(const Skeleton& skeleton, const Posture& posture) {
+  return skeleton.bone(posture, Joint::left_upper_arm).norm() + skeleton.bone(posture, Joint::left_lower_arm).norm();
+}
+
+/// How well hands that are together, or at the hips with bent arms, stay so.
+void measure_hands(const Rig& body, const Rig& motion, const Clip& theirs, const Clip& ours, Follows& result) {
+  constexpr double kTogether = 0.24, kAtHips = 0.5, kBent = 60;  // lengths of the arm; degrees
+  const Skeleton a(body), b(motion);
+  for (const Joint joint : {Joint::left_upper_arm, Joint::left_lower_arm, Joint::left_hand, Joint::right_hand})
+    if (!a.has(joint) || !b.has(joint)) return;
+  std::vector<double> times;
+  for (const Channel& channel : ours.channels)
+    if (channel.rotation.times.size() > times.size()) times = channel.rotation.times;
+  double trunk = 0;
+  for (const double t : times) trunk = std::max(trunk, b.trunk(b.at(pose_at(motion.character, theirs, t))).norm());
+  const Posture rest = a.at(rest_pose(body.character));
+  trunk = a.trunk(rest).norm() / trunk;
+  Quat face = Quat::Identity();
+  double hands = 0, hips = 0;
+  for (const double t : times) {
+    const Posture p = a.at(pose_at(body.character, ours, t)), q = b.at(pose_at(motion.character, theirs, t));
+    if (t == times.front()) {
+      const auto left = [](const Skeleton& s, const Posture& at) -> Vec3 {
+        const Vec3 v = s.across_hips(at).normalized() + s.across_shoulders(at).normalized();
+        return v - v.dot(kUp) * kUp;
+      };
+      const Vec3 l0 = left(b, q), l1 = left(a, p);
+      face = Quat(Eigen::AngleAxisd(std::atan2(l0.cross(l1).dot(kUp), l0.dot(l1)), kUp));
+    }
+    const double arm = arm_length(b, q);
+    const auto hand = [](const Posture& at, bool right) -> Vec3 {
+      return at.places[place_of(on_side(Joint::left_hand, right))];
+    };
+    const Vec3 apart = hand(q, false) - hand(q, true);
+    if (apart.norm() < kTogether * arm) {
+      ++result.hands_keys;
+      hands += (hand(p, false) - hand(p, true) - arm_length(a, p) / arm * (face * apart)).squaredNorm();
+    }
+    for (const bool right : {false, true}) {
+      const Vec3 way = hand(q, right) - b.middle_of_hips(q);
+      const double bend =
+          angle(b.bone(q, on_side(Joint::left_upper_arm, right)), b.bone(q, on_side(Joint::left_lower_arm, right)));
+      if (bend < kBent || way.norm() > kAtHips * arm) continue;
+      ++result.hips_keys;
+      hips += (hand(p, right) - a.middle_of_hips(p) - trunk * (face * way)).squaredNorm();
+    }
+  }
+  result.hands = std::sqrt(hands / std::max<double>(1, static_cast<double>(result.hands_keys)));
+  result.hips = std::sqrt(hips / std::max<double>(1, static_cast<double>(result.hips_keys)));
+}
+
 Character without_names(Character character) {
   for (std::size_t n = 0; n < character.nodes.size(); ++n) character.nodes[n].name = fmt::format("j{}", n);
   return character;
@@ -176,12 +231,16 @@ void report(const Character& body, const std::string& file, bool nameless) {
   const double begin = process_cpu_seconds();
   const Retargeted result = retarget({body, ours}, {motion.character, theirs}, clip, kUp);
   const double seconds = process_cpu_seconds() - begin;
-  const Follows f = measure({body, ours}, {motion.character, theirs}, clip, result.clip);
+  Follows f = measure({body, ours}, {motion.character, theirs}, clip, result.clip);
+  measure_hands({body, ours}, {motion.character, theirs}, clip, result.clip, f);
   const std::string short_name = file.substr(file.rfind('/') + 1);
-  std::printf("| %s | %zu | %zu | %.1f (%.2f s) to %.1f | %.1f, %.1f | %.1f %s | %.2g | %.1f (%.2f s) | %.2f |%s\n",
-              short_name.c_str(), f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, 1e3 * f.toes,
-              f.angle, f.bone.c_str(), f.arm, f.trunk, f.trunk_when, seconds,
-              missing.empty() ? "" : (" without" + missing).c_str());
+  std::printf(
+      "| %s | %zu | %zu | %.1f (%.2f s) to %.1f | %.1f, %.1f | %.1f %s | %.2g | %.1f (%.2f s) | %.0f (%zu), %.0f (%zu) "
+      "| %.2f "
+      "|%s\n",
+      short_name.c_str(), f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, 1e3 * f.toes, f.angle,
+      f.bone.c_str(), f.arm, f.trunk, f.trunk_when, 1e3 * f.hands, f.hands_keys, 1e3 * f.hips, f.hips_keys, seconds,
+      missing.empty() ? "" : (" without" + missing).c_str());
   for (const std::string& doubt : result.doubts) std::printf("    %s\n", doubt.c_str());
   if (nameless) report_without_names(body, motion.character, result.clip);
 }
@@ -201,9 +260,7 @@ int main(int argc, char** argv) {
       body_file.empty() ? make_mannequin({}) : assets::load_character(body_file, {}, body_file).character;
   std::printf(
       "| Motion | keys | steps | feet over the floor [mm] | slip of joint, of skin [mm] | limb off by [°] | arm [°] | "
-      "trunk [°] | CPU "
-      "[s] "
-      "|\n");
+      "trunk [°] | hands off against each other, hips [mm] (keys) | CPU [s] |\n");
   if (nameless) compare_without_names(body);
   for (const std::string& file : files) {
     try {
