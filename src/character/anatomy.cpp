@@ -138,7 +138,10 @@ class AnatomyFinder {
   void find_trunk(Joint joint) {
     const auto bone = [&](const Posture& p, std::size_t) {
       const Joint below = skeleton_.has(Joint::neck) ? Joint::neck : trunk_joint();
-      return joint == Joint::head ? unit(p.places[place_of(joint)] - p.places[place_of(below)]) : along(p, joint);
+      if (joint == Joint::head) return unit(p.places[place_of(joint)] - p.places[place_of(below)]);
+      // Controls of rigs may lie above what they move.
+      const Vec3 up_the_bone = along(p, joint), up_the_trunk = unit(skeleton_.trunk(p));
+      return up_the_bone.dot(up_the_trunk) < 0 ? up_the_trunk : up_the_bone;
     };
     const auto standing = [&](const Posture& p, std::size_t k) {
       const Vec3 along = bone(p, k);
@@ -325,6 +328,16 @@ double Skeleton::leg_length(const Posture& posture) const {
     ++legs;
   }
   return legs > 0 ? sum / legs : 0;
+}
+
+double Skeleton::arm_length(const Posture& posture) const {
+  double sum = 0;
+  for (const bool right : {false, true}) {
+    const Joint upper = on_side(Joint::left_upper_arm, right), lower = on_side(Joint::left_lower_arm, right);
+    if (!has(upper) || !has(lower) || !has(on_side(Joint::left_hand, right))) return 0;
+    sum += bone(posture, upper).norm() + bone(posture, lower).norm();
+  }
+  return sum / 2;
 }
 
 std::array<Quat, kJointCount> find_anatomy(const Skeleton& skeleton, std::span<const Posture> postures,

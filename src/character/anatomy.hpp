@@ -44,6 +44,8 @@ class Skeleton {
   Vec3 trunk(const Posture& posture) const;
   /// Mean length of the legs from hip to ankle; 0 if there are none.
   double leg_length(const Posture& posture) const;
+  /// Mean length of the arms from shoulder to wrist; 0 if one is not whole.
+  double arm_length(const Posture& posture) const;
 
  private:
   Vec3 across(const Posture& posture, Joint left) const;

@@ -63,8 +63,8 @@ Index joint_number(const std::string& name);
 /// part.
 std::vector<Index> find_named_joints(std::span<const Node> nodes);
 
-/// The same, also where many names begin with that of their rig and a mark; and where names leave out upper or lower arms
-/// or legs what the tree says (nameless.hpp).
+/// The same, also where many names begin with that of their rig and a mark; and where names leave out upper or lower
+/// arms or legs what the tree says (nameless.hpp).
 std::vector<Index> find_joints(const Character& character);
 
 }  // namespace weft::character

@@ -28,6 +28,9 @@ constexpr double kDegree = std::numbers::pi / 180;
 /// (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).
 constexpr double kMostBend = 165, kMostBackward = 25, kMostThigh = 160, kMostHead = 120, kMostSpine = 120;
 
+/// Knees of a body that stands upright bend by less [degrees].
+constexpr double kMostRestBend = 30;
+
 /// Toes on the floor turn back by no more from where those of the motion point [radians].
 constexpr double kToesBack = 150 * kDegree;
 
@@ -128,6 +131,7 @@ class Retargeter {
     if (!same_ && can_stand()) stand(frames, result.doubts);
     if (!same_) touch(frames);
     if (!same_) check_joints(result.doubts);
+    if (!same_) check_rest(result.doubts);
     result.clip = {clip_.name, clip_.duration, {}, {}};
     for (std::size_t n = 0; n < joint_of_.size(); ++n)
       if (joint_of_[n] >= 0) result.clip.channels.push_back({static_cast<Index>(n), {}, {}, {}});
@@ -327,23 +331,11 @@ class Retargeter {
     lower = (turns.lower * lower).normalized();
   }
 
-  /// Mean length of the arms from shoulder to wrist; 0 without them.
-  static double arm_length(const Skeleton& skeleton, const Posture& posture) {
-    double sum = 0;
-    for (const bool right : {false, true})
-      for (const Joint left : {Joint::left_upper_arm, Joint::left_lower_arm}) {
-        const Joint joint = on_side(left, right);
-        if (!skeleton.has(joint) || !skeleton.has(static_cast<Joint>(place_of(joint) + 1))) return 0;
-        sum += skeleton.bone(posture, joint).norm();
-      }
-    return sum / 2;
-  }
-
   /// Hands that are near something in the motion stay as near.
   void touch(std::vector<Frame>& frames) const {
     double trunk = 0;  // of the motion where it is most upright
     for (const Posture& posture : postures_) trunk = std::max(trunk, theirs_.trunk(posture).norm());
-    const double our_arm = arm_length(ours_, rest_), their_arm = arm_length(theirs_, postures_.front());
+    const double our_arm = ours_.arm_length(rest_), their_arm = theirs_.arm_length(postures_.front());
     if (our_arm == 0 || their_arm == 0 || trunk == 0) return;
     const Proportions proportions{our_arm / their_arm, ours_.trunk(rest_).norm() / trunk, their_arm};
     PerJoint<bool> both{};
@@ -444,6 +436,23 @@ class Retargeter {
         check_joint(fmt::format("{} bends backward", name(lower)), kMostBackward, backward, doubts);
       }
     }
+  }
+
+  /// All that is said of the body is said of how its file has it.
+  void check_rest(std::vector<std::string>& doubts) const {
+    double most = 0;
+    for (const bool right : {false, true}) {
+      const Joint thigh = on_side(Joint::left_upper_leg, right), shin = on_side(Joint::left_lower_leg, right);
+      if (!ours_.has(thigh) || !ours_.has(shin) || !ours_.has(on_side(Joint::left_foot, right))) continue;
+      const Vec3 a = ours_.bone(rest_, thigh), b = ours_.bone(rest_, shin);
+      most = std::max(most, std::atan2(a.cross(b).norm(), a.dot(b)) / kDegree);
+    }
+    if (most > kMostRestBend)
+      doubts.push_back(
+          fmt::format("the body of the file stands with a knee bent by {:.0f}°, so that feet will not stand well; "
+                      "motions of others "
+                      "ask for one that stands upright",
+                      most));
   }
 
   const Rig body_;

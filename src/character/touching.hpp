@@ -27,8 +27,8 @@ struct Proportions {
 std::array<Vec3, 2> pull_hands(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
                                const Proportions& proportions, const std::array<double, 2>& rests);
 
-/// For each posture how far hands rest against the hips: 1 where they stay within a hand's breadth for a moment, 0 where
-/// they go twice as far, as in those who run. `arm`: length from shoulder to wrist [m]. `times`: increasing [s].
+/// For each posture how far hands rest against the hips: 1 where they stay within a hand's breadth for a moment, 0
+/// where they go twice as far, as in those who run. `arm`: length from shoulder to wrist [m]. `times`: increasing [s].
 std::vector<std::array<double, 2>> find_rests(std::span<const Posture> postures, std::span<const double> times,
                                               double arm);
 

@@ -182,7 +182,8 @@ void cloth_shape_rows(TableBuilder<Cloth>& rows) {
                    .plain(Type::file, "file", &Cloth::file,
                           "mesh file, which the cloth starts as; relative paths start at the scene's folder")
                    .need(Need::required)
-                   .number("scale", &Cloth::scale, above(0, 1e6), "", "factor on all lengths of the file")
+                   .number("scale", &Cloth::scale, above(0, 1e6), "",
+                           "factor on all lengths of the file, which are metres where it says its unit")
                    .plain(Type::text, "object", &Cloth::object, "name of the mesh, or its node, in the file")
                    .by_default("all that the file holds")
                    .choice("rest", &Cloth::rest, {"auto", "mesh", "uv"},
@@ -296,12 +297,12 @@ void shape_rows(TableBuilder<Obstacle>& rows) {
                             .vector("size", of_shape(&Plane::size), {"x", "y"}, kExtent, "m", "edge lengths")
                             .single_fills_all()
                             .plain(Type::boolean, "infinite", of_shape(&Plane::infinite), "drawn to the horizon"));
-  rows.variant(
-      "mesh",
-      Rows()
-          .plain(Type::file, "file", of_shape(&MeshFile::path), "mesh file; relative paths start at the scene's folder")
-          .need(Need::required)
-          .number("scale", of_shape(&MeshFile::scale), above(0, 1e6), "", "factor on all lengths of the file"));
+  rows.variant("mesh", Rows()
+                           .plain(Type::file, "file", of_shape(&MeshFile::path),
+                                  "mesh file; relative paths start at the scene's folder")
+                           .need(Need::required)
+                           .number("scale", of_shape(&MeshFile::scale), above(0, 1e6), "",
+                                   "factor on all lengths of the file, which are metres where it says its unit"));
 }
 
 const Table& obstacle_rules() {

@@ -365,5 +365,39 @@ TEST(Retarget, DoubtsWhatNoBodyDoes) {
   EXPECT_EQ(result.doubts[0], "LeftLowerArm bends by 175° at 1 s of the motion; people reach 165°");
 }
 
+TEST(Retarget, DoubtsABodyThatDoesNotStandInItsFile) {
+  const Character motion = sticks(1, 0, 0, Quat::Identity());
+  Character body = sticks(1, 30, 0, kOwnFrame);
+  const auto ours = find_joints(body), theirs = find_joints(motion);
+  const auto doubts = [&] {
+    return retarget({body, ours}, {motion, theirs}, waving(motion, Vec3::Zero()), Vec3::UnitZ()).doubts;
+  };
+  EXPECT_TRUE(doubts().empty());
+  Node& shin = body.nodes[ours[place_of(Joint::left_lower_leg)]];
+  shin.local.rotate(kOwnFrame.conjugate() * about(Vec3::UnitX(), 60) * kOwnFrame);
+  ASSERT_EQ(doubts().size(), 1u);
+  EXPECT_NE(doubts()[0].find("a knee bent by 60°"), std::string::npos) << doubts()[0];
+}
+
+// Whose hips are a control above the spine.
+TEST(Retarget, OfHipsAboveTheSpineIsUpright) {
+  Character motion = make_mannequin({.edge_length = 0.1});
+  const auto joints = find_joints(motion);
+  const Character body = motion;
+  motion.nodes[joints[0]].local.pretranslate(Vec3(0, 0, 0.4));
+  for (const Joint joint : {Joint::spine, Joint::left_upper_leg, Joint::right_upper_leg})
+    motion.nodes[joints[place_of(joint)]].local.pretranslate(Vec3(0, 0, -0.4));
+  Clip clip{"lean", 1, {}, {}};  // too far for one who stands
+  Channel lean;
+  lean.node = joints[0];
+  lean.rotation = {{0, 1}, {about(Vec3::UnitX(), 30), about(Vec3::UnitX(), 30)}};
+  clip.channels.push_back(lean);
+  const Retargeted result = retarget({body, joints}, {motion, joints}, clip, Vec3::UnitZ());
+  const auto at = global_transforms(body, pose_at(body, result.clip, 0.5));
+  const auto place = [&](Joint joint) -> Vec3 { return at[joints[place_of(joint)]].translation(); };
+  EXPECT_GT(to_placement(at[joints[0]]).rotation.toRotationMatrix()(2, 2), 0.7) << "hips";
+  EXPECT_GT(place(Joint::head).z() - place(Joint::hips).z(), 0.4);
+}
+
 }  // namespace
 }  // namespace weft::character

@@ -137,10 +137,6 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
   return result;
 }
 
-double arm_length(const Skeleton& skeleton, const Posture& posture) {
-  return skeleton.bone(posture, Joint::left_upper_arm).norm() + skeleton.bone(posture, Joint::left_lower_arm).norm();
-}
-
 /// How well hands that are together, or at the hips with bent arms, stay so.
 void measure_hands(const Rig& body, const Rig& motion, const Clip& theirs, const Clip& ours, Follows& result) {
   constexpr double kTogether = 0.24, kAtHips = 0.5, kBent = 60;  // lengths of the arm; degrees
@@ -166,14 +162,14 @@ void measure_hands(const Rig& body, const Rig& motion, const Clip& theirs, const
       const Vec3 l0 = left(b, q), l1 = left(a, p);
       face = Quat(Eigen::AngleAxisd(std::atan2(l0.cross(l1).dot(kUp), l0.dot(l1)), kUp));
     }
-    const double arm = arm_length(b, q);
+    const double arm = b.arm_length(q);
     const auto hand = [](const Posture& at, bool right) -> Vec3 {
       return at.places[place_of(on_side(Joint::left_hand, right))];
     };
     const Vec3 apart = hand(q, false) - hand(q, true);
     if (apart.norm() < kTogether * arm) {
       ++result.hands_keys;
-      hands += (hand(p, false) - hand(p, true) - arm_length(a, p) / arm * (face * apart)).squaredNorm();
+      hands += (hand(p, false) - hand(p, true) - a.arm_length(p) / arm * (face * apart)).squaredNorm();
     }
     for (const bool right : {false, true}) {
       const Vec3 way = hand(q, right) - b.middle_of_hips(q);
