@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "bench/accuracy_report.hpp"
 #include "bench/fabrics.hpp"
@@ -13,6 +12,7 @@
 #include "cli/scene_input.hpp"
 #include "cli/signals.hpp"
 #include "cli/stages.hpp"
+#include "cli/standard_output.hpp"
 #include "cli/system_info.hpp"
 #include "core/archive.hpp"
 #include "core/isolated.hpp"
@@ -85,8 +85,7 @@ ExitCode bench_stability(const BenchOptions& options, const std::filesystem::pat
                   "![map](stability_map.svg)\n\n## Extreme cases\n\n{}. The scenes are in `scenes/`; energy gain "
                   "is in shares of what is allowed.\n\n{}\n## The map\n\n{}",
                   map_count.text(), map_cpu_s, case_count.text(), bench::markdown(cases), bench::markdown(map)));
-  fmt::print("map: {}\ncases: {}\nwritten to {}\n", map_count.text(), case_count.text(),
-             (folder / "stability.md").string());
+  print("map: {}\ncases: {}\nwritten to {}\n", map_count.text(), case_count.text(), (folder / "stability.md").string());
   return map_count.wrong() + case_count.wrong() > 0 ? ExitCode::internal : ExitCode::ok;
 }
 
@@ -153,7 +152,7 @@ ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path
   write_file(folder / work, bench::work_svg(title, accuracy));
   write_file(folder / settings, bench::settings_svg(title, accuracy));
   write_file(folder / (name + ".md"), bench::accuracy_markdown(title, accuracy, work, settings));
-  fmt::print("{}written to {}\n", bench::conclusion(accuracy), (folder / (name + ".md")).string());
+  print("{}written to {}\n", bench::conclusion(accuracy), (folder / (name + ".md")).string());
   return ExitCode::ok;
 }
 
@@ -253,7 +252,7 @@ ExitCode bench_speed(const BenchOptions& options, const std::filesystem::path& f
   if (!report.runs.empty()) {
     write_file(folder / plot, bench::speed_svg(report));
     write_file(folder / (name + ".md"), bench::speed_markdown(report, plot));
-    fmt::print("{}written to {}\n", bench::conclusion(report.runs), (folder / (name + ".md")).string());
+    print("{}written to {}\n", bench::conclusion(report.runs), (folder / (name + ".md")).string());
   }
   if (!whole) log::info(fmt::format("weft: interrupted after {} of {} runs", report.runs.size(), planned.size()));
   if (!whole) return ExitCode::interrupted;
@@ -274,7 +273,7 @@ ExitCode bench_fabrics(const BenchOptions& options, const std::filesystem::path&
   write_file(folder / "fabrics.csv", bench::csv(bench::fabrics_table(runs)));
   write_file(folder / "fabrics.svg", bench::fabrics_svg(runs));
   write_file(folder / "fabrics.md", bench::fabrics_markdown(runs, "fabrics.svg"));
-  fmt::print("{}written to {}\n", bench::conclusion(runs), (folder / "fabrics.md").string());
+  print("{}written to {}\n", bench::conclusion(runs), (folder / "fabrics.md").string());
   return ExitCode::ok;
 }
 

@@ -1,6 +1,5 @@
 #include <fmt/format.h>
 
-#include <cstdio>
 #include <optional>
 #include <set>
 #include <string>
@@ -9,6 +8,7 @@
 #include "cli/commands.hpp"
 #include "cli/estimate.hpp"
 #include "cli/scene_input.hpp"
+#include "cli/standard_output.hpp"
 #include "cli/table.hpp"
 #include "core/error.hpp"
 #include "core/log.hpp"
@@ -84,10 +84,10 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
     estimate = estimate_run(loaded.scene, render_settings(loaded.scene, {}));
   else
     const simulation::Simulation begun(loaded.scene);
-  fmt::print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
-  for (const std::string& doubt : simulation::doubts(loaded.scene)) fmt::print("{}: note: {}\n", file.string(), doubt);
-  if (options.plan) fmt::print("{}", plan_table(loaded.scene));
-  if (estimate) fmt::print("{}: {}\n", file.string(), describe(*estimate));
+  print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
+  for (const std::string& doubt : simulation::doubts(loaded.scene)) print("{}: note: {}\n", file.string(), doubt);
+  if (options.plan) print("{}", plan_table(loaded.scene));
+  if (estimate) print("{}: {}\n", file.string(), describe(*estimate));
   return ExitCode::ok;
 }
 
@@ -105,7 +105,6 @@ ExitCode check(const CheckOptions& options) {
     }
     if (code == ExitCode::ok || of_scene == ExitCode::scene_invalid) code = of_scene;
   }
-  if (std::fflush(stdout) != 0) throw Error(ExitCode::output_failed, "standard output cannot be written");
   return code;
 }
 

@@ -7,7 +7,6 @@
 #include <CLI/Version.hpp>
 #include <Eigen/Core>
 #include <algorithm>
-#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <memory>
@@ -16,6 +15,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/failure.hpp"
+#include "cli/standard_output.hpp"
 #include "cli/system_info.hpp"
 #include "cli/table.hpp"
 #include "compare/references.hpp"
@@ -155,8 +155,7 @@ ExitCode doctor(const DoctorOptions& options) {
   draw_test_picture(options, image, examination);
   examination.test("encoder", [] { return video::encoder_description(); });
   examination.test("encoding", [&] { return encode_test_video(image); });
-  fmt::print("{}", examination.text());
-  if (std::fflush(stdout) != 0) throw Error(ExitCode::output_failed, "standard output cannot be written");
+  print("{}", examination.text());
   return examination.code();
 }
 

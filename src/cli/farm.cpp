@@ -11,6 +11,7 @@
 #include "cli/estimate.hpp"
 #include "cli/farm_scripts.hpp"
 #include "cli/scene_input.hpp"
+#include "cli/standard_output.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/table.hpp"
 #include "core/log.hpp"
@@ -135,13 +136,13 @@ class Farm {
       done += state.done ? 1 : 0;
       rows.push_back({name, state.text});
     }
-    fmt::print("{}", format_table(rows, "ll", 2));
-    for (const std::string& line : failures()) fmt::print("{}\n", line);
+    print("{}", format_table(rows, "ll", 2));
+    for (const std::string& line : failures()) print("{}\n", line);
     std::map<std::string, int> states;
     active_jobs(folder_, states);
     std::string queue;
     for (const auto& [state, count] : states) queue += fmt::format(", {} {}", count, state);
-    fmt::print("{} of {} runs are done{}\n", done, rows.size(), queue);
+    print("{} of {} runs are done{}\n", done, rows.size(), queue);
     return done == rows.size() ? ExitCode::ok : ExitCode::not_whole;
   }
 
@@ -220,7 +221,7 @@ class Farm {
          {std::pair("task.sh", task_script(options_, plan_)), std::pair("submit.sh", submit_script(options_, plan_)),
           std::pair("tasks.tsv", task_list(options_, plan_))}) {
       write_file(folder_ / "farm" / name, text);
-      if (options_.dry_run) fmt::print("==> {} <==\n{}\n", (folder_ / "farm" / name).string(), text);
+      if (options_.dry_run) print("==> {} <==\n{}\n", (folder_ / "farm" / name).string(), text);
     }
     write_file(folder_ / "farm/jobs", "");
   }

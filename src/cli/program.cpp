@@ -3,12 +3,12 @@
 #include <fmt/format.h>
 #include <signal.h>
 
-#include <cstdio>
 #include <variant>
 
 #include "cli/commands.hpp"
 #include "cli/failure.hpp"
 #include "cli/options.hpp"
+#include "cli/standard_output.hpp"
 #include "core/log.hpp"
 #include "garment/pattern.hpp"
 #include "scene/loader.hpp"
@@ -16,9 +16,8 @@
 namespace weft::cli {
 namespace {
 
-ExitCode print(const std::string& text) {
-  const bool good = std::fwrite(text.data(), 1, text.size(), stdout) == text.size() && std::fflush(stdout) == 0;
-  if (!good) throw Error(ExitCode::output_failed, "standard output cannot be written");
+ExitCode print_all(const std::string& text) {
+  write_standard_output(text);
   return ExitCode::ok;
 }
 
@@ -35,7 +34,7 @@ struct Dispatch {
   ExitCode operator()(const NewOptions& options) const { return make_new(options); }
   ExitCode operator()(const WatchOptions& options) const { return watch(options); }
   ExitCode operator()(const SchemaOptions& options) const {
-    return print(
+    return print_all(
         (options.pattern ? scene::json_schema(garment::pattern_rules(), "Weft pattern") : scene::json_schema()) + "\n");
   }
   ExitCode operator()(const DoctorOptions& options) const { return doctor(options); }
@@ -44,7 +43,7 @@ struct Dispatch {
   ExitCode operator()(const AcceptOptions& options) const { return accept(options); }
   ExitCode operator()(const ReviewOptions& options) const { return review(options); }
   ExitCode operator()(const ExportOptions& options) const { return export_frames(options); }
-  ExitCode operator()(const PrintText& text) const { return print(text.text); }
+  ExitCode operator()(const PrintText& text) const { return print_all(text.text); }
 };
 
 void report(const Failure& failure) {
