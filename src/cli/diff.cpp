@@ -1,15 +1,18 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
+#include <cstdlib>
 #include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/diff_limits.hpp"
+#include "cli/diff_page.hpp"
 #include "cli/diff_report.hpp"
 #include "cli/path_ledger.hpp"
+#include "cli/standard_output.hpp"
 #include "compare/files.hpp"
 #include "compare/references.hpp"
+#include "core/log.hpp"
 #include "core/temporary_file.hpp"
 #include "image/png.hpp"
 
@@ -41,12 +44,12 @@ struct Pair {
   std::string name;
   std::optional<fs::path> reference;
   fs::path test;
-  compare::Limits limits = {};
+  DiffLimits::Rules rules = {};
 
   FileComparison compare(const DiffOptions& options) const {
     if (!reference) return only_one(name, options.reference, test, Outcome::no_reference);
     if (!fs::exists(test)) return only_one(name, *reference, test, Outcome::no_test);
-    FileComparison result = compare::compare_files(*reference, test, limits);
+    FileComparison result = compare::compare_files(*reference, test, rules.limits, rules.mask);
     result.name = name;
     return result;
   }
@@ -98,6 +101,17 @@ ExitCode exit_code(const std::vector<FileComparison>& results) {
   return code;
 }
 
+std::string summary(const std::vector<FileComparison>& results) {
+  const auto good = std::count_if(results.begin(), results.end(), [](const auto& result) { return result.good(); });
+  return fmt::format("{} of {} are as their references", good, results.size());
+}
+
+// GitHub's runners read such lines from what a step prints, and set this for all of them.
+bool is_annotated(const DiffOptions& options) {
+  const char* actions = std::getenv("GITHUB_ACTIONS");
+  return options.annotations || (actions != nullptr && std::string_view(actions) == "true");
+}
+
 // Where the heat map of a pair goes; empty where none is asked for. A video that has the name of a picture keeps its
 // ending.
 fs::path heatmap_file(const DiffOptions& options, const std::vector<Pair>& pairs, const std::string& name) {
@@ -109,18 +123,20 @@ fs::path heatmap_file(const DiffOptions& options, const std::vector<Pair>& pairs
 }
 
 void check_outputs(const DiffOptions& options, const std::vector<Pair>& pairs) {
-  if (options.heatmap.empty() && options.junit.empty()) return;
+  if (options.heatmap.empty() && options.junit.empty() && options.html.empty()) return;
   PathLedger paths;
   for (const fs::path& folder : {options.reference, options.test})
     if (fs::is_directory(folder)) paths.searches(folder, "a folder to compare");
   for (const Pair& pair : pairs) {
     if (pair.reference) paths.reads(*pair.reference, "a reference");
     paths.reads(pair.test, "a picture to test");
+    if (!pair.rules.mask.empty()) paths.reads(pair.rules.mask, "a mask");
   }
   if (!options.limits_file.empty()) paths.reads(options.limits_file, "the limits");
   if (!options.heatmap.empty())
     for (const Pair& pair : pairs) paths.writes("--heatmap", heatmap_file(options, pairs, pair.name));
   if (!options.junit.empty()) paths.writes("--junit", options.junit);
+  if (!options.html.empty()) paths.writes("--html", options.html);
   paths.check_absent(options.overwrite);
   paths.check_writable();
 }
@@ -134,33 +150,44 @@ ExitCode diff(const DiffOptions& options) {
                 options.heatmap.string());
   }
   std::vector<Pair> pairs = all_pairs(options);
-  const DiffLimits limits(options.limits, options.limits_file);
+  const DiffLimits rules(options.limits, options.limits_file);
   for (Pair& pair : pairs) {
-    pair.limits = limits.of(pair.name);
+    pair.rules = rules.of(pair.name);
     if (compare::is_lossy_video(pair.reference.value_or(fs::path())) || compare::is_lossy_video(pair.test))
-      pair.limits = compare::with_encoder_noise(pair.limits);
+      pair.rules.limits = compare::with_encoder_noise(pair.rules.limits);
   }
   check_outputs(options, pairs);
+  Json json{{"exit_code", 0}, {"limits", describe_json(options.limits)}, {"results", Json::array()}};
   std::vector<FileComparison> results;
-  for (const Pair& pair : pairs) results.push_back(pair.compare(options));
-  const ExitCode code = exit_code(results);
-  Json json{
-      {"exit_code", static_cast<int>(code)}, {"limits", describe_json(options.limits)}, {"results", Json::array()}};
   std::vector<std::string> lines;
-  for (std::size_t i = 0; i < results.size(); ++i) {
-    const fs::path heatmap = results[i].frames > 0 ? heatmap_file(options, pairs, results[i].name) : fs::path();
-    if (!heatmap.empty()) image::write_png(heatmap, compare::heat_map(results[i].worst.flip));
-    json["results"].push_back(describe_json(results[i], pairs[i].limits, heatmap));
-    lines.push_back(describe(results[i], pairs[i].limits));
+  DiffPage page;
+  for (const Pair& pair : pairs) {
+    FileComparison result = pair.compare(options);
+    const fs::path heatmap = result.frames > 0 ? heatmap_file(options, pairs, pair.name) : fs::path();
+    if (!heatmap.empty()) image::write_png(heatmap, compare::heat_map(result.worst.flip));
+    json["results"].push_back(describe_json(result, pair.rules.limits, heatmap));
+    lines.push_back(describe(result, pair.rules.limits));
+    if (!options.html.empty()) page.add(result, lines.back());
+    // Thousands of pictures need not fit into memory.
+    result.worst.flip = {};
+    result.reference_picture = result.test_picture = {};
+    results.push_back(std::move(result));
   }
+  const ExitCode code = exit_code(results);
+  json["exit_code"] = static_cast<int>(code);
   if (!options.junit.empty()) write_file(options.junit, junit_xml(results, lines));
+  if (!options.html.empty()) write_file(options.html, page.html(summary(results)));
   std::string text = fmt::format("{}\n", fmt::join(lines, "\n"));
-  if (results.size() > 1) {
-    const auto good = std::count_if(results.begin(), results.end(), [](const auto& result) { return result.good(); });
-    text += fmt::format("{} of {} are as their references\n", good, results.size());
+  if (results.size() > 1) text += summary(results) + "\n";
+  std::string annotations;
+  for (std::size_t i = 0; is_annotated(options) && i < results.size(); ++i)
+    if (!results[i].good()) annotations += annotation(results[i], lines[i]) + "\n";
+  if (options.json) {
+    if (!annotations.empty()) log::info(annotations.substr(0, annotations.size() - 1));
+    print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+  } else {
+    print("{}{}", text, annotations);
   }
-  fmt::print("{}", options.json ? json.dump(2) + "\n" : text);
-  if (std::fflush(stdout) != 0) throw Error(ExitCode::output_failed, "standard output cannot be written");
   return code;
 }
 

@@ -21,13 +21,22 @@ toml::table parse(const std::filesystem::path& file) {
   }
 }
 
-std::function<void(compare::Limits&)> change(const std::filesystem::path& file, const std::string& key,
-                                             const toml::node& node) {
+using Rules = DiffLimits::Rules;
+
+std::function<void(Rules&)> change(const std::filesystem::path& file, const std::string& key, const toml::node& node) {
   if (key == "pixel_tolerance") {
     const auto levels = node.value<std::int64_t>();
     if (!node.is_integer() || *levels < 0 || *levels > 255)
       refuse(file, node.source(), "pixel_tolerance: expected a whole number from 0 to 255");
-    return [levels](compare::Limits& limits) { limits.pixel_tolerance = static_cast<int>(*levels); };
+    return [levels](Rules& rules) { rules.limits.pixel_tolerance = static_cast<int>(*levels); };
+  }
+  if (key == "mask") {
+    const auto name = node.value<std::string>();
+    if (!name || name->empty()) refuse(file, node.source(), "mask: expected a picture, such as \"masks/front.png\"");
+    const std::filesystem::path mask = file.parent_path() / *name;
+    if (!std::filesystem::is_regular_file(mask))
+      refuse(file, node.source(), "mask: " + mask.string() + " does not exist");
+    return [mask](Rules& rules) { rules.mask = mask; };
   }
   const std::vector<std::pair<std::string, double compare::Limits::*>> shares{
       {"pixel_budget", &compare::Limits::pixel_budget},
@@ -37,15 +46,15 @@ std::function<void(compare::Limits&)> change(const std::filesystem::path& file, 
     if (key != name) continue;
     const auto share = node.value<double>();
     if (!share || !(*share >= 0 && *share <= 1)) refuse(file, node.source(), key + ": expected a number from 0 to 1");
-    return [member = member, share](compare::Limits& limits) { limits.*member = *share; };
+    return [member = member, share](Rules& rules) { rules.limits.*member = *share; };
   }
-  const std::vector<std::string> known{"name", "pixel_tolerance", "pixel_budget", "max_flip", "max_spot"};
+  const std::vector<std::string> known{"name", "pixel_tolerance", "pixel_budget", "max_flip", "max_spot", "mask"};
   refuse(file, node.source(), fmt::format("unknown key {}{}", key, did_you_mean(key, known)));
 }
 
 }  // namespace
 
-DiffLimits::DiffLimits(const compare::Limits& all, const std::filesystem::path& file) : all_(all) {
+DiffLimits::DiffLimits(const compare::Limits& all, const std::filesystem::path& file) : all_{all, {}} {
   if (file.empty()) return;
   const toml::table table = parse(file);
   for (const auto& [key, node] : table) {
@@ -63,12 +72,12 @@ DiffLimits::DiffLimits(const compare::Limits& all, const std::filesystem::path& 
   }
 }
 
-compare::Limits DiffLimits::of(const std::string& name) const {
-  compare::Limits limits = all_;
+Rules DiffLimits::of(const std::string& name) const {
+  Rules rules = all_;
   for (const Entry& entry : entries_)
     if (::fnmatch(entry.pattern.c_str(), name.c_str(), 0) == 0)
-      for (const auto& apply : entry.changes) apply(limits);
-  return limits;
+      for (const auto& apply : entry.changes) apply(rules);
+  return rules;
 }
 
 }  // namespace weft::cli

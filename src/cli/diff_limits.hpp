@@ -12,20 +12,26 @@ namespace weft::cli {
 
 class DiffLimits {
  public:
+  /// What a picture is held against.
+  struct Rules {
+    compare::Limits limits;
+    std::filesystem::path mask;  ///< a picture, white where is compared; empty: everywhere
+  };
+
   /// `all`: of every picture. `file` may be empty; else TOML with tables [[picture]]: a name, in which * and ? stand
-  /// for other characters, and what of the limits is another for it. Throws Error(asset_unreadable) with line and
-  /// column.
+  /// for other characters, and what of the limits is another for it, or its mask, beside the file. Throws
+  /// Error(asset_unreadable) with line and column.
   DiffLimits(const compare::Limits& all, const std::filesystem::path& file);
 
   /// Later tables count before earlier ones.
-  compare::Limits of(const std::string& name) const;
+  Rules of(const std::string& name) const;
 
  private:
   struct Entry {
     std::string pattern;
-    std::vector<std::function<void(compare::Limits&)>> changes;
+    std::vector<std::function<void(Rules&)>> changes;
   };
-  compare::Limits all_;
+  Rules all_;
   std::vector<Entry> entries_;
 };
 

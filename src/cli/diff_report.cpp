@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <cstdlib>
 
 namespace weft::cli {
 namespace {
@@ -15,7 +16,7 @@ using Outcome = FileComparison::Outcome;
 std::string describe_figures(const FileComparison& result, const compare::Limits& limits) {
   const compare::Figures& f = result.worst.figures;
   const auto limit = [](double figure, double most) { return figure > most ? fmt::format(" (limit {:g})", most) : ""; };
-  const double pixels = static_cast<double>(f.width) * f.height;
+  const auto pixels = static_cast<double>(f.pixels);
   return fmt::format(
       "{} of {} pixels differ, {} by more than {} levels{}; at most {} at ({}, {}); FLIP {:.2g}{}, at most {:.2g}{}; "
       "SSIM {:.5f}",
@@ -47,10 +48,13 @@ const char* name_of(Outcome outcome) {
   return kNames[static_cast<int>(outcome)];
 }
 
-// What XML may hold: five characters by name, and none of those that it forbids.
+}  // namespace
+
 std::string escaped(const std::string& text) {
+  // File names need not be UTF-8; what is not becomes U+FFFD.
+  const std::string valid = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
   std::string safe;
-  for (const char c : text) {
+  for (const char c : valid) {
     if (c == '<')
       safe += "&lt;";
     else if (c == '>')
@@ -67,7 +71,22 @@ std::string escaped(const std::string& text) {
   return safe;
 }
 
-}  // namespace
+std::string annotation(const FileComparison& result, const std::string& description) {
+  const auto quoted = [](const std::string& text, std::string_view special) {
+    std::string safe;
+    for (const char c : text)
+      safe += special.find(c) == std::string_view::npos ? std::string(1, c) : fmt::format("%{:02X}", c);
+    return safe;
+  };
+  fs::path file = result.outcome == Outcome::no_reference ? result.test : result.reference;
+  const char* workspace = std::getenv("GITHUB_WORKSPACE");
+  if (workspace != nullptr) {
+    const fs::path inside = fs::weakly_canonical(file).lexically_relative(fs::weakly_canonical(workspace));
+    if (!inside.empty() && *inside.begin() != "..") file = inside;
+  }
+  return fmt::format("::error file={},title=weft diff::{}", quoted(file.string(), "%\r\n:,"),
+                     quoted(description, "%\r\n"));
+}
 
 Json describe_json(const FileComparison& result, const compare::Limits& limits, const fs::path& heatmap) {
   Json json{{"name", result.name},
@@ -84,6 +103,7 @@ Json describe_json(const FileComparison& result, const compare::Limits& limits, 
   }
   json["width"] = f.width;
   json["height"] = f.height;
+  json["pixels"] = f.pixels;
   json["pixels_changed"] = f.pixels_changed;
   json["pixels_over"] = f.pixels_over;
   json["share_over"] = f.share_over();

@@ -20,6 +20,13 @@ Json describe_json(const compare::Limits& limits);
 Json describe_json(const compare::FileComparison& result, const compare::Limits& limits,
                    const std::filesystem::path& heatmap);
 
+/// Text for HTML and XML: five characters by name, and none of those that XML forbids.
+std::string escaped(const std::string& text);
+
+/// A line that GitHub Actions, and what speaks its language, shows at the reference, or at the test where there is
+/// none: paths from GITHUB_WORKSPACE on, if that is set. `description`: of the result.
+std::string annotation(const compare::FileComparison& result, const std::string& description);
+
 /// A test case for each pair, in the form of JUnit: what differs or is missing has failed, what cannot be read is an
 /// error. `descriptions`: of each result.
 std::string junit_xml(const std::vector<compare::FileComparison>& results,

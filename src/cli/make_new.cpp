@@ -1,4 +1,4 @@
-// weft new: a first scene to go on from.
+// weft new: a first scene to go on from, or a repository of scenes.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,30 +13,47 @@
 
 namespace weft::cli {
 
+namespace {
+
+namespace fs = std::filesystem;
+
+// A file, or a folder of files with all below it.
+std::string template_of(const EmbeddedFile& file) {
+  return (*fs::path(file.name).begin()).stem().string();
+}
+
+}  // namespace
+
 std::vector<std::string> template_names() {
   std::vector<std::string> names;
-  for (const EmbeddedFile& file : kEmbeddedTemplates) names.push_back(std::filesystem::path(file.name).stem().string());
+  for (const EmbeddedFile& file : kEmbeddedTemplates) names.push_back(template_of(file));
+  names.erase(std::unique(names.begin(), names.end()), names.end());
   return names;
 }
 
 ExitCode make_new(const NewOptions& options) {
-  std::filesystem::path scene = options.name;
-  if (scene.extension() != ".toml") scene += ".toml";
-  // Beside the scene, whose first line names it: editors know all keys from the start.
-  const std::filesystem::path schema = scene.parent_path() / "weft.schema.json";
-  const std::string schema_text = scene::json_schema() + "\n";
+  // Editors know all keys from the start: the first line of a scene names its schema.
+  std::vector<std::pair<fs::path, std::string>> files;
+  fs::path scene = options.name;
+  bool is_folder = false;
+  for (const EmbeddedFile& file : kEmbeddedTemplates) {
+    if (template_of(file) != options.kind) continue;
+    is_folder = fs::path(file.name).has_parent_path();
+    if (!is_folder && scene.extension() != ".toml") scene += ".toml";
+    files.emplace_back(is_folder ? scene / fs::path(file.name).lexically_relative(options.kind) : scene, file.text);
+  }
+  const fs::path schema = (is_folder ? scene : scene.parent_path()) / "weft.schema.json";
+  if (!fs::exists(schema)) files.emplace_back(schema, scene::json_schema() + "\n");
   PathLedger paths;
-  paths.writes("NAME", scene);
-  const bool has_schema = std::filesystem::exists(schema);
-  if (!has_schema) paths.writes("NAME, for the schema,", schema);
+  for (const auto& [file, text] : files) paths.writes("NAME", file);
   paths.check_absent(options.overwrite);
   paths.check_writable();
-  const std::vector<std::string> names = template_names();
-  const auto which = std::ranges::find(names, options.kind) - names.begin();
-  write_file(scene, kEmbeddedTemplates[static_cast<std::size_t>(which)].text);
-  if (!has_schema) write_file(schema, schema_text);
-  log::info(fmt::format("{}: written; weft run {} makes a video of it, weft watch {} draws it as it changes",
-                        scene.string(), scene.string(), scene.string()));
+  for (const auto& [file, text] : files) write_file(file, text);
+  const std::string name = scene.string();
+  log::info(is_folder
+                ? fmt::format("{}: written; {} says how to go on", name, (scene / "README.md").string())
+                : fmt::format("{}: written; weft run {} makes a video of it, weft watch {} draws it as it changes",
+                              name, name, name));
   return ExitCode::ok;
 }
 

@@ -154,9 +154,10 @@ struct BenchOptions {
 struct DiffOptions {
   std::filesystem::path reference, test;  ///< files or folders
   compare::Limits limits;
-  std::filesystem::path limits_file;  ///< limits of single pictures; empty: none
+  std::filesystem::path limits_file;  ///< limits and masks of single pictures; empty: none
   std::filesystem::path heatmap;      ///< picture or folder; empty: none
-  std::filesystem::path junit;        ///< file; empty: none
+  std::filesystem::path junit, html;  ///< files; empty: none
+  bool annotations = false;           ///< also where no GitHub Actions asks for them
   bool overwrite = false;
   bool json = false;
 };

@@ -18,7 +18,8 @@ std::string chosen(const char* name, const std::string& text, const std::vector<
 
 void Parser::add_new() {
   CLI::App& command = *app.add_subcommand("new", "Write a first scene to go on from");
-  command.add_option("NAME", fresh.name, "Of the scene: NAME.toml is written, and its schema beside it")
+  command
+      .add_option("NAME", fresh.name, "Of the scene: NAME.toml is written, and its schema beside it; of ci the folder")
       ->required()
       ->type_name("");
   add_value(command, "--template", fmt::format("{}", fmt::join(template_names(), "|")).c_str(),
@@ -27,7 +28,10 @@ void Parser::add_new() {
   command.add_flag("--overwrite", fresh.overwrite, "Replace a scene that exists already");
   command.footer(
       "\nExample:\n  weft new dress --template cape && weft watch dress.toml\n"
-      "\nThe first line of the scene names the schema, by which editors complete keys and mark mistakes.");
+      "\nThe first line of the scene names the schema, by which editors complete keys and mark mistakes. ci is a "
+      "folder\n"
+      "to be a repository: scenes, a script that draws them and compares with references, and the workflow that runs "
+      "it.");
 }
 
 void Parser::add_watch() {

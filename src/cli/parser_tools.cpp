@@ -107,21 +107,25 @@ void Parser::add_diff() {
   add_share("--max-spot", diff.limits.spot, "Largest value of FLIP at any pixel");
   add_value(command, "--heatmap", "FILE.png|DIR", "Also paint where it differs; a video's worst frame",
             [this](const std::string& text) { diff.heatmap = text; });
-  add_value(command, "--limits", "FILE.toml", "Limits of single pictures, by name",
+  add_value(command, "--limits", "FILE.toml", "Limits and masks of single pictures, by name",
             [this](const std::string& text) { diff.limits_file = text; });
   add_value(command, "--junit", "FILE.xml", "Also write what came of each pair for CI systems",
             [this](const std::string& text) { diff.junit = text; });
+  add_value(command, "--html", "FILE.html", "Also write a page of what differs: before, after, difference",
+            [this](const std::string& text) { diff.html = text; });
+  command.add_flag("--annotations", diff.annotations,
+                   "Also print lines that GitHub Actions shows at the files [where GITHUB_ACTIONS is true]");
   command.add_flag("--overwrite", diff.overwrite, "Replace heat maps and reports that exist already");
   command.add_flag("--json", diff.json, "Print JSON instead of text");
   command.footer(
       "\nExamples:\n"
       "  weft diff references/band.png band.png --heatmap difference.png\n"
-      "  weft diff references output --heatmap output/differences\n"
+      "  weft diff references output --limits limits.toml --html differences.html --junit differences.xml\n"
       "  weft diff before.mp4 after.mp4\n"
       "\nFolders are compared with all below them, by name. References may lie in one folder for each class\n"
       "of machines, named as weft doctor says, and one named default. Limits are tables [[picture]]\n"
-      "with a name, in which * stands for anything, and pixel_tolerance, pixel_budget, max_flip or max_spot; the last\n"
-      "that fits counts. "
+      "with a name, in which * stands for anything, and pixel_tolerance, pixel_budget, max_flip, max_spot or mask, a\n"
+      "picture beside the file that is white where is compared; the last that fits counts. "
       "Exit codes: 0 all within the limits, 7 something differs, 8 a reference is missing, 4 a file is unreadable.");
 }
 

@@ -1,5 +1,6 @@
 #include "compare/compare.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -16,6 +17,7 @@ Figures count_pixels(const image::Image& reference, const image::Image& test, in
   Figures figures;
   figures.width = reference.width;
   figures.height = reference.height;
+  figures.pixels = static_cast<std::int64_t>(reference.width) * reference.height;
   for (int y = 0; y < reference.height; ++y) {
     const std::uint8_t *a = reference.pixel(0, y), *b = test.pixel(0, y);
     for (int x = 0; x < reference.width; ++x, a += 3, b += 3) {
@@ -31,22 +33,42 @@ Figures count_pixels(const image::Image& reference, const image::Image& test, in
   return figures;
 }
 
-double mean(const Plane<float>& plane) {
-  const double sum = parallel_sum(plane.values.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
+double sum_of(const Plane<float>& plane) {
+  return parallel_sum(plane.values.size(), 1 << 14, [&](std::size_t begin, std::size_t end) {
     double part = 0;
     for (std::size_t i = begin; i < end; ++i) part += static_cast<double>(plane.values[i]);
     return part;
   });
-  return sum / static_cast<double>(plane.values.size());
+}
+
+// The test with the pixels of the reference outside of the mask.
+image::Image masked(const image::Image& reference, image::Image test, const Mask& mask) {
+  if (mask.width != reference.width || mask.height != reference.height) {
+    throw Error(ExitCode::internal, "expected a mask of {}x{} pixels, got {}x{}", reference.width, reference.height,
+                mask.width, mask.height);
+  }
+  for (std::size_t i = 0; i < mask.values.size(); ++i)
+    if (mask.values[i] == 0) std::copy_n(&reference.rgb[3 * i], 3, &test.rgb[3 * i]);
+  return test;
 }
 
 }  // namespace
 
-Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance) {
+Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance, const Mask* mask) {
   const bool same_size = reference.width == test.width && reference.height == test.height;
   if (!same_size || reference.rgb.empty() || reference.rgb.size() != test.rgb.size()) {
     throw Error(ExitCode::internal, "expected two images of one size to compare, got {}x{} and {}x{}", reference.width,
                 reference.height, test.width, test.height);
+  }
+  if (mask != nullptr) {
+    Comparison result = compare(reference, masked(reference, test, *mask), pixel_tolerance);
+    result.figures.pixels = std::ranges::count_if(mask->values, [](std::uint8_t value) { return value != 0; });
+    if (result.figures.pixels == 0) throw Error(ExitCode::internal, "expected a mask with pixels to compare");
+    // FLIP sees a difference around it too.
+    for (std::size_t i = 0; i < mask->values.size(); ++i)
+      if (mask->values[i] == 0) result.flip.values[i] = 0;
+    result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
+    return result;
   }
   Comparison result;
   result.figures = count_pixels(reference, test, pixel_tolerance);
@@ -56,7 +78,7 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
   }
   result.figures.ssim = structural_similarity(reference, test);
   result.flip = flip_map(reference, test);
-  result.figures.flip = mean(result.flip);
+  result.figures.flip = sum_of(result.flip) / static_cast<double>(result.figures.pixels);
   result.figures.spot = static_cast<double>(*std::max_element(result.flip.values.begin(), result.flip.values.end()));
   return result;
 }

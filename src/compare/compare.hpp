@@ -26,17 +26,21 @@ struct Limits {
 /// 0.54 % of the pixels over the tolerance, FLIP 0.011, spots of 0.28; twice that, spots 0.4.
 Limits with_encoder_noise(Limits limits);
 
+/// Where two images are compared: not where it is 0.
+using Mask = Plane<std::uint8_t>;
+
 struct Figures {
   int width = 0, height = 0;         ///< pixels
+  std::int64_t pixels = 0;           ///< that were compared: all, or those of the mask
   std::int64_t pixels_changed = 0;   ///< pixels that differ at all
   std::int64_t pixels_over = 0;      ///< those that differ by more than the tolerance
   int largest = 0;                   ///< difference of any channel [levels of 255]
   int largest_x = 0, largest_y = 0;  ///< where it is first, reading like text; pixels from the left and the top
   double ssim = 1;                   ///< mean structural similarity, 1 where equal
-  double flip = 0;                   ///< mean of the FLIP map, 0 where equal
+  double flip = 0;                   ///< mean of the FLIP map over the pixels compared, 0 where equal
   double spot = 0;                   ///< its largest value
 
-  double share_over() const { return static_cast<double>(pixels_over) / (static_cast<double>(width) * height); }
+  double share_over() const { return static_cast<double>(pixels_over) / static_cast<double>(pixels); }
 };
 
 enum class Verdict {
@@ -50,8 +54,10 @@ struct Comparison {
   Plane<float> flip;  ///< for each pixel 0 (looks the same) to 1
 };
 
-/// Throws Error(internal) for images of different size or without pixels.
-Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance);
+/// Outside of the mask, which may be null, the test counts as equal to the reference. Throws Error(internal) for images
+/// and masks of different size or without pixels.
+Comparison compare(const image::Image& reference, const image::Image& test, int pixel_tolerance,
+                   const Mask* mask = nullptr);
 
 Verdict verdict(const Figures& figures, const Limits& limits);
 

@@ -1,5 +1,6 @@
 #include "compare/files.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <utility>
@@ -19,14 +20,33 @@ std::string size_problem(int width, int height, int test_width, int test_height)
   return fmt::format("{}x{} pixels, the reference has {}x{}", test_width, test_height, width, height);
 }
 
-// Takes one frame into the result; it keeps the worst.
-void add_frame(FileComparison& result, Comparison&& frame, const Limits& limits) {
+// By their gray, of which half or more is white. Throws Error(asset_unreadable).
+Mask read_mask(const std::filesystem::path& file, int width, int height) {
+  const image::Image picture = image::read_png(file);
+  if (picture.width != width || picture.height != height) {
+    throw Error(ExitCode::asset_unreadable, "{}: expected a mask of {}x{} pixels, got {}x{}", file.string(), width,
+                height, picture.width, picture.height);
+  }
+  Mask mask(width, height);
+  for (std::size_t i = 0; i < mask.values.size(); ++i)
+    mask.values[i] = picture.rgb[3 * i] + picture.rgb[3 * i + 1] + picture.rgb[3 * i + 2] >= 3 * 128 ? 1 : 0;
+  if (std::ranges::count(mask.values, 1) == 0)
+    throw Error(ExitCode::asset_unreadable, "{}: expected a mask with white pixels, which are compared", file.string());
+  return mask;
+}
+
+// Two pictures that belong together, or two frames: compared and taken into the result, which keeps the worst.
+void add_frame(FileComparison& result, image::Image&& reference, image::Image&& test, const Limits& limits,
+               const std::optional<Mask>& mask) {
+  Comparison frame = compare(reference, test, limits.pixel_tolerance, mask ? &*mask : nullptr);
   const bool differs = verdict(frame.figures, limits) == Verdict::differs;
   const bool first_differing = differs && result.frames_differing == 0;
   const bool may_be_worst = differs || result.frames_differing == 0;
   if (result.frames == 0 || first_differing || (may_be_worst && frame.figures.flip > result.worst.figures.flip)) {
     result.worst_frame = result.frames;
     result.worst = std::move(frame);
+    result.reference_picture = std::move(reference);
+    result.test_picture = std::move(test);
   }
   ++result.frames;
   result.frames_differing += differs;
@@ -37,14 +57,19 @@ Outcome outcome_of(const FileComparison& result) {
   return result.worst.figures.pixels_changed > 0 ? Outcome::within : Outcome::same;
 }
 
-void compare_pictures(FileComparison& result, const Limits& limits) {
-  const image::Image reference = image::read_png(result.reference), test = image::read_png(result.test);
+std::optional<Mask> mask_of(const std::filesystem::path& file, int width, int height) {
+  return file.empty() ? std::nullopt : std::optional<Mask>(read_mask(file, width, height));
+}
+
+void compare_pictures(FileComparison& result, const Limits& limits, const std::filesystem::path& mask) {
+  image::Image reference = image::read_png(result.reference), test = image::read_png(result.test);
   if (reference.width != test.width || reference.height != test.height) {
     result.outcome = Outcome::size;
     result.problem = size_problem(reference.width, reference.height, test.width, test.height);
     return;
   }
-  add_frame(result, compare(reference, test, limits.pixel_tolerance), limits);
+  const std::optional<Mask> where = mask_of(mask, reference.width, reference.height);
+  add_frame(result, std::move(reference), std::move(test), limits, where);
   result.outcome = outcome_of(result);
 }
 
@@ -55,16 +80,17 @@ int count_rest(video::Decoder& decoder) {
   return frames;
 }
 
-void compare_videos(FileComparison& result, const Limits& limits) {
+void compare_videos(FileComparison& result, const Limits& limits, const std::filesystem::path& mask) {
   video::Decoder reference(result.reference), test(result.test);
   if (reference.width() != test.width() || reference.height() != test.height()) {
     result.outcome = Outcome::size;
     result.problem = size_problem(reference.width(), reference.height(), test.width(), test.height());
     return;
   }
+  const std::optional<Mask> where = mask_of(mask, reference.width(), reference.height());
   std::optional<image::Image> a, b;
   while ((a = reference.next()), (b = test.next()), a && b) {
-    add_frame(result, compare(*a, *b, limits.pixel_tolerance), limits);
+    add_frame(result, std::move(*a), std::move(*b), limits, where);
   }
   result.outcome = outcome_of(result);
   const int reference_frames = result.frames + (a ? 1 + count_rest(reference) : 0);
@@ -97,7 +123,7 @@ bool is_comparable(const std::filesystem::path& file) {
 }
 
 FileComparison compare_files(const std::filesystem::path& reference, const std::filesystem::path& test,
-                             const Limits& limits) {
+                             const Limits& limits, const std::filesystem::path& mask) {
   FileComparison result;
   result.name = test.filename();
   result.reference = reference;
@@ -105,13 +131,20 @@ FileComparison compare_files(const std::filesystem::path& reference, const std::
   result.video = is_video(reference) && is_video(test);
   try {
     // A video against a picture ends as a picture that cannot be read, which is what it is.
-    result.video ? compare_videos(result, limits) : compare_pictures(result, limits);
+    result.video ? compare_videos(result, limits, mask) : compare_pictures(result, limits, mask);
   } catch (const Error& error) {
     if (error.code() != ExitCode::asset_unreadable) throw;
     result.outcome = Outcome::unreadable;
     result.problem = error.what();
   }
   return result;
+}
+
+image::Image first_picture(const std::filesystem::path& file) {
+  if (!is_video(file)) return image::read_png(file);
+  std::optional<image::Image> picture = video::Decoder(file).next();
+  if (!picture) throw Error(ExitCode::asset_unreadable, "{}: holds no pictures", file.string());
+  return std::move(*picture);
 }
 
 }  // namespace weft::compare

@@ -34,12 +34,18 @@ struct FileComparison {
   int frames_differing = 0;  ///< of these, those past a limit
   int worst_frame = 0;       ///< from 0; past a limit before within it, then with the largest mean of the FLIP map
   Comparison worst;          ///< of that frame; empty if none was compared
+  /// Of that frame as they were read; empty if none was compared.
+  image::Image reference_picture, test_picture;
 
   bool good() const { return outcome == Outcome::same || outcome == Outcome::within; }
 };
 
-/// Both files exist; a problem of one of them is in the result.
+/// Both files exist; a problem of one of them, or of the mask, is in the result. `mask`: a picture that is white where
+/// they are compared and black elsewhere; may be empty.
 FileComparison compare_files(const std::filesystem::path& reference, const std::filesystem::path& test,
-                             const Limits& limits);
+                             const Limits& limits, const std::filesystem::path& mask = {});
+
+/// The picture, or the first of the video. Throws Error(asset_unreadable).
+image::Image first_picture(const std::filesystem::path& file);
 
 }  // namespace weft::compare

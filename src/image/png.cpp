@@ -9,10 +9,12 @@
 #include <csetjmp>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <cstring>
 #include <memory>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 #include "core/error.hpp"
@@ -214,23 +216,32 @@ void check_chunks(const std::filesystem::path& file, std::FILE* in, std::uintmax
   std::rewind(in);
 }
 
-void write(const std::filesystem::path& file, const Rows& rows, std::size_t bytes, const Metadata& metadata) {
+// `bytes`: that there are.
+void check_size(const std::filesystem::path& file, const Rows& rows, std::size_t bytes) {
   const bool in_range = rows.width >= 1 && rows.height >= 1 && rows.width <= kMaxSide && rows.height <= kMaxSide;
   if (!in_range || bytes != rows.row_bytes() * static_cast<std::size_t>(rows.height)) {
     throw Error(ExitCode::output_failed, "{}: expected an image of 1 to {} pixels a side, got {}x{} with {} bytes",
                 file.string(), kMaxSide, rows.width, rows.height, bytes);
   }
+}
+
+void encode(const std::filesystem::path& file, const Rows& rows, std::vector<png_text> texts, std::FILE* out) {
+  Complaint complaint;
+  const Writer writer(&complaint);
+  if (!writer.info) fail_to_write(file, "libpng could not start");
+  if (!write_all(writer, rows, out, texts.data(), static_cast<int>(texts.size()))) {
+    fail_to_write(file, complaint.text.data());
+  }
+}
+
+void write(const std::filesystem::path& file, const Rows& rows, std::size_t bytes, const Metadata& metadata) {
+  check_size(file, rows, bytes);
   std::vector<png_text> texts = text_chunks(file, metadata);
 
   TemporaryFile temporary(file);
   File out(std::fopen(temporary.path().c_str(), "wbe"), std::fclose);
   if (!out) fail_to_write(file, std::strerror(errno));
-  Complaint complaint;
-  const Writer writer(&complaint);
-  if (!writer.info) fail_to_write(file, "libpng could not start");
-  if (!write_all(writer, rows, out.get(), texts.data(), static_cast<int>(texts.size()))) {
-    fail_to_write(file, complaint.text.data());
-  }
+  encode(file, rows, std::move(texts), out.get());
   // The last bytes reach the system only now, so a full disk may show only here.
   if (std::fclose(out.release()) != 0) fail_to_write(file, std::strerror(errno));
   temporary.commit();
@@ -245,6 +256,21 @@ void write_png(const std::filesystem::path& file, const Image& image, const Meta
 void write_png(const std::filesystem::path& file, const Image16& image, const Metadata& metadata) {
   write(file, {image.width, image.height, 16, reinterpret_cast<const png_byte*>(image.rgb.data())},
         2 * image.rgb.size(), metadata);
+}
+
+std::string png_bytes(const Image& image) {
+  const std::filesystem::path name = "a picture in memory";
+  const Rows rows{image.width, image.height, 8, image.rgb.data()};
+  check_size(name, rows, image.rgb.size());
+  char* buffer = nullptr;
+  std::size_t size = 0;
+  const auto free_buffer = [](char** text) { std::free(*text); };  // NOLINT: what open_memstream() made
+  const std::unique_ptr<char*, decltype(free_buffer)> owner(&buffer, free_buffer);  // outlives the stream
+  File out(::open_memstream(&buffer, &size), std::fclose);
+  if (!out) fail_to_write(name, std::strerror(errno));
+  encode(name, rows, {}, out.get());
+  if (std::fclose(out.release()) != 0) fail_to_write(name, std::strerror(errno));
+  return {buffer, size};
 }
 
 Image read_png(const std::filesystem::path& file, Metadata* metadata) {

@@ -18,6 +18,9 @@ void write_png(const std::filesystem::path& file, const Image& image, const Meta
 /// The same with 16 bits a channel.
 void write_png(const std::filesystem::path& file, const Image16& image, const Metadata& metadata = {});
 
+/// The bytes of such a file. Throws Error(output_failed).
+std::string png_bytes(const Image& image);
+
 /// Reads an 8-bit PNG (gray, palette and alpha are converted to RGB over white). Throws Error(asset_unreadable).
 Image read_png(const std::filesystem::path& file, Metadata* metadata = nullptr);
 

@@ -1,6 +1,8 @@
 // diff and accept as their users call them: exit codes, what is said, and the files that are there afterwards.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "cli/subprocess.hpp"
@@ -181,6 +183,93 @@ TEST_F(Diff, FoldersAreAcceptedWithAllBelowThem) {
   expect({"diff", "ref", "out"}, 7, "2 of 3 are as their references");
   std::filesystem::create_directories(folder_ / "empty");
   expect({"accept", "ref", "empty", "--reason", "none"}, 4, "empty: holds no pictures or videos");
+}
+
+TEST_F(Diff, OnlyWhatAMaskShowsWhiteIsCompared) {
+  const auto with_spot = [&](const std::string& name, int x) {
+    image::Image image(32, 24);
+    std::fill_n(image.pixel(x, 12), 3, std::uint8_t{255});
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    image::write_png(folder_ / name, image);
+  };
+  write("ref/a.png", 0);
+  write("ref/b.png", 0);
+  with_spot("out/a.png", 4);
+  with_spot("out/b.png", 28);
+  image::Image mask(32, 24);  // the right half
+  for (int y = 0; y < 24; ++y) std::fill_n(mask.pixel(16, y), std::size_t{3 * 16}, std::uint8_t{200});
+  std::filesystem::create_directories(folder_ / "limits");
+  image::write_png(folder_ / "limits/mask.png", mask);
+  support::write_bytes(folder_ / "limits/limits.toml", "[[picture]]\nname = \"*\"\nmask = \"mask.png\"\n");
+  expect({"diff", "ref", "out", "--limits", "limits/limits.toml"}, 7, "a.png: same\nb.png: DIFFERS: 1 of 384 pixels");
+  const auto refused = [&](const std::string& value, const std::string& words) {
+    support::write_bytes(folder_ / "limits/limits.toml", "[[picture]]\nname = \"b.png\"\nmask = " + value + "\n");
+    expect({"diff", "ref", "out", "--limits", "limits/limits.toml"}, 4, words);
+  };
+  refused("1", "limits.toml:3:8: mask: expected a picture");
+  refused("\"none.png\"", "limits.toml:3:8: mask: limits/none.png does not exist");
+  write("limits/wide.png", 255, 40);
+  refused("\"wide.png\"", "wide.png: expected a mask of 32x24 pixels, got 40x24");
+  write("limits/black.png", 0);
+  refused("\"black.png\"", "black.png: expected a mask with white pixels");
+  std::filesystem::copy_file(folder_ / "limits/mask.png", folder_ / "limits/own.png");
+  support::write_bytes(folder_ / "limits/limits.toml", "[[picture]]\nname = \"*\"\nmask = \"own.png\"\n");
+  expect({"diff", "ref", "out", "--limits", "limits/limits.toml", "--html", "limits/own.png", "--overwrite"}, 2,
+         "own.png");
+}
+
+TEST_F(Diff, PageShowsBeforeAfterAndDifferenceOfWhatDiffers) {
+  write("ref/a.png", 1);
+  write("ref/f/<b>&.png", 1);
+  write("ref/gone.png", 7);
+  write("out/a.png", 1);
+  write("out/f/<b>&.png", 90);
+  expect({"diff", "ref", "out", "--html", "page.html"}, 7, "");
+  const std::string page = support::read_bytes(folder_ / "page.html");
+  const auto count = [&](const std::string& words) {
+    int found = 0;
+    for (std::size_t at = 0; (at = page.find(words, at)) != std::string::npos; ++at) ++found;
+    return found;
+  };
+  EXPECT_EQ(count("<h1>1 of 3 are as their references</h1>"), 1);
+  EXPECT_EQ(count("<h2>f/&lt;b&gt;&amp;.png</h2>"), 1);
+  EXPECT_EQ(count("<b>"), 0);
+  EXPECT_EQ(count("<figure class=\"before\">"), 2) << "of the one that is missing too";
+  EXPECT_EQ(count("<figure class=\"after\">"), 1);
+  EXPECT_EQ(count("<figure class=\"difference\">"), 1);
+  EXPECT_EQ(count("<li>a.png: same</li>"), 1);
+  EXPECT_EQ(count("http"), 1) << "the policy that forbids them, and no address";
+  // The pictures are in it as they were read.
+  const std::string mark = "<figure class=\"after\"><img alt=\"after\" src=\"data:image/png;base64,";
+  const std::size_t begin = page.find(mark) + mark.size();
+  std::ofstream(folder_ / "after.base64") << page.substr(begin, page.find('"', begin) - begin);
+  const std::string decode = "base64 -d '" + (folder_ / "after.base64").string() + "' > '";
+  ASSERT_EQ(std::system((decode + (folder_ / "after.png").string() + "'").c_str()), 0);
+  EXPECT_EQ(image::read_png(folder_ / "after.png").rgb, image::read_png(folder_ / "out/f/<b>&.png").rgb);
+  expect({"diff", "ref", "out", "--html", "page.html"}, 6, "page.html: exists already");
+}
+
+TEST_F(Diff, AnnotationsNameTheFilesOfARepository) {
+  write("repo/ref/a.png", 1);
+  write("repo/ref/b,c.png", 1);
+  write("repo/out/a.png", 1);
+  write("repo/out/b,c.png", 90);
+  write("repo/out/new.png", 90);
+  expect({"diff", "repo/ref", "repo/out", "--annotations"}, 7,
+         "\n::error file=repo/ref/b%2Cc.png,title=weft diff::b,c.png: DIFFERS: 768 of 768 pixels");
+  EXPECT_NE(outcome_.out.find("\n::error file=repo/out/new.png,title=weft diff::new.png: no reference"),
+            std::string::npos)
+      << outcome_.out;
+  EXPECT_EQ(outcome_.out.find("a.png,"), std::string::npos) << "what is as its reference is no error";
+  expect({"diff", "repo/ref", "repo/out", "--annotations", "--json"}, 7, "::error file=");
+  EXPECT_TRUE(nlohmann::json::accept(outcome_.out)) << outcome_.out;
+  ::setenv("GITHUB_ACTIONS", "true", 1);
+  ::setenv("GITHUB_WORKSPACE", (folder_ / "repo").c_str(), 1);
+  expect({"diff", "repo/ref", "repo/out"}, 7, "\n::error file=ref/b%2Cc.png,");
+  ::unsetenv("GITHUB_ACTIONS");
+  ::unsetenv("GITHUB_WORKSPACE");
+  expect({"diff", "repo/ref", "repo/out"}, 7, "DIFFERS");
+  EXPECT_EQ(outcome_.out.find("::error"), std::string::npos) << outcome_.out;
 }
 
 }  // namespace

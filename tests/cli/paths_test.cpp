@@ -98,6 +98,7 @@ std::vector<Command> commands() {
       {"sheet", small({"sheet", "s.toml", "-o", "@"}), "-o", "new.png", "in.png", nullptr},
       {"diff", {"diff", "a.png", "b.png", "--heatmap", "@"}, "--heatmap FILE", "new.png", "a.png", nullptr},
       {"diff", {"diff", "ref", "out", "--heatmap", "@"}, "--heatmap DIR", "n", "ref", nullptr, 6, true, "a.png"},
+      {"diff", {"diff", "a.png", "b.png", "--html", "@"}, "--html", "new.html", "a.png", nullptr},
       {"accept", {"accept", "@", "b.png", "--reason", "why"}, "REFERENCE", "new.png", "b.png", nullptr, 0},
       {"export",
        {"export", "c", "--format", "ply", "-o", "@"},

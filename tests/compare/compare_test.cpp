@@ -41,6 +41,7 @@ TEST(Compare, CountsPixelsOnceAndNamesTheFirstOfTheLargest) {
 TEST(Compare, EachLimitDecidesByItself) {
   Figures figures;
   figures.width = figures.height = 100;
+  figures.pixels = 10000;
   figures.pixels_changed = 500;
   Limits limits;
   limits.pixel_budget = 0.01;
