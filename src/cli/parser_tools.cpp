@@ -15,6 +15,7 @@ constexpr std::array kFormats{Choice<exporter::Format>{"ply", exporter::Format::
                               Choice<exporter::Format>{"pc2", exporter::Format::pc2},
                               Choice<exporter::Format>{"gltf", exporter::Format::gltf},
                               Choice<exporter::Format>{"usd", exporter::Format::usd},
+                              Choice<exporter::Format>{"usdz", exporter::Format::usdz},
                               Choice<exporter::Format>{"blender", exporter::Format::blender}};
 
 }  // namespace
@@ -162,7 +163,7 @@ void Parser::add_review() {
 void Parser::add_export() {
   CLI::App& command = *app.add_subcommand("export", "Write the frames of a cache as files for other programs");
   command.add_option("CACHE", exported.cache, "Folder of weft simulate --cache")->required()->type_name("");
-  add_value(command, "--format", "ply|obj|pc2|gltf|usd|blender", "Form of the files [gltf]",
+  add_value(command, "--format", "ply|obj|pc2|gltf|usd|usdz|blender", "Form of the files [gltf]",
             [this](const std::string& text) { exported.format = parse_choice("--format", text, kFormats); });
   command.add_option("-o,--output", exported.output, "Folder of the files")->required()->type_name("DIR");
   add_value(command, "--frames", "A:B[:STEP]", "Frames A up to but without B, counted from 0 [all]",
@@ -176,7 +177,9 @@ void Parser::add_export() {
       "  weft export band.cache --format blender -o band && blender -P band/falling_band.py\n"
       "\nply, obj: a file for each object and frame; pc2: for each object an OBJ file and a point cache that moves\n"
       "its vertices; gltf: one file with all that is visible, its colours and its motion (morph targets);\n"
-      "usd: one text file with all that is visible, its colours, its motion and the cameras; blender: as pc2, and a\n"
+      "usd: one text file with all that is visible, its colours, its motion and the cameras; usdz: the same, packed, "
+      "as\n"
+      "viewers of phones ask for it; blender: as pc2, and a\n"
       "script that loads all of it with cameras, lights, frame rate and picture size.");
 }
 

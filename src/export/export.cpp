@@ -35,7 +35,7 @@ Path gltf_file(const Request& request) {
 }
 
 Path usd_file(const Request& request) {
-  return request.folder / (request.name + ".usda");
+  return request.folder / (request.name + (request.format == Format::usdz ? ".usdz" : ".usda"));
 }
 Path script_file(const Request& request) {
   return request.folder / (request.name + ".py");
@@ -77,6 +77,7 @@ class Sink {
       case Format::gltf:
         return add_to_gltf(snapshot);
       case Format::usd:
+      case Format::usdz:
         if (!usd_)
           usd_.emplace(snapshot, request_.name, request_.fps, static_cast<double>(request_.width) / request_.height);
         return usd_->add(snapshot, views(snapshot));
@@ -134,7 +135,7 @@ class Sink {
 
 std::vector<Path> files(const Request& request, const frame::FrameSnapshot& first) {
   if (request.format == Format::gltf) return {gltf_file(request)};
-  if (request.format == Format::usd) return {usd_file(request)};
+  if (request.format == Format::usd || request.format == Format::usdz) return {usd_file(request)};
   std::vector<Path> result;
   if (request.format == Format::blender) result.push_back(script_file(request));
   for (const auto& surface : first.surfaces) {

@@ -10,11 +10,13 @@
 #include <iterator>
 #include <numbers>
 #include <ostream>
+#include <sstream>
 
 #include "core/error.hpp"
 #include "core/temporary_file.hpp"
 #include "core/version.hpp"
 #include "export/seams.hpp"
+#include "export/zip.hpp"
 #include "image/color.hpp"
 
 namespace weft::exporter {
@@ -245,9 +247,7 @@ void UsdFile::write_camera(std::ostream& out, const Camera& camera) const {
   out << "        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n    }\n";
 }
 
-void UsdFile::write(const std::filesystem::path& file) const {
-  TemporaryFile temporary(file);
-  std::ofstream out(temporary.path(), std::ios::binary);
+void UsdFile::write_all(std::ostream& out) const {
   fmt::print(out,
              "#usda 1.0\n(\n    defaultPrim = \"{0}\"\n    doc = \"Weft {1}\"\n    startTimeCode = {2}\n"
              "    endTimeCode = {3}\n    framesPerSecond = {4}\n    timeCodesPerSecond = {4}\n"
@@ -258,6 +258,17 @@ void UsdFile::write(const std::filesystem::path& file) const {
   for (const Object& object : objects_) write_mesh(out, object);
   for (const Camera& camera : cameras_) write_camera(out, camera);
   out << "}\n";
+}
+
+void UsdFile::write(const std::filesystem::path& file) const {
+  if (file.extension() == ".usdz") {
+    std::ostringstream out;
+    write_all(out);
+    return write_stored(file, file.stem().string() + ".usda", out.str());
+  }
+  TemporaryFile temporary(file);
+  std::ofstream out(temporary.path(), std::ios::binary);
+  write_all(out);
   out.close();
   if (!out) throw Error(ExitCode::output_failed, "{}: cannot be written to its end", file.string());
   temporary.commit(Flush::no);

@@ -23,7 +23,7 @@ class UsdFile {
   /// The next frame, the first too.
   void add(const frame::FrameSnapshot& snapshot, const std::vector<View>& views);
 
-  /// Throws Error(output_failed).
+  /// As .usda, or packed as .usdz, by the ending of the name. Throws Error(output_failed).
   void write(const std::filesystem::path& file) const;
 
  private:
@@ -51,6 +51,7 @@ class UsdFile {
     Samples transform = {}, focal_length = {};
   };
   std::string unique_prim(const std::string& name);
+  void write_all(std::ostream& out) const;
   void write_materials(std::ostream& out) const;
   void write_mesh(std::ostream& out, const Object& object) const;
   void write_camera(std::ostream& out, const Camera& camera) const;

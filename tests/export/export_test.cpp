@@ -1,7 +1,5 @@
 // What other programs read in exported files is what the frames show: assimp for meshes and animations, a small reader
 // of its own for point caches.
-#include "export/export.hpp"
-
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 #include <gtest/gtest.h>
@@ -12,18 +10,18 @@
 #include <cstring>
 
 #include "assets/mesh_file.hpp"
+#include "export/made_frames.hpp"
 #include "export/normals.hpp"
 #include "image/color.hpp"
-#include "support/test_folder.hpp"
 
 namespace weft::exporter {
 namespace {
 
 // A sheet of two quads that flutters, a still floor, and something that is not to be seen; z is up.
-class Exported : public support::TestFolder {
+class Exported : public MadeFrames {
  protected:
   void SetUp() override {
-    TestFolder::SetUp();
+    MadeFrames::SetUp();
     frame::Surface cloth;
     cloth.name = "cloth";
     cloth.quads = {{0, 1, 4, 3}, {1, 2, 5, 4}};
@@ -35,29 +33,18 @@ class Exported : public support::TestFolder {
     floor.name = "floor";
     floor.kind = frame::ObjectKind::obstacle;
     floor.triangles = {{0, 1, 2}};
-    frame::Surface hidden = floor;
-    hidden.name = "hidden";
-    hidden.visible = false;
-    for (const auto& surface : {cloth, floor, hidden}) surfaces_.push_back(std::make_shared<frame::Surface>(surface));
-    request_.folder = folder_ / "out";
+    add_surfaces({cloth, floor});
     request_.name = "flutter";
     request_.fps = 20;
   }
 
   // In frame 4 all is as in frame 2.
-  frame::SnapshotPtr snapshot(int k) const {
-    auto snapshot = std::make_shared<frame::FrameSnapshot>();
-    snapshot->frame = k;
-    snapshot->time = k / request_.fps;
-    snapshot->stage = stage_;
-    snapshot->surfaces = surfaces_;
+  std::vector<std::vector<Vec3>> positions(int k) const override {
     std::vector<Vec3> cloth;
     const int phase = k == 4 ? 2 : k;
     for (int i = 0; i < 6; ++i)
       cloth.emplace_back(0.1 * (i % 3) + 1.0 / 3, 0.1 * (i / 3) - 0.7, 0.05 * std::sin(0.9 * i + phase));
-    const std::vector<Vec3> still{{0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}};
-    snapshot->states = {{cloth, {}}, {still, {}}, {still, {}}};
-    return snapshot;
+    return {cloth, {{0, 0, 0}, {1, 0, 0}, {0, 1, 0.25}}};
   }
 
   void write(Format format, std::vector<int> frames) {
@@ -74,10 +61,6 @@ class Exported : public support::TestFolder {
     EXPECT_EQ(there, expected.size());
   }
   std::filesystem::path file(const std::string& name) const { return request_.folder / name; }
-
-  Request request_;
-  std::shared_ptr<const frame::Stage> stage_ = std::make_shared<frame::Stage>();
-  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
 };
 
 // To the last bit of single precision at a metre.

@@ -8,9 +8,9 @@
 #include <numbers>
 #include <regex>
 
-#include "export/export.hpp"
+#include "export/made_frames.hpp"
+#include "export/zip.hpp"
 #include "image/color.hpp"
-#include "support/test_folder.hpp"
 
 namespace weft::exporter {
 namespace {
@@ -20,10 +20,10 @@ constexpr double kSingle = 1.2e-7;
 
 // Two panels of one triangle each, sewn along their common edge, that flutter from frame 3 on; a bent sheet that stands
 // still; something that is not to be seen.
-class Staged : public support::TestFolder {
+class Staged : public MadeFrames {
  protected:
   void SetUp() override {
-    TestFolder::SetUp();
+    MadeFrames::SetUp();
     frame::Surface dress;
     dress.name = "red-dress";
     dress.crease_angle = 180;
@@ -37,11 +37,7 @@ class Staged : public support::TestFolder {
     body.name = "red_dress";  // the same name, as USD writes it
     body.kind = frame::ObjectKind::character;
     body.triangles = {{0, 1, 2}, {0, 2, 3}};
-    frame::Surface hidden = body;
-    hidden.name = "hidden";
-    hidden.visible = false;
-    for (const auto& surface : {dress, body, hidden}) surfaces_.push_back(std::make_shared<frame::Surface>(surface));
-    request_.folder = folder_ / "out";
+    add_surfaces({dress, body});
     request_.name = "1st film";
     request_.fps = 23.976;
     request_.width = 400;
@@ -57,15 +53,8 @@ class Staged : public support::TestFolder {
 
   static std::vector<Vec3> points(int k) { return {{1.0 / 3, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, k < 4 ? 0.1 : 0.25}}; }
 
-  frame::SnapshotPtr snapshot(int k) const {
-    auto snapshot = std::make_shared<frame::FrameSnapshot>();
-    snapshot->frame = k;
-    snapshot->time = k / request_.fps;
-    snapshot->stage = stage_;
-    snapshot->surfaces = surfaces_;
-    const std::vector<Vec3> roof{{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}};
-    snapshot->states = {{points(k), {}}, {roof, {}}, {roof, {}}};
-    return snapshot;
+  std::vector<std::vector<Vec3>> positions(int k) const override {
+    return {points(k), {{0, 0, 0}, {1, 0, 1}, {1, 1, 0}, {0, 1, 1}}};
   }
 
   std::string written(Format format, const std::string& name) {
@@ -73,10 +62,6 @@ class Staged : public support::TestFolder {
     EXPECT_TRUE(exporter::write(request_, [&](int k) { return snapshot(k); }));
     return support::read_bytes(request_.folder / name);
   }
-
-  Request request_;
-  std::shared_ptr<const frame::Stage> stage_ = std::make_shared<frame::Stage>();
-  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
 };
 
 /// What stands between the braces after `head`.
@@ -153,6 +138,39 @@ TEST_F(Staged, UsdFilesHavePanelsNormalsAndMaterials) {
   EXPECT_EQ(value(block(dress, "def GeomSubset \"red_dress_1_back\""), "indices"), std::vector{1.0});
   EXPECT_NE(block(dress, "def GeomSubset \"red_dress_1_back\"").find("</_1st_film/materials/red_dress_1_back>"),
             std::string::npos);
+}
+
+TEST_F(Staged, PackedUsdFilesHoldTheTextAsItIsAtAMultipleOf64Bytes) {
+  // With names of all lengths, so that the field that fills up has all of its lengths too.
+  for (request_.name = "a"; request_.name.size() < 68; request_.name += 'a') {
+    const std::string inner = request_.name + ".usda", name = request_.name + ".usdz";
+    const std::string bytes = written(Format::usdz, name);
+    const auto number = [&](std::size_t at, int size) {
+      std::uint64_t value = 0;
+      for (int i = size; i-- > 0;)
+        value = value << 8 | static_cast<unsigned char>(bytes.at(at + static_cast<std::size_t>(i)));
+      return value;
+    };
+    const std::size_t end = bytes.size() - 22, directory = number(end + 16, 4);
+    ASSERT_EQ(number(end, 4), 0x06054b50U);
+    ASSERT_EQ(number(directory, 4), 0x02014b50U);
+    EXPECT_EQ(number(end + 12, 4), end - directory);
+    const std::size_t local = number(directory + 42, 4);
+    ASSERT_EQ(number(local, 4), 0x04034b50U);
+    EXPECT_EQ(number(local + 8, 2), 0U) << "stored";
+    EXPECT_EQ(bytes.substr(local + 30, inner.size()), inner);
+    const std::size_t extra = number(local + 28, 2), data = local + 30 + inner.size() + extra;
+    EXPECT_EQ(data % 64, 0U) << name;
+    EXPECT_TRUE(extra == 0 || number(local + 30 + inner.size() + 2, 2) == extra - 4) << extra;
+    EXPECT_EQ(data + number(local + 22, 4), directory);
+    EXPECT_EQ(bytes.substr(data, directory - data), written(Format::usd, inner));
+  }
+}
+
+// The check value of this sum (CRC-32, as of Ethernet) is that of the digits 1 to 9: 0xcbf43926.
+TEST_F(Staged, PackedFilesHaveTheSumThatArchivesCheck) {
+  write_stored(folder_ / "a.zip", "digits", "123456789");
+  EXPECT_EQ(support::read_bytes(folder_ / "a.zip").substr(14, 4), "\x26\x39\xf4\xcb");
 }
 
 TEST_F(Staged, UsdCamerasStandAndSeeAsTheFramesDo) {

@@ -1,0 +1,86 @@
+#include "export/zip.hpp"
+
+#include <array>
+#include <cstdint>
+#include <limits>
+
+#include "core/error.hpp"
+#include "core/temporary_file.hpp"
+
+namespace weft::exporter {
+namespace {
+
+constexpr std::size_t kLocalHeader = 30, kAlignment = 64;  // bytes
+constexpr std::uint16_t kVersion = 10;                     // 1.0: files that are stored
+constexpr std::uint16_t kUtf8Names = 0x0800;
+constexpr std::uint16_t kFirstDay = 0x0021;  // 1980-01-01, the first that there is
+constexpr std::uint16_t kPaddingId = 0x1986;
+
+// Least byte first; the rest of a larger size is 0.
+void append(std::string& bytes, std::uint64_t number, int size) {
+  for (int i = 0; i < size; ++i, number >>= 8) bytes += static_cast<char>(number & 0xff);
+}
+
+// Polynomial 0x04c11db7, bits reversed.
+std::uint32_t crc32(const std::string& bytes) {
+  std::array<std::uint32_t, 256> table{};
+  for (std::uint32_t i = 0; i < 256; ++i) {
+    std::uint32_t value = i;
+    for (int bit = 0; bit < 8; ++bit) value = (value & 1) != 0 ? value >> 1 ^ 0xedb88320U : value >> 1;
+    table[i] = value;
+  }
+  std::uint32_t crc = 0xffffffffU;
+  for (const char c : bytes) crc = crc >> 8 ^ table[(crc ^ static_cast<unsigned char>(c)) & 0xff];
+  return ~crc;
+}
+
+}  // namespace
+
+void write_stored(const std::filesystem::path& file, const std::string& name, const std::string& content) {
+  if (content.size() > std::numeric_limits<std::uint32_t>::max() - 4096)
+    throw Error(ExitCode::output_failed,
+                "{}: packed files end at 4 GiB, and this would be one of {:.3g} GB; export fewer frames with --frames, "
+                "or as usd",
+                file.string(), 1e-9 * static_cast<double>(content.size()));
+  // An extra field fills up to the alignment; it has a head of four bytes itself.
+  std::size_t padding = (kAlignment - (kLocalHeader + name.size()) % kAlignment) % kAlignment;
+  if (padding > 0 && padding < 4) padding += kAlignment;
+  std::string entry;  // what the local header and the directory share
+  append(entry, kVersion, 2);
+  append(entry, kUtf8Names, 2);
+  append(entry, 0, 2);  // stored
+  append(entry, 0, 2);  // time of day
+  append(entry, kFirstDay, 2);
+  append(entry, crc32(content), 4);
+  append(entry, content.size(), 4);
+  append(entry, content.size(), 4);
+  append(entry, name.size(), 2);
+
+  std::string bytes = "PK\x03\x04" + entry;
+  append(bytes, padding, 2);
+  bytes += name;
+  if (padding > 0) {
+    append(bytes, kPaddingId, 2);
+    append(bytes, padding - 4, 2);
+    bytes.append(padding - 4, '\0');
+  }
+  bytes += content;
+
+  const std::size_t directory = bytes.size();
+  bytes += "PK\x01\x02";
+  append(bytes, kVersion, 2);
+  bytes += entry;
+  append(bytes, 0, 2 + 2 + 2 + 2 + 4 + 4);  // extra field, comment, disk, attributes, and the place of the local header
+  bytes += name;
+  const std::size_t end = bytes.size();
+  bytes += "PK\x05\x06";
+  append(bytes, 0, 2 + 2);  // disks
+  append(bytes, 1, 2);
+  append(bytes, 1, 2);
+  append(bytes, end - directory, 4);
+  append(bytes, directory, 4);
+  append(bytes, 0, 2);  // comment
+  write_file(file, bytes, Flush::no);
+}
+
+}  // namespace weft::exporter

@@ -1,0 +1,47 @@
+// Frames of a few surfaces, as a cache would give them to an export.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "export/export.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::exporter {
+
+class MadeFrames : public support::TestFolder {
+ protected:
+  void SetUp() override {
+    TestFolder::SetUp();
+    request_.folder = folder_ / "out";
+  }
+
+  /// Where the vertices of each surface are in frame k.
+  virtual std::vector<std::vector<Vec3>> positions(int k) const = 0;
+
+  /// And the last surface once more, which is not to be seen.
+  void add_surfaces(std::vector<frame::Surface> surfaces) {
+    surfaces.push_back(surfaces.back());
+    surfaces.back().name = "hidden";
+    surfaces.back().visible = false;
+    for (const auto& surface : surfaces) surfaces_.push_back(std::make_shared<frame::Surface>(surface));
+  }
+
+  frame::SnapshotPtr snapshot(int k) const {
+    auto snapshot = std::make_shared<frame::FrameSnapshot>();
+    snapshot->frame = k;
+    snapshot->time = k / request_.fps;
+    snapshot->stage = stage_;
+    snapshot->surfaces = surfaces_;
+    for (const auto& of_surface : positions(k)) snapshot->states.push_back({of_surface, {}});
+    snapshot->states.push_back(snapshot->states.back());
+    return snapshot;
+  }
+
+  Request request_;
+  std::shared_ptr<const frame::Stage> stage_ = std::make_shared<frame::Stage>();
+  std::vector<std::shared_ptr<const frame::Surface>> surfaces_;
+};
+
+}  // namespace weft::exporter
