@@ -25,6 +25,8 @@ ExitCode review(const ReviewOptions& options) {
   std::string line = fmt::format("{}: {} run{}", outcome.page.string(), outcome.runs, outcome.runs == 1 ? "" : "s");
   if (outcome.incomplete > 0)
     line += fmt::format(", {} with something missing, which the page names", outcome.incomplete);
+  if (outcome.approved > 0) line += fmt::format(", {} approved", outcome.approved);
+  if (outcome.needing_work > 0) line += fmt::format(", {} to be worked on", outcome.needing_work);
   if (outcome.differing > 0) line += fmt::format(", {} differing from the reference", outcome.differing);
   log::info(line);
   return ExitCode::ok;

@@ -41,17 +41,6 @@ std::string read_file(const fs::path& file) {
   return bytes;
 }
 
-std::string hash_of(const std::string& bytes) {
-  const std::unique_ptr<AVSHA, decltype(&av_free)> sha(av_sha_alloc(), av_free);
-  std::array<std::uint8_t, 32> digest{};
-  if (!sha || av_sha_init(sha.get(), 256) < 0) throw Error(ExitCode::internal, "libav offers no SHA-256");
-  av_sha_update(sha.get(), reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
-  av_sha_final(sha.get(), digest.data());
-  std::string text;
-  for (std::size_t i = 0; i < 8; ++i) text += fmt::format("{:02x}", digest[i]);
-  return text;
-}
-
 // A reference must be whole: read to its end.
 void check_readable(const fs::path& file) {
   if (!fs::is_regular_file(file)) {
@@ -104,8 +93,19 @@ void add_line(const fs::path& log, const std::string& line) {
 
 }  // namespace
 
+std::string short_hash_of(const std::string& bytes) {
+  const std::unique_ptr<AVSHA, decltype(&av_free)> sha(av_sha_alloc(), av_free);
+  std::array<std::uint8_t, 32> digest{};
+  if (!sha || av_sha_init(sha.get(), 256) < 0) throw Error(ExitCode::internal, "libav offers no SHA-256");
+  av_sha_update(sha.get(), reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+  av_sha_final(sha.get(), digest.data());
+  std::string text;
+  for (std::size_t i = 0; i < 8; ++i) text += fmt::format("{:02x}", digest[i]);
+  return text;
+}
+
 std::string short_hash(const fs::path& file) {
-  return hash_of(read_file(file));
+  return short_hash_of(read_file(file));
 }
 
 Acceptance Acceptance::plan(const fs::path& reference, const fs::path& test, const std::string& name) {
@@ -142,7 +142,7 @@ bool Acceptance::carry_out() const {
   }
   const fs::path name = reference.lexically_proximate(log.parent_path().empty() ? "." : log.parent_path());
   add_line(log, fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", now(), cell(name.generic_string()), old_hash,
-                            hash_of(bytes), cell(difference), cell(reason), cell(user)));
+                            short_hash_of(bytes), cell(difference), cell(reason), cell(user)));
   write_file(reference, bytes);
   return true;
 }

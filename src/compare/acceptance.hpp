@@ -26,5 +26,6 @@ struct Acceptance {
 
 /// SHA-256 of a file, the first 16 hexadecimal digits. Throws Error(asset_unreadable).
 std::string short_hash(const std::filesystem::path& file);
+std::string short_hash_of(const std::string& bytes);
 
 }  // namespace weft::compare

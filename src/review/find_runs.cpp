@@ -68,7 +68,7 @@ class Search {
     for (const fs::path& file : list_files(folder)) {
       const std::string ending = file.extension().string();
       if (ending == ".mp4") videos_.insert(file);
-      if (ending == ".json") statistics_.push_back(file);
+      if (ending == ".json" && file.filename() != kDecisionsName) statistics_.push_back(file);
       if (file.filename().string().ends_with(kEffectiveEnding)) effective_.insert(file);
       if (ending != ".png") continue;
       const auto [prefix, digits] = split_number(file.stem().string());
@@ -91,6 +91,10 @@ class Search {
     }
     for (const auto& [prefix, files] : pictures_) add_pictures(prefix, files);
     for (RunFiles& run : runs_) find_effective(run);
+    for (RunFiles& run : runs_) {
+      run.folder = folder_;
+      run.key = run.name;
+    }
     std::sort(runs_.begin(), runs_.end(), [](const RunFiles& a, const RunFiles& b) { return a.name < b.name; });
     return std::move(runs_);
   }
@@ -133,7 +137,11 @@ class Search {
       for (auto rest = part; rest != output.end(); ++rest) file /= rest->relative_path();
       if (take(run, file.lexically_normal())) return;
     }
-    take(run, fs::path(run.stats).replace_extension(".mp4"));
+    if (take(run, fs::path(run.stats).replace_extension(".mp4"))) return;
+    const fs::path other = beside / output.filename();
+    if (output.has_filename() && output.extension() != ".png" && fs::is_regular_file(other))
+      run.problems.push_back(other.filename().string() +
+                             ": browsers play H.264 in .mp4 only; weft run -o NAME.mp4 or weft render writes it");
   }
 
   bool take(RunFiles& run, const fs::path& file) {

@@ -13,8 +13,10 @@ using Json = nlohmann::ordered_json;
 
 /// The files of one run. What is empty was not found.
 struct RunFiles {
-  std::string name;             ///< path below the searched folder without ending, such as "stiff/falling_band"
-  std::filesystem::path video;  ///< MP4
+  std::filesystem::path folder;  ///< that was searched
+  std::string key;               ///< path below it without ending, such as "stiff/falling_band"
+  std::string name;              ///< the same, which may become longer where several folders are searched
+  std::filesystem::path video;   ///< MP4
   std::vector<std::filesystem::path> pictures;  ///< numbered PNG files in order, where there is no video
   std::filesystem::path stats;
   Json stats_json;  ///< content of `stats`
@@ -25,6 +27,9 @@ struct RunFiles {
 /// All runs below `folder`, in order of their names. Hidden files and review pages are passed over. Throws
 /// Error(asset_unreadable) where `folder` is none or cannot be listed.
 std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
+
+/// The file with decisions about runs; see decisions.hpp.
+inline constexpr const char* kDecisionsName = "review.json";
 
 /// The number at the end of a picture's name before the ending: 12 for band_00012.png; -1 if there is none.
 long long picture_number(const std::filesystem::path& picture);

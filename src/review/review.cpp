@@ -12,6 +12,7 @@
 #include "core/version.hpp"
 #include "embedded_review.hpp"
 #include "image/png.hpp"
+#include "review/decisions.hpp"
 #include "review/output_folder.hpp"
 #include "review/pictures.hpp"
 #include "review/run_data.hpp"
@@ -93,11 +94,13 @@ class Page {
   explicit Page(const Request& request) : request_(request), folder_(request.output, request.overwrite) {}
 
   Outcome write() {
-    const std::vector<RunFiles> runs = wanted_runs();
+    std::vector<RunFiles> runs = wanted_runs();
     const std::vector<RunFiles> references = wanted_references();
     Json data{{"version", kVersion}, {"runs", Json::array()}, {"references", Json::array()}};
     std::map<const RunFiles*, Entry> added_references;
-    for (const RunFiles& run : runs) {
+    Decisions decisions;
+    for (RunFiles& run : runs) {
+      const Json decision = decisions.of(run);
       Entry entry = add(run, "runs");
       const RunFiles* reference = find_reference(references, run.name);
       if (reference != nullptr) {
@@ -106,6 +109,7 @@ class Page {
       } else if (!request_.reference.empty()) {
         entry.problem(fmt::format("no reference of this name in {}", request_.reference.string()));
       }
+      add_decision(entry, decision, reference);
       outcome_.incomplete += entry.json["problems"].empty() ? 0 : 1;
       data["runs"].push_back(std::move(entry.json));
     }
@@ -166,6 +170,15 @@ class Page {
     const std::string id = fmt::format("{}/{}", kind, unique(slug(run.name), ids_[kind]));
     entry.place = id + "/";
     entry.json["id"] = id;
+    entry.json["date"] = date_of(run);
+    // A page of many runs reads what only the page of one of them shows when it is opened.
+    Json detail = Json::object();
+    for (const char* part : {"columns", "effective"}) {
+      detail[part] = std::move(entry.json[part]);
+      entry.json.erase(part);
+    }
+    write_text(folder_.path() / entry.place / "data.js",
+               fmt::format("review.loaded({}, {});\n", script_json(id), script_json(detail)));
     if (!run.stats.empty()) copy_into(run.stats, folder_.path() / entry.place / "stats.json");
     if (!run.effective.empty()) copy_into(run.effective, folder_.path() / entry.place / "scene.toml");
     add_pictures(entry);
@@ -220,6 +233,40 @@ class Page {
     if (!sheet.empty()) entry.json["poster"] = sheet[sheet.size() / 2]["file"];
   }
 
+  // What was decided, where the page's own file of decisions belongs, and what makes the run the reference.
+  void add_decision(Entry& entry, const Json& decision, const RunFiles* reference) {
+    const RunFiles& run = *entry.run;
+    entry.json["key"] = run.key;
+    entry.json["home"] = run.folder.string();
+    try {
+      entry.json["of"] = fingerprint(run);
+    } catch (const Error& error) {
+      if (error.code() != ExitCode::asset_unreadable) throw;
+      entry.problem(error.what());
+      entry.json["of"] = "";
+    }
+    if (!decision.is_null()) {
+      entry.json["decision"] = decision;
+      const bool now = decision.value("of", "") == entry.json["of"];
+      outcome_.approved += now && decision["state"] == "approved" ? 1 : 0;
+      outcome_.needing_work += now && decision["state"] == "needs work" ? 1 : 0;
+    }
+    // Its files, and the reference or the folder of references, as weft accept takes them.
+    Json accept = Json::object();
+    if (!run.video.empty()) {
+      accept["file"] = run.video.string();
+    } else if (!run.pictures.empty()) {
+      const std::string stem = (run.pictures.front().parent_path() / run.pictures.front().stem()).string();
+      accept["prefix"] = stem.substr(0, stem.find_last_not_of("0123456789") + 1);  // npos + 1 is 0
+    }
+    fs::path place = request_.reference.empty() ? fs::path("references") : request_.reference;
+    if (reference != nullptr && !run.video.empty() && !reference->video.empty()) place = reference->video;
+    if (reference != nullptr && run.video.empty() && !reference->pictures.empty())
+      place = reference->pictures.front().parent_path();
+    accept["reference"] = place.string();
+    entry.json["accept"] = std::move(accept);
+  }
+
   // At the pictures of the contact sheet.
   void compare(Entry& entry, const Entry& reference) {
     entry.json["reference"] = reference.json["id"];
@@ -267,15 +314,19 @@ void replace_once(std::string& text, const std::string& mark, const std::string&
 
 }  // namespace
 
-std::string page_html(std::string_view page, const Json& data) {
+std::string script_json(const Json& data) {
   // A scene may be called "</script>": no tag can begin where every < is written as an escape.
   const std::string json = data.dump(-1, ' ', false, Json::error_handler_t::replace);
   std::string safe;
   safe.reserve(json.size());
   for (const char c : json) c == '<' ? safe += "\\u003c" : safe += c;
+  return safe;
+}
+
+std::string page_html(std::string_view page, const Json& data) {
   std::string html(page);
   replace_once(html, "{{version}}", kVersion);
-  replace_once(html, "{{data}}", safe);
+  replace_once(html, "{{data}}", script_json(data));
   return html;
 }
 

@@ -97,6 +97,27 @@ Json frame_columns(const Json& frames) {
   return columns;
 }
 
+Json column_digest(const Json& columns) {
+  const auto frames = columns.find("frame");
+  Json digest = Json::object();
+  for (const auto& [name, column] : columns.items()) {
+    Json entry;
+    for (std::size_t row = 0; row < column.size(); ++row) {
+      if (!column[row].is_number()) continue;
+      const auto value = column[row].get<double>();
+      const Json frame = frames == columns.end() ? Json(nullptr) : (*frames)[row];
+      if (entry.is_null()) entry = {{"count", 0}, {"sum", 0.0}};
+      if (!entry.contains("min") || value < entry["min"]) entry["min"] = column[row], entry["min_frame"] = frame;
+      if (!entry.contains("max") || value > entry["max"]) entry["max"] = column[row], entry["max_frame"] = frame;
+      entry["count"] = entry["count"].get<int>() + 1;
+      entry["sum"] = entry["sum"].get<double>() + value;
+      entry["last"] = column[row];
+    }
+    if (!entry.is_null()) digest[name] = std::move(entry);
+  }
+  return digest;
+}
+
 PictureTimes picture_times(const RunFiles& run) {
   std::vector<long long> shown;
   if (!run.pictures.empty()) {
@@ -134,11 +155,13 @@ Json run_data(const RunFiles& run) {
     problems.push_back("no statistics: weft run --stats FILE.json writes them, for figures and plots");
   Json stats = run.stats_json.is_object() ? run.stats_json : Json::object();
   Json columns = frame_columns(stats.value("frames", Json::array()));
+  Json digest = column_digest(columns);
   stats.erase("frames");
   Json effective = effective_json(run, problems);
   return {{"name", run.name},
           {"problems", problems},
           {"stats", std::move(stats)},
+          {"digest", std::move(digest)},
           {"columns", std::move(columns)},
           {"effective", std::move(effective)}};
 }

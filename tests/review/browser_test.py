@@ -1,6 +1,9 @@
 """The review page in headless Chromium, driven as a reader would. Usage: browser_test.py WEFT SOURCE_FOLDER"""
 
+import json
+import os
 import pathlib
+import re
 import struct
 import subprocess
 import sys
@@ -297,6 +300,92 @@ class Page(unittest.TestCase):
                 self.open(address, width=width)
                 self.assertEqual(self.overflow(), [], (width, address))
                 self.assertLessEqual(self.browser.run("return document.documentElement.scrollWidth"), width)
+
+    def test_decisions_and_notes_stay_until_they_are_in_their_file(self):
+        self.open_run("soft-plain", "&frame=12")
+        self.browser.run("localStorage.clear()")
+        self.open_run("soft-plain", "&frame=12")
+        self.browser.press("w", "d")
+        box = self.browser.run("const b = document.querySelector('.blend').getBoundingClientRect(); return [b.left, b.top, b.width, b.height]")
+        points = [(box[0] + box[2] * x, box[1] + box[3] * y) for x, y in ((0.25, 0.5), (0.5, 0.75), (0.75, 0.5))]
+        self.browser.drag(points)
+        self.browser.press("m", *"a fold", "Tab", "Tab", "Enter")  # past the button that draws
+        self.assertEqual(self.text(".note-list .at"), "frame 12")
+        self.assertEqual(self.text(".downloads button"), "Download review.json for in: 1 new decision")
+        self.assertEqual(self.text(".accept-line"), "weft accept ref/plain.mp4 in/soft/plain.mp4 --reason WHY")
+        self.assertEqual(self.text(".versions tr:nth-child(2) .chip"), "needs work")
+        self.browser.run("document.activeElement.blur()")
+        self.browser.press("a")
+        self.assertEqual(self.text(".accept-line"), "weft accept ref/plain.mp4 in/soft/plain.mp4 --reason 'a fold'")
+        self.browser.press("w")
+        self.open("?again#run=runs/soft-plain&frame=12")  # the browser keeps it
+        self.settled()
+        self.assertEqual(self.text("[data-state][aria-pressed=true]"), "Needs work")
+        self.assertEqual(self.browser.run("return document.querySelectorAll('.drawn .over').length"), 1)
+        self.browser.press("End")
+        self.settled()
+        self.assertEqual(self.browser.run("return document.querySelectorAll('.drawn .over').length"), 0, "of another frame")
+        text = self.browser.run("return review.decisions.file('in')")
+        note = json.loads(text)["runs"]["soft/plain"]["notes"][0]
+        self.assertEqual((note["frame"], note["text"]), (12, "a fold"))
+        for (x, y), (wanted_x, wanted_y) in zip(note["marks"][0], ((0.25, 0.5), (0.5, 0.75), (0.75, 0.5))):
+            self.assertAlmostEqual(x, wanted_x, delta=0.01)
+            self.assertAlmostEqual(y, wanted_y, delta=0.01)
+
+        (self.folder / "in/review.json").write_text(text)
+        try:
+            weft(self.folder, "review", "in", "--reference", "ref", "-o", "page", "--overwrite")
+            self.open("?after#state=needs work")
+            shown = "return [...document.querySelectorAll('.runs tbody tr:not([hidden])')].map((tr) => tr.dataset.run)"
+            self.assertEqual(self.browser.run(shown), ["runs/soft-plain"])
+            self.assertEqual(self.browser.run("return document.querySelectorAll('.downloads button').length"), 0)
+            (self.folder / "in/review.json").write_text(re.sub('"of": *"[0-9a-f]*"', '"of": "0000000000000000"', text))
+            weft(self.folder, "review", "in", "--reference", "ref", "-o", "page", "--overwrite")
+            self.open("?changed")
+            self.assertEqual(self.text("[data-run='runs/soft-plain'] .verdict .chip"), "changed since needs work")
+            self.browser.run("localStorage.clear()")
+        finally:
+            (self.folder / "in/review.json").unlink()
+            weft(self.folder, "review", "in", "--reference", "ref", "-o", "page", "--overwrite")
+
+    def test_versions_are_the_runs_of_one_scene_the_newest_first(self):
+        self.open_run("plain")
+        rows = self.browser.run("return [...document.querySelectorAll('.versions tbody tr td:first-child')].map((td) => td.textContent)")
+        self.assertEqual(rows, ["stills/plain", "soft/plain", "plain"])
+        self.open("#newest=1")
+        shown = self.browser.run("return [...document.querySelectorAll('.runs tbody tr:not([hidden])')].map((tr) => tr.dataset.run)")
+        self.assertEqual(shown, ["runs/img-src-x-onerror-alert-1-co", "runs/stills-plain"])
+
+    def test_overview_loads_no_details_of_runs(self):
+        self.browser.requests()
+        self.open("?light")
+        self.assertEqual([url for url in self.browser.requests() if url.endswith("data.js")], [])
+
+    def test_video_that_does_not_play_is_named_with_the_reason(self):
+        video = self.folder / "page/runs/plain/video.mp4"
+        kept = video.read_bytes()
+        video.write_bytes(b"words" * 100)
+        try:
+            self.open("#run=runs/plain&with=")
+            self.browser.wait("return !document.querySelector('.stage-message').hidden")
+            self.assertRegex(self.text(".stage-message"), "^plain: the video cannot be played: runs/plain/video.mp4: the file is not there, or this browser")
+        finally:
+            video.write_bytes(kept)
+        self.browser.complaints()
+
+    @unittest.skipUnless(os.environ.get("WEFT_AXE"), "WEFT_AXE names no axe.min.js of npm's axe-core")
+    def test_axe_finds_nothing(self):
+        axe, violations = pathlib.Path(os.environ["WEFT_AXE"]).read_text(), []
+        for dark in (False, True):
+            for width in (1280, 390):
+                for address in ("", "#run=runs/plain", "#run=runs/soft-plain&view=side", "#run=runs/img-src-x-onerror-alert-1-co",
+                                "#compare=runs/plain&compare=runs/soft-plain&compare=runs/stills-plain"):
+                    self.open(address, width=width, dark=dark)
+                    self.browser.run(axe)
+                    self.browser.run("window.found = null; axe.run({preload: false}).then((result) => (window.found = result))")
+                    found = self.browser.wait("return window.found && [...window.found.violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target).join(' ')}`), 'done']")
+                    violations += [(address, width, dark, violation) for violation in found[:-1]]
+        self.assertEqual(violations, [])
 
     def test_pages_without_statistics_pictures_or_scene_say_so(self):
         self.open_run("img-src-x-onerror-alert-1-co")

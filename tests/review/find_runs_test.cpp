@@ -80,6 +80,17 @@ TEST_F(FindRuns, OtherJsonIsNoRunButIsNamedWhereAVideoMissesIt) {
   EXPECT_EQ(runs[1].problems[0], "b.json: expected the statistics that weft run --stats writes");
 }
 
+TEST_F(FindRuns, VideosThatNoBrowserPlaysAreNamed) {
+  write("a.mov");
+  write("a.json", statistics("runs/a.mov"));
+  const auto runs = find_runs(folder_);
+  ASSERT_EQ(runs.size(), 1u);
+  EXPECT_TRUE(runs[0].video.empty());
+  ASSERT_EQ(runs[0].problems.size(), 1u);
+  EXPECT_EQ(runs[0].problems[0],
+            "a.mov: browsers play H.264 in .mp4 only; weft run -o NAME.mp4 or weft render writes it");
+}
+
 TEST_F(FindRuns, WhatIsNoFolderIsRefused) {
   write("a.mp4");
   support::expect_error(ExitCode::asset_unreadable, "expected a folder", [&] { find_runs(folder_ / "a.mp4"); });

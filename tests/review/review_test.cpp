@@ -69,6 +69,54 @@ TEST_F(Review, PageHoldsTheRunAndItsFiles) {
   EXPECT_TRUE(is_review_page(folder_ / "page"));
 }
 
+TEST_F(Review, WhatOnlyThePageOfARunShowsIsAFileOfItsOwn) {
+  write_review(request());
+  const Json run = data().at("runs").at(0);
+  EXPECT_FALSE(run.contains("columns") || run.contains("effective"));
+  EXPECT_EQ(run.at("digest").at("frame").at("count"), 2);
+  const std::string detail = support::read_bytes(folder_ / "page/runs/a/data.js"), begin = "review.loaded(\"runs/a\", ";
+  ASSERT_TRUE(detail.starts_with(begin)) << detail;
+  const Json loaded = Json::parse(detail.substr(begin.size(), detail.rfind(");") - begin.size()));
+  EXPECT_EQ(loaded.at("columns").at("frame"), Json::parse("[0, 1]"));
+  EXPECT_EQ(loaded.at("effective").at("values").at("a"), "1");
+}
+
+TEST_F(Review, DecisionsCountAsLongAsThePicturesAreTheSame) {
+  const auto decide = [&](const std::string& state, const std::string& of) {
+    write("in/review.json",
+          fmt::format(R"({{"format": "weft review 1", "runs": {{"a": {{"state": "{}", "of": "{}"}}}}}})", state, of));
+    Request again = request();
+    again.overwrite = true;
+    const Outcome outcome = write_review(again);
+    return std::pair(outcome.approved, outcome.needing_work);
+  };
+  EXPECT_EQ(decide("approved", "0000000000000000"), std::pair(0, 0));
+  EXPECT_EQ(data().at("runs").at(0).at("decision").at("state"), "approved") << "the page says what has changed";
+  const std::string of = data().at("runs").at(0).at("of");
+  EXPECT_EQ(decide("approved", of), std::pair(1, 0));
+  EXPECT_EQ(decide("needs work", of), std::pair(0, 1));
+  EXPECT_EQ(decide("open", of), std::pair(0, 0));
+  EXPECT_EQ(data().at("runs").at(0).at("key"), "a");
+  EXPECT_EQ(data().at("runs").at(0).at("home"), (folder_ / "in").string());
+}
+
+TEST_F(Review, NamesWhatMakesARunTheReference) {
+  write("in/b_1.png");
+  write("in/b_2.png");
+  write("in/c.mp4");
+  write("ref/a.mp4");
+  write("ref/b_1.png");
+  write("ref/b_2.png");
+  Request with = request();
+  with.reference = folder_ / "ref";
+  write_review(with);
+  const auto accept = [&](int run) { return data().at("runs").at(run).at("accept"); };
+  const auto path = [&](const char* name) { return (folder_ / name).string(); };
+  EXPECT_EQ(accept(0), (Json{{"file", path("in/a.mp4")}, {"reference", path("ref/a.mp4")}}));
+  EXPECT_EQ(accept(1), (Json{{"prefix", path("in/b_")}, {"reference", path("ref")}}));
+  EXPECT_EQ(accept(2), (Json{{"file", path("in/c.mp4")}, {"reference", path("ref")}}));
+}
+
 TEST_F(Review, EveryFileThatThePageNamesIsThereAndLocal) {
   write_review(request());
   const std::string html = support::read_bytes(folder_ / "page/index.html");

@@ -19,6 +19,16 @@ TEST(FrameColumns, KeepSixDigits) {
   EXPECT_EQ(frame_columns(frames).dump(), R"({"a":[0.0123457],"b":[123456789],"c":[-1.23457e-30],"d":[0]})");
 }
 
+TEST(ColumnDigest, TellsWhatTheFiguresNeed) {
+  const Json columns = Json::parse(
+      R"({"frame": [5, 6, 7, 8], "a": [null, 2.5, -1, 2.5], "b": [true, false, true, true], "c": [null, null, null, null]})");
+  const Json digest = column_digest(columns);
+  EXPECT_EQ(digest.size(), 2u);
+  EXPECT_EQ(nlohmann::json(digest.at("a")), nlohmann::json::parse(R"({"count": 3, "sum": 4.0, "min": -1, "min_frame": 7,
+                                                                      "max": 2.5, "max_frame": 6, "last": 2.5})"));
+  EXPECT_EQ(digest.at("frame").at("count"), 4);
+}
+
 TEST(SceneValues, HaveThePathsThatSetTakes) {
   const std::string scene =
       "up = \"z\"\n[time]\nstep = 0.01\n[[cloth]]\nname = \"band\"\nsize = [1, 0.5]\n"

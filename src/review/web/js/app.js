@@ -23,10 +23,21 @@
     return new review.OverviewPage(address);
   };
 
-  const open = () => {
+  // The runs whose details a page shows.
+  const shown = (address) => {
+    const run = review.model.find(address.get("run"));
+    const ids = run ? [run.id, address.get("with") ?? run.referenceId] : address.getAll("compare");
+    return ids.map(review.model.find).filter(Boolean);
+  };
+
+  const open = async () => {
+    const asked = location.hash;
+    const address = new URLSearchParams(asked.slice(1));
+    await Promise.all(shown(address).map((run) => run.load()));
+    if (location.hash !== asked) return; // somewhere else by now, which is opened by itself
     page?.close();
     const firstTime = page === null;
-    page = makePage(new URLSearchParams(location.hash.slice(1)));
+    page = makePage(address);
     content.replaceChildren(page.element);
     document.title = `${page.title} – Weft review`;
     document.getElementById("trail").replaceChildren(
@@ -47,7 +58,8 @@
     const { choice } = review.theme;
     const name = { auto: "Auto", light: "Light", dark: "Dark" }[choice];
     themeSwitch.textContent = name;
-    themeSwitch.title = themeSwitch.ariaLabel = `Colours: ${choice === "auto" ? "as the system" : choice} (t)`;
+    themeSwitch.title = `Colours: ${choice === "auto" ? "as the system" : choice} (t)`;
+    themeSwitch.ariaLabel = `${name}: colours ${choice === "auto" ? "as the system" : "of the page"}`;
   };
 
   themeSwitch.addEventListener("click", () => review.theme.next());

@@ -3,20 +3,15 @@
 {
   const { known, count, milliseconds, seconds, millimetres, percent, joule, bytes } = review.format;
 
-  const sum = (column) => column?.reduce((total, value) => total + (value ?? 0), 0);
+  const sum = (run, name) => run.digest[name]?.sum;
 
-  // The frame with the extreme value, and that value.
-  const extreme = (name, better) => (run) => {
-    const column = run.column(name);
-    if (!column) return {};
-    let row = -1;
-    column.forEach((value, i) => {
-      if (known(value) && (row < 0 || better(value, column[row]))) row = i;
-    });
-    return { value: column[row], frame: column[row] !== 0 ? run.columns.frame?.[row] : undefined };
+  // The extreme value, and its frame.
+  const extreme = (name, which) => (run) => {
+    const value = run.digest[name]?.[which];
+    return { value, frame: value !== 0 ? (run.digest[name]?.[`${which}_frame`] ?? undefined) : undefined };
   };
-  const largest = (name) => extreme(name, (a, b) => a > b);
-  const smallest = (name) => extreme(name, (a, b) => a < b);
+  const largest = (name) => extreme(name, "max");
+  const smallest = (name) => extreme(name, "min");
   // Of the pictures compared with the reference.
   const worst = (name, sign) => (run) => {
     const [first, ...rest] = run.comparison;
@@ -24,10 +19,10 @@
     const pair = rest.reduce((found, other) => (sign * other[name] > sign * found[name] ? other : found), first);
     return { value: pair[name], frame: pair.verdict === "same" ? undefined : run.frameOf(pair.picture) };
   };
-  const last = (name) => (run) => ({ value: run.column(name)?.findLast(known) });
+  const last = (name) => (run) => ({ value: run.digest[name]?.last });
   const total = (name) => (run) => ({ value: run.totals[name] });
   const perFrame = (name) => (run) => {
-    const frames = (run.columns.frame?.length ?? 0) - 1; // frame 0 is given, not computed
+    const frames = (run.digest.frame?.count ?? 0) - 1; // frame 0 is given, not computed
     return { value: known(run.totals[name]) && frames > 0 ? (1e3 * run.totals[name]) / frames : undefined };
   };
   const ratio = (part, whole) => (known(part) && known(whole) && whole > 0 ? part / whole : undefined);
@@ -37,7 +32,7 @@
   const figure = (key, label, of, format, note) => ({ key, label, short: SHORT[key] ?? label, of, format, note });
 
   review.figures = [
-    figure("frames", "Frames", (run) => ({ value: run.columns.frame?.length }), count, "simulated, frame 0 included"),
+    figure("frames", "Frames", (run) => ({ value: run.digest.frame?.count }), count, "simulated, frame 0 included"),
     figure("particles", "Particles", (run) => ({ value: run.stats.particles }), count),
     figure("strain", "Largest strain", largest("max_strain"), percent, "of any thread, stretched or squeezed"),
     figure("distance", "Smallest distance", smallest("min_distance_m"), millimetres, "between surfaces; at or below 0 they touched"),
@@ -49,8 +44,8 @@
     figure("steps", "Steps", total("steps"), count),
     figure("rejected", "Rejected steps", total("rejected_steps"), count),
     figure("inexact", "Inexact steps", total("inexact_steps"), count, "taken with an error above time.tolerance"),
-    figure("newton", "Newton per step", (run) => ({ value: ratio(sum(run.column("newton_iterations")), run.totals.steps) }), review.format.number),
-    figure("linear", "Linear per Newton", (run) => ({ value: ratio(sum(run.column("linear_iterations")), sum(run.column("newton_iterations"))) }), review.format.number),
+    figure("newton", "Newton per step", (run) => ({ value: ratio(sum(run, "newton_iterations"), run.totals.steps) }), review.format.number),
+    figure("linear", "Linear per Newton", (run) => ({ value: ratio(sum(run, "linear_iterations"), sum(run, "newton_iterations")) }), review.format.number),
     figure("cpu_frame", "CPU per frame", perFrame("cpu"), milliseconds, "all threads, whole run"),
     figure("simulate", "Simulate, CPU", perFrame("simulate_cpu"), milliseconds, "per frame, collisions included"),
     figure("collide", "Collisions, CPU", perFrame("collide_cpu"), milliseconds, "per frame, a part of simulate"),

@@ -21,6 +21,7 @@
     millimetres: (value) => scaled(value, 1e3, "mm"),
     percent: (value) => scaled(value, 100, "%"),
     joule: (value) => scaled(known(value) && Math.abs(value) < 1e-12 ? 0 : value, 1, "J"),
+    date: (value) => (value ? value.toLocaleString("sv", { dateStyle: "short", timeStyle: "short" }) : DASH),
     time: (value) => (known(value) ? `${value.toFixed(3)} s` : DASH),
     bytes(value) {
       if (!known(value)) return DASH;

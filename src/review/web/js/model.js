@@ -15,14 +15,40 @@
       this.problems = data.problems;
       this.stats = data.stats;
       this.totals = data.stats.totals ?? {};
-      this.columns = data.columns;
-      this.effective = data.effective;
+      this.digest = data.digest; // of the columns: what figures need
+      this.columns = {}; // this and the scene are there once the run is loaded
+      this.effective = null;
       this.pictures = data.pictures;
       this.sheet = data.sheet ?? [];
       this.poster = data.poster ?? null;
       this.referenceId = data.reference ?? null;
       this.comparison = data.comparison ?? []; // with the reference, at the pictures of the contact sheet
       this.isReference = data.id.startsWith("references/");
+      this.date = data.date ? new Date(data.date) : null;
+      this.of = data.of ?? ""; // fingerprint of its pictures
+      this.home = data.home;
+      this.key = data.key;
+      this.filed = data.decision ?? null; // of review.json
+      this.accept = data.accept ?? null;
+    }
+
+    /** Reads what only its own page shows, once. A page from a file may load scripts, but read nothing else. */
+    load() {
+      this.loading ??= new Promise((resolve) => {
+        const script = document.createElement("script");
+        script.onload = resolve;
+        script.onerror = () => {
+          this.problems.push(`${this.id}/data.js cannot be read: no plots, no scene`);
+          resolve();
+        };
+        script.src = `${this.id}/data.js`;
+        document.head.append(script);
+      });
+      return this.loading;
+    }
+    loaded({ columns, effective }) {
+      this.columns = columns;
+      this.effective = effective;
       this.rows = new Map((this.column("frame") ?? []).map((frame, row) => [frame, row]));
     }
 
@@ -67,7 +93,7 @@
       return column?.some(known) ? column : undefined;
     }
     valueAt(name, frame) {
-      return this.columns[name]?.[this.rows.get(frame)];
+      return this.columns[name]?.[this.rows?.get(frame)];
     }
 
     /** Of all compared pictures: {level, text, note}, or null where none was. */
@@ -102,5 +128,16 @@
   const references = data.references.map((run) => new Run(run));
   const byId = new Map([...runs, ...references].map((run) => [run.id, run]));
 
-  review.model = { version: data.version, runs, references, find: (id) => byId.get(id) ?? null };
+  const age = (run) => run.date?.getTime() ?? 0;
+  /** Runs of the same scene, the newest first. */
+  const versions = (run) => runs.filter(({ scene }) => scene === run.scene).sort((a, b) => age(b) - age(a));
+  const newest = new Map();
+  for (const run of runs) if (!newest.has(run.scene) || age(run) > age(newest.get(run.scene))) newest.set(run.scene, run);
+
+  review.loaded = (id, detail) => byId.get(id)?.loaded(detail);
+  review.model = {
+    version: data.version, runs, references, versions,
+    find: (id) => byId.get(id) ?? null,
+    isNewest: (run) => newest.get(run.scene) === run,
+  };
 }

@@ -2,9 +2,10 @@
 "use strict";
 {
   const { h } = review;
-  const { plural } = review.format;
+  const { date, plural } = review.format;
   const COLUMNS = ["frames", "particles", "strain", "distance", "error", "newton", "cpu_frame"].map((key) => review.figure[key]);
   const STAGES = ["simulate_cpu", "collide_cpu", "render_cpu", "encode_cpu"];
+  const SHOWN = [["", "all decisions"], ["open", "open"], ["needs work", "needs work"], ["approved", "approved"], ["changed", "changed since"]];
   const LEVELS = ["bad", "warn", "unknown", "good"];
 
   review.chip = ({ level, text, note }) => h(`span.chip.${level}`, { title: note }, text);
@@ -33,12 +34,16 @@
       this.sortKey = address.get("sort");
       this.rows = review.model.runs.map((run) => this.buildRow(run));
       this.filter = h("input", { type: "search", placeholder: "Filter by name, scene, verdict", "aria-label": "Filter the runs", oninput: () => this.applyFilter() });
+      this.state = h("select", { "aria-label": "Filter by decision", onchange: () => this.applyFilter() }, SHOWN.map(([value, text]) => h("option", { value, selected: value === (address.get("state") ?? "") }, text)));
+      this.newest = h("input", { type: "checkbox", checked: address.has("newest"), onchange: () => this.applyFilter() });
+      this.downloads = review.downloads();
       this.count = h("span.found", { role: "status" });
       this.compare = h("button.primary", { type: "button", onclick: () => this.openComparison() });
       this.body = h("tbody", {}, this.rows.map(({ element }) => element));
       this.element = h("div.overview", {}, this.buildHead(), h("div.table-frame", {}, h("table.runs", {}, this.buildColumns(), this.body)), this.nothing());
       this.updateChosen();
       if (this.sortKey) this.sort(this.sortKey);
+      this.applyFilter();
     }
 
     get title() {
@@ -54,7 +59,8 @@
         h("h1", {}, plural(runs.length, "run")),
         h("p.counts", {}, counts.map(([level, count]) => review.chip({ level, text: `${count} ${words[level]}` })),
           differing > 0 && review.chip({ level: "bad", text: `${differing} differing from the reference` })),
-        h("div.page-tools", {}, this.filter, this.count, this.compare));
+        this.downloads.element,
+        h("div.page-tools", {}, this.filter, this.state, h("label", {}, this.newest, " newest of each scene"), this.count, this.compare));
     }
     nothing() {
       this.none = h("p.nothing", { hidden: true }, "No run matches.");
@@ -71,7 +77,7 @@
       };
       return h("thead", {}, h("tr", {},
         h("th", {}, h("span.hidden", {}, "Choose")), h("th", {}, h("span.hidden", {}, "Picture")),
-        sorter("name", "Run"), sorter("verdict", "Verdict"), COLUMNS.map(({ key, label, note }) => sorter(key, label, note))));
+        sorter("name", "Run"), sorter("verdict", "Verdict"), sorter("date", "Written"), COLUMNS.map(({ key, label, note }) => sorter(key, label, note))));
     }
 
     buildRow(run) {
@@ -79,16 +85,16 @@
       const box = h("input", { type: "checkbox", "aria-label": `Choose ${run.name}`, onchange: () => this.choose(run, box.checked) });
       const figures = COLUMNS.map(({ key, short, of, format }) =>
         h("td.figure", { "data-label": short }, format(of(run).value), key === "cpu_frame" && shares(run)));
-      const notes = [...run.warnings, ...run.problems];
+      const notes = [...run.warnings, ...run.problems], decided = review.decisions.chip(run);
       const element = h("tr", { "data-run": run.id },
         h("td.choose", {}, h("label", {}, box)),
         h("td.poster", {}, h("a", { href: address, tabindex: -1, "aria-hidden": "true" }, review.posterOf(run))),
         h("td.name", {}, h("a", { href: address }, review.breakable(run.name)),
           h("small", {}, run.scene === run.name ? "" : run.scene)),
-        h("td.verdict", {}, review.chip(run.verdict), run.likeness && review.chip(run.likeness),
+        h("td.verdict", {}, decided && review.chip(decided), review.chip(run.verdict), run.likeness && review.chip(run.likeness),
           run.problems.length > 0 && review.chip({ level: "unknown", text: "incomplete" }),
           notes.length > 0 && h("small", { title: notes.join("\n") }, notes[0])),
-        figures);
+        h("td.figure", { "data-label": "Written" }, date(run.date)), figures);
       return { run, box, element };
     }
 
@@ -104,8 +110,13 @@
       }
       this.compare.disabled = this.chosen.size < 2;
       this.compare.textContent = this.chosen.size < 2 ? "Choose runs to compare" : `Compare ${this.chosen.size} runs`;
+      this.remember();
+    }
+    remember() {
       const address = new URLSearchParams([...this.chosen].map((id) => ["chosen", id]));
       if (this.sortKey) address.set("sort", this.sortKey);
+      if (this.state.value) address.set("state", this.state.value);
+      if (this.newest.checked) address.set("newest", "1");
       review.replaceAddress(address);
     }
     openComparison() {
@@ -118,11 +129,12 @@
       let shown = 0;
       for (const { run, element } of this.rows) {
         const text = [run.name, run.scene, run.verdict.text, run.likeness?.text, ...run.warnings, ...run.problems].join(" ").toLowerCase();
-        element.hidden = !text.includes(wanted);
+        element.hidden = !text.includes(wanted) || (this.state.value !== "" && review.decisions.state(run) !== this.state.value) || (this.newest.checked && !review.model.isNewest(run));
         shown += element.hidden ? 0 : 1;
       }
       this.none.hidden = shown > 0;
-      this.count.textContent = wanted ? `${shown} of ${this.rows.length}` : "";
+      this.count.textContent = shown < this.rows.length ? `${shown} of ${this.rows.length}` : "";
+      this.remember();
     }
 
     // Again on the same column: the other way round. What is not known comes last.
@@ -130,6 +142,7 @@
       const down = this.sorters.get(key)?.ariaSort === "ascending";
       const value = ({ run }) => {
         if (key === "name") return run.name;
+        if (key === "date") return run.date?.getTime();
         if (key === "verdict") return LEVELS.indexOf(run.verdict.level);
         return review.figure[key]?.of(run).value;
       };

@@ -3,6 +3,10 @@
 {
   const { h } = review;
 
+  // What a browser says of a video that it does not play may be nothing, or words for its makers.
+  const REASONS = { 1: "it was interrupted", 2: "the file cannot be read", 3: "the file is damaged", 4: "the file is not there, or this browser does not know how its pictures are coded" };
+  const reasonOf = (error) => [REASONS[error?.code] ?? "unknown reason", error?.message].filter(Boolean).join("; ");
+
   // A video of constant frame rate. Picture k lasts from k / fps to (k + 1) / fps: its middle is sought, so that no
   // rounding can hit a neighbour. data-picture tells which one is on screen.
   class VideoTrack {
@@ -20,7 +24,7 @@
         this.seek();
       });
       this.element.addEventListener("seeked", () => this.settle());
-      this.element.addEventListener("error", () => onError(run, this.element.error?.message || "unknown reason"));
+      this.element.addEventListener("error", () => onError(run, `${run.pictures.files[0]}: ${reasonOf(this.element.error)}`));
       this.element.src = run.pictures.files[0];
     }
 

@@ -2,7 +2,7 @@
 "use strict";
 {
   const { h } = review;
-  const { known, dash, number, percent, plural } = review.format;
+  const { known, dash, date, number, percent, plural } = review.format;
 
   review.notesOf = (run) => {
     const note = (level, text) => h(`li.${level}`, {}, text);
@@ -26,11 +26,12 @@
       this.other = address.has("with") ? review.model.find(address.get("with")) : this.run.reference?.hasPictures ? this.run.reference : null;
       this.address = address;
       this.buildViewer();
+      if (!this.run.isReference) this.decision = new review.DecisionPanel(this.run, this.viewer ?? null);
       this.buildPlots();
       this.sceneText = this.run.effective && new review.SceneText(this.run.effective.text);
       this.element = h("article.run-page", {},
         this.buildHead(others), review.notesOf(this.run),
-        h("div.watch", {}, h("div.column", {}, this.viewer ? this.viewer.element : h("p.nothing", {}, "No video or pictures."), this.buildComparison(), this.buildFigures(), this.buildEnvironment()),
+        h("div.watch", {}, h("div.column", {}, this.viewer ? this.viewer.element : h("p.nothing", {}, "No video or pictures."), this.decision?.element, this.buildVersions(), this.buildComparison(), this.buildFigures(), this.buildEnvironment()),
           this.plots.empty ? h("p.nothing", {}, "No statistics to plot.") : this.plots.element),
         h("div.panels", {},
           this.buildObjects(),
@@ -99,6 +100,26 @@
           h("thead", {}, h("tr", {}, ["", "", "FLIP", "SSIM", "pixels past 4 levels", "largest, of 255"].map((title) => h("th", { scope: "col" }, title)))),
           h("tbody", {}, rows))));
     }
+    // The runs of the same scene, the newest first.
+    buildVersions() {
+      const versions = review.model.versions(this.run);
+      if (versions.length < 2 || this.run.isReference) return null;
+      const shown = ["strain", "cpu_frame"].map((key) => review.figure[key]);
+      const link = (run) => (run === this.run ? h("strong", { "aria-current": "true" }, run.label) : h("a", { href: `#run=${encodeURIComponent(run.id)}` }, review.breakable(run.label)));
+      const beside = (run) => run !== this.run && run.hasPictures && this.run.hasPictures && h("a", { href: `#${new URLSearchParams({ run: this.run.id, with: run.id })}`, "aria-label": `Show beside ${run.label}` }, "beside");
+      const state = (run) => {
+        const cell = h("td");
+        const show = () => cell.replaceChildren(review.chip(review.decisions.chip(run) ?? { level: "unknown", text: "open" }));
+        review.decisions.onChange(show, this.decision.listening.signal);
+        show();
+        return cell;
+      };
+      return review.section(`${versions.length} versions of ${this.run.scene}`,
+        h("div.table-frame", { tabindex: 0, role: "region", "aria-label": "Versions" }, h("table.versions", {},
+          h("thead", {}, h("tr", {}, ["Run", "Written", "Decision", ...shown.map(({ label }) => label), ""].map((title) => (title ? h("th", { scope: "col" }, title) : h("td"))))),
+          h("tbody", {}, versions.map((run) => h("tr", {}, h("td", {}, link(run)), h("td", {}, date(run.date)), state(run),
+            shown.map(({ of, format }) => h("td", {}, format(of(run).value))), h("td", {}, beside(run))))))));
+    }
     buildEnvironment() {
       const pairs = review.environment(this.run);
       return pairs.length > 0 && review.section("Environment", definitions(pairs));
@@ -114,6 +135,7 @@
 
     onPicture() {
       this.plots.showTime(this.viewer.player.time);
+      this.decision?.showFrame();
       if (!this.viewer.player.playing) this.remember("frame", this.viewer.player.frame);
     }
     remember(key, value) {
@@ -129,6 +151,7 @@
     get keys() {
       return [
         ...(this.viewer?.keys ?? []),
+        ...(this.decision?.keys ?? []),
         { keys: ["n"], does: "next run", action: () => this.neighbour(1) },
         { keys: ["p"], does: "previous run", action: () => this.neighbour(-1) },
         this.sceneText && { keys: ["/"], does: "search the scene", action: () => this.sceneText.focus() },
@@ -148,6 +171,7 @@
     }
     close() {
       this.viewer?.close();
+      this.decision?.close();
       this.plots.close();
     }
   };

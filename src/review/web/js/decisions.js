@@ -1,0 +1,107 @@
+// What is decided about runs: as review.json had it when the page was written, and what was changed on the page since,
+// which the browser keeps until the file is downloaded, put in its place, and the page written anew.
+"use strict";
+{
+  const FORMAT = "weft review 1";
+  const STATES = ["open", "needs work", "approved"];
+  const place = `weft-review-decisions:${location.pathname}`;
+  const changed = new EventTarget();
+
+  // A browser may refuse storage to a page opened from a file; what is decided then lasts until it is closed.
+  const stored = (key, otherwise) => {
+    try {
+      return JSON.parse(localStorage.getItem(key)) ?? otherwise;
+    } catch {
+      return otherwise;
+    }
+  };
+  const store = (key, value) => {
+    try {
+      localStorage.setItem(key, JSON.stringify(value));
+    } catch {
+      // as above
+    }
+  };
+
+  let own = stored(place, {}); // by home and key
+  let author = stored("weft-review-author", "");
+
+  const ownOf = (run) => own[run.home]?.[run.key];
+  // The later one; dates are ISO 8601 in UTC and sort as text.
+  const isPending = (run) => ownOf(run) !== undefined && (ownOf(run).date ?? "") > (run.filed?.date ?? "");
+  const entryOf = (run) => (isPending(run) ? ownOf(run) : run.filed) ?? { state: "open", notes: [] };
+
+  const change = (run, entry) => {
+    own = { ...own, [run.home]: { ...own[run.home], [run.key]: { ...entryOf(run), of: run.of, by: author, date: new Date().toISOString(), ...entry } } };
+    store(place, own);
+    changed.dispatchEvent(new Event("change"));
+  };
+
+  review.decisions = {
+    STATES,
+    get author() {
+      return author;
+    },
+    set author(name) {
+      author = name;
+      store("weft-review-author", name);
+    },
+    notes: (run) => entryOf(run).notes ?? [],
+    entry: entryOf,
+    /** One of STATES, or "changed": decided when it had other pictures. */
+    state(run) {
+      const { state, of } = entryOf(run);
+      return state !== "open" && of !== run.of ? "changed" : state;
+    },
+    /** {level, text, note} for a chip; null for what is open. */
+    chip(run) {
+      const { state, by, date } = entryOf(run);
+      const note = [by && `by ${by}`, date && review.format.date(new Date(date))].filter(Boolean).join(", ");
+      const shown = review.decisions.state(run);
+      if (shown === "open") return null;
+      if (shown === "changed") return { level: "warn", text: `changed since ${state}`, note };
+      return { level: shown === "approved" ? "good" : "bad", text: shown, note };
+    },
+    decide: (run, state) => change(run, { state }),
+    /** `marks`: lines of points in shares of the picture. */
+    add: (run, frame, text, marks) => change(run, { of: entryOf(run).of ?? run.of, notes: [...review.decisions.notes(run),
+      { frame, text, by: author, date: new Date().toISOString(), of: run.of, marks }] }),
+    remove: (run, at) => change(run, { of: entryOf(run).of ?? run.of, notes: review.decisions.notes(run).filter((_, i) => i !== at) }),
+
+    /** Folders in which review.json is behind, each with how many runs. */
+    get pending() {
+      const homes = new Map();
+      for (const run of review.model.runs) if (isPending(run)) homes.set(run.home, (homes.get(run.home) ?? 0) + 1);
+      return homes;
+    },
+    /** The text of the file in a folder: all that is decided about its runs. */
+    file(home) {
+      const runs = review.model.runs.filter((run) => run.home === home && (isPending(run) || run.filed));
+      return `${JSON.stringify({ format: FORMAT, runs: Object.fromEntries(runs.map((run) => [run.key, entryOf(run)])) }, null, 1)}\n`;
+    },
+    download(home) {
+      const link = review.h("a", { download: "review.json", href: `data:application/json;charset=utf-8,${encodeURIComponent(review.decisions.file(home))}` });
+      link.click();
+    },
+    onChange: (listener, signal) => changed.addEventListener("change", listener, { signal }),
+  };
+
+  const quoted = (text) => (/^[\w@%+=:,./-]+$/.test(text) ? text : `'${text.replaceAll("'", "'\\''")}'`);
+  /** What makes the pictures of the run the reference, with the last note of an approval as reason; null where it has none. */
+  review.acceptLine = (run) => {
+    const { file, prefix, reference } = run.accept ?? {};
+    if (!file && !prefix) return null;
+    const reason = review.decisions.state(run) === "approved" ? (review.decisions.notes(run).at(-1)?.text.split("\n")[0] ?? "") : "";
+    return `weft accept ${quoted(reference)} ${file ? quoted(file) : `${quoted(prefix)}[0-9]*.png`} --reason ${quoted(reason || "WHY")}`;
+  };
+
+  /** For each folder whose review.json is behind a button that downloads it. */
+  review.downloads = () => {
+    const element = review.h("span.downloads", { role: "status" });
+    const show = () => element.replaceChildren(...[...review.decisions.pending].map(([home, count]) =>
+      review.h("button", { type: "button", title: `To be put into ${home}; weft review reads it there`, onclick: () => review.decisions.download(home) },
+        `Download review.json for ${home}: ${review.format.plural(count, "new decision")}`)));
+    show();
+    return { element, show };
+  };
+}
