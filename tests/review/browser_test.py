@@ -70,6 +70,8 @@ class Page(unittest.TestCase):
         simulate(folder, "in/plain.mp4")
         simulate(folder, "in/soft/plain.mp4", "--set", "cloth.band.material.stretch=300")
         simulate(folder, "in/stills/plain_{frame:03}.png")
+        for age, file in enumerate(("stills/plain_000.png", "soft/plain.mp4", "plain.mp4")):
+            os.utime(folder / "in" / file, (1.7e9 - 60 * age,) * 2)
         (folder / "in" / f"{HOSTILE}.mp4").write_bytes((folder / "in/plain.mp4").read_bytes())
         (folder / "ref").mkdir()
         (folder / "ref/plain.mp4").write_bytes((folder / "in/plain.mp4").read_bytes())
