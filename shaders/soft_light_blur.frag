@@ -3,6 +3,7 @@
 #include "soft_light.glsl"
 layout(binding = 3) uniform sampler2D soft_light_map;
 uniform ivec2 axis;
+uniform float share_of_lit;  // that neighbours have
 layout(location = 0) out vec4 soft_light;
 
 void main() {
@@ -21,7 +22,7 @@ void main() {
     float step = abs(taps[i].w - center.w - float(i - 2) * slope) / (0.01 * center.w);
     float same = soft_surface(taps[i]) == soft_surface(center) ? clamp(2.0 - step, 0.0, 1.0) : 0.0;
     sum += vec2(soft_open(taps[i]), 1.0) * same;
-    if (abs(i - 2) == 1) lit += vec3(taps[i].yz, 1.0) * (0.5 * same);
+    if (abs(i - 2) == 1) lit += vec3(taps[i].yz, 1.0) * (share_of_lit * same);
   }
   soft_light = vec4(pack_soft(soft_surface(center), sum.x / sum.y), lit.xy / lit.z, center.w);
 }

@@ -78,9 +78,12 @@ void SoftLight::draw(std::span<const DrawnMesh> meshes, const SkyView& above, Li
   program->second.use();
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 
-  // Across, then down, ending where it began.
+  // Across, then down, ending where it began. A second time, for where an outline cuts the window within which taps
+  // make up for each other: right under a ball the first leaves streaks.
   blur_.use();
-  for (const bool across : {true, false}) {
+  for (int pass = 0; pass < 4; ++pass) {
+    const bool across = pass % 2 == 0;
+    gl_->Uniform1f(blur_.uniform("share_of_lit"), pass < 2 ? 0.5f : 0.0f);
     gl_->BindFramebuffer(GL_FRAMEBUFFER, (across ? smoothed_target_ : light_target_).name());
     gl_->BindTextureUnit(3, (across ? light_ : smoothed_).name());
     gl_->Uniform2i(blur_.uniform("axis"), across, !across);
