@@ -70,8 +70,10 @@ struct Clip {
 struct Material {
   enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< once: nothing beyond the edge
   std::string name;
-  Vec3 color{0.8, 0.8, 0.8};  ///< linear; what a picture is multiplied by
-  std::string picture;        ///< bytes of a PNG or JPEG file; empty: none
+  Vec3 color{0.8, 0.8, 0.8};         ///< linear; what a picture is multiplied by
+  std::string picture;               ///< bytes of a PNG or JPEG file; empty: none
+  int width = 0, height = 0;         ///< of `pixels`
+  std::vector<std::uint8_t> pixels;  ///< a picture without a file: R G B A, sRGB, rows from the top; empty: none
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;
   bool cutout = false;  ///< what is transparent in the picture is a hole
 };
@@ -81,6 +83,7 @@ struct Coloring {
   std::vector<Material> materials;
   std::vector<Index> material_of_triangle;  ///< per triangle; empty where the file has no colours
   std::vector<std::array<Vec2, 3>> uv;      ///< per triangle: (u, v) of its corners, from the lower left of the picture
+  bool over_look = false;  ///< pictures lie over the colour that the scene gives, where they are opaque
 };
 
 /// Lengths in metres, axes of the scene's up axis.

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 
+#include "character/figure.hpp"
 #include "character/mannequin_shape.hpp"
 #include "character/mannequin_skin.hpp"
 #include "mesh/isosurface.hpp"
@@ -122,6 +124,7 @@ Character make_mannequin(const MannequinBuild& build) {
   mesh::MirroredMesh skin = make_skin(build, joints);
   bind_skin(character, skin, joints, build.height);
   character.mesh = std::move(skin.mesh);
+  character.coloring = figure_of(character.mesh, build);
   return character;
 }
 
