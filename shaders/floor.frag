@@ -3,6 +3,9 @@
 #include "shading.glsl"
 #include "soft_look_up.glsl"
 #include "open_floor.glsl"
+#ifdef REFLECTING
+#include "reflection.glsl"
+#endif
 layout(location = 0) out vec4 color;
 
 // Tiles of 0.5 m as a faint two-tone pattern, averaged over the pixel (box filter of a triangle wave, as in Quilez,
@@ -44,4 +47,11 @@ void main() {
   vec3 linear = fade_out(albedo * diffuse, position_world, ray_world);
 #endif
   color = vec4(encode(linear), 1.0);
+#ifdef REFLECTING
+  // Fresnel's law by Schlick; a rough floor reflects less where it is seen at an angle (Lagarde 2011).
+  float roughness = frame.center_world.w, edge = 1.0 - max(-dot(normalize(ray_world), n), 0.0);
+  float share = 0.04 + max(0.96 - roughness, 0.0) * edge * edge * edge * edge * edge;
+  share *= 1.0 - away_from_subjects(position_world);
+  color.rgb = srgb(reflect_in_floor(color.rgb, gl_FragCoord.xy * frame.viewport.zw, distance_view, roughness, share));
+#endif
 }

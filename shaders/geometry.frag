@@ -16,7 +16,17 @@ uniform vec3 color;       // linear
 uniform vec4 back_color;  // where w is below 0; else the front, paler by w
 layout(location = 3) out vec4 paint;
 #endif
+#ifdef TRIMMED
+in vec3 surface_trim;
+layout(location = 4) out vec4 trims;  // trim.glsl
+#endif
+#ifdef PEELED
+layout(binding = 12) uniform sampler2D peeled;  // distances up to which all is taken off already
+#endif
 void main() {
+#ifdef PEELED
+  if (1.0 / gl_FragCoord.w <= texelFetch(peeled, ivec2(gl_FragCoord.xy), 0).r) discard;
+#endif
 #ifdef PAINTED
   vec3 front = color;
   vec4 texel = laid >= 2 ? texture(picture, place) : vec4(1.0);
@@ -37,5 +47,8 @@ void main() {
 #endif
   normal_heat = vec4(gl_FrontFacing ? surface_normal_world : -surface_normal_world, surface_heat);
   rest_uv = surface_uv;
+#ifdef TRIMMED
+  trims = vec4(surface_trim, 0.0);
+#endif
   distance_surface = vec2(1.0 / gl_FragCoord.w, surface + (gl_FrontFacing ? 0.0 : 0.5));
 }

@@ -9,11 +9,16 @@ layout(location = 4) in vec2 vertex_place;
 uniform vec3 picture_u, picture_v;  // rows of the map to the picture
 out vec2 place;
 #endif
+#ifdef TRIMMED
+layout(location = 5) in vec3 vertex_trim;
+out vec3 surface_trim;
+#endif
 uniform float nearer;  // [m] by which it counts as nearer than other things
 out vec3 surface_normal_world;
 out vec2 surface_uv;
 out float surface_heat;
 invariant gl_Position;
+out float gl_ClipDistance[1];  // height above the floor, for mirror.hpp
 void main() {
   surface_normal_world = normal_world;
   surface_uv = vertex_uv;
@@ -21,6 +26,11 @@ void main() {
 #ifdef PAINTED
   place = vec2(dot(picture_u, vec3(vertex_place, 1.0)), dot(picture_v, vec3(vertex_place, 1.0)));
 #endif
+#ifdef TRIMMED
+  surface_trim = vertex_trim;
+#endif
+  gl_ClipDistance[0] =
+      dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w;
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);
   if (nearer > 0.0 && gl_Position.w > frame.frustum.z) {
     float n = frame.frustum.z, f = frame.frustum.w, distance_view = max(gl_Position.w - nearer, n);

@@ -7,11 +7,15 @@ vec3 light_on_floor(int i, vec3 position_world, vec3 n) {
   return lights[i].color.rgb * (cone * max(dot(n, l), 0.0));
 }
 
+// 0 near the subjects, to 1 far from them.
+float away_from_subjects(vec3 position_world) {
+  float away = max(length(position_world - frame.center_world.xyz) / frame.eye_world.w - 1.5, 0.0) / 5.0;
+  return away * away / (1.0 + away * away);
+}
+
 // A pool of light round the subjects that runs out slowly into the backdrop.
 vec3 fade_out(vec3 color, vec3 position_world, vec3 ray_world) {
-  float away = max(length(position_world - frame.center_world.xyz) / frame.eye_world.w - 1.5, 0.0) / 5.0;
-  float far = away * away / (1.0 + away * away);
-  return mix(color, backdrop_color(normalize(ray_world)), far);
+  return mix(color, backdrop_color(normalize(ray_world)), away_from_subjects(position_world));
 }
 
 // How far the ray of a pixel, one metre along the view axis, goes [m]. Rays to the floor go down; so close to the horizon

@@ -11,6 +11,13 @@ vec3 ambient_light(vec3 n_world, float open, vec3 albedo) {
   return irradiance(n_world) * max(vec3(open), ((open * a + b) * open + c) * open);
 }
 
+// The curve of IEC 61966-2-1 by roots, fitted to within 0.1/255 on [0.0031, 1]: three powers cost 25 ns a pixel more.
+vec3 srgb(vec3 linear) {
+  vec3 root = sqrt(linear);
+  vec3 curve = 0.833761273 * root + 0.298103297 * sqrt(root) - 0.055321666 * linear - 0.076902919;
+  return mix(12.92 * linear, curve, greaterThan(linear, vec3(0.0031308)));
+}
+
 // Linear light to the sRGB bytes of the picture. Below 0.8 colors are as given, but for what film does to the dark where
 // the look wants that; brighter light is bent towards 1 by its strongest channel, and pales as it goes on.
 vec3 encode(vec3 linear) {
@@ -22,8 +29,5 @@ vec3 encode(vec3 linear) {
     float bent = 1.0 - 0.2 * exp((0.8 - peak) * 5.0);
     linear = mix(linear * (bent / peak), vec3(bent), 1.0 - 1.0 / (0.15 * (peak - bent) + 1.0));
   }
-  // The curve of IEC 61966-2-1 by roots, fitted to within 0.1/255 on [0.0031, 1]: three powers cost 25 ns a pixel more.
-  vec3 root = sqrt(linear);
-  vec3 curve = 0.833761273 * root + 0.298103297 * sqrt(root) - 0.055321666 * linear - 0.076902919;
-  return mix(12.92 * linear, curve, greaterThan(linear, vec3(0.0031308)));
+  return srgb(linear);
 }

@@ -3,13 +3,16 @@
 #include "soft_look_up.glsl"
 #ifdef CLOTH
 #include "weave.glsl"
+#ifdef TRIMMED
+#include "trim.glsl"
+#endif
 #endif
 layout(binding = 4) uniform sampler2D normals_heat;
 layout(binding = 5) uniform sampler2D rest_uvs;
 layout(binding = 8) uniform sampler2D distances_surfaces;
 layout(binding = 7) uniform sampler2D materials;  // a row for each surface: front colour, roughness; back colour, thread
-                                                  // spacing; heat scale; cloth: gloss, share of the warp,
-                                                  // fuzz, sheer
+                                                  // spacing; heat scale, hem [m], thickness [m], stitches beside seams [m]; cloth: gloss, share of the warp,
+                                                  // fuzz, sheer; opacity
 layout(binding = 6) uniform sampler2D heat_colors;
 #ifdef PAINTED
 layout(binding = 10) uniform sampler2D paints;  // geometry.frag
@@ -83,7 +86,11 @@ void main() {
   int row = int(surface - kFirstSurface);
   vec4 front_roughness = texelFetch(materials, ivec2(0, row), 0);
   vec4 back_spacing = texelFetch(materials, ivec2(1, row), 0);
-  float heat_scale = texelFetch(materials, ivec2(2, row), 0).x;
+#ifdef SHEER
+  float opacity = texelFetch(materials, ivec2(4, row), 0).x;
+#endif
+  vec4 heat_trim = texelFetch(materials, ivec2(2, row), 0);
+  float heat_scale = heat_trim.x;
 
   Point at;
   vec3 offset_world = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, distance_view));
@@ -120,6 +127,12 @@ void main() {
   at.n = woven.normal_world;
   albedo *= woven.tone;
   at.shine = woven.shine;
+#ifdef TRIMMED
+  Trimmed trimmed = trim(pixel, rest_uv, heat_trim.yzw, front, woven, at.n);
+  at.n = trimmed.normal_world;
+  albedo *= trimmed.tone;
+  if (trimmed.layers > 1.0) at.finish.w = mix(at.finish.w, at.finish.w * at.finish.w, trimmed.layers - 1.0);
+#endif
   at.weft = normalize(woven.weft_world - dot(woven.weft_world, at.n) * at.n + 1e-6);
   at.warp = normalize(woven.warp_world - dot(woven.warp_world, at.n) * at.n + 1e-6);
 #endif
@@ -159,5 +172,14 @@ void main() {
   vec3 around = surroundings(reflect(-at.v, at.n), at.alpha);
   vec3 linear = albedo * light.diffuse * (1.0 - mirror) + around * mirror + light.gloss;
 #endif
-  color = vec4(encode(linear), 1.0);
+  float alpha = 1.0;
+#ifdef SHEER
+  // What gets between the threads has a longer way through them where cloth is seen at an angle.
+  float layers = 1.0 / max(dot(at.n_smooth, at.v), 0.2);
+#ifdef TRIMMED
+  layers *= trimmed.layers;
+#endif
+  alpha = 1.0 - pow(1.0 - opacity, layers);
+#endif
+  color = vec4(encode(linear), alpha);
 }

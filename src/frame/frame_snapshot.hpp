@@ -47,6 +47,8 @@ struct Appearance {
   double roughness = 0.6;          ///< 0 mirror-like to 1 matte
   double thread_spacing = 0;       ///< distance of two threads of the drawn weave [m]; 0 draws none
   Finish finish;                   ///< cloth only
+  double thickness = 0;            ///< of the cloth itself, as its borders show it [m]; 0: none
+  double hem = 0;                  ///< width to which borders of cloth are folded to the back and sewn [m]; 0: cut
   bool checker = false;            ///< faint grid of 0.5 m tiles on the floor, to give scale
   Paint paint;                     ///< its picture is multiplied by `color`, but where that shows through it
   bool back_painted = true;        ///< the back shows the picture too, paler by `back_paleness`; else back_color

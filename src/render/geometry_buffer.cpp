@@ -1,6 +1,7 @@
 #include "render/geometry_buffer.hpp"
 
 #include <algorithm>
+#include <string>
 
 #include "image/color.hpp"
 
@@ -30,29 +31,34 @@ float nearer(const SurfaceBuffers& surface) {
 
 }  // namespace
 
-GeometryBuffer::Painting::PaintProgram::PaintProgram(const Gl& gl, const std::vector<std::string>& defines)
-    : program(gl, "geometry.vert", "geometry.frag", defines),
-      surface(program.uniform("surface")),
-      nearer(program.uniform("nearer")),
-      picture_u(program.uniform("picture_u")),
-      picture_v(program.uniform("picture_v")),
-      laid(program.uniform("laid")),
-      color(program.uniform("color")),
-      back_color(program.uniform("back_color")) {}
+GeometryBuffer::GeometryProgram::GeometryProgram(const Gl& gl, const Way& way) {
+  std::vector<std::string> defines;
+  if (way.painted) defines.emplace_back("PAINTED");
+  if (way.holes) defines.emplace_back("HOLES");
+  if (way.trimmed) defines.emplace_back("TRIMMED");
+  if (way.peeled) defines.emplace_back("PEELED");
+  program = Program(gl, "geometry.vert", "geometry.frag", defines);
+  surface = program.uniform("surface");
+  nearer = program.uniform("nearer");
+  picture_u = program.uniform("picture_u");
+  picture_v = program.uniform("picture_v");
+  laid = program.uniform("laid");
+  color = program.uniform("color");
+  back_color = program.uniform("back_color");
+}
 
 GeometryBuffer::Painting::Painting(const Gl& gl, int width, int height)
-    : whole(gl, {"PAINTED"}),
-      with_holes(gl, {"PAINTED", "HOLES"}),
-      colors(make_texture(gl, GL_RGBA8, width, height, GL_NEAREST)),
-      paints(gl) {}
+    : colors(make_texture(gl, GL_RGBA8, width, height, GL_NEAREST)), paints(gl) {}
+
+GeometryBuffer::Layers::Layers(const Gl& gl, int width, int height)
+    : peeled(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
+      seen(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
+      depth_stencil(make_texture(gl, GL_DEPTH24_STENCIL8, width, height, GL_NEAREST)) {}
 
 GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
     : gl_(&gl),
       width_(width),
       height_(height),
-      program_(gl, "geometry.vert", "geometry.frag"),
-      surface_(program_.uniform("surface")),
-      nearer_(program_.uniform("nearer")),
       normal_heat_(make_texture(gl, GL_RGBA32F, width, height, GL_NEAREST)),
       uv_(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
       seen_(make_texture(gl, GL_RG32F, width, height, GL_NEAREST)),
@@ -62,88 +68,131 @@ GeometryBuffer::GeometryBuffer(const Gl& gl, int width, int height)
   gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT1, uv_.name(), 0);
   gl.NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT2, seen_.name(), 0);
   gl.NamedFramebufferTexture(target_.name(), GL_DEPTH_STENCIL_ATTACHMENT, depth_stencil_.name(), 0);
-  const GLenum outputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2};
-  gl.NamedFramebufferDrawBuffers(target_.name(), 3, outputs);
-  check_framebuffer(gl, target_, "geometry buffer");
+  attach(false, false);
+}
+
+const GeometryBuffer::GeometryProgram& GeometryBuffer::use(const Way& way) {
+  auto known = programs_.find(way);
+  if (known == programs_.end()) known = programs_.emplace(way, GeometryProgram(*gl_, way)).first;
+  known->second.program.use();
+  return known->second;
 }
 
 void GeometryBuffer::set_class(PixelClass pixel_class) const {
   gl_->StencilFunc(GL_ALWAYS, static_cast<GLint>(pixel_class), 0xFF);
 }
 
-void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, const FloorBuffers* floor, const Vec3& eye,
-                          double far) {
+void GeometryBuffer::begin(std::span<const SurfaceBuffers> surfaces) {
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
   gl_->Viewport(0, 0, width_, height_);
-  const float nothing[] = {static_cast<float>(far), kNothing, 0, 0};
-  gl_->ClearBufferfv(GL_COLOR, 2, nothing);
-  gl_->ClearBufferfi(GL_DEPTH_STENCIL, 0, 1.0f, static_cast<GLint>(PixelClass::backdrop));
   gl_->Enable(GL_DEPTH_TEST);
   gl_->Enable(GL_STENCIL_TEST);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_REPLACE);
   const bool painted = std::ranges::any_of(surfaces, [](const SurfaceBuffers& each) { return each.painted(); });
-  if (painted != painted_) attach_paint(painted);
-  if (!painted_) program_.use();
-  for (std::size_t i = 0; i < surfaces.size(); ++i) {
-    set_class(surfaces[i].surface().kind == frame::ObjectKind::cloth ? PixelClass::cloth : PixelClass::solid);
-    const auto number = static_cast<float>(kFirstSurface + i);
-    const bool cull = surfaces[i].hides_its_backs(eye);
-    if (cull) gl_->Enable(GL_CULL_FACE);
-    if (painted_) {
-      draw_painted(surfaces[i], number);
-    } else {
-      gl_->Uniform1f(surface_, number);
-      gl_->Uniform1f(nearer_, nearer(surfaces[i]));
-      surfaces[i].draw();
-    }
-    if (cull) gl_->Disable(GL_CULL_FACE);
-  }
-  if (floor) {
-    set_class(PixelClass::floor);
-    program_.use();
-    gl_->Uniform1f(surface_, kFloor);
-    gl_->Uniform1f(nearer_, 0);
-    // From below one looks through the floor. Its normal is that of a plane, and it has no rest coordinates.
-    gl_->Enable(GL_CULL_FACE);
-    for (const GLuint unused : {0, 1, 3}) gl_->ColorMaski(unused, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
-    floor->draw();
-    for (const GLuint unused : {0, 1, 3}) gl_->ColorMaski(unused, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
-    gl_->Disable(GL_CULL_FACE);
-  }
+  const bool trimmed = std::ranges::any_of(surfaces, [](const SurfaceBuffers& each) { return each.trimmed(); });
+  if (painted != painted_ || trimmed != trimmed_) attach(painted, trimmed);
+  // What has no hems has none near.
+  if (trimmed) gl_->VertexAttrib3f(5, kNoTrim, kNoTrim, 0);
+}
+
+void GeometryBuffer::end() {
   gl_->Disable(GL_STENCIL_TEST);
   gl_->BindTextureUnit(4, normal_heat_.name());
   gl_->BindTextureUnit(5, uv_.name());
   gl_->BindTextureUnit(8, seen_.name());
   if (painted_) gl_->BindTextureUnit(10, painting_->colors.name());
+  if (trimmed_) gl_->BindTextureUnit(11, trims_.name());
 }
 
-/// A fourth colour buffer, as long as something is painted.
-void GeometryBuffer::attach_paint(bool painted) {
+void GeometryBuffer::draw(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out,
+                          const FloorBuffers* floor, const Vec3& eye, double far) {
+  begin(surfaces);
+  const float nothing[] = {static_cast<float>(far), kNothing, 0, 0};
+  gl_->ClearBufferfv(GL_COLOR, 2, nothing);
+  gl_->ClearBufferfi(GL_DEPTH_STENCIL, 0, 1.0f, static_cast<GLint>(PixelClass::backdrop));
+  for (std::size_t i = 0; i < surfaces.size(); ++i) {
+    if (!left_out.empty() && left_out[i] != 0) continue;
+    set_class(surfaces[i].surface().kind == frame::ObjectKind::cloth ? PixelClass::cloth : PixelClass::solid);
+    const bool cull = surfaces[i].hides_its_backs(eye);
+    if (cull) gl_->Enable(GL_CULL_FACE);
+    draw(surfaces[i], static_cast<float>(kFirstSurface + i), false);
+    if (cull) gl_->Disable(GL_CULL_FACE);
+  }
+  if (floor) {
+    set_class(PixelClass::floor);
+    const GeometryProgram& program = use({});
+    gl_->Uniform1f(program.surface, kFloor);
+    gl_->Uniform1f(program.nearer, 0);
+    // From below one looks through the floor. Its normal is that of a plane, and it has no rest coordinates.
+    gl_->Enable(GL_CULL_FACE);
+    for (const GLuint unused : {0, 1, 3, 4}) gl_->ColorMaski(unused, GL_FALSE, GL_FALSE, GL_FALSE, GL_FALSE);
+    floor->draw();
+    for (const GLuint unused : {0, 1, 3, 4}) gl_->ColorMaski(unused, GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
+    gl_->Disable(GL_CULL_FACE);
+  }
+  end();
+}
+
+void GeometryBuffer::draw_layer(std::span<const SurfaceBuffers> surfaces, std::span<const char> left_out, bool deeper) {
+  if (!layers_) layers_.emplace(*gl_, width_, height_);
+  // Each layer lies before what draw() has left, which the first one keeps for the others.
+  if (deeper) {
+    copy(seen_, layers_->peeled);
+    copy(layers_->seen, seen_);
+    copy(layers_->depth_stencil, depth_stencil_);
+  } else {
+    const float none[] = {0, 0, 0, 0};
+    gl_->ClearTexImage(layers_->peeled.name(), 0, GL_RG, GL_FLOAT, none);
+    copy(seen_, layers_->seen);
+    copy(depth_stencil_, layers_->depth_stencil);
+  }
+  begin(surfaces);
+  const GLint backdrop = static_cast<GLint>(PixelClass::backdrop);
+  gl_->ClearBufferiv(GL_STENCIL, 0, &backdrop);
+  gl_->BindTextureUnit(12, layers_->peeled.name());
+  set_class(PixelClass::cloth);
+  for (std::size_t i = 0; i < surfaces.size(); ++i)
+    if (left_out[i] != 0) draw(surfaces[i], static_cast<float>(kFirstSurface + i), true);
+  end();
+}
+
+void GeometryBuffer::copy(const Texture& from, const Texture& to) const {
+  gl_->CopyImageSubData(from.name(), GL_TEXTURE_2D, 0, 0, 0, 0, to.name(), GL_TEXTURE_2D, 0, 0, 0, 0, width_, height_,
+                        1);
+}
+
+/// Colours and trims have buffers of their own, as long as something has either.
+void GeometryBuffer::attach(bool painted, bool trimmed) {
   if (painted && !painting_) painting_.emplace(*gl_, width_, height_);
+  if (trimmed && !trims_) trims_ = make_texture(*gl_, GL_RGBA32F, width_, height_, GL_NEAREST);
   painted_ = painted;
+  trimmed_ = trimmed;
   gl_->NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT3, painted ? painting_->colors.name() : 0, 0);
-  const GLenum outputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2, GL_COLOR_ATTACHMENT3};
-  gl_->NamedFramebufferDrawBuffers(target_.name(), painted ? 4 : 3, outputs);
-  check_framebuffer(*gl_, target_, "painted geometry buffer");
+  gl_->NamedFramebufferTexture(target_.name(), GL_COLOR_ATTACHMENT4, trimmed ? trims_.name() : 0, 0);
+  const GLenum outputs[] = {GL_COLOR_ATTACHMENT0, GL_COLOR_ATTACHMENT1, GL_COLOR_ATTACHMENT2,
+                            painted ? GLenum{GL_COLOR_ATTACHMENT3} : GLenum{GL_NONE},
+                            trimmed ? GLenum{GL_COLOR_ATTACHMENT4} : GLenum{GL_NONE}};
+  gl_->NamedFramebufferDrawBuffers(target_.name(), trimmed ? 5 : painted ? 4 : 3, outputs);
+  check_framebuffer(*gl_, target_, "geometry buffer");
 }
 
 /// All surfaces of a picture in which something is painted say of each pixel whether they are.
-void GeometryBuffer::draw_painted(const SurfaceBuffers& surface, float number) {
-  const auto use = [&](const Painting::PaintProgram& program, int laid) {
-    program.program.use();
+void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peeled) {
+  const auto use_for = [&](bool holes, int laid) -> const GeometryProgram& {
+    const GeometryProgram& program = use({painted_, holes, trimmed_, peeled});
     gl_->Uniform1f(program.surface, number);
-    gl_->Uniform1i(program.laid, laid);
     gl_->Uniform1f(program.nearer, nearer(surface));
+    gl_->Uniform1i(program.laid, laid);
+    return program;
   };
   if (surface.painted() == nullptr) {
-    use(painting_->whole, 0);
+    use_for(false, 0);
     return surface.draw();
   }
   for (const PaintedRange& range : surface.painted()->ranges) {
     const frame::Appearance& look = *range.look;
     const int how = laid(look);
-    const Painting::PaintProgram& program = how == 4 ? painting_->with_holes : painting_->whole;
-    use(program, how);
+    const GeometryProgram& program = use_for(how == 4, how);
     const Eigen::Vector3f color = image::linear_from_srgb(look.color).cast<float>();
     const Eigen::Vector3f back = image::linear_from_srgb(look.back_color).cast<float>();
     const bool is_cloth = surface.surface().kind == frame::ObjectKind::cloth;

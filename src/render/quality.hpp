@@ -14,6 +14,8 @@ struct QualitySettings {
   int nearby_taps, sky_taps;
   int instants;        ///< sharp pictures that make one with motion blur or depth of field
   bool refines;        ///< cloth of few triangles is drawn with finer ones
+  bool trims;          ///< hems, seams and edges of cloth, and cloth that is seen through
+  bool mirrors;        ///< floors that shine show the subjects
   bool crisp_shadows;  ///< search at full size along the edges of the first light's shadows on the subjects
 };
 

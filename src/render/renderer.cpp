@@ -11,9 +11,11 @@
 #include "render/edges.hpp"
 #include "render/framing.hpp"
 #include "render/instants.hpp"
+#include "render/mirror.hpp"
 #include "render/outlines.hpp"
 #include "render/pixels.hpp"
 #include "render/shading.hpp"
+#include "render/shadow_catcher.hpp"
 #include "render/soft_light.hpp"
 #include "render/view.hpp"
 
@@ -22,7 +24,8 @@ namespace {
 
 // Triangles of cloth that are drawn as four each; where there are more they are small enough.
 constexpr std::size_t kMostRefined = 20000;
-constexpr double kFloorReach = 60;  // half side of the drawn floor, in radii of the subjects
+constexpr std::size_t kMostLayers = 4;  // of cloth that is seen through, one behind the other
+constexpr double kFloorReach = 60;      // half side of the drawn floor, in radii of the subjects
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
   const Vec3 up = snapshot.stage ? snapshot.stage->up : Vec3(0, 0, 1);
@@ -85,7 +88,15 @@ frame::Appearance clay(const frame::Appearance& look) {
   plain.roughness = 0.7;
   plain.thread_spacing = 0;
   plain.finish = {0, 0.5, 0.2, 0};
+  plain.hem = 0;
   return plain;
+}
+
+/// Share of the light that cloth stops, head-on. Dense weaves let light through, but nothing is seen behind them.
+double opacity_of(const frame::Surface& surface) {
+  constexpr double kFirst = 0.5, kSlope = 1.25;  // so that chiffon, with 0.9, stops half
+  if (surface.kind != frame::ObjectKind::cloth) return 1;
+  return 1 - kSlope * std::clamp(surface.appearance.finish.sheer - kFirst, 0.0, 0.5);
 }
 
 std::vector<Vec3> subject_positions(const frame::FrameSnapshot& snapshot) {
@@ -142,22 +153,28 @@ struct Renderer::Impl {
           frame_block(gl) {}
   };
   std::optional<Passes> passes;
+  std::optional<Mirror> mirror;  // once a floor shines
   std::optional<Outlines> outlines;
   std::optional<DataPasses> data;
   image::Layers layers;
 
-  // The picture and what it shows, lowest row first; kept for their memory.
-  std::vector<std::uint64_t> rgba, unsmoothed;
+  // The picture and what it shows, lowest row first; kept for their memory. With layers also the floor without shadows.
+  std::vector<std::uint64_t> rgba, unsmoothed, open_floor;
   std::vector<Seen> seen;
 
   explicit Impl(const Settings& wanted);
   ~Impl();
 
   frame::Camera choose_camera(const frame::FrameSnapshot& snapshot);
-  void update_surfaces(const frame::FrameSnapshot& snapshot);
+  void update_surfaces(const frame::FrameSnapshot& snapshot, const View& view);
   void update_floor(const Plan& plan);
   void upload_frame(const Plan& plan);
+  Shading::Features features(const Plan& plan) const;
+  std::vector<Shading::Material> materials(const Plan& plan) const;
+  bool reflects(const Plan& plan) const { return quality.mirrors && mirror_roughness(plan.lighting.style, plan.floor); }
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
+  void look_through_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
+                          std::span<const DrawnMesh> meshes, const PixelArea& area);
   Plan plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const;
   void draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan);
   void draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before);
@@ -184,12 +201,13 @@ Renderer::Impl::Impl(const Settings& wanted)
 
 Renderer::Impl::~Impl() {
   context->make_current();
+  mirror.reset();
   passes.reset();
   context->release();
 }
 
 /// Brings the buffers in line with the snapshot's surfaces: kept where the surface is known, made where it is new.
-void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot) {
+void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot, const View& view) {
   std::size_t cloth_triangles = 0;
   for (const auto& surface : snapshot.surfaces)
     if (surface->kind == frame::ObjectKind::cloth) cloth_triangles += surface->triangles.size();
@@ -203,11 +221,16 @@ void Renderer::Impl::update_surfaces(const frame::FrameSnapshot& snapshot) {
       next.push_back(std::move(*known));
       passes->surfaces.erase(known);
     } else {
-      const bool refines = quality.refines && !settings.layers && surface->kind == frame::ObjectKind::cloth &&
-                           cloth_triangles <= kMostRefined;
-      next.emplace_back(gl, surface, refines);
+      // Layers for compositors show the simulated faces.
+      const bool cloth = surface->kind == frame::ObjectKind::cloth;
+      const bool free = cloth && !settings.layers;
+      next.emplace_back(gl, surface,
+                        Detail{.refines = quality.refines && free && cloth_triangles <= kMostRefined,
+                               .rims = quality.trims && free && surface->appearance.thickness > 0,
+                               .trims = quality.trims && cloth && surface->appearance.thickness > 0});
     }
-    next.back().update(snapshot.states[i]);
+    next.back().update(snapshot.states[i],
+                       rim_width(surface->appearance, snapshot.states[i].positions, view, settings.height));
   }
   passes->surfaces = std::move(next);
 }
@@ -239,49 +262,128 @@ void Renderer::Impl::upload_frame(const Plan& plan) {
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
 }
 
-void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
-  std::vector<Shading::Material> materials;
+Shading::Features Renderer::Impl::features(const Plan& plan) const {
+  return {.lights = light_set(plan.lights),
+          .checker = plan.floor && plan.floor->look.checker,
+          .painted = passes->geometry.painted() && !plan.lighting.style.plain,
+          .trimmed = passes->geometry.trimmed(),
+          .reflecting = reflects(plan)};
+}
+
+std::vector<Shading::Material> Renderer::Impl::materials(const Plan& plan) const {
+  std::vector<Shading::Material> list;
   for (const SurfaceBuffers& surface : passes->surfaces) {
-    materials.push_back({surface.surface().appearance, surface.surface().kind == frame::ObjectKind::cloth});
-    if (plan.lighting.style.plain) materials.back().appearance = clay(materials.back().appearance);
+    const frame::Appearance& look = surface.surface().appearance;
+    list.push_back({look, surface.surface().kind == frame::ObjectKind::cloth, opacity_of(surface.surface())});
+    if (plan.lighting.style.plain) list.back().appearance = clay(list.back().appearance);
   }
+  return list;
+}
+
+void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
   // Of more lights the small picture does not know where they shine.
   std::vector<PixelArea> shaded_floor{{0, 0, settings.width, settings.height}};
   if (plan.lights.size() <= kSoftLights) shaded_floor = passes->soft_light.shaded_floor();
-  passes->shading.draw(materials, heat, light_set(plan.lights), plan.floor && plan.floor->look.checker,
-                       passes->geometry.painted() && !plan.lighting.style.plain, subjects, shaded_floor);
+  passes->shading.draw(materials(plan), heat, features(plan), subjects, shaded_floor);
 }
 
 /// Shadow maps, then what is seen, then its soft light at reduced size, then colours, then clean outlines.
 void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan) {
-  update_surfaces(snapshot);
+  update_surfaces(snapshot, plan.view);
   update_floor(plan);
-  upload_frame(plan);
   gl.Disable(GL_DITHER);
   std::vector<DrawnMesh> meshes;
   std::deque<Holes> holes;
+  std::vector<char> sheer;  // which can be seen through; empty where none can
   for (const SurfaceBuffers& surface : passes->surfaces) {
     meshes.push_back({surface.positions(), surface.triangles()});
+    const double opacity = quality.trims && !plan.lighting.style.plain ? opacity_of(surface.surface()) : 1;
+    if (opacity < 1) {
+      meshes.back().opacity = static_cast<float>(opacity);
+      sheer.resize(passes->surfaces.size(), 0);
+      sheer[meshes.size() - 1] = 1;
+    }
     if (surface.painted() == nullptr) continue;
     holes.emplace_back(*surface.painted(), passes->geometry.opacity_of(*surface.painted()));
     if (holes.back().any()) meshes.back().holes = &holes.back();
   }
+  std::vector<DrawnMesh> opaque = meshes;
+  for (std::size_t i = 0; i < sheer.size(); ++i)
+    if (sheer[i] != 0) opaque[i] = {};
   const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
 
   passes->shadows.draw(plan.lights, plan.caster_positions, meshes, plan.up, plan.lighting.exposure.direct);
-  passes->geometry.draw(passes->surfaces, floor, plan.view.eye, plan.view.far);
+  const double heat = heat_scale(snapshot, plan.stage);
   const SkyView above = fit_sky(plan.subjects, plan.up, sky_reach(plan.subjects));
-  passes->soft_light.draw(meshes, above, light_set(plan.lights));
+  if (reflects(plan)) {
+    if (!mirror) mirror.emplace(gl, quality, settings.width, settings.height);
+    const View view = mirrored(plan.view, *plan.floor);
+    const FrameUniform block =
+        pack_frame(view, plan.lighting, plan.subjects, plan.floor, mirror->width(), mirror->height());
+    const std::vector<Shading::Material> looks = materials(plan);
+    mirror->draw(view, block, {passes->surfaces, opaque, looks, above, heat, !plan.lighting.style.plain},
+                 light_set(plan.lights));
+  }
+  upload_frame(plan);
+  passes->geometry.draw(passes->surfaces, sheer, floor, plan.view.eye, plan.view.far);
+  passes->soft_light.draw(opaque, above, light_set(plan.lights));
   std::vector<Vec3> drawn;
   for (const DrawnMesh& mesh : meshes) drawn.insert(drawn.end(), mesh.positions.begin(), mesh.positions.end());
   const PixelArea area = visible_area(plan.view, drawn, settings.width, settings.height);
-  shade(plan, area, heat_scale(snapshot, plan.stage));
+  shade(plan, area, heat);
   passes->shading.read(rgba);
   if (!outlines && !plan.lighting.style.edges) return;
   passes->geometry.read_seen(seen);
-  if (data) unsmoothed = rgba;
+  if (!sheer.empty()) look_through_cloth(plan, sheer, above, opaque, area);
+  if (data) {
+    unsmoothed = rgba;
+    if (plan.floor && sheer.empty()) {
+      passes->shading.draw_open_floor(features(plan));
+      passes->shading.read(open_floor);
+    } else {
+      open_floor.clear();
+    }
+  }
   if (outlines) outlines->smooth(seen, meshes, plan.floor, plan.view, area, rgba);
   if (plan.lighting.style.edges) draw_edges(passes->surfaces, plan.view, settings.width, settings.height, seen, rgba);
+}
+
+/// Lays cloth that can be seen through over the picture of all else, layer by layer from the nearest inward (Everitt,
+/// "Interactive Order-Independent Transparency", 2001), and leaves in `seen` what is nearest of all.
+void Renderer::Impl::look_through_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
+                                        std::span<const DrawnMesh> opaque, const PixelArea& area) {
+  std::vector<std::uint64_t> behind = rgba;
+  outlines->smooth(seen, opaque, plan.floor, plan.view, area, behind);
+  const auto of_sheer = [&](const Seen& at) {
+    return at.surface >= kFirstSurface && sheer[static_cast<std::size_t>(at.surface) - kFirstSurface] != 0;
+  };
+  struct Layer {
+    std::vector<std::uint64_t> rgba;
+    std::vector<Seen> seen;
+  };
+  std::vector<Layer> peeled;
+  while (peeled.size() < kMostLayers) {
+    passes->geometry.draw_layer(passes->surfaces, sheer, !peeled.empty());
+    Layer layer;
+    passes->geometry.read_seen(layer.seen);
+    if (std::ranges::none_of(layer.seen, of_sheer)) break;
+    passes->soft_light.draw(opaque, above, light_set(plan.lights));
+    passes->shading.draw_layer(features(plan), area);
+    passes->shading.read(layer.rgba);
+    peeled.push_back(std::move(layer));
+  }
+  if (peeled.empty()) return;
+  for (std::size_t i = 0; i < rgba.size(); ++i) {
+    if (!of_sheer(peeled.front().seen[i])) continue;
+    Eigen::Vector3f light = linear_of(behind[i]);
+    for (auto layer = peeled.rbegin(); layer != peeled.rend(); ++layer) {
+      if (!of_sheer(layer->seen[i])) continue;
+      const float opacity = static_cast<float>(layer->rgba[i] >> 48) / 65535.0f;
+      light += opacity * (linear_of(layer->rgba[i]) - light);
+    }
+    rgba[i] = encoded(light);
+    seen[i] = peeled.front().seen[i];
+  }
 }
 
 Plan Renderer::Impl::plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const {
@@ -329,6 +431,18 @@ void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* b
       for (int k = 0; k < 4; ++k) layers.channels[k].values[at] = surfaces[from][k];
       for (int k = 0; k < 3; ++k) layers.channels[4 + k].values[at] = picture[k];
     }
+  }
+  if (!open_floor.empty()) {
+    const std::vector<float> shadows = caught_shadows(seen, unsmoothed, open_floor, settings.width, settings.height);
+    std::vector<float> alpha(surfaces.size());
+    for (int y = 0; y < settings.height; ++y) {
+      for (int x = 0; x < settings.width; ++x) {
+        const std::size_t from = static_cast<std::size_t>(settings.height - 1 - y) * settings.width + x;
+        const float covered = surfaces[from].w();
+        alpha[static_cast<std::size_t>(y) * settings.width + x] = covered + (1 - covered) * shadows[from];
+      }
+    }
+    layers.channels.push_back({"caught.A", std::move(alpha), true});
   }
   std::optional<Before> earlier;
   if (before) earlier.emplace(Before{*before, plan_of(*before, choose_camera(*before)).view});

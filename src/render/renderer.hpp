@@ -48,7 +48,8 @@ class Renderer {
   /// Motion in layers() is that since `before`.
   image::Image draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before = nullptr);
   /// The last picture for compositors, linear: R, G, B, A of the surfaces alone, colours times coverage; picture.R, .G,
-  /// .B with floor and backdrop; and all of DataPasses.
+  /// .B with floor and backdrop; with a floor caught.A, which is A with the floor's shadow, black, where no surface
+  /// is; and all of DataPasses.
   image::Layers layers();
   /// The last picture with 16 bits a channel.
   image::Image16 deep();

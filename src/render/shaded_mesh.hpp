@@ -41,6 +41,7 @@ struct DrawnMesh {
   std::span<const Vec3> positions;
   std::span<const Triangle> triangles;
   const Holes* holes = nullptr;  ///< null: none
+  float opacity = 1;             ///< to light
 };
 
 /// A mesh in which a vertex on a crease appears once for each normal it has.

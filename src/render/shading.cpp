@@ -17,6 +17,9 @@ std::vector<std::string> shading_defines(const QualitySettings& quality, const L
   return defines;
 }
 
+// Seams of cloth that is thicker are sewn down on both sides, at this distance [m].
+constexpr double kSewnTwice = 0.7e-3, kBesideSeam = 4e-3;
+
 Texture make_heat_colors(const Gl& gl) {
   std::vector<float> texels;
   for (const Vec3& color : image::heat_table()) {
@@ -101,38 +104,45 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
 // What a sun gives to open floor, and
 // how it fades out, changes so slowly over the picture that it may be interpolated; the edge of a spot or a checker
 // not.
-Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const LightSet& lights, bool checker,
-                            bool painted)
-    : floor_on_grid(!lights.spots && !checker) {
+Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const Features& features)
+    : floor_on_grid(!features.lights.spots && !features.checker && !features.reflecting) {
+  const LightSet& lights = features.lights;
   const bool many = lights.count > kSoftLights, crisp = quality.crisp_shadows || many;
-  const std::vector<const char*> paint(painted ? 1 : 0, "PAINTED");
-  std::vector<const char*> cloth_paint = paint;
-  cloth_paint.push_back("CLOTH");
-  cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, cloth_paint));
+  const std::vector<const char*> paint(features.painted ? 1 : 0, "PAINTED");
+  std::vector<const char*> of_cloth = paint;
+  of_cloth.push_back("CLOTH");
+  if (features.trimmed) of_cloth.push_back("TRIMMED");
+  if (features.sheer) of_cloth.push_back("SHEER");
+  cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, of_cloth));
+  if (features.sheer) return;
   solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, paint));
-  const char* pattern = checker ? "CHECKER" : "PLAIN";
-  shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, crisp, {pattern}));
-  open_floor = floor_on_grid ? Program(gl, "open_floor.vert", "grid.frag", shading_defines(quality, lights, false))
-                             : Program(gl, "fullscreen.vert", "floor.frag",
-                                       shading_defines(quality, lights, false, {pattern, "OPEN"}));
+  std::vector<const char*> floor{features.checker ? "CHECKER" : "PLAIN"};
+  if (features.reflecting) floor.push_back("REFLECTING");
+  shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, crisp, floor));
+  floor.push_back("OPEN");
+  open_floor = floor_on_grid
+                   ? Program(gl, "open_floor.vert", "grid.frag", shading_defines(quality, lights, false))
+                   : Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, false, floor));
 }
 
-const Shading::Programs& Shading::programs(const LightSet& lights, bool checker, bool painted) {
-  const auto key = std::tuple(lights, checker, painted);
-  const auto known = programs_.find(key);
+const Shading::Programs& Shading::programs(const Features& features) {
+  const auto known = programs_.find(features);
   if (known != programs_.end()) return known->second;
-  return programs_.emplace(key, Programs(*gl_, quality_, lights, checker, painted)).first->second;
+  return programs_.emplace(features, Programs(*gl_, quality_, features)).first->second;
 }
 
 void Shading::upload_materials(std::span<const Material> materials, double heat_scale) {
-  constexpr int kColumns = 4;  // of surface.frag
+  constexpr int kColumns = 5;  // of surface.frag
   std::vector<Eigen::Vector4f> texels;
-  for (const auto& [look, cloth] : materials) {
+  for (const auto& [look, cloth, opacity] : materials) {
     texels.push_back(texel(look.color, std::clamp(look.roughness, 0.0, 1.0)));
     texels.push_back(texel(look.back_color, look.thread_spacing));
-    texels.emplace_back(cloth ? static_cast<float>(heat_scale) : 0.0f, 0.0f, 0.0f, 0.0f);
+    texels.push_back(
+        Eigen::Vector4d(cloth ? heat_scale : 0, look.hem, look.thickness, look.thickness > kSewnTwice ? kBesideSeam : 0)
+            .cast<float>());
     const frame::Finish& finish = look.finish;
     texels.push_back(Eigen::Vector4d(finish.gloss, finish.warp_share, finish.fuzz, finish.sheer).cast<float>());
+    texels.emplace_back(static_cast<float>(opacity), 0.0f, 0.0f, 0.0f);
   }
   const int rows = static_cast<int>(materials.size());
   if (rows > material_rows_) {
@@ -161,16 +171,52 @@ void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
   gl_->ColorMask(GL_TRUE, GL_TRUE, GL_TRUE, GL_TRUE);
 }
 
-void Shading::draw(std::span<const Material> materials, double heat_scale, const LightSet& lights, bool checker,
-                   bool painted, const PixelArea& subjects, std::span<const PixelArea> shaded_floor) {
-  const Programs& chosen = programs(lights, checker, painted);
-  upload_materials(materials, heat_scale);
+void Shading::bind() {
   gl_->BindTextureUnit(6, heat_colors_.name());
   gl_->BindTextureUnit(7, materials_.name());
   gl_->BindFramebuffer(GL_FRAMEBUFFER, target_.name());
   gl_->Viewport(0, 0, width_, height_);
   gl_->Disable(GL_DEPTH_TEST);
   gl_->Enable(GL_STENCIL_TEST);
+}
+
+void Shading::draw_layer(Features features, const PixelArea& subjects) {
+  features.sheer = true;
+  const Programs& chosen = programs(features);
+  bind();
+  gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::cloth), 0xFF);
+  gl_->Enable(GL_SCISSOR_TEST);
+  gl_->Scissor(subjects.x, subjects.y, subjects.width, subjects.height);
+  chosen.cloth.use();
+  gl_->BindVertexArray(no_vertices_.name());
+  gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  gl_->Disable(GL_SCISSOR_TEST);
+  gl_->Disable(GL_STENCIL_TEST);
+}
+
+void Shading::draw_open_floor(const Features& features) {
+  const Programs& chosen = programs(features);
+  bind();
+  gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
+  // Of both classes of floor the lower bits are the same.
+  gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::floor), static_cast<GLuint>(PixelClass::floor));
+  chosen.open_floor.use();
+  if (chosen.floor_on_grid) {
+    gl_->BindVertexArray(grid_array_.name());
+    gl_->DrawElements(GL_TRIANGLES, grid_indices_, GL_UNSIGNED_INT, nullptr);
+  } else {
+    gl_->BindVertexArray(no_vertices_.name());
+    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
+  }
+  gl_->Disable(GL_STENCIL_TEST);
+}
+
+void Shading::draw(std::span<const Material> materials, double heat_scale, const Features& features,
+                   const PixelArea& subjects, std::span<const PixelArea> shaded_floor) {
+  const Programs& chosen = programs(features);
+  upload_materials(materials, heat_scale);
+  bind();
   mark_shaded_floor(shaded_floor);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   // Blocks without a pixel of the class are left after the stencil test.

@@ -1,9 +1,9 @@
 // Light and colour of every pixel of the geometry buffer.
 #pragma once
 
+#include <compare>
 #include <map>
 #include <span>
-#include <tuple>
 
 #include "render/geometry_buffer.hpp"
 #include "render/gl/program.hpp"
@@ -17,17 +17,32 @@ class Shading {
  public:
   Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry);
 
-  /// Looks of the surfaces in the order of their materials. `heat_scale`: 1 / hottest value, 0 for the surfaces' own
-  /// colours; only cloth shows heat. `subjects` holds all of them; floor, checkered or not, is lit and open outside
-  /// `shaded_floor`. `painted`: the geometry buffer has colours of its own. Expects the frame and light blocks, shadow
-  /// maps, soft light and geometry bound.
   struct Material {
     frame::Appearance appearance;
     bool cloth = false;
+    double opacity = 1;  ///< seen head-on
   };
-  void draw(std::span<const Material> materials, double heat_scale, const LightSet& lights, bool checker, bool painted,
-            const PixelArea& subjects, std::span<const PixelArea> shaded_floor);
+  /// What shaders are compiled for.
+  struct Features {
+    LightSet lights;
+    bool checker = false;     ///< on the floor
+    bool painted = false;     ///< the geometry buffer has colours of its own
+    bool trimmed = false;     ///< and hems
+    bool reflecting = false;  ///< the floor shows what a Mirror has drawn, everywhere
+    bool sheer = false;       ///< cloth says how opaque it is
+    auto operator<=>(const Features&) const = default;
+  };
+  /// Looks of the surfaces in the order of their materials. `heat_scale`: 1 / hottest value, 0 for the surfaces' own
+  /// colours; only cloth shows heat. `subjects` holds all of them; floor is lit and open outside `shaded_floor`.
+  /// Expects the frame and light blocks, shadow maps, soft light and geometry bound.
+  void draw(std::span<const Material> materials, double heat_scale, const Features& features, const PixelArea& subjects,
+            std::span<const PixelArea> shaded_floor);
+  /// All floor as if nothing shaded it, after draw() of the same picture.
+  void draw_open_floor(const Features& features);
+  /// Only cloth, after draw() of the same picture; its opacity goes into alpha.
+  void draw_layer(Features features, const PixelArea& subjects);
 
+  const Texture& picture() const { return picture_; }
   /// Reads the picture: RGBA of 16 bits each in sRGB, lowest row first.
   void read(std::vector<std::uint64_t>& rgba) const;
 
@@ -38,14 +53,15 @@ class Shading {
   struct Programs {
     Program cloth, solid, open_floor, shaded_floor;
     bool floor_on_grid;  // open_floor is lit at the corners of the grid
-    Programs(const Gl& gl, const QualitySettings& quality, const LightSet& lights, bool checker, bool painted);
+    Programs(const Gl& gl, const QualitySettings& quality, const Features& features);
   };
-  const Programs& programs(const LightSet& lights, bool checker, bool painted);
+  const Programs& programs(const Features& features);
+  void bind();
 
   const Gl* gl_;
   int width_, height_;
   QualitySettings quality_;
-  std::map<std::tuple<LightSet, bool, bool>, Programs> programs_;  // made when first needed
+  std::map<Features, Programs> programs_;  // made when first needed
   Program backdrop_, areas_;
   Texture picture_, heat_colors_, materials_;
   Framebuffer target_;

@@ -128,9 +128,15 @@ void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& cli
       fill_with_holes(mesh, places, size, write);
       continue;
     }
+    const auto partly = [&](int at, bool covered, float depth, float to_b, float to_c) {
+      write(at, covered && mesh.opacity > threshold_at(at % size, at / size), depth, to_b, to_c);
+    };
     const auto in_front = [&](Index vertex) { return clip[vertex].z() >= -clip[vertex].w(); };
     for (const auto& [a, b, c] : mesh.triangles) {
-      if (in_front(a) && in_front(b) && in_front(c)) {
+      if (mesh.opacity < 1) {
+        if (in_front(a) && in_front(b) && in_front(c))
+          fill_triangle(places[a], places[b], places[c], size, size, partly);
+      } else if (in_front(a) && in_front(b) && in_front(c)) {
         fill_triangle(places[a], places[b], places[c], size, size, write);
       } else {
         clip_near({clip[a], clip[b], clip[c]}, [&](const auto& p, const auto& q, const auto& r) {

@@ -15,22 +15,18 @@ bool has_holes(const frame::Surface& surface) {
          std::ranges::any_of(surface.parts, [&](const frame::SurfacePart& part) { return cuts(part.appearance); });
 }
 
-struct DrawnVertex {
-  Eigen::Vector3f position, normal;
-  Eigen::Vector2f rest_uv;
-  float heat;
-};
+}  // namespace
 
-void describe_vertices(const Gl& gl, const VertexArray& array, const Buffer& vertices) {
+void SurfaceBuffers::describe(const Gl& gl, const VertexArray& array, const Buffer& vertices) {
   struct Attribute {
     GLint size;
     std::size_t offset;
   };
-  const Attribute attributes[] = {{3, offsetof(DrawnVertex, position)},
-                                  {3, offsetof(DrawnVertex, normal)},
-                                  {2, offsetof(DrawnVertex, rest_uv)},
-                                  {1, offsetof(DrawnVertex, heat)}};
-  gl.VertexArrayVertexBuffer(array.name(), 0, vertices.name(), 0, sizeof(DrawnVertex));
+  const Attribute attributes[] = {{3, offsetof(Vertex, position)},
+                                  {3, offsetof(Vertex, normal)},
+                                  {2, offsetof(Vertex, rest_uv)},
+                                  {1, offsetof(Vertex, heat)}};
+  gl.VertexArrayVertexBuffer(array.name(), 0, vertices.name(), 0, sizeof(Vertex));
   for (GLuint place = 0; place < std::size(attributes); ++place) {
     gl.EnableVertexArrayAttrib(array.name(), place);
     gl.VertexArrayAttribFormat(array.name(), place, attributes[place].size, GL_FLOAT, GL_FALSE,
@@ -39,26 +35,38 @@ void describe_vertices(const Gl& gl, const VertexArray& array, const Buffer& ver
   }
 }
 
-}  // namespace
-
-SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, bool refines)
-    : gl_(&gl), surface_(std::move(surface)), array_(gl), vertices_(gl), triangles_(gl), places_(gl) {
+SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, const Detail& detail)
+    : gl_(&gl),
+      surface_(std::move(surface)),
+      detail_(detail),
+      array_(gl),
+      vertices_(gl),
+      triangles_(gl),
+      places_(gl),
+      trim_buffer_(gl) {
   closed_ = surface_->kind != frame::ObjectKind::cloth && !has_holes(*surface_) && is_closed(surface_->triangles);
-  if (refines) refinement_.emplace();
-  describe_vertices(gl, array_, vertices_);
+  if (detail_.refines) refinement_.emplace();
+  if (detail_.trims || detail_.rims) trims_.emplace(*surface_);
+  describe(gl, array_, vertices_);
   gl.VertexArrayElementBuffer(array_.name(), triangles_.name());
+  // A stream of `size` numbers of its own at a place.
+  const auto describe_more = [&](GLuint place, const Buffer& buffer, GLint size) {
+    gl.VertexArrayVertexBuffer(array_.name(), place, buffer.name(), 0, static_cast<GLsizei>(size * sizeof(float)));
+    gl.EnableVertexArrayAttrib(array_.name(), place);
+    gl.VertexArrayAttribFormat(array_.name(), place, size, GL_FLOAT, GL_FALSE, 0);
+    gl.VertexArrayAttribBinding(array_.name(), place, place);
+  };
+  if (detail_.trims) describe_more(5, trim_buffer_, 3);
   if (!frame::is_painted(*surface_)) return;
   painted_.emplace();
-  constexpr GLuint kPlace = 4, kBinding = 1;
-  gl.VertexArrayVertexBuffer(array_.name(), kBinding, places_.name(), 0, sizeof(Eigen::Vector2f));
-  gl.EnableVertexArrayAttrib(array_.name(), kPlace);
-  gl.VertexArrayAttribFormat(array_.name(), kPlace, 2, GL_FLOAT, GL_FALSE, 0);
-  gl.VertexArrayAttribBinding(array_.name(), kPlace, kBinding);
+  describe_more(4, places_, 2);
 }
 
-void SurfaceBuffers::update(const frame::SurfaceState& state) {
+void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
   // Obstacles mostly stand still.
-  if (mapped_ && state.positions == state_.positions && state.heat == state_.heat) return;
+  if (!detail_.rims) rim = 0;
+  if (mapped_ && state.positions == state_.positions && state.heat == state_.heat && rim == rim_) return;
+  rim_ = rim;
   state_ = state;
   if (!mapped_ || vertex_count_ != state.positions.size()) {
     corners_ = CornerMap(surface_->triangles, state.positions.size());
@@ -78,7 +86,7 @@ void SurfaceBuffers::update(const frame::SurfaceState& state) {
   }
   mesh_ = shade(surface_->triangles, corners_, state.positions, surface_->crease_angle);
   if (painted_) painted_ = lay_paint(*surface_, mesh_);
-  std::vector<DrawnVertex> vertices(mesh_.source.size());
+  std::vector<Vertex> vertices(mesh_.source.size());
   positions_.resize(vertices.size());
   const bool has_uv = surface_->uv.size() == vertex_count_, has_heat = state.heat.size() == vertex_count_;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
@@ -88,26 +96,103 @@ void SurfaceBuffers::update(const frame::SurfaceState& state) {
                    has_uv ? surface_->uv[v].cast<float>().eval() : Eigen::Vector2f::Zero(),
                    has_heat ? state.heat[v] : 0.0f};
   }
-  if (refinement_) {
-    refinement_->update(mesh_.triangles, vertices.size());
-    for (const auto& [a, b] : refinement_->edges()) {
-      const Middle here = middle(positions_[a], positions_[b], mesh_.normals[a], mesh_.normals[b]);
-      positions_.push_back(here.position);
-      vertices.push_back({here.position.cast<float>(), here.normal.cast<float>(),
-                          0.5f * (vertices[a].rest_uv + vertices[b].rest_uv),
-                          0.5f * (vertices[a].heat + vertices[b].heat)});
-      if (painted_) painted_->places.push_back(0.5f * (painted_->places[a] + painted_->places[b]));
-    }
-    if (painted_) {
-      for (PaintedRange& range : painted_->ranges) {
-        range.first *= 4;
-        range.count *= 4;
-      }
-    }
-  }
-  upload<DrawnVertex>(*gl_, vertices_, vertices);
+  if (refinement_) add_middles(vertices);
+  with_rims_.clear();
+  if (rim > 0) add_rims(vertices, rim);
+  if (detail_.trims && trims_uploaded_ != positions_.size()) upload_trims();
+  upload<Vertex>(*gl_, vertices_, vertices);
   upload<Triangle>(*gl_, triangles_, triangles());
   if (painted_) upload<Eigen::Vector2f>(*gl_, places_, painted_->places);
+}
+
+void SurfaceBuffers::add_middles(std::vector<Vertex>& vertices) {
+  refinement_->update(mesh_.triangles, vertices.size());
+  for (const auto& [a, b] : refinement_->edges()) {
+    const Middle here = middle(positions_[a], positions_[b], mesh_.normals[a], mesh_.normals[b]);
+    positions_.push_back(here.position);
+    vertices.push_back({here.position.cast<float>(), here.normal.cast<float>(),
+                        0.5f * (vertices[a].rest_uv + vertices[b].rest_uv),
+                        0.5f * (vertices[a].heat + vertices[b].heat)});
+    if (painted_) painted_->places.push_back(0.5f * (painted_->places[a] + painted_->places[b]));
+  }
+  if (!painted_) return;
+  for (PaintedRange& range : painted_->ranges) {
+    range.first *= 4;
+    range.count *= 4;
+  }
+}
+
+/// Strips behind all other vertices and triangles.
+void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
+  // One drawn vertex of each of the surface's, and the middles of its rims where they are curved.
+  std::vector<Index> drawn(vertex_count_);
+  for (std::size_t i = 0; i < mesh_.source.size(); ++i) drawn[mesh_.source[i]] = static_cast<Index>(i);
+  std::vector<Vec3> places = state_.positions, normals(vertex_count_);
+  for (std::size_t v = 0; v < vertex_count_; ++v) normals[v] = mesh_.normals[drawn[v]];
+  std::vector<std::pair<Index, Index>> ends;  // between which a place lies
+  for (std::size_t v = 0; v < vertex_count_; ++v) ends.emplace_back(drawn[v], drawn[v]);
+  std::vector<Trims::Rim> rims;
+  for (const Trims::Rim& rim : trims_->rims()) {
+    if (!refinement_) {
+      rims.push_back(rim);
+      continue;
+    }
+    const Middle here = middle(places[rim.a], places[rim.b], normals[rim.a], normals[rim.b]);
+    const auto m = static_cast<Index>(places.size());
+    places.push_back(here.position);
+    normals.push_back(here.normal);
+    ends.emplace_back(drawn[rim.a], drawn[rim.b]);
+    rims.push_back({rim.a, m, rim.triangle});
+    rims.push_back({m, rim.b, rim.triangle});
+  }
+  const frame::Appearance& look = surface_->appearance;
+  const RimStrip strip = rim_strip(rims, places, normals, width);
+  const std::span<const Triangle> without =
+      refinement_ ? refinement_->triangles() : std::span<const Triangle>(mesh_.triangles);
+  const auto first = static_cast<Index>(vertices.size());
+  for (std::size_t i = 0; i < strip.positions.size(); ++i) {
+    const auto [a, b] = ends[strip.source[i]];
+    positions_.push_back(strip.positions[i]);
+    vertices.push_back({strip.positions[i].cast<float>(), strip.normals[i].cast<float>(),
+                        0.5f * (vertices[a].rest_uv + vertices[b].rest_uv),
+                        0.5f * (vertices[a].heat + vertices[b].heat)});
+    if (painted_) painted_->places.push_back(0.5f * (painted_->places[a] + painted_->places[b]));
+  }
+  with_rims_.assign(without.begin(), without.end());
+  const auto add = [&](std::size_t t) {
+    const auto& [a, b, c] = strip.triangles[t];
+    with_rims_.push_back({a + first, b + first, c + first});
+  };
+  if (!painted_) {
+    for (std::size_t t = 0; t < strip.triangles.size(); ++t) add(t);
+    return;
+  }
+  // Each range gets another one with its strips.
+  const auto& parts = surface_->part_of_triangle;
+  const auto look_of = [&](std::int32_t triangle) {
+    return parts.empty() ? &look : &surface_->parts[static_cast<std::size_t>(parts[triangle])].appearance;
+  };
+  const std::vector<PaintedRange> ranges = painted_->ranges;
+  for (const PaintedRange& range : ranges) {
+    PaintedRange strips{with_rims_.size(), 0, range.look};
+    for (std::size_t t = 0; t < strip.triangles.size(); ++t)
+      if (look_of(strip.owner[t]) == range.look) add(t);
+    strips.count = with_rims_.size() - strips.first;
+    if (strips.count > 0) painted_->ranges.push_back(strips);
+  }
+}
+
+/// In rest coordinates, so once.
+void SurfaceBuffers::upload_trims() {
+  std::vector<Trim> trims;
+  for (const Index v : mesh_.source) trims.push_back(trims_->at(v));
+  if (refinement_)
+    for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
+  // Strips are in the midst of a hem, so that they show neither its stitches nor its fold.
+  constexpr float kPlain = 0.3f;
+  trims.resize(positions_.size(), {kPlain * static_cast<float>(surface_->appearance.hem), kNoTrim, 0});
+  upload<Trim>(*gl_, trim_buffer_, trims);
+  trims_uploaded_ = trims.size();
 }
 
 void SurfaceBuffers::draw(const PaintedRange& range) const {
@@ -124,17 +209,17 @@ void SurfaceBuffers::draw() const {
 }
 
 FloorBuffers::FloorBuffers(const Gl& gl) : gl_(&gl), array_(gl), vertices_(gl) {
-  describe_vertices(gl, array_, vertices_);
+  SurfaceBuffers::describe(gl, array_, vertices_);
 }
 
 void FloorBuffers::update(const Vec3& center, const Vec3& normal, double half_side) {
   const Vec3 x = half_side * normal.unitOrthogonal(), y = normal.cross(x);
-  std::array<DrawnVertex, 4> vertices;
+  std::array<SurfaceBuffers::Vertex, 4> vertices;
   for (int i = 0; i < 4; ++i) {
     const Vec3 position = center + (i & 1 ? x : -x) + (i & 2 ? y : -y);
     vertices[i] = {position.cast<float>(), normal.cast<float>(), Eigen::Vector2f::Zero(), 0.0f};
   }
-  upload<DrawnVertex>(*gl_, vertices_, vertices);
+  upload<SurfaceBuffers::Vertex>(*gl_, vertices_, vertices);
 }
 
 void FloorBuffers::draw() const {

@@ -9,21 +9,30 @@
 #include "render/painted_mesh.hpp"
 #include "render/refinement.hpp"
 #include "render/shaded_mesh.hpp"
+#include "render/trims.hpp"
 
 namespace weft::render {
 
+/// How a surface is drawn finer than it is.
+struct Detail {
+  bool refines = false;  ///< with curved triangles; mesh() is then the coarser one
+  bool rims = false;     ///< with strips along borders, as thick as the cloth; mesh() is then without
+  bool trims = false;    ///< with hems and seams
+};
+
 /// Attribute places, as in the shaders: 0 position, 1 normal, 2 rest (u,v), 3 heat; of what is painted 4 the place of
-/// the paint.
+/// the paint; of what has hems 5 a Trim.
 class SurfaceBuffers {
  public:
-  /// `refines`: what is drawn is finer than the surface, and mesh() then the coarser one.
-  SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, bool refines);
+  SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, const Detail& detail);
 
   const frame::Surface& surface() const { return *surface_; }
   bool refined() const { return refinement_.has_value(); }
+  bool trimmed() const { return trims_.has_value() && detail_.trims; }
 
-  /// Takes over the positions of a frame. Throws Error(internal) where their number is not that of the surface.
-  void update(const frame::SurfaceState& state);
+  /// Takes over the positions of a frame. Throws Error(internal) where their number is not that of the surface. `rim`:
+  /// width of the strips along borders [m], 0 for none.
+  void update(const frame::SurfaceState& state, double rim = 0);
   void draw() const;
   void draw(const PaintedRange& range) const;
   /// Null where nothing is painted.
@@ -34,6 +43,7 @@ class SurfaceBuffers {
   /// World position of each drawn vertex [m], and triangles of them.
   std::span<const Vec3> positions() const { return positions_; }
   std::span<const Triangle> triangles() const {
+    if (!with_rims_.empty()) return with_rims_;
     return refinement_ ? refinement_->triangles() : std::span<const Triangle>(mesh_.triangles);
   }
   /// And what they stand for.
@@ -41,17 +51,33 @@ class SurfaceBuffers {
   const frame::SurfaceState& state() const { return state_; }
 
  private:
+  struct Vertex {
+    Eigen::Vector3f position, normal;
+    Eigen::Vector2f rest_uv;
+    float heat;
+  };
+  void add_middles(std::vector<Vertex>& vertices);
+  void add_rims(std::vector<Vertex>& vertices, double width);
+  void upload_trims();
+  friend class FloorBuffers;
+  static void describe(const Gl& gl, const VertexArray& array, const Buffer& vertices);
+
   const Gl* gl_;
   std::shared_ptr<const frame::Surface> surface_;
+  Detail detail_;
   CornerMap corners_;
   std::size_t vertex_count_ = 0;
   bool mapped_ = false, closed_ = false, outward_ = false;
   Box3 bounds_;
   VertexArray array_;
-  Buffer vertices_, triangles_, places_;
+  Buffer vertices_, triangles_, places_, trim_buffer_;
   ShadedMesh mesh_;
   std::optional<Refinement> refinement_;
   std::optional<PaintedMesh> painted_;
+  std::optional<Trims> trims_;
+  std::size_t trims_uploaded_ = 0;  // of so many vertices
+  double rim_ = 0;
+  std::vector<Triangle> with_rims_;
   std::vector<Vec3> positions_;
   frame::SurfaceState state_;  // of the last frame
 };

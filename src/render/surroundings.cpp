@@ -43,6 +43,7 @@ Style of_look(Look look) {
       style.zenith = linear(0.09, 0.09, 0.115);
       style.glow = 0.9;
       style.floor_tint = 0.2;
+      style.floor_roughness = 0.25;
       style.toe = 0.006;
       style.exposes = false;
       break;

@@ -18,6 +18,7 @@ struct Style {
   Vec3 zenith = Vec3::Ones();     ///< and straight above
   double glow = 0;                ///< share by which the backdrop is brighter behind the subjects than far from them
   double floor_tint = 1;          ///< factor on the color of the floor
+  double floor_roughness = 1;     ///< of the floor, where its own is not below
   double toe = 0;                 ///< linear light below which tones are deepened, as film does; 0: colors as given
   bool exposes = true;            ///< direct light is turned up until floor shows its own color
   bool plain = false;             ///< all surfaces of clay, none of their own colors

@@ -78,6 +78,10 @@ struct Lighting {
 Lighting light_up(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
                   std::span<const frame::Light> lights);
 
+/// Roughness of a floor that reflects the subjects; absent where it does not: floor that is matte, and what is rougher
+/// than half of that.
+std::optional<double> mirror_roughness(const Style& style, const std::optional<Floor>& floor);
+
 FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects,
                         const std::optional<Floor>& floor, int width, int height);
 

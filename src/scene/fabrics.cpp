@@ -332,7 +332,7 @@ Fabric fabric(const Row& row) {
   material.bend_friction = two_digits(m.hysteresis.value * bend);
   material.thickness = 1e-3 * row.contact;
   material.friction = row.friction;
-  return {material, m, finish_of(row), row.what, row.source};
+  return {material, m, finish_of(row), row.weave != Weave::none, row.what, row.source};
 }
 
 }  // namespace

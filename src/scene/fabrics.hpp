@@ -31,6 +31,7 @@ struct Fabric {
   Material material;  ///< its `fabric` is the name; made of `measured`
   Measurements measured;
   Finish finish;       ///< chosen by us, by fibre and weave
+  bool frays;          ///< where it is cut, which is why it is hemmed
   std::string what;    ///< weave and kind
   std::string source;  ///< of its figures
 };

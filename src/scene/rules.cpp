@@ -133,6 +133,9 @@ const Table& cloth_look_rules() {
           .number("sheer", &Look::sheer, within(0, 1), "", "light that comes through, 0.9 as of chiffon")
           .by_default("that of its fabric")
           .number("thread_spacing", &Look::thread_spacing, within(0, 10), "m", "of the drawn weave; 0 draws none")
+          .number("hem", &Look::hem, within(0, 1), "m",
+                  "width to which its borders are folded and sewn; 0 draws cut edges")
+          .by_default("0.015 of a pattern, else 0.01; 0 of fabrics that do not fray")
           .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture")
           .list(Type::list, "panel", &Look::panels, panel_look_rules(),
                 [](Look& look, std::size_t) {

@@ -139,7 +139,9 @@ struct Look : Paint {
   double roughness = 0.6;
   std::optional<double> gloss, fuzz, sheer;  ///< cloth only; those of the fabric where absent
   double warp_share = 0.5;                   ///< of the gloss; of the fabric
+  double cloth_thickness = 0;                ///< of the fabric itself [m]
   double thread_spacing = 0.0006;            ///< of the drawn weave [m]; cloth only; 0 draws none
+  std::optional<double> hem;                 ///< width of its hems [m]; cloth only; 0: cut edges
   bool checker = false;                      ///< floors only
   bool visible = true;
 };

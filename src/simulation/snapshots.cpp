@@ -29,9 +29,16 @@ frame::Appearance appearance(const scene::Look& look) {
   result.roughness = look.roughness;
   result.finish = {look.gloss.value_or(0), look.warp_share, look.fuzz.value_or(0), look.sheer.value_or(0)};
   result.thread_spacing = look.thread_spacing;
+  result.thickness = look.cloth_thickness;
+  result.hem = look.hem.value_or(0);
   result.checker = look.checker;
   return result;
 }
+
+/// Widths of hems where the scene does not say [m].
+constexpr double kGarmentHem = 0.015, kHem = 0.010;
+// Of fabrics without a name, as estimated of the others: thickness for a weight [m for kg/m²].
+constexpr double kThicknessByWeight = 2.2e-3;
 
 /// With the finish of the fabric where the scene leaves it open.
 scene::Look look_of(const scene::Cloth& cloth) {
@@ -42,6 +49,9 @@ scene::Look look_of(const scene::Cloth& cloth) {
   look.fuzz = look.fuzz.value_or(finish.fuzz);
   look.sheer = look.sheer.value_or(finish.sheer);
   look.warp_share = finish.warp_share;
+  look.cloth_thickness = fabric ? fabric->measured.thickness.value : kThicknessByWeight * cloth.material.density;
+  const double hem = cloth.shape == scene::ClothShape::pattern ? kGarmentHem : kHem;
+  look.hem = look.hem.value_or(!fabric || fabric->frays ? hem : 0);
   return look;
 }
 
@@ -71,7 +81,10 @@ void dress(frame::Surface& surface, const scene::Look& look, Pictures& pictures)
   // What a character's file says is in its parts already.
   if (surface.kind == frame::ObjectKind::character && look.as_file) return;
   for (frame::SurfacePart& part : surface.parts) {
+    const frame::Paint figure = part.appearance.paint;
     part.appearance = surface.appearance;
+    // The mannequin's hair, face and shoes lie over whatever colour it has.
+    if (surface.kind == frame::ObjectKind::character) part.appearance.paint = figure;
     for (const scene::PanelPaint& panel : look.panels)
       if (panel.name == part.name) lay_on(part.appearance, panel, pictures);
   }
@@ -106,8 +119,15 @@ std::shared_ptr<const frame::Texture> texture_of(image::Picture picture) {
 frame::SurfacePart part_of(const character::Material& material, const std::string& body) {
   frame::SurfacePart part{material.name, {}};
   part.appearance.color = part.appearance.back_color = image::srgb_from_linear(material.color);
-  if (material.picture.empty()) return part;
   frame::Paint& paint = part.appearance.paint;
+  if (!material.pixels.empty()) {
+    paint.texture =
+        std::make_shared<const frame::Texture>(frame::Texture{material.width, material.height, material.pixels});
+    paint.wrap_u = paint.wrap_v = frame::Paint::Wrap::clamp;
+    paint.alpha = frame::Paint::Alpha::over_color;
+    return part;
+  }
+  if (material.picture.empty()) return part;
   try {
     paint.texture = texture_of(image::decode_picture(material.picture));
   } catch (const std::exception& error) {
@@ -127,13 +147,16 @@ std::shared_ptr<const frame::Surface> make_body_surface(const environment::BodyO
   surface->passed_through = body.passed_through;
   if (!body.collide) surface->passed_through.assign(surface->triangles.size(), 1);
   if (body.character) surface->crease_angle = kCharacterCrease;
-  if (body.coloring && body.look.as_file) {
+  scene::Look look = body.look;
+  const bool over_look = body.coloring && body.coloring->over_look;
+  if (over_look) look.as_file = false;
+  if (body.coloring && (look.as_file || over_look)) {
     for (const character::Material& material : body.coloring->materials)
       surface->parts.push_back(part_of(material, body.name));
     surface->part_of_triangle = body.coloring->material_of_triangle;
     surface->paint_uv = body.coloring->uv;
   }
-  dress(*surface, body.look, pictures);
+  dress(*surface, look, pictures);
   return surface;
 }
 

@@ -28,6 +28,8 @@ T value_at(std::string_view bytes, std::size_t offset) {
 }
 
 void expect_same_paint(const frame::Appearance& a, const frame::Appearance& b) {
+  EXPECT_EQ(a.thickness, b.thickness);
+  EXPECT_EQ(a.hem, b.hem);
   EXPECT_EQ(a.back_painted, b.back_painted);
   EXPECT_EQ(a.back_paleness, b.back_paleness);
   ASSERT_EQ(a.paint.texture == nullptr, b.paint.texture == nullptr);

@@ -199,5 +199,28 @@ TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
   EXPECT_GT(partly, 100) << "outlines are smooth";
 }
 
+// Floor from which a ray to the sun meets something is black over a plate, as no light comes from around here; other
+// floor leaves the plate as it is. But for the width of the penumbra, in which some percents of the pixels lie.
+TEST_F(DataPassesTest, CaughtShadowsAreWhereNoSunGetsTo) {
+  const Vec3 toward_sun = Vec3(0.3, -0.4, 1).normalized();
+  int lit = 0, dark = 0, otherwise = 0;
+  for (int y = 0; y < kHeight; y += 2) {
+    for (int x = 0; x < kWidth; x += 2) {
+      const auto at = [&](const char* name) { return value(layers_, name, x, y); };
+      const float caught = at("caught.A"), covered = at("A");
+      EXPECT_GE(caught, covered - 1e-3f);
+      if (covered > 0 || at("id.object") != 1) continue;
+      const Vec3 from(at("position.X"), at("position.Y"), at("position.Z") + 1e-4);
+      const bool hidden = search(second_, first_, from, toward_sun).depth < 1e8;
+      lit += !hidden && caught < 0.05f;
+      dark += hidden && caught > 0.9f;
+      otherwise += hidden ? caught <= 0.9f : caught >= 0.05f;
+    }
+  }
+  EXPECT_GT(lit, 500);
+  EXPECT_GT(dark, 50);
+  EXPECT_LT(otherwise, 0.05 * (lit + dark));
+}
+
 }  // namespace
 }  // namespace weft::render

@@ -1,0 +1,33 @@
+// What a floor that shines shows of the subjects (mirror.hpp), after shading.glsl.
+layout(binding = 13) uniform sampler2D mirror;            // upside down, encoded; smaller ones are blurred
+layout(binding = 14) uniform sampler2D mirror_distances;  // to what it shows, by way of the floor
+const int kMirrorTaps = 8;
+
+// From the bytes of the picture to light, within 0.3/255 (a cubic fitted to IEC 61966-2-1).
+vec3 decode(vec3 srgb) { return srgb * (srgb * (srgb * 0.305306011 + 0.682171111) + 0.012522878); }
+
+// The picture's color of floor, given without reflections, `share` of which is mirrored; `distance_view`: to the floor.
+vec3 reflect_in_floor(vec3 color, vec2 uv, float distance_view, float roughness, float share) {
+  vec2 at = vec2(uv.x, 1.0 - uv.y);
+  // The farther something is behind the floor, the wider it is blurred: by half of the cone in which a rough floor
+  // scatters light. What is near decides for its surroundings as well, lest its outline is torn.
+  float cone = 0.5 * roughness * roughness, nearest = textureLod(mirror_distances, at, 0.0).r;
+  vec2 aspect = vec2(frame.frustum.y / frame.frustum.x, 1.0);
+  float widest = 0.5 * cone / frame.frustum.y;
+  vec2 direction = first_direction(0.3);
+  for (int k = 0; k < kMirrorTaps; ++k) {
+    vec2 offset = sqrt((float(k) + 0.5) / float(kMirrorTaps)) * 0.5 * widest * direction * aspect;
+    nearest = min(nearest, textureLod(mirror_distances, at + offset, 0.0).r);
+    direction = next_direction(direction);
+  }
+  float radius = widest * clamp(1.0 - distance_view / nearest, 0.0, 1.0);
+  float level = log2(max(radius * float(textureSize(mirror, 0).y), 1.0));
+  vec3 sum = vec3(0.0);
+  direction = first_direction(pixel_noise(gl_FragCoord.xy));
+  for (int k = 0; k < kMirrorTaps; ++k) {
+    vec2 offset = sqrt((float(k) + 0.5) / float(kMirrorTaps)) * radius * direction * aspect;
+    sum += decode(textureLod(mirror, at + offset, max(level - 1.0, 0.0)).rgb);
+    direction = next_direction(direction);
+  }
+  return mix(decode(color), sum / float(kMirrorTaps), share);
+}

@@ -1,0 +1,72 @@
+// Hems, stitches and seams of cloth, drawn by how far a point is from its border and from its seams (trims.hpp). What is
+// finer than a pixel counts by the share of it that it covers, so that nothing beats or shimmers. After weave.glsl.
+layout(binding = 11) uniform sampler2D trims;  // distance from the border, from a seam, place along the nearer [m]
+
+// All [m]. Stitches lie in a groove, which they pull into the cloth.
+const float kStitchFromFold = 0.002;  // by which a hem goes on beyond its stitches
+const float kGroove = 0.0011, kThread = 0.00028;  // half widths
+const float kStitch = 0.0032;  // from one to the next
+const float kOnTop = 0.78;     // share of it that the thread shows
+const float kValley = 0.0013;  // half width of what a seam draws in
+
+// Share of a pixel that is `width` wide about `at` that a band of half width `half_width` about `center` covers.
+float band(float at, float width, float center, float half_width) {
+  float from = max(at - 0.5 * width, center - half_width), to = min(at + 0.5 * width, center + half_width);
+  return max(to - from, 0.0) / width;
+}
+
+// Share of it over which the thread lies on top, of a pixel that is `width` long.
+float on_top(float along, float width) {
+  float from = (along - 0.5 * width) / kStitch, to = (along + 0.5 * width) / kStitch;
+  float sum = (floor(to) - floor(from)) * kOnTop + min(fract(to), kOnTop) - min(fract(from), kOnTop);
+  return sum * kStitch / width;
+}
+
+// Tone of a line of stitches at `center`: the thread is paler, its holes are dark, the groove is shaded.
+float stitches(float at, float width, float center, float shown) {
+  return 1.0 - 0.16 * band(at, width, center, kGroove) + band(at, width, center, kThread) * mix(-0.5, 0.16, shown);
+}
+
+// How steeply cloth rises with the distance from a line of stitches.
+float groove(float at, float width, float center) {
+  return band(at, width, center, kGroove) * 0.55 * clamp((at - center) / kGroove, -1.0, 1.0) * step(width, kGroove);
+}
+
+struct Trimmed {
+  vec3 normal_world;
+  float tone;    // factor on the colour
+  float layers;  // of cloth that lie on each other
+};
+
+// `look`: width of the hem [m], thickness of the cloth [m], distance of stitches from seams [m], 0 for none.
+Trimmed trim(ivec2 pixel, vec2 rest_uv, vec3 look, bool front, Weave woven, vec3 n_world) {
+  vec3 at = texelFetch(trims, pixel, 0).xyz;
+  vec3 right = dFdx(at), up = dFdy(at), width = clamp(abs(right) + abs(up), 1e-6, 1.0);
+  float hem = look.x, thickness = max(look.y, 1e-5), shown = on_top(at.z, width.z);
+  // The directions in which border and seam are left, in the surface.
+  vec2 u_right = dFdx(rest_uv), u_up = dFdy(rest_uv);
+  float area = u_right.x * u_up.y - u_right.y * u_up.x, sense = area < 0.0 ? -1.0 : 1.0;
+  vec2 du = (right.xy * u_up.y - up.xy * u_right.y) * sense, dv = (up.xy * u_right.x - right.xy * u_up.x) * sense;
+  vec3 inward = du.x * woven.weft_world + dv.x * woven.warp_world, aside = du.y * woven.weft_world + dv.y * woven.warp_world;
+  inward *= inversesqrt(max(dot(inward, inward), 1e-20));
+  aside *= inversesqrt(max(dot(aside, aside), 1e-20));
+
+  // The edge is round. A hem ends in a step on the back, which shows through a little on the front.
+  float fold = hem > 0.0 ? 2.0 * thickness : 0.5 * thickness;
+  float rise = band(at.x, width.x, 0.5 * fold, 0.5 * fold) * 0.8, tone = 1.0;
+  if (hem > 0.0) {
+    float line = hem - kStitchFromFold, side = front ? 0.25 : 1.0;
+    rise += groove(at.x, width.x, line) - side * 0.7 * band(at.x, width.x, hem, 0.5 * thickness + 1e-4);
+    tone = stitches(at.x, width.x, line, shown) * (1.0 - 0.3 * side * band(at.x, width.x, hem + thickness, thickness));
+  }
+  float valley = band(at.y, width.y, 0.0, kValley);
+  float fall = 0.7 * valley * step(width.y, kValley);
+  tone *= 1.0 - 0.22 * valley - band(at.y, width.y, 0.0, 0.0004) * mix(0.5, 0.1, shown);
+  if (look.z > 0.0) {
+    tone *= stitches(at.y, width.y, look.z, shown);
+    fall += groove(at.y, width.y, look.z);
+  }
+  float doubled = hem > 0.0 ? clamp((hem - at.x) / width.x + 0.5, 0.0, 1.0) : 0.0;
+  vec3 n = normalize(n_world - (rise * step(width.x, fold + kGroove)) * inward - fall * aside);
+  return Trimmed(n, tone, 1.0 + doubled);
+}

@@ -1,0 +1,160 @@
+// Hems, seams and the edge of cloth.
+#include "render/trims.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "render/renderer.hpp"
+#include "render/snapshots.hpp"
+
+namespace weft::render {
+namespace {
+
+/// n x n squares of two triangles each, 1 m wide; `parts`: the right half is another panel.
+frame::Surface sheet(int n, bool parts) {
+  frame::Surface surface;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) surface.uv.emplace_back(static_cast<double>(i) / n, static_cast<double>(j) / n);
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      const Index a = j * (n + 1) + i, b = a + 1, c = b + n + 1, d = a + n + 1;
+      surface.triangles.insert(surface.triangles.end(), {{a, b, c}, {a, c, d}});
+      if (parts) surface.part_of_triangle.insert(surface.part_of_triangle.end(), 2, 2 * i < n ? 0 : 1);
+    }
+  }
+  if (parts) surface.parts.resize(2);
+  return surface;
+}
+
+TEST(Trims, AreDistancesFromBordersAndSeams) {
+  const frame::Surface surface = sheet(8, true);
+  const Trims trims(surface);
+  for (std::size_t v = 0; v < surface.uv.size(); ++v) {
+    const Vec2 at = surface.uv[v];
+    const Trim trim = trims.at(static_cast<Index>(v));
+    EXPECT_NEAR(trim.border, std::min({at.x(), at.y(), 1 - at.x(), 1 - at.y()}), 1e-6) << at.transpose();
+    EXPECT_NEAR(trim.seam, std::abs(at.x() - 0.5), 1e-6) << at.transpose();
+  }
+  // A diagonal across a corner: both of its ends lie on the border.
+  const Trim corner = trims.middle(0 + 1, 9);
+  EXPECT_NEAR(corner.border, 1.0 / 16, 1e-6);
+  EXPECT_EQ(trims.rims().size(), 4U * 8);
+}
+
+TEST(Trims, PlacesAlongABorderGoOnFromEdgeToEdge) {
+  const frame::Surface surface = sheet(8, false);
+  const Trims trims(surface);
+  int jumps = 0;
+  for (const auto& [a, b, triangle] : trims.rims()) {
+    EXPECT_EQ(trims.at(a).seam, kNoTrim);
+    const float apart = std::abs(trims.at(b).along - trims.at(a).along);
+    if (std::abs(apart - 0.125f) > 1e-5f) ++jumps;
+  }
+  EXPECT_EQ(jumps, 1) << "but where the border comes back to its start";
+}
+
+TEST(Trims, AStripAlongTheBorderFacesOutwardAndIsAsThickAsTheCloth) {
+  const frame::Surface surface = sheet(3, false);
+  std::vector<Vec3> positions;
+  for (const Vec2& at : surface.uv) positions.emplace_back(at.x(), at.y(), 0);
+  const std::vector<Vec3> normals(positions.size(), Vec3::UnitZ());
+  const Trims trims(surface);
+  const RimStrip strip = rim_strip(trims.rims(), positions, normals, 0.01);
+  ASSERT_EQ(strip.triangles.size(), 2U * 12);
+  double area = 0;
+  for (const auto& [a, b, c] : strip.triangles) {
+    const Vec3 middle = (strip.positions[a] + strip.positions[b] + strip.positions[c]) / 3;
+    const Vec3 normal = (strip.positions[b] - strip.positions[a]).cross(strip.positions[c] - strip.positions[a]);
+    EXPECT_GT(normal.dot(middle - Vec3(0.5, 0.5, middle.z())), 0);
+    EXPECT_LE(middle.z(), 0);
+    area += 0.5 * normal.norm();
+  }
+  EXPECT_NEAR(area, 4 * 0.01, 1e-12);
+}
+
+constexpr int kWidth = 160, kHeight = 100;
+
+/// Cloth that fills the picture, leant back by 50 degrees, with a line of stitches (a seam) up or across its middle.
+frame::FrameSnapshot sewn_cloth(double distance, bool seam) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  const double angle = 50 * std::numbers::pi / 180, half = 10;
+  frame::Surface grid = sheet(2, seam);
+  const Vec3 up(0, std::sin(angle), std::cos(angle));
+  std::vector<Vec3> positions;
+  for (Vec2& at : grid.uv) {
+    at *= 2 * half;
+    positions.push_back((at.x() - half) * Vec3::UnitX() + (at.y() - half) * up);
+  }
+  frame::Surface& cloth = add_surface(snapshot, frame::ObjectKind::cloth, positions, grid.triangles);
+  cloth.uv = grid.uv;
+  cloth.parts = grid.parts;
+  cloth.part_of_triangle = grid.part_of_triangle;
+  cloth.appearance.color = cloth.appearance.back_color = Vec3(0.6, 0.4, 0.3);
+  for (frame::SurfacePart& part : cloth.parts) part.appearance = cloth.appearance;
+  cloth.appearance.thickness = 3e-4;
+  cloth.appearance.hem = seam ? 0 : half;  // so that its stitches are in the middle
+  snapshot.cameras = {camera_at(Vec3(0, -distance, 0), Vec3::Zero(), 30)};
+  snapshot.lights = {sun(Vec3::UnitY())};
+  return snapshot;
+}
+
+image::Image drawn(const frame::FrameSnapshot& snapshot, int scale, Quality quality = Quality::final) {
+  Settings settings;
+  settings.width = scale * kWidth;
+  settings.height = scale * kHeight;
+  settings.quality = quality;
+  return Renderer(settings).draw(snapshot);
+}
+
+/// Of the picture's green, mean over a block of pixels.
+double mean(const image::Image& image, int x0, int y0, int size) {
+  double sum = 0;
+  for (int y = y0; y < y0 + size; ++y)
+    for (int x = x0; x < x0 + size; ++x) sum += image.pixel(x, y)[1];
+  return sum / (size * size);
+}
+
+TEST(Trims, StitchesShowCloseByAndInFinalQualityOnly) {
+  for (const bool seam : {false, true}) {
+    const image::Image close = drawn(sewn_cloth(0.1, seam), 1);
+    int darkest = 255, palest = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        darkest = std::min<int>(darkest, close.pixel(x, y)[1]);
+        palest = std::max<int>(palest, close.pixel(x, y)[1]);
+      }
+    }
+    EXPECT_GT(palest - darkest, 25) << seam;
+    const image::Image preview = drawn(sewn_cloth(0.1, seam), 1, Quality::preview);
+    EXPECT_LE(std::abs(preview.pixel(80, 50)[1] - preview.pixel(20, 20)[1]), 4);
+  }
+}
+
+// From any distance a line of stitches is the mean of one drawn six times as fine: it neither beats nor shimmers.
+TEST(Trims, StitchesHaveNoBeats) {
+  constexpr int kFiner = 6;
+  for (const bool seam : {false, true}) {
+    for (double distance = 0.26; distance < 21; distance *= 1.62) {
+      const frame::FrameSnapshot snapshot = sewn_cloth(distance, seam);
+      const image::Image image = drawn(snapshot, 1), finer = drawn(snapshot, kFiner);
+      double squares = 0, farthest = 0;
+      int count = 0;
+      for (int y = 10; y < 90; ++y) {
+        for (int x = 30; x < 130; ++x) {
+          const double off = image.pixel(x, y)[1] - mean(finer, kFiner * x, kFiner * y, kFiner);
+          squares += off * off;
+          farthest = std::max(farthest, std::abs(off));
+          ++count;
+        }
+      }
+      EXPECT_LT(std::sqrt(squares / count), 2) << distance << ' ' << seam << ' ' << farthest;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace weft::render
