@@ -95,7 +95,7 @@ frame::FrameSnapshot sewn_cloth(double distance, bool seam) {
   cloth.part_of_triangle = grid.part_of_triangle;
   cloth.appearance.color = cloth.appearance.back_color = Vec3(0.6, 0.4, 0.3);
   for (frame::SurfacePart& part : cloth.parts) part.appearance = cloth.appearance;
-  cloth.appearance.thickness = 3e-4;
+  cloth.appearance.thickness = 1e-3;
   cloth.appearance.hem = seam ? 0 : half;  // so that its stitches are in the middle
   snapshot.cameras = {camera_at(Vec3(0, -distance, 0), Vec3::Zero(), 30)};
   snapshot.lights = {sun(Vec3::UnitY())};
@@ -134,25 +134,25 @@ TEST(Trims, StitchesShowCloseByAndInFinalQualityOnly) {
   }
 }
 
-// From any distance a line of stitches is the mean of one drawn six times as fine: it neither beats nor shimmers.
+// From any distance a line of stitches is the mean of one drawn six times as fine: 0.4 to 2.6 levels are seen, 4.6
+// where lines are not filtered.
 TEST(Trims, StitchesHaveNoBeats) {
   constexpr int kFiner = 6;
-  for (const bool seam : {false, true}) {
-    for (double distance = 0.26; distance < 21; distance *= 1.62) {
-      const frame::FrameSnapshot snapshot = sewn_cloth(distance, seam);
-      const image::Image image = drawn(snapshot, 1), finer = drawn(snapshot, kFiner);
-      double squares = 0, farthest = 0;
-      int count = 0;
-      for (int y = 10; y < 90; ++y) {
-        for (int x = 30; x < 130; ++x) {
-          const double off = image.pixel(x, y)[1] - mean(finer, kFiner * x, kFiner * y, kFiner);
-          squares += off * off;
-          farthest = std::max(farthest, std::abs(off));
-          ++count;
-        }
+  for (double distance = 0.26; distance < 21; distance *= 1.62) {
+    const frame::FrameSnapshot snapshot = sewn_cloth(distance, true);
+    const image::Image image = drawn(snapshot, 1), finer = drawn(snapshot, kFiner);
+    double squares = 0, farthest = 0;
+    int count = 0;
+    // Within four pixels of the line.
+    for (int y = 10; y < 90; ++y) {
+      for (int x = 76; x < 84; ++x) {
+        const double off = image.pixel(x, y)[1] - mean(finer, kFiner * x, kFiner * y, kFiner);
+        squares += off * off;
+        farthest = std::max(farthest, std::abs(off));
+        ++count;
       }
-      EXPECT_LT(std::sqrt(squares / count), 2) << distance << ' ' << seam << ' ' << farthest;
     }
+    EXPECT_LT(std::sqrt(squares / count), 3) << distance << ' ' << farthest;
   }
 }
 
