@@ -126,7 +126,7 @@ const Sheet kBody{{-22, -1}, {14, 177}}, kFace{{-6, 153}, {6, 169}}, kHand{{-7, 
 Coloring figure_of(const mesh::Mesh& mesh, const MannequinBuild& build) {
   const double cm = build.height / kTableHeight;
   const auto joints = mannequin_joints(build);
-  const Vec3 shoulder = joints[static_cast<std::size_t>(Joint::left_upper_arm)];
+  const Vec3& shoulder = joints[static_cast<std::size_t>(Joint::left_upper_arm)];
   const Vec3 along = (joints[static_cast<std::size_t>(Joint::left_hand)] - shoulder).normalized();
   enum : Index { body, face, hand };
   Coloring coloring;

@@ -174,7 +174,7 @@ struct Renderer::Impl {
   bool reflects(const Plan& plan) const { return quality.mirrors && mirror_roughness(plan.lighting.style, plan.floor); }
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
   void look_through_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
-                          std::span<const DrawnMesh> meshes, const PixelArea& area);
+                          std::span<const DrawnMesh> opaque, const PixelArea& area);
   Plan plan_of(const frame::FrameSnapshot& snapshot, const frame::Camera& camera) const;
   void draw_sharp(const frame::FrameSnapshot& snapshot, const Plan& plan);
   void draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before);
