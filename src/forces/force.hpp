@@ -40,6 +40,8 @@ class ForceRows {
   Index begin_, end_;
 };
 
+struct LockLag;
+
 /// One evaluation of the forces at (x, v). Quads are three numbers and zero.
 struct Evaluation {
   std::span<const solver::Quad<double>> x;  ///< positions [m]
@@ -55,6 +57,8 @@ struct Evaluation {
   std::size_t range = kAll;
   /// Velocity of the air at each particle [m/s], where it is not the same everywhere; else none.
   std::span<const solver::Quad<double>> air = {};
+  /// Where the locks of a cloth's threads are linearised; without, at x.
+  const LockLag* locks = nullptr;
 };
 
 /// A force on the particles of one cloth. `first` is the cloth's first particle in the global numbering.

@@ -3,19 +3,44 @@
 #include <cmath>
 
 namespace weft::forces {
+namespace {
 
-StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, double stretch, double shear)
-    : stretch_(stretch), shear_(shear) {
+// Below the onset a piece has to have some stiffness, for its tension to tell where it is; any leads to the same end
+// [N/m].
+constexpr double kLeastStiffness = 1;
+
+// Of the search for an extension by its tension, and what of that it may leave.
+constexpr int kExtensionIterations = 20;
+constexpr double kExtensionExactness = 1e-3;
+
+// The extension with this tension [N/m], from one that has no less. The law is convex: Newton's method comes from
+// above.
+double extension_with(const Lock& lock, double stiffness, double tension, double e) {
+  if (tension <= stiffness * lock.onset()) return tension / stiffness;
+  for (int k = 0; k < kExtensionIterations; ++k) {
+    const double excess = stiffness * e + lock.stress(e) - tension;
+    if (excess <= kExtensionExactness * tension) break;
+    e -= excess / (stiffness + lock.stiffness(e));
+  }
+  return e;
+}
+
+}  // namespace
+
+StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch,
+                           double shear)
+    : below_(below), stretch_(stretch), shear_(shear) {
   const bool limited = !std::isinf(stretch);
-  const auto add_thread = [&](Index i, Index j, double length, double width) {
-    threads_.push_back({2, {first + i, first + j}, {-1 / length, 1 / length}, width * length});
+  const auto add_thread = [&](Index i, Index j, double length, double width, double stiffness) {
+    threads_.push_back(
+        {2, {first + i, first + j}, {-1 / length, 1 / length}, width * length, std::max(stiffness, kLeastStiffness)});
   };
   for (int j = 0; j < grid.nv; ++j)
     for (int i = 0; i < grid.nu; ++i) {
       const Index here = grid.index(i, j);
       const bool weft = i + 1 < grid.nu, warp = j + 1 < grid.nv;
-      if (weft && limited) add_thread(here, grid.index(i + 1, j), grid.du(i), grid.width_v(j));
-      if (warp && limited) add_thread(here, grid.index(i, j + 1), grid.dv(j), grid.width_u(i));
+      if (weft && limited) add_thread(here, grid.index(i + 1, j), grid.du(i), grid.width_v(j), below.weft);
+      if (warp && limited) add_thread(here, grid.index(i, j + 1), grid.dv(j), grid.width_u(i), below.warp);
       if (!weft || !warp || std::isinf(shear)) continue;
       const double u = 0.5 / grid.du(i), v = 0.5 / grid.dv(j);
       const Corners corners{first + here, first + grid.index(i + 1, j), first + grid.index(i, j + 1),
@@ -26,8 +51,9 @@ StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, double stretch, 
   crossing_blocks_.resize(crossings_.size());
 }
 
-StretchLimit::StretchLimit(const TriangleMembrane& membrane, double stretch, double shear)
-    : stretch_(stretch), shear_(shear) {
+StretchLimit::StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch,
+                           double shear)
+    : below_(below), stretch_(stretch), shear_(shear) {
   follow(membrane);
 }
 
@@ -39,8 +65,8 @@ void StretchLimit::follow(const TriangleMembrane& membrane) {
     const Corners corners{a, b, c};
     const Weights weft{g[0].x(), g[1].x(), g[2].x()}, warp{g[0].y(), g[1].y(), g[2].y()};
     if (!std::isinf(stretch_)) {
-      threads_.push_back({3, corners, weft, element.area});
-      threads_.push_back({3, corners, warp, element.area});
+      threads_.push_back({3, corners, weft, element.area, std::max(below_.weft, kLeastStiffness)});
+      threads_.push_back({3, corners, warp, element.area, std::max(below_.warp, kLeastStiffness)});
     }
     if (!std::isinf(shear_)) crossings_.push_back({3, corners, weft, warp, element.area});
   }
@@ -86,13 +112,14 @@ Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::s
 
 // Calls body(piece, blocks, pulls, block_of) for each that locks.
 template <class Points, class Body>
-void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const Body& body) const {
+void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLag* lag, const Body& body) const {
   // Of nearly all pieces the squared length tells that they are below the onset.
   const double onset = 1 + Lock(stretch_).onset(), onset_sq = onset * onset;
   ranges_of_threads_.for_each(range, threads_.size(), [&](std::size_t t) {
     const Vec3 s = derivative(threads_[t], threads_[t].along, x);
-    if (s.squaredNorm() <= onset_sq) return;
-    lock(threads_[t], s,
+    const double* at = lag != nullptr ? &lag->extensions[t] : nullptr;
+    if (s.squaredNorm() <= onset_sq && (at == nullptr || *at <= onset - 1)) return;
+    lock(threads_[t], s, at,
          [&](const Pulls& pulls, const auto& block_of) { body(threads_[t], thread_blocks_[t], pulls, block_of); });
   });
   const double shear_onset = Lock(shear_).onset();
@@ -116,7 +143,7 @@ void StretchLimit::cut(std::span<const Index> bounds) {
 }
 
 void StretchLimit::add(const Evaluation& at) const {
-  for_each_lock(at.x, at.range, false,
+  for_each_lock(at.x, at.range, false, at.assembly ? at.locks : nullptr,
                 [&](const auto& piece, const Blocks& blocks, const Pulls& pulls, const auto& block_of) {
                   for (std::size_t k = 0; k < piece.corners; ++k)
                     at.force.subtract(piece.particles[k], solver::quad_of<double>(pulls[k]));
@@ -130,25 +157,67 @@ void StretchLimit::add(const Evaluation& at) const {
 
 void StretchLimit::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double /*rate*/,
                                 solver::BlockMatrix& jacobian) const {
-  for_each_lock(x, Evaluation::kAll, true, [&](const auto& piece, const Blocks&, const Pulls&, const auto& block_of) {
-    for (std::size_t a = 0; a < piece.corners; ++a)
-      for (std::size_t b = 0; b < piece.corners; ++b)
-        jacobian.add(jacobian.slot(piece.particles[a], piece.particles[b]), block_of(a, b));
-  });
+  for_each_lock(x, Evaluation::kAll, true, nullptr,
+                [&](const auto& piece, const Blocks&, const Pulls&, const auto& block_of) {
+                  for (std::size_t a = 0; a < piece.corners; ++a)
+                    for (std::size_t b = 0; b < piece.corners; ++b)
+                      jacobian.add(jacobian.slot(piece.particles[a], piece.particles[b]), block_of(a, b));
+                });
+}
+
+StretchLimit::Tangent StretchLimit::tangent(double lag, double e) const {
+  const Lock lock(stretch_);
+  const double stiffness = lock.stiffness(lag), stress = lock.stress(lag) + stiffness * (e - lag);
+  return stress > 0 ? Tangent{stress, stiffness} : Tangent{0, 0};
 }
 
 // A thread pulls, so that the derivative is definite as it is.
 template <class Body>
-void StretchLimit::lock(const Thread& piece, const Vec3& s, const Body& body) const {
-  const Lock lock(stretch_);
-  const double length = s.norm(), stress = piece.area * lock.stress(length - 1);
+void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const {
+  const double length = s.norm(), e = length - 1, stress = piece.area * Lock(stretch_).stress(e);
+  const Tangent linear = tangent(lag != nullptr ? *lag : e, e);
+  if (stress == 0 && linear.stress == 0) return;  // and perhaps no length
   const Vec3 n = s / length;
   Pulls pulls{};
   for (std::size_t k = 0; k < piece.corners; ++k) pulls[k] = stress * piece.along[k] * n;
-  const double lateral = stress / length, axial = piece.area * lock.stiffness(length - 1);
+  const double lateral = piece.area * linear.stress / length, axial = piece.area * linear.stiffness;
   body(pulls, [&](std::size_t a, std::size_t b) -> Mat3 {
     return piece.along[a] * piece.along[b] * ((axial - lateral) * n * n.transpose() + lateral * Mat3::Identity());
   });
+}
+
+void StretchLimit::begin(std::span<const Vec3> x, LockLag& lag) const {
+  lag.extensions.resize(threads_.size());
+  for (std::size_t t = 0; t < threads_.size(); ++t)
+    lag.extensions[t] = derivative(threads_[t], threads_[t].along, x).norm() - 1;
+}
+
+void StretchLimit::update(std::span<const Vec3> x, bool first, LockLag& lag) const {
+  const Lock lock(stretch_);
+  const double onset = lock.onset(), onset_sq = (1 + onset) * (1 + onset);
+  lag.near.clear();
+  for (std::size_t t = 0; t < threads_.size(); ++t) {
+    const double length_sq = derivative(threads_[t], threads_[t].along, x).squaredNorm();
+    double& at = lag.extensions[t];
+    if (length_sq <= onset_sq && at <= onset) continue;
+    lag.near.push_back(static_cast<std::uint32_t>(t));
+    if (first) continue;
+    const double e = std::sqrt(length_sq) - 1;
+    const double tension = threads_[t].stiffness * e + tangent(at, e).stress;
+    at = extension_with(lock, threads_[t].stiffness, tension, std::max(e, at));
+  }
+}
+
+void StretchLimit::add_lag(std::span<const Vec3> x, const LockLag& lag, std::span<Vec3> force) const {
+  const Lock lock(stretch_);
+  for (const std::uint32_t t : lag.near) {
+    const Thread& thread = threads_[t];
+    const Vec3 s = derivative(thread, thread.along, x);
+    const double length = s.norm(), e = length - 1;
+    const double more = thread.area * (tangent(lag.extensions[t], e).stress - lock.stress(e));
+    if (more == 0) continue;
+    for (std::size_t k = 0; k < thread.corners; ++k) force[thread.particles[k]] -= more / length * thread.along[k] * s;
+  }
 }
 
 // As Shear: exactly, or of the second derivative the half whose sign agrees with the stress.

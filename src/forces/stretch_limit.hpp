@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "forces/force.hpp"
 #include "forces/triangle_membrane.hpp"
@@ -49,14 +50,22 @@ class Lock {
   double onset_, span_;
 };
 
+/// Where Newton's method linearises the locks of a cloth's threads: not at the extension that an iterate has, but at
+/// the one at which a piece has the tension that the last linearisation foresaw (a dual unknown, as contacts have one).
+/// Linearised where they are, pieces come back by a third of what they are beyond their onset at a time.
+struct LockLag {
+  std::vector<double> extensions;   ///< per piece
+  std::vector<std::uint32_t> near;  ///< pieces that are beyond their onset, there or where they are
+};
+
 /// The energy A ∫ Lock of each piece of weft and warp, by its extension ‖s‖ − 1, and of each cell or triangle by its
 /// shear |⟨s_u, s_v⟩|, the sine of the angle by which weft and warp are off square. Pieces, cells and their derivatives
 /// s are those of Stretch, Shear and TriangleMembrane. Compression has no limit: threads buckle.
 class StretchLimit final : public Force {
  public:
   /// `stretch`: largest extension; `shear`: largest sine, infinite: none.
-  StretchLimit(const mesh::Grid& grid, Index first, double stretch, double shear);
-  StretchLimit(const TriangleMembrane& membrane, double stretch, double shear);
+  StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch, double shear);
+  StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;
@@ -65,6 +74,13 @@ class StretchLimit final : public Force {
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
                     solver::BlockMatrix& jacobian) const override;
   double energy(std::span<const Vec3> x) const override;
+
+  /// Before the first iteration of a step, which starts at x.
+  void begin(std::span<const Vec3> x, LockLag& lag) const;
+  /// Before the linearisation at x; `first`: of a step, where nothing was foreseen.
+  void update(std::span<const Vec3> x, bool first, LockLag& lag) const;
+  /// Adds what the linearised force is more than the force, at any x.
+  void add_lag(std::span<const Vec3> x, const LockLag& lag, std::span<Vec3> force) const;
 
   /// Takes over the rest shape of the membrane that it was made for.
   void follow(const TriangleMembrane& membrane);
@@ -86,7 +102,8 @@ class StretchLimit final : public Force {
     std::size_t corners;
     Corners particles;
     Weights along;
-    double area;  // that it stands for [m²]
+    double area;       // that it stands for [m²]
+    double stiffness;  // below the onset [N/m]
   };
   /// Where threads cross, s_u = Σ weft[k] x_k and s_v = Σ warp[k] x_k.
   struct Crossing {
@@ -100,17 +117,24 @@ class StretchLimit final : public Force {
   /// How one piece pulls at its corners, and block (a, b) of its Jacobian.
   using Pulls = std::array<Vec3, kMost>;
 
+  /// Stress and stiffness of the tangent at one extension, at another [N/m].
+  struct Tangent {
+    double stress, stiffness;
+  };
+
   template <class Piece>
   static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const Vec3> x);
   template <class Piece>
   static Vec3 derivative(const Piece& piece, const Weights& weights, std::span<const solver::Quad<double>> x);
   template <class Points, class Body>
-  void for_each_lock(Points x, std::size_t range, bool exact, const Body& body) const;
+  void for_each_lock(Points x, std::size_t range, bool exact, const LockLag* lag, const Body& body) const;
   template <class Body>
-  void lock(const Thread& piece, const Vec3& s, const Body& body) const;
+  void lock(const Thread& piece, const Vec3& s, const double* lag, const Body& body) const;
+  Tangent tangent(double lag, double e) const;
   template <class Body>
   void lock(const Crossing& piece, const Vec3& s_u, const Vec3& s_v, bool exact, const Body& body) const;
 
+  StretchParameters below_;
   double stretch_, shear_;
   std::vector<Thread> threads_;
   std::vector<Crossing> crossings_;  // none without a limit to shear

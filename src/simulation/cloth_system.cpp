@@ -182,8 +182,8 @@ void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, con
   if (material.shear > 0 || material.shear_viscosity > 0)
     forces_[cloth].push_back(std::make_unique<forces::Shear>(grid, first, shear_of(material)));
   if (locks(material))
-    add_limit(cloth,
-              std::make_unique<forces::StretchLimit>(grid, first, largest_extension(material), largest_sine(material)));
+    add_limit(cloth, std::make_unique<forces::StretchLimit>(grid, first, stretch_of(material),
+                                                            largest_extension(material), largest_sine(material)));
   if (bends(material)) forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
   if (meets_air(material, physics))
     forces_[cloth].push_back(std::make_unique<forces::Air>(grid, first, air_of(material, physics)));
@@ -207,7 +207,8 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
   membranes_.push_back(membrane.get());
   if (sheet.sewn) sewing_.push_back({cloth, put_on, of.sewing, -1, membrane.get(), nullptr, nullptr, nullptr});
   if (locks(material)) {
-    auto limit = std::make_unique<forces::StretchLimit>(*membrane, largest_extension(material), largest_sine(material));
+    auto limit = std::make_unique<forces::StretchLimit>(*membrane, stretch_of(material), largest_extension(material),
+                                                        largest_sine(material));
     if (sheet.sewn) sewing_.back().limit = limit.get();
     add_limit(cloth, std::move(limit));
   }
@@ -324,6 +325,19 @@ void ClothSystem::take_weight_off(std::span<Vec3> force) const {
 
 void ClothSystem::add_forces(std::size_t cloth, const forces::Evaluation& at) const {
   for (const auto& force : forces_[cloth]) force->add(at);
+}
+
+void ClothSystem::begin_locks(std::span<const Vec3> x, LockLags& lags) const {
+  lags.resize(cloths());
+  for (const auto& [cloth, limit] : limits_) limit->begin(x, lags[cloth]);
+}
+
+void ClothSystem::update_locks(std::span<const Vec3> x, bool first, LockLags& lags) const {
+  for (const auto& [cloth, limit] : limits_) limit->update(x, first, lags[cloth]);
+}
+
+void ClothSystem::add_lock_lags(std::span<const Vec3> x, const LockLags& lags, std::span<Vec3> force) const {
+  for (const auto& [cloth, limit] : limits_) limit->add_lag(x, lags[cloth], force);
 }
 
 void ClothSystem::fill_constant(double rate, solver::Assembly& assembly) const {

@@ -17,6 +17,7 @@
 
 namespace weft::forces {
 class StretchLimit;
+struct LockLag;
 }  // namespace weft::forces
 
 namespace weft::simulation {
@@ -58,6 +59,12 @@ class ClothSystem {
 
   /// The forces on one cloth but its weight; positions, velocities and forces are those of all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
+
+  /// Locks of threads as forces::StretchLimit has them, per cloth; nothing of cloths without a limit.
+  using LockLags = std::vector<forces::LockLag>;
+  void begin_locks(std::span<const Vec3> x, LockLags& lags) const;
+  void update_locks(std::span<const Vec3> x, bool first, LockLags& lags) const;
+  void add_lock_lags(std::span<const Vec3> x, const LockLags& lags, std::span<Vec3> force) const;
 
   /// rate² M and the part of the stiffness that only hold() changes.
   void fill_constant(double rate, solver::Assembly& assembly) const;

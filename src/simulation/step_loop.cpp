@@ -239,7 +239,7 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   const Moment& now = progress_.now;
   held_ = pins_.held();
   if (gusts_) blow(t, h);
-  problem_.begin_step(t + h - start_, held_, pins_.pulls());
+  problem_.begin_step(t + h - start_, now.particles(), held_, pins_.pulls());
   if (!collisions_) return reason_of(solve(h, Start::unchanged_velocity, false, report));
   {
     const Stopwatch watch(report.collide);

@@ -45,7 +45,8 @@ void StepProblem::forget() {
   memory_.x.assign(masses().size(), solver::quad_of(nowhere, nowhere, nowhere));
 }
 
-void StepProblem::begin_step(double t, std::span<const integrator::HeldParticle> pinned, std::span<const Pull> pulls) {
+void StepProblem::begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
+                             std::span<const Pull> pulls) {
   pulls_ = pulls;
   if (cloth_.sew(t)) forget();
   if (cloth_.hold(pinned)) {
@@ -53,6 +54,7 @@ void StepProblem::begin_step(double t, std::span<const integrator::HeldParticle>
     memory_.rate = 0;  // what the matrix begins with has changed too
   }
   memory_.contacts = {};
+  cloth_.begin_locks(x, memory_.locks);
 }
 
 void StepProblem::blow(SolveMemory::Quads air) {
@@ -68,6 +70,7 @@ void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force
 
 void StepProblem::linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
   add_cloth_forces(at, force);
+  if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
   add_pulls(at, force);
   if (contacts_ != nullptr) contacts_->add_linear_forces(at.x_end, memory_.contacts, force);
 }
@@ -78,8 +81,10 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   const bool all = memory_.linearised_at.empty();
   if (all) memory_.linearised_at.assign(at.x.begin(), at.x.end());
   for (std::size_t c = 0; c < cloth_.cloths(); ++c) chosen_[c] = all || is_stale(c, at.x);
+  if (!memory_.locks.empty()) cloth_.update_locks(at.x, iteration == 0, memory_.locks);
   put_together(at, iteration);
   add_cloth_forces(at, force);
+  if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
   add_pulls(at, force);
   system.terms.clear();
   system.diagonal_terms.clear();
@@ -140,6 +145,7 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int 
     evaluation.range = number;
     evaluation.air = air_;
     if (assemble) {
+      if (!memory_.locks.empty()) evaluation.locks = &memory_.locks[cloth];
       evaluation.assembly = solver::AssemblyRows(memory_.assembly, begin, end);
       if (iteration >= kPlainIterations) evaluation.linearisation = forces::Linearisation::abs_projected;
       memory_.assembly.start(begin, end);

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "collision/response/contact_response.hpp"
+#include "forces/stretch_limit.hpp"
 #include "integrator/system.hpp"
 #include "simulation/cloth_system.hpp"
 
@@ -18,6 +19,7 @@ struct SolveMemory {
   double rate = 0;                  ///< of both [1/s]; 0: of none
   std::vector<Vec3> linearised_at;  ///< where each cloth's rows were put together; empty: nowhere
   collision::ContactLag contacts;
+  ClothSystem::LockLags locks;  ///< none before the first step
 
   // Saves time only. Of the forces within the cloths: most cloths of a scene are solved, and do not move, while one
   // goes on.
@@ -44,8 +46,10 @@ class StepProblem final : public integrator::System {
   void use_contacts(const collision::ContactResponse* contacts) { contacts_ = contacts; }
 
   /// Before the first solve of a step that ends at time t [s] of the simulation, with what pins hold until then: sews
-  /// cloth on to there, and friction goes by the loads at the start. `pulls` must outlive the step.
-  void begin_step(double t, std::span<const integrator::HeldParticle> pinned, std::span<const Pull> pulls = {});
+  /// cloth on to there, and friction goes by the loads at the start, threads lock by their tensions there (at x).
+  /// `pulls` must outlive the step.
+  void begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
+                  std::span<const Pull> pulls = {});
 
   /// Velocities of the air at all particles for the step that begins [m/s]; without, it is the same everywhere.
   void blow(SolveMemory::Quads air);

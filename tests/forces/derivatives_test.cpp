@@ -84,12 +84,13 @@ const Case kCases[] = {
        return membrane;
      }},
     // Some of the crumpled threads are below the onset, some lock, some are beyond the limit.
-    {"stretch_limit", [](double, double) { return std::make_unique<StretchLimit>(kGrid, 0, 0.1, 0.1); }},
+    {"stretch_limit",
+     [](double, double) { return std::make_unique<StretchLimit>(kGrid, 0, StretchParameters{}, 0.1, 0.1); }},
     {"stretch_limit_of_triangles",
      [](double, double) {
        const mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
        const TriangleMembrane membrane(sheet, 0, StretchParameters{kStiffness, kStiffness, 0}, ShearParameters{});
-       return std::make_unique<StretchLimit>(membrane, 0.1, 0.1);
+       return std::make_unique<StretchLimit>(membrane, StretchParameters{}, 0.1, 0.1);
      }},
     {"elastic_band_and_hem",
      [](double elastic, double) {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <limits>
 
 #include "forces/sheets.hpp"
@@ -16,6 +17,7 @@ using testing::Positions;
 constexpr double kLimit = 0.1;
 const double kSine = std::sin(0.5);
 constexpr double kNone = std::numeric_limits<double>::infinity();
+constexpr StretchParameters kBelow{2000, 1000};
 const double kWidth = (kGrid.nu - 1) * kGrid.lu, kHeight = (kGrid.nv - 1) * kGrid.lv;
 
 // Threads along weft and warp of these lengths, the warp off square by an angle of this sine.
@@ -28,9 +30,9 @@ Positions drawn(double weft, double warp, double sine = 0) {
 // Of quads and of triangles.
 std::vector<std::unique_ptr<StretchLimit>> both(double stretch, double shear) {
   std::vector<std::unique_ptr<StretchLimit>> limits;
-  limits.push_back(std::make_unique<StretchLimit>(kGrid, 0, stretch, shear));
+  limits.push_back(std::make_unique<StretchLimit>(kGrid, 0, kBelow, stretch, shear));
   const mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
-  limits.push_back(std::make_unique<StretchLimit>(TriangleMembrane(sheet, 0, {}, {}), stretch, shear));
+  limits.push_back(std::make_unique<StretchLimit>(TriangleMembrane(sheet, 0, {}, {}), kBelow, stretch, shear));
   return limits;
 }
 
@@ -84,6 +86,52 @@ TEST(StretchLimit, OfUniformStrainHasTheEnergyOfTheContinuumOnQuadsAndTriangles)
 TEST(StretchLimit, OfShearAloneOrOfStretchAloneLeavesTheOther) {
   for (const auto& limit : both(kLimit, kNone)) EXPECT_EQ(limit->energy(drawn(1, 1, 0.9)), 0);
   for (const auto& limit : both(kNone, kSine)) EXPECT_EQ(limit->energy(drawn(1.5, 1.5)), 0);
+}
+
+/// The force [N], and with it what its linearisation adds.
+Positions linear_force(const StretchLimit& limit, const Positions& x, const LockLag& lag) {
+  Positions force = testing::force_of(limit, x, testing::zeros(x));
+  limit.add_lag(x, lag, force);
+  return force;
+}
+
+TEST(StretchLimit, IsLinearisedWhereItsThreadsHaveTheTensionForeseen) {
+  const Lock lock(kLimit);
+  for (const auto& limit : both(kLimit, kNone)) {
+    const Positions start = drawn(1.08, 1.02), far = drawn(1.2, 1.02);
+    LockLag lag;
+    limit->begin(start, lag);
+    limit->update(far, true, lag);
+    const Positions itself = testing::force_of(*limit, far, testing::zeros(far));
+    const Positions linear = linear_force(*limit, far, lag);
+    const double foreseen = lock.stress(0.08) + 0.12 * lock.stiffness(0.08);
+    for (std::size_t i = 0; i < far.size(); ++i)
+      EXPECT_LT((linear[i] - foreseen / lock.stress(0.2) * itself[i]).norm(), 1e-9 * Lock::kTension) << i;
+    limit->update(far, false, lag);
+    const double tension = kBelow.weft * 0.2 + foreseen;
+    ASSERT_FALSE(lag.near.empty());
+    for (const std::uint32_t t : lag.near) {
+      const double e = lag.extensions[t];
+      EXPECT_LT(e, 0.2);
+      EXPECT_NEAR(kBelow.weft * e + lock.stress(e), tension, 2e-3 * tension);  // twice what the search leaves
+    }
+    EXPECT_TRUE(std::ranges::all_of(linear_force(*limit, drawn(0, 1.02), lag), [](const Vec3& f) {
+      return f.isZero(0);
+    })) << "threads without a length";
+  }
+}
+
+TEST(StretchLimit, IsItselfWhereItIsLinearisedAndBelowTheOnset) {
+  for (const auto& limit : both(kLimit, kNone))
+    for (const double weft : {1.02, 1.09, 1.3}) {
+      const Positions x = drawn(weft, 1.01);
+      LockLag lag;
+      limit->begin(x, lag);
+      limit->update(x, true, lag);
+      EXPECT_EQ(lag.near.empty(), weft < 1.05);
+      const Positions force = testing::force_of(*limit, x, testing::zeros(x)), linear = linear_force(*limit, x, lag);
+      for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((linear[i] - force[i]).norm(), 1e-9 * Lock::kTension);
+    }
 }
 
 TEST(StretchLimit, TellsTheLongestThreadAndWhereItIs) {

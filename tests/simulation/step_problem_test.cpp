@@ -90,7 +90,7 @@ class StepProblems : public ::testing::Test {
 TEST_F(StepProblems, GiveTheSameForceWhateverWasEvaluatedBefore) {
   StepProblem used = problem(), fresh = problem();
   linearise(used, moved(1, 2));
-  used.begin_step(0, {});
+  used.begin_step(0, x_, {});
   const std::vector<Vec3> of_linearisation = linearise(used, x_);
   EXPECT_EQ(of_linearisation, linearise(fresh, x_));
   EXPECT_NE(of_linearisation, forces(used, moved(0, 1)));
@@ -108,7 +108,7 @@ TEST_F(StepProblems, KnowForcesByPositionAndVelocityOfEachCloth) {
     for (std::size_t i : {0UL, 2UL * kParticles - 1}) {
       (*of)[i].y() += 1e-9;
       StepProblem fresh = problem();
-      fresh.begin_step(0, {});
+      fresh.begin_step(0, x_, {});
       linearise(fresh, x_);
       EXPECT_EQ(forces(used, x_), forces(fresh, x_)) << i;
     }
@@ -191,7 +191,7 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
   EXPECT_EQ(problem.memory().contacts.updates, 6);
   EXPECT_EQ(problem.memory().contacts.loads.size(), 1U);
   const double lagging = problem.memory().contacts.loads[0];
-  problem.begin_step(0, {});
+  problem.begin_step(0, x_, {});
   EXPECT_EQ(problem.memory().contacts.updates, 0);
   linearise(problem, x_);
   EXPECT_NE(problem.memory().contacts.loads[0], lagging);  // that of the start
@@ -212,7 +212,7 @@ TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {
     StepProblem problem(cloth);
     const auto matrix_with = [&](std::span<const integrator::HeldParticle> held) {
       std::vector<Vec3> force = still;
-      problem.begin_step(0, held);
+      problem.begin_step(0, x, held);
       problem.linearise({x, still, x, kRate, 1}, 0, force);
       std::vector<Mat3> all;
       const solver::BlockMatrix& matrix = problem.memory().system.matrix;
@@ -243,7 +243,7 @@ TEST_F(SewnProblem, ForgetsWhatItKnewOfClothThatIsSewnOn) {
   const integrator::StagePoint at{x, still, x, kRate, 1};
   const auto force_at = [&](double t) {
     std::vector<Vec3> force = still;
-    problem.begin_step(t, {});
+    problem.begin_step(t, x, {});
     problem.linearise(at, 0, force);
     return force;
   };
