@@ -144,7 +144,7 @@ Picture decode_picture(std::string_view bytes) {
   if (bytes.starts_with("\x89PNG")) return decode_png(bytes);
   if (bytes.starts_with("\xff\xd8\xff")) return decode_jpeg(bytes);
   if (is_targa(bytes)) return to_picture(*decode_frame(bytes, AV_CODEC_ID_TARGA));
-  fail(bytes.empty() ? "the file is empty" : "it begins like none of them");
+  fail(bytes.empty() ? "the file is empty" : "it begins like no picture");
 }
 
 Picture read_picture(const std::filesystem::path& file) {

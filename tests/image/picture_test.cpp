@@ -116,7 +116,7 @@ TEST(PictureFile, WhatIsBrokenOrSomethingElseIsRefusedWithTheReason) {
   const std::string png = png_bytes(20, 20, PNG_FORMAT_RGBA, std::vector<std::uint8_t>(1600, 77));
   const std::string jpeg = jpeg_bytes(64, 32, AV_PIX_FMT_YUVJ420P);
   EXPECT_EQ(complaint(""), "the file is empty");
-  EXPECT_EQ(complaint("GIF89a..."), "it begins like none of them");
+  EXPECT_EQ(complaint("GIF89a..."), "it begins like no picture");
   EXPECT_NE(complaint(png.substr(0, png.size() / 2)), "");
   EXPECT_NE(complaint(png.substr(0, 12)), "");
   EXPECT_EQ(complaint(jpeg.substr(0, jpeg.size() / 2)), "the file ends too early");

@@ -43,8 +43,8 @@ const std::vector<Malformed> kMalformed = {
     {"InvalidUtf8", "title = '\xc3\x28'\n", "s.toml:1:9: not TOML: Encountered invalid utf-8 sequence\n"},
     // Pictures and cameras.
     {"PictureThatIsNone", "[[cloth]]\nname = 'a'\nlook.image = '/etc/passwd'\n",
-     "s.toml:3:14: cloth.a.look.image: expected a picture (PNG or JPEG), got \"/etc/passwd\": it begins like neither "
-     "of them\n"},
+     "s.toml:3:14: cloth.a.look.image: expected a picture (PNG or JPEG), got \"/etc/passwd\": it begins like no "
+     "picture\n"},
     {"PictureThatIsMissing", "[[cloth]]\nname = 'a'\nlook.image = '/none.png'\n",
      "s.toml:3:14: cloth.a.look.image: expected a readable file, got \"/none.png\": there is no /none.png\n"},
     {"PanelOfNoPattern", "[[cloth]]\nname = 'a'\nlook.panel = [{ name = 'front' }]\n",
