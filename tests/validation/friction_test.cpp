@@ -107,6 +107,18 @@ TEST_P(Incline, IsSlidDownAsABlockDoes) {
     }
 }
 
+// What slides holds its neighbours as they land one after the other. A block that falls that far loses 1 % of its way.
+TEST_P(Incline, IsSlidDownAfterAFallToo) {
+  const double mu = 0.3, angle = std::atan(mu) + kDegree;
+  scene::Scene scene = incline(angle, mu, 21);
+  scene.contact.response = GetParam();
+  scene::Cloth& cloth = scene.cloths[0];
+  cloth.pose.position += cloth.pose.rotation * Vec3(0, 0, 0.001);
+  const auto way = ways_down(scene, 40);
+  const double expected = 0.5 * kGravity * (std::sin(angle) - mu * std::cos(angle)) * 1.6 * 1.61;
+  EXPECT_NEAR(way[40] - way[0], expected, 0.1 * expected);
+}
+
 TEST_P(Incline, HoldsClothADegreeBelowTheAngleOfFriction) {
   for (double mu : {0.1, 0.3, 0.6}) {
     scene::Scene scene = incline(std::atan(mu) - kDegree, mu, 11);

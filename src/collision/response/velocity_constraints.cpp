@@ -29,6 +29,10 @@ constexpr int kFlips = 3;
 // the weight. Of friction, a fifth of what it was besides.
 constexpr double kNegligibleAcceleration = 0.5;
 constexpr double kLoadChange = 0.2;
+// Steps on end that a particle has to be slow in before it sticks. What begins to slide is held by neighbours that do
+// so a step later, and if it stuck for that they would hold each other for ever: a sheet that fell by 1 mm onto a slope
+// stood still up to one degree and more above the angle of friction.
+constexpr std::uint8_t kSlowSteps = 2;
 // Walls that are looked at for one particle, the most violated ones.
 constexpr std::size_t kMostWalls = 8;
 
@@ -257,7 +261,7 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   const bool other_walls = !next.same_walls(particle.held);
   const double change = wall.friction * std::abs(memory.load - particle.friction_load);
   const bool other_load = change > negligible && change > kLoadChange * limit;
-  particle.stops =
+  particle.slow =
       limit > 0 && !other_load && !other_walls && slip(particle, x_end).norm() < ContactSet::kStickSpeed * step_;
   hold(particle, held_at, next);
   particle.friction_load = memory.load;
@@ -270,8 +274,10 @@ void VelocityConstraints::accept() {
   remembered_.clear();
   for (const Touched& particle : touched_) {
     if (particle.memory.state == State::away) continue;
-    memory_[particle.particle] = particle.memory;
-    if (particle.stops && particle.memory.state == State::sliding) memory_[particle.particle].state = State::sticking;
+    Memory& memory = memory_[particle.particle] = particle.memory;
+    const bool slow = particle.slow && memory.state == State::sliding;
+    memory.slow = slow ? static_cast<std::uint8_t>(memory.slow + 1) : 0;
+    if (memory.slow == kSlowSteps) memory.state = State::sticking, memory.slow = 0;
     remembered_.push_back(particle.particle);
   }
 }
@@ -358,8 +364,9 @@ void VelocityConstraints::serialize(Archive& archive) {
     if constexpr (Archive::kReads)
       require(particle >= 0 && static_cast<std::size_t>(particle) < masses_.size(), "particles of the scene");
     Memory& memory = memory_[particle];
-    serialize_values(archive, memory.state, memory.push, memory.load);
-    if constexpr (Archive::kReads) require(memory.state <= State::sliding, "a particle that sticks or slides");
+    serialize_values(archive, memory.state, memory.push, memory.load, memory.slow);
+    if constexpr (Archive::kReads)
+      require(memory.state <= State::sliding && memory.slow < kSlowSteps, "a particle that sticks or slides");
   });
 }
 

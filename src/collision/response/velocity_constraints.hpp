@@ -35,7 +35,7 @@ struct PrescribedParticle {
 /// residual says that it would pull. Walls of one particle act together: up to three hold it at once. What is held is
 /// held in the tangent plane too, moving with the obstacle, while the force that this takes lies in the friction cone.
 /// Else it slides, with friction μ · load against the slip, smooth below kStickSpeed as that of ContactSet; sliding
-/// that slow sticks from the next step on. (As an explicit force, friction threw neighbours that began to slide
+/// that slow for kSlowSteps sticks from then on. (As an explicit force, friction threw neighbours that began to slide
 /// together back past where they came from, and cloth at rest went to and fro between sticking and sliding.)
 ///
 /// All this is decided anew between solves of a step (revise) and remembered for the next step (accept).
@@ -109,6 +109,7 @@ class VelocityConstraints {
     State state = State::away;
     Vec3 push = Vec3::Zero();  // force of the walls, normal part [N]
     double load = 0;           // its size, by walls [N]
+    std::uint8_t slow = 0;     // steps on end that it has slid so slowly that it might stick
   };
   struct Touched {
     Index particle;
@@ -120,7 +121,7 @@ class VelocityConstraints {
     double friction_load = 0;    // that friction of this solve goes by [N]
     Vec3 drag = Vec3::Zero();    // friction against its limit at unchanged velocity, where the step begins its search
     int flips = 0;               // changes of what holds it, in this step
-    bool stops = false;          // slides so slowly that it sticks in the next step
+    bool slow = false;           // slides so slowly that it might stick
   };
 
   Vec3 project(const Touched& particle, const Vec3& u, bool of_force, Held& held) const;

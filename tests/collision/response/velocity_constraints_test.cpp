@@ -119,8 +119,8 @@ TEST(VelocityConstraints, SlidingThatStopsSticksUntilTheForceLeavesTheFrictionCo
       particle.x_t1[0] = Vec3(0, 0, -1e-4);
       particle.prepare();
     };
-    // At rest for two steps: the first one finds the load.
-    for (int step = 0; step < 2; ++step) {
+    // At rest for three steps: the first one finds the load, and two that are slow make it stick.
+    for (int step = 0; step < 3; ++step) {
       begin();
       particle.revise(Vec3::Zero(), weight * Vec3::UnitZ());
       particle.constraints.accept();
@@ -166,15 +166,15 @@ TEST(VelocityConstraints, JacobianOfSlidingIsExactWhereItGoesOnAndNeverTooSoftWh
   for (const bool goes_on : {true, false})
     for (const Vec3& slip : {Vec3(-0.001, 0.0004, 0), Vec3(3e-7, 4e-7, 0)}) {
       OneParticle particle;
-      // At rest for two steps, pulled out of the cone, sliding.
-      for (int step = 0; step < 4; ++step) {
+      // At rest for three steps, pulled out of the cone, sliding.
+      for (int step = 0; step < 5; ++step) {
         particle.constraints.begin_step(kStep);
         particle.wall(Vec3::UnitZ(), kDMin, motion, kMu);
         particle.x_t1[0] = motion + Vec3(0, 0, -1e-4);
-        if (step == 3 && goes_on) particle.x_t1[0] += slip;
+        if (step == 4 && goes_on) particle.x_t1[0] += slip;
         particle.prepare();
-        if (step == 3) break;
-        particle.revise(motion, weight * Vec3(step == 2 ? 2 * kMu : 0, 0, 1));
+        if (step == 4) break;
+        particle.revise(motion, weight * Vec3(step == 3 ? 2 * kMu : 0, 0, 1));
         particle.constraints.accept();
       }
       const auto force_at = [&](const Vec3& slid) {
