@@ -59,7 +59,9 @@ TEST_P(ObstructedPin, LagsBehindAndReturns) {
       // 1.30 where the sheet is crushed on the floor at 2 m/s; a pin that does not give way tears it to 30.
       EXPECT_LT(frame.max_stretch, 1.5) << response << ", frame " << frame.report.frame;
       lagging += frame.report.lagging_particles > 0;
-      said.insert(said.end(), frame.report.warnings.begin(), frame.report.warnings.end());
+      // Others are of threads that are stretched meanwhile.
+      for (const std::string& warning : frame.report.warnings)
+        if (warning.find("pin 0 of") != std::string::npos) said.push_back(warning);
     }
     EXPECT_GT(lagging, 4) << response;
     ASSERT_GE(said.size(), 2u) << response;
