@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+extern "C" {
+#include <libavutil/base64.h>
+}
+
 #include "cli/diff_report.hpp"
 #include "core/error.hpp"
 #include "core/version.hpp"
@@ -33,15 +37,11 @@ ul { columns: 3 260px; overflow-wrap: anywhere; }
 )";
 
 std::string base64(std::string_view bytes) {
-  constexpr std::string_view kLetters = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    const std::size_t count = std::min<std::size_t>(3, bytes.size() - i);
-    std::uint32_t word = 0;
-    for (std::size_t k = 0; k < 3; ++k) word = word << 8 | (k < count ? static_cast<unsigned char>(bytes[i + k]) : 0U);
-    for (std::size_t k = 0; k < 4; ++k) text += k <= count ? kLetters[word >> (18 - 6 * k) & 63] : '=';
-  }
+  std::string text(AV_BASE64_SIZE(bytes.size()), '\0');
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  if (av_base64_encode(text.data(), static_cast<int>(text.size()), data, static_cast<int>(bytes.size())) == nullptr)
+    throw Error(ExitCode::output_failed, "a picture of {} bytes is too large for the page", bytes.size());
+  text.pop_back();  // the zero that ends it
   return text;
 }
 

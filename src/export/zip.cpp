@@ -1,6 +1,9 @@
 #include "export/zip.hpp"
 
-#include <array>
+extern "C" {
+#include <libavutil/crc.h>
+}
+
 #include <cstdint>
 #include <limits>
 
@@ -21,17 +24,10 @@ void append(std::string& bytes, std::uint64_t number, int size) {
   for (int i = 0; i < size; ++i, number >>= 8) bytes += static_cast<char>(number & 0xff);
 }
 
-// Polynomial 0x04c11db7, bits reversed.
 std::uint32_t crc32(const std::string& bytes) {
-  std::array<std::uint32_t, 256> table{};
-  for (std::uint32_t i = 0; i < 256; ++i) {
-    std::uint32_t value = i;
-    for (int bit = 0; bit < 8; ++bit) value = (value & 1) != 0 ? value >> 1 ^ 0xedb88320U : value >> 1;
-    table[i] = value;
-  }
-  std::uint32_t crc = 0xffffffffU;
-  for (const char c : bytes) crc = crc >> 8 ^ table[(crc ^ static_cast<unsigned char>(c)) & 0xff];
-  return ~crc;
+  constexpr std::uint32_t kAllBits = 0xffffffffU;
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  return ~av_crc(av_crc_get_table(AV_CRC_32_IEEE_LE), kAllBits, data, bytes.size());
 }
 
 }  // namespace
