@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/renderer.hpp"
+#include "render/scaled_pictures.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
@@ -75,8 +75,6 @@ TEST(Trims, AStripAlongTheBorderFacesOutwardAndIsAsThickAsTheCloth) {
   EXPECT_NEAR(area, 4 * 0.01, 1e-12);
 }
 
-constexpr int kWidth = 160, kHeight = 100;
-
 /// Cloth that fills the picture, leant back by 50 degrees, with a line of stitches (a seam) up or across its middle.
 frame::FrameSnapshot sewn_cloth(double distance, bool seam) {
   frame::FrameSnapshot snapshot;
@@ -100,22 +98,6 @@ frame::FrameSnapshot sewn_cloth(double distance, bool seam) {
   snapshot.cameras = {camera_at(Vec3(0, -distance, 0), Vec3::Zero(), 30)};
   snapshot.lights = {sun(Vec3::UnitY())};
   return snapshot;
-}
-
-image::Image drawn(const frame::FrameSnapshot& snapshot, int scale, Quality quality = Quality::final) {
-  Settings settings;
-  settings.width = scale * kWidth;
-  settings.height = scale * kHeight;
-  settings.quality = quality;
-  return Renderer(settings).draw(snapshot);
-}
-
-/// Of the picture's green, mean over a block of pixels.
-double mean(const image::Image& image, int x0, int y0, int size) {
-  double sum = 0;
-  for (int y = y0; y < y0 + size; ++y)
-    for (int x = x0; x < x0 + size; ++x) sum += image.pixel(x, y)[1];
-  return sum / (size * size);
 }
 
 TEST(Trims, StitchesShowCloseByAndInFinalQualityOnly) {

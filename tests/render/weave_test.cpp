@@ -4,13 +4,11 @@
 #include <cmath>
 #include <numbers>
 
-#include "render/renderer.hpp"
+#include "render/scaled_pictures.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
 namespace {
-
-constexpr int kWidth = 160, kHeight = 100;
 
 /// Cloth that fills the picture, leant back by 50 degrees, seen from a distance [m].
 frame::FrameSnapshot leaning_cloth(double distance, double thread_spacing) {
@@ -26,22 +24,6 @@ frame::FrameSnapshot leaning_cloth(double distance, double thread_spacing) {
   snapshot.cameras = {camera_at(Vec3(0, -distance, 0), Vec3::Zero(), 30)};
   snapshot.lights = {sun(Vec3::UnitY())};
   return snapshot;
-}
-
-image::Image drawn(const frame::FrameSnapshot& snapshot, int scale) {
-  Settings settings;
-  settings.width = scale * kWidth;
-  settings.height = scale * kHeight;
-  settings.quality = Quality::final;
-  return Renderer(settings).draw(snapshot);
-}
-
-/// Of the picture's green, mean over a block of pixels.
-double mean(const image::Image& image, int x0, int y0, int size) {
-  double sum = 0;
-  for (int y = y0; y < y0 + size; ++y)
-    for (int x = x0; x < x0 + size; ++x) sum += image.pixel(x, y)[1];
-  return sum / (size * size);
 }
 
 TEST(Weave, KeepsTheMeanColorNearAndFar) {

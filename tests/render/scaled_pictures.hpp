@@ -1,0 +1,26 @@
+// Pictures of one view in several sizes, for what has to look alike in all of them.
+#pragma once
+
+#include "render/renderer.hpp"
+
+namespace weft::render {
+
+inline constexpr int kWidth = 160, kHeight = 100;  // at scale 1
+
+inline image::Image drawn(const frame::FrameSnapshot& snapshot, int scale, Quality quality = Quality::final) {
+  Settings settings;
+  settings.width = scale * kWidth;
+  settings.height = scale * kHeight;
+  settings.quality = quality;
+  return Renderer(settings).draw(snapshot);
+}
+
+/// Of the picture's green, mean over a block of pixels.
+inline double mean(const image::Image& image, int x0, int y0, int size) {
+  double sum = 0;
+  for (int y = y0; y < y0 + size; ++y)
+    for (int x = x0; x < x0 + size; ++x) sum += image.pixel(x, y)[1];
+  return sum / (size * size);
+}
+
+}  // namespace weft::render
