@@ -71,7 +71,7 @@ struct Material {
   enum class Wrap : std::uint8_t { repeat, clamp, mirror, once };  ///< once: nothing beyond the edge
   std::string name;
   Vec3 color{0.8, 0.8, 0.8};         ///< linear; what a picture is multiplied by
-  std::string picture;               ///< bytes of a PNG or JPEG file; empty: none
+  std::string picture;               ///< bytes of a PNG, JPEG or TGA file; empty: none
   int width = 0, height = 0;         ///< of `pixels`
   std::vector<std::uint8_t> pixels;  ///< a picture without a file: R G B A, sRGB, rows from the top; empty: none
   Wrap wrap_u = Wrap::repeat, wrap_v = Wrap::repeat;

@@ -5,9 +5,12 @@
 namespace weft::forces {
 namespace {
 
-// Below the onset a piece has to have some stiffness, for its tension to tell where it is; any leads to the same end
-// [N/m].
-constexpr double kLeastStiffness = 1;
+// Below the onset a piece has to have some stiffness, for its tension to tell where it is; any leads to the same end.
+StretchParameters some(StretchParameters below) {
+  constexpr double kLeast = 1;  // [N/m]
+  below.weft = std::max(below.weft, kLeast), below.warp = std::max(below.warp, kLeast);
+  return below;
+}
 
 // Of the search for an extension by its tension, and what of that it may leave.
 constexpr int kExtensionIterations = 20;
@@ -29,18 +32,17 @@ double extension_with(const Lock& lock, double stiffness, double tension, double
 
 StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, const StretchParameters& below, double stretch,
                            double shear)
-    : below_(below), stretch_(stretch), shear_(shear) {
+    : below_(some(below)), stretch_(stretch), shear_(shear) {
   const bool limited = !std::isinf(stretch);
   const auto add_thread = [&](Index i, Index j, double length, double width, double stiffness) {
-    threads_.push_back(
-        {2, {first + i, first + j}, {-1 / length, 1 / length}, width * length, std::max(stiffness, kLeastStiffness)});
+    threads_.push_back({2, {first + i, first + j}, {-1 / length, 1 / length}, width * length, stiffness});
   };
   for (int j = 0; j < grid.nv; ++j)
     for (int i = 0; i < grid.nu; ++i) {
       const Index here = grid.index(i, j);
       const bool weft = i + 1 < grid.nu, warp = j + 1 < grid.nv;
-      if (weft && limited) add_thread(here, grid.index(i + 1, j), grid.du(i), grid.width_v(j), below.weft);
-      if (warp && limited) add_thread(here, grid.index(i, j + 1), grid.dv(j), grid.width_u(i), below.warp);
+      if (weft && limited) add_thread(here, grid.index(i + 1, j), grid.du(i), grid.width_v(j), below_.weft);
+      if (warp && limited) add_thread(here, grid.index(i, j + 1), grid.dv(j), grid.width_u(i), below_.warp);
       if (!weft || !warp || std::isinf(shear)) continue;
       const double u = 0.5 / grid.du(i), v = 0.5 / grid.dv(j);
       const Corners corners{first + here, first + grid.index(i + 1, j), first + grid.index(i, j + 1),
@@ -53,7 +55,7 @@ StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, const StretchPar
 
 StretchLimit::StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch,
                            double shear)
-    : below_(below), stretch_(stretch), shear_(shear) {
+    : below_(some(below)), stretch_(stretch), shear_(shear) {
   follow(membrane);
 }
 
@@ -65,8 +67,8 @@ void StretchLimit::follow(const TriangleMembrane& membrane) {
     const Corners corners{a, b, c};
     const Weights weft{g[0].x(), g[1].x(), g[2].x()}, warp{g[0].y(), g[1].y(), g[2].y()};
     if (!std::isinf(stretch_)) {
-      threads_.push_back({3, corners, weft, element.area, std::max(below_.weft, kLeastStiffness)});
-      threads_.push_back({3, corners, warp, element.area, std::max(below_.warp, kLeastStiffness)});
+      threads_.push_back({3, corners, weft, element.area, below_.weft});
+      threads_.push_back({3, corners, warp, element.area, below_.warp});
     }
     if (!std::isinf(shear_)) crossings_.push_back({3, corners, weft, warp, element.area});
   }

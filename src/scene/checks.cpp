@@ -60,8 +60,8 @@ void check_image(const std::optional<std::filesystem::path>& image, const std::s
   try {
     image::read_picture(*image);
   } catch (const std::exception& error) {
-    findings.report(
-        key, fmt::format("expected a picture (PNG or JPEG), got {}: {}", in_quotes(image->string()), error.what()));
+    findings.report(key, fmt::format("expected a picture (PNG, JPEG or TGA), got {}: {}", in_quotes(image->string()),
+                                     error.what()));
   }
 }
 

@@ -19,10 +19,11 @@ void part_rows(TableBuilder<S>& rows) {
       .single_fills_all();
   rows.plain(Type::text, "edge", &S::edge, "edge of a sewing pattern, as panel.edge, of which the part consists")
       .by_default("all between low and high");
-  rows.plain(Type::file, "mask", &S::mask,
-             "picture (PNG or JPEG) whose greys are shares: white takes particles whole, black not, what it leaves "
-             "transparent neither. It is laid on the UVs of a mesh; on other cloth it spans what low and high span, "
-             "its left end at low weft, its foot at low warp")
+  rows.plain(
+          Type::file, "mask", &S::mask,
+          "picture (PNG, JPEG or TGA) whose greys are shares: white takes particles whole, black not, what it leaves "
+          "transparent neither. It is laid on the UVs of a mesh; on other cloth it spans what low and high span, "
+          "its left end at low weft, its foot at low warp")
       .by_default("none");
   rows.choice("vertex_color", &S::vertex_color, {"none", "red", "green", "blue", "brightness"},
               "of the colours that the file of a mesh gives its vertices: what their share is");

@@ -115,7 +115,7 @@ struct Material {
 struct Paint {
   Vec3 color{0.8, 0.8, 0.8};                   ///< sRGB
   std::optional<Vec3> back_color;              ///< cloth: the other side; a paler front where absent
-  std::optional<std::filesystem::path> image;  ///< PNG or JPEG; absolute after checking
+  std::optional<std::filesystem::path> image;  ///< PNG, JPEG or TGA; absolute after checking
   double image_width = 0.2;                    ///< of one tile along weft [m]; its height follows the picture's shape
   Vec2 image_offset{0, 0};                     ///< of the lower left corner of a tile along weft and warp [m]
   double image_rotation = 0;                   ///< about that corner, counter-clockwise [degrees]

@@ -212,7 +212,7 @@ std::shared_ptr<const frame::Texture> Pictures::of_file(const std::filesystem::p
   try {
     return texture = texture_of(image::read_picture(file));
   } catch (const std::exception& error) {
-    throw Error(ExitCode::scene_invalid, "{}: expected a picture (PNG or JPEG): {}", file.string(), error.what());
+    throw Error(ExitCode::scene_invalid, "{}: expected a picture (PNG, JPEG or TGA): {}", file.string(), error.what());
   }
 }
 

@@ -43,7 +43,7 @@ const std::vector<Malformed> kMalformed = {
     {"InvalidUtf8", "title = '\xc3\x28'\n", "s.toml:1:9: not TOML: Encountered invalid utf-8 sequence\n"},
     // Pictures and cameras.
     {"PictureThatIsNone", "[[cloth]]\nname = 'a'\nlook.image = '/etc/passwd'\n",
-     "s.toml:3:14: cloth.a.look.image: expected a picture (PNG or JPEG), got \"/etc/passwd\": it begins like no "
+     "s.toml:3:14: cloth.a.look.image: expected a picture (PNG, JPEG or TGA), got \"/etc/passwd\": it begins like no "
      "picture\n"},
     {"PictureThatIsMissing", "[[cloth]]\nname = 'a'\nlook.image = '/none.png'\n",
      "s.toml:3:14: cloth.a.look.image: expected a readable file, got \"/none.png\": there is no /none.png\n"},

@@ -31,7 +31,7 @@ constexpr double kNegligibleAcceleration = 0.5;
 constexpr double kLoadChange = 0.2;
 // Steps on end that a particle has to be slow in before it sticks. What begins to slide is held by neighbours that do
 // so a step later, and if it stuck for that they would hold each other for ever: a sheet that fell by 1 mm onto a slope
-// stood still up to one degree and more above the angle of friction.
+// stood still one degree above the angle of friction.
 constexpr std::uint8_t kSlowSteps = 2;
 // Walls that are looked at for one particle, the most violated ones.
 constexpr std::size_t kMostWalls = 8;
