@@ -107,7 +107,8 @@ void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotio
   response.add(*contact, motion.x_t0);
 }
 
-bool ContactBuilder::add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response) {
+bool ContactBuilder::add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response,
+                                 bool again) {
   const ClosestFeatures features = closest_features(pair, motion.x_from);
   const double distance = std::sqrt(features.points.distance_sq);
   const FeaturePair closest{features.vertices, features.points.weights, features.points.difference / distance,
@@ -122,7 +123,7 @@ bool ContactBuilder::add_failing(const CornerPair& pair, const StepMotion& motio
     add_walls(pair, closest, motion, response);
     return is_new;
   }
-  const double range = motion.is_straight() ? distance : kNoLimit;
+  const double range = motion.is_straight() && !again ? distance : kNoLimit;
   if (is_new)
     if (const auto contact = build(closest, 1, range, motion)) response.add(*contact, motion.x_t0);
   if (!motion.is_straight()) add_corners(pair, closest, motion, response);

@@ -67,9 +67,10 @@ class ContactBuilder {
 
   /// Adds contacts of the closest features of two triangles that would meet; false if these push with all their
   /// stiffness already. On the first piece of a way what is closer than the range without being pushed is only kept
-  /// from coming closer. On those that follow it is pushed away, and every corner is kept on its own side of the plane
-  /// between the triangles: what slides past the features that were closest meets there.
-  bool add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response);
+  /// from coming closer, but pushed away where a step before met it too (`again`). On those that follow it is pushed
+  /// away, and every corner is kept on its own side of the plane between the triangles: what slides past the features
+  /// that were closest meets there.
+  bool add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response, bool again = false);
 
   /// Of two skins.
   const Friction& friction_of(std::size_t a, std::size_t b) const { return friction_[a * bodies_.skins().size() + b]; }

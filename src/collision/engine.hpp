@@ -68,8 +68,12 @@ class Engine {
   /// Whether every pair of triangles stays apart on the way to x_t1.
   bool apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Makes contacts of the pairs for which the last call of apart() said no; returns how many are new.
+  /// Makes contacts of the pairs for which the last call of apart() said no; returns how many are new. Steps that
+  /// follow begin with these, as long as they push.
   int adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+
+  /// The step is done and has led to x [m].
+  void accept(std::span<const Vec3> x);
 
   /// Corrects the ends x_t1 of movable particles so that no triangles meet during the step. Cloth that obstacles leave
   /// no room is exempted from that: `may_pinch` allows it; without, only where the obstacle pinches this cloth already.
@@ -104,6 +108,8 @@ class Engine {
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   void gather();
   void count_failures();
+  void add_late_contacts(const StepMotion& motion);
+  void foresee(const StepMotion& motion);
   void add_contacts(std::span<const Proximity> near, const StepMotion& motion);
   void find_near(std::span<const Vec3> x_from, std::span<const Vec3> x_t1, std::vector<Proximity>& near);
   template <class Archive>
@@ -126,6 +132,7 @@ class Engine {
   std::span<const Vec3> x_t0_;                      // where the step began
   std::vector<PinchedPairs::Push> pinched_pushes_;  // back out of obstacles, of the step
   std::vector<CornerPair> pushed_;                  // pairs that were pushed apart in it
+  std::vector<CornerPair> late_;                    // pairs in contact that a solve had to show
   std::vector<Proximity> proximities_;              // at the start of the step
   std::vector<Proximity> near_bend_;                // where its way last bent
   std::span<const CornerPair> failing_;             // of the last call of apart()

@@ -97,6 +97,9 @@ class CollisionStage {
   };
   Pinches take_pinches(const Moment& last_start);  ///< where the last step began
 
+  /// The step that led to `next` is done.
+  void accept(const Moment& next) { engine_.accept(next.x); }
+
   /// Before a frame: see Engine::forget.
   void forget() { engine_.forget(); }
 

@@ -347,7 +347,7 @@ StepLoop::Rejection StepLoop::reason_of(const integrator::StepReport& step) {
 void StepLoop::accept(double h, FrameReport& report) {
   stepper_.accept(progress_.now, h);
   pins_.accept();
-  if (collisions_) collisions_->response().accept();
+  if (collisions_) collisions_->accept(next_);
   std::swap(progress_.now, next_);
   progress_.longest *= kRecovery;
   measure_stretch(report);

@@ -118,6 +118,60 @@ TEST(Engine, WhatWouldMeetBecomesContactsOnce) {
   EXPECT_EQ(engine.adopt_failing(sheet.x, end), 0);
 }
 
+// The lower edge of a triangle over the upper edge of another, crossing it where its share fades out: what is near has
+// a weak contact, what a solve has shown a whole one.
+struct CrossedEdges {
+  std::vector<double> masses{1e-4, 1e-4, 1e-4};
+
+  static std::vector<Vec3> at(double z) {
+    return {{-0.001, 0, z}, {0.019, 0, z}, {0.009, 0, z + 0.02}, {0, -0.05, 0}, {0, 0.05, 0}, {0, 0, -0.05}};
+  }
+  Engine engine() const {
+    Bodies bodies;
+    const std::vector<Triangle> one{{0, 1, 2}};
+    bodies.add(one, 3, {.deformable = true, .thickness = kThickness});
+    bodies.add(one, 3, {});
+    return {std::move(bodies), {}, at(0.03), masses};
+  }
+  // After a step that showed only once solved that the edges meet, and led to a height of z [m].
+  Engine& after_a_late_contact(Engine& engine, double z) const {
+    const std::vector<Vec3> from = at(0.03), through = at(-0.01);
+    engine.begin_step(from, from, kH);
+    EXPECT_FALSE(engine.apart(from, through));
+    EXPECT_EQ(engine.adopt_failing(from, through), 1);
+    engine.accept(at(z));
+    return engine;
+  }
+  static std::size_t contacts(Engine& engine, double z) {
+    const std::vector<Vec3> x = at(z);
+    engine.begin_step(x, x, kH);
+    return engine.response().springs().size();
+  }
+};
+
+TEST(Engine, WhatASolveHadToShowIsAContactFromTheStartAsLongAsItPushes) {
+  const CrossedEdges edges;
+  Engine fresh = edges.engine(), late = edges.engine(), gone = edges.engine();
+  const double near = 0.0005, far = 0.0021;
+  edges.after_a_late_contact(late, near);
+  edges.after_a_late_contact(gone, far);
+  const std::size_t weak = CrossedEdges::contacts(fresh, near);
+  EXPECT_EQ(CrossedEdges::contacts(late, near), weak + 1);
+  EXPECT_EQ(CrossedEdges::contacts(gone, near), weak);
+}
+
+TEST(Engine, ASavedStateKnowsWhatASolveHadToShow) {
+  const CrossedEdges edges;
+  Engine before = edges.engine(), after = edges.engine();
+  const std::vector<Vec3> x = CrossedEdges::at(0.0005);
+  ByteWriter writer;
+  edges.after_a_late_contact(before, 0.0005).serialize(writer, x);
+  ByteReader reader{writer.bytes};
+  after.serialize(reader, x);
+  EXPECT_EQ(reader.bytes.size(), 0U);
+  EXPECT_EQ(CrossedEdges::contacts(after, 0.0005), CrossedEdges::contacts(before, 0.0005));
+}
+
 // A guess that runs into the floor has its contacts before the first solve.
 TEST(Engine, AnExpectedEndThatMeetsGivesContactsAtOnce) {
   Sheet sheet(3, 0.05);
