@@ -67,10 +67,51 @@ double growth_of_slip_over_friction(const Contact& contact, double slip) {
   return 1 / (slip * friction_over_slip(contact, slip));
 }
 
+// w, against a slip in stick slips.
+Vec3 friction_against_load(const Contact& contact, const Vec3& slip) {
+  if (contact.static_friction == 0) return Vec3::Zero();
+  return friction_over_slip(contact, slip.norm()) * slip;
+}
+
+// The slip in stick slips that has a w which is no more than static friction.
+Vec3 sticking_slip(const Contact& contact, const Vec3& w) {
+  const double slip = 1 - std::sqrt(std::max(0.0, 1 - w.norm() / contact.static_friction));
+  return w / friction_over_slip(contact, slip);
+}
+
+// ∂w/∂u for a slip in stick slips; exact with the w that it has, or else definite.
+Mat3 friction_slope(const Contact& contact, const Vec3& slip, const Vec3& w) {
+  const double size = slip.norm();
+  return friction_over_slip(contact, size) *
+         friction_tangent(Mat3::Identity() - contact.normal * contact.normal.transpose(), slip,
+                          growth_of_slip_over_friction(contact, size) * w);
+}
+
 // Slip in the step, across the normal.
 Vec3 slip_of(const Contact& contact, const Vec3& relative) {
   const Vec3 slip = relative - contact.relative_start;
   return slip - contact.normal.dot(slip) * contact.normal;
+}
+
+// To a slip in stick slips.
+void follow(const Contact& contact, const Vec3& slip, FrictionLag& lag) {
+  const bool turned = slip.dot(lag.slip) < 0;
+  lag.slip = slip;
+  if (lag.sticks) {
+    const Vec3 held_at = sticking_slip(contact, lag.drag);
+    lag.drag += friction_slope(contact, held_at, lag.drag) * (slip - held_at);
+    const double share = lag.drag.norm() / contact.static_friction;
+    if (share < 1) return;
+    lag.drag /= share;
+    lag.sticks = false;
+    ++lag.let_go;
+  } else if (slip.squaredNorm() < 1) {
+    lag.drag = friction_against_load(contact, slip);
+    lag.sticks = true;
+  } else if (turned && lag.let_go < ContactSet::kMostReturns) {
+    lag.drag = Vec3::Zero();
+    lag.sticks = true;
+  }
 }
 
 }  // namespace
@@ -91,18 +132,22 @@ void ContactSet::add(const Contact& contact) {
 void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
   for (std::size_t c = 0; c < lag.depths.size() && lag.updates > 0; ++c) {
     const Contact& contact = contacts_[c];
-    const double depth = contact.range - contact.normal.dot(relative_end(contact, x_end));
+    const Vec3 relative = relative_end(contact, x_end);
+    const double depth = contact.range - contact.normal.dot(relative);
     const double force = tangent_force(load_at(contact, lag.depths[c]), lag.depths[c], depth);
     lag.depths[c] = depth_with(contact, force, std::max(depth, lag.depths[c]));
     if (lag.updates < kLoadUpdates) lag.loads[c] = force;
+    if (contact.against_obstacle && contact.static_friction > 0)
+      follow(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
   }
   for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
     lag.depths.push_back(std::max(0.0, contacts_[c].depth));
     lag.loads.push_back(load_at(contacts_[c], lag.depths.back()).force);
-    // What is found later has been led astray already.
-    lag.drags.push_back(lag.updates > 0 ? Vec3(Vec3::Zero())
-                                        : friction_against_load(
-                                              contacts_[c], slip_of(contacts_[c], relative_end(contacts_[c], x_end))));
+    lag.frictions.emplace_back();
+    if (lag.updates > 0) continue;  // what is found later has been led astray already
+    FrictionLag& friction = lag.frictions.back();
+    friction.slip = slip_of(contacts_[c], relative_end(contacts_[c], x_end)) / stick_slip_;
+    friction.drag = friction_against_load(contacts_[c], friction.slip);
   }
   ++lag.updates;
 }
@@ -125,29 +170,17 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   response.force = load.force * contact.normal;
   const bool follows = law == Law::itself && lag.updates < kLoadUpdates;
   const double friction_load = follows ? load.force : lag.loads[index];
-  if (contact.static_friction > 0 && friction_load > 0) {
-    response.slip = slip_of(contact, relative);
-    const double size = response.slip.norm();
-    response.sliding = friction_load * friction_over_slip(contact, size / stick_slip_) / stick_slip_;
-    response.force -= response.sliding * response.slip;
-  }
+  if (contact.static_friction == 0 || friction_load == 0) return response;
+
+  const FrictionLag& friction = lag.frictions[index];
+  const Vec3 slip = slip_of(contact, relative) / stick_slip_;
+  const bool sticks = law == Law::tangent && friction.sticks;
+  response.slip = sticks ? sticking_slip(contact, friction.drag) : slip;
+  response.stickiness = friction_load / stick_slip_;
+  Vec3 w = friction_against_load(contact, response.slip);
+  if (sticks) w += friction_slope(contact, response.slip, friction.drag) * (slip - response.slip);
+  response.force -= friction_load * w;
   return response;
-}
-
-// w, against the slip.
-Vec3 ContactSet::friction_against_load(const Contact& contact, const Vec3& slip) const {
-  if (contact.static_friction == 0) return Vec3::Zero();
-  const Vec3 in_sticks = slip / stick_slip_;
-  return friction_over_slip(contact, in_sticks.norm()) * in_sticks;
-}
-
-// λ/ψ times the tangent.
-Mat3 ContactSet::friction_stiffness(std::size_t index, const Response& response, const ContactLag& lag) const {
-  if (response.sliding == 0) return Mat3::Zero();
-  const Contact& contact = contacts_[index];
-  const double growth = growth_of_slip_over_friction(contact, response.slip.norm() / stick_slip_);
-  return response.sliding * friction_tangent(Mat3::Identity() - contact.normal * contact.normal.transpose(),
-                                             response.slip, growth * lag.drags[index]);
 }
 
 void ContactSet::add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
@@ -178,8 +211,10 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const C
       force[contact.particles[k]] += contact.weights[k] * response.force;
       if (contact.weights[k] != 0) ++involved, last = k;
     }
-    const Mat3 along = contact.normal * contact.normal.transpose();
-    const Mat3 stiffness = end_rate * (response.slope * along + friction_stiffness(c, response, lag));
+    Mat3 stiffness = response.slope * contact.normal * contact.normal.transpose();
+    if (response.stickiness > 0)
+      stiffness += response.stickiness * friction_slope(contact, response.slip, lag.frictions[c].drag);
+    stiffness *= end_rate;
     if (involved == 1) {
       // A single particle on an obstacle couples with nothing.
       const double w = contact.weights[last];

@@ -28,12 +28,20 @@ struct Contact {
   double static_friction = 0;  ///< until it slides; no less
 };
 
+/// What is remembered of the friction of a contact.
+struct FrictionLag {
+  Vec3 drag = Vec3::Zero();  ///< w, friction over load against the slip: an unknown of its own
+  Vec3 slip = Vec3::Zero();  ///< at the last update, in stick slips
+  bool sticks = false;       ///< linearised where friction is w, and not where the slip is
+  int let_go = 0;            ///< times that it began to slide, since the step began
+};
+
 /// What is remembered of the contacts of a step, one of each, from one iteration of Newton's method to the next.
 struct ContactLag {
-  std::vector<double> depths;  ///< where the law of the contact is taken as its tangent [m]
-  std::vector<double> loads;   ///< that friction goes by [N]; they lag behind the positions
-  std::vector<Vec3> drags;     ///< friction against its load at unchanged velocity, where the step begins its search
-  int updates = 0;             ///< since the step began
+  std::vector<double> depths;          ///< where the law of the contact is taken as its tangent [m]
+  std::vector<double> loads;           ///< that friction goes by [N]; they lag behind the positions
+  std::vector<FrictionLag> frictions;  ///< begin as what slides at unchanged velocity, where the step begins its search
+  int updates = 0;                     ///< since the step began
 };
 
 /// I − sym(w ûᵀ) in the directions `across` the normal, w being kept to a length of 1 so that this is definite: of
@@ -54,6 +62,10 @@ class ContactSet {
   /// has: that the load changes with the positions is not in the matrix, and where folds press on each other in steps
   /// below a millisecond the two would go on chasing each other, however short the step.
   static constexpr int kLoadUpdates = 20;
+  /// Times in a step that a contact which let go sticks again because its slip turned back: as long as cloth around
+  /// moves with it, what would stick is seen to slide to and fro. The first 11 frames of the catwalk took 612, 460, 536
+  /// and 477 iterations with 1, 2, 3 and any number, and 855 where turning back does not stick.
+  static constexpr int kMostReturns = 2;
 
   static constexpr double kStiffening = 100;
   /// Slip speed, in stick speeds, from which friction is that of sliding; between, it falls from the static one.
@@ -71,6 +83,10 @@ class ContactSet {
   /// the tangent at the depth of the iterate, a law ~ d⁵ that is entered too deep gives up a fifth of the depth in an
   /// iteration: sphere_drape took 576 iterations in place of 462, and 256² particles did not get through an impact.
   /// Friction goes by λ from here on. Within one iteration it does not change, so that friction too has a potential.
+  ///
+  /// Friction on an obstacle that sticks follows its tangent likewise, and slides from where that leads beyond static
+  /// friction; what slides sticks once its slip is within the stick slip, or has turned back. Cloth on cloth, where both
+  /// sides give way, does not gain by that.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const;
 
   /// force += contact forces [N] with the particles at x_end. Friction goes by the loads there, as long as they are
@@ -82,11 +98,11 @@ class ContactSet {
 
   /// As add_linear_forces, and adds −∂f/∂x to the system, where x_end changes by `end_rate` per change of the unknown;
   /// for friction a form in its place that is definite. Friction −λ w of a slip u = ψ(‖u‖) w is linearised with w as
-  /// an unknown of its own, which begins with that of unchanged velocity (Chan, Golub & Mulet, "A Nonlinear Primal-Dual
-  /// Method for Total Variation-Based Image Restoration", 1999): the tangent where cloth slides on, force over slip or
-  /// more where it begins to slide, stops or turns. As force over slip alone cloth that slides down an incline took
-  /// 2.3 iterations a step in place of 1.05; with w kept up from iteration to iteration cloth that is wrung took a
-  /// fifth more than with this.
+  /// an unknown of its own (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method for Total Variation-Based Image
+  /// Restoration", 1999). Where it sticks, it is the tangent at the slip that has this w. Where it slides w is that of
+  /// unchanged velocity, or the one with which it began to slide: the tangent where cloth slides on, force over slip or
+  /// more where it begins to slide or turns. As force over slip alone cloth that slides down an incline took 2.3
+  /// iterations a step in place of 1.05.
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                  solver::LinearSystem& system) const;
 
@@ -96,15 +112,13 @@ class ContactSet {
  private:
   struct Response {
     bool active = false;
-    Vec3 force;          // on point a
-    double slope = 0;    // of the load [N/m]
-    double sliding = 0;  // friction force per slip [N/m]
-    Vec3 slip;           // [m]
+    Vec3 force;             // on point a
+    double slope = 0;       // of the load [N/m]
+    double stickiness = 0;  // load that friction goes by, per stick slip [N/m]; 0: no friction
+    Vec3 slip;              // where friction is linearised, in stick slips
   };
   enum class Law { itself, tangent };
   Response respond(std::size_t index, Law law, std::span<const Vec3> x_end, const ContactLag& lag) const;
-  Vec3 friction_against_load(const Contact& contact, const Vec3& slip) const;
-  Mat3 friction_stiffness(std::size_t index, const Response& response, const ContactLag& lag) const;
   void add_forces(Law law, std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
 
   std::vector<Contact> contacts_;

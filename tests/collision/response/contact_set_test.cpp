@@ -306,35 +306,121 @@ TEST(ContactSet, JacobianIsThatOfCentralDifferencesAtFixedLoad) {
   }
 }
 
-TEST(ContactSet, JacobianOfSlidingIsExactWhereItGoesOnAndNeverTooSoftWhereItBegins) {
-  const VertexOnFace pair(0.4);
-  const Vec3 slip = pair.contact.normal.unitOrthogonal(), across = pair.contact.normal.cross(slip);
-  for (double share : {0.5, 3.0}) {
-    const ContactSet contacts = pair.set();
-    std::vector<Vec3> slid = pair.x, back = pair.x;
-    slid[0] += share * ContactSet::kStickSpeed * kStep * slip;
-    back[0] -= share * ContactSet::kStickSpeed * kStep * slip;
-    const Mat3 exact = differences(contacts, slid, 1).topLeftCorner<3, 3>();
-    const auto off = [&](std::span<const Vec3> expected) -> Mat3 {
-      ContactLag lag;
-      contacts.update(expected, lag);
-      contacts.update(slid, lag);
-      solver::LinearSystem system;
-      system.matrix = solver::BlockMatrix(static_cast<Index>(slid.size()), {});
-      std::vector<Vec3> f(slid.size(), Vec3::Zero());
-      contacts.linearise(slid, 1, lag, f, system);
-      return assembled(system).topLeftCorner<3, 3>() - exact;
-    };
-    const double scale = assembled(linearised(contacts, pair.x, 1)).cwiseAbs().maxCoeff();
-    // Expected to slide as it does; to stick; to slide the other way.
-    EXPECT_LT(off(slid).norm(), 1e-4 * scale);
-    for (const Mat3& added : {off(pair.x), off(back)}) {
-      EXPECT_LT((added * across).norm(), 1e-4 * scale);
-      EXPECT_LT((added * pair.contact.normal).norm(), 1e-4 * scale);
-      EXPECT_GT(slip.dot(added * slip), 0.05 * scale);
-    }
-    EXPECT_GT(slip.dot(off(back) * slip), 1.5 * slip.dot(off(pair.x) * slip));
+/// A vertex that slips on a face; slips in stick slips.
+struct Slipping : VertexOnFace {
+  ContactSet contacts;
+  ContactLag lag;
+  Vec3 along = contact.normal.unitOrthogonal(), across = contact.normal.cross(along);
+
+  explicit Slipping(bool on_obstacle = true) : VertexOnFace(0.4) {
+    contact.against_obstacle = on_obstacle;
+    contacts = set();
   }
+
+  std::vector<Vec3> slipped(double slip, double sideways = 0) const {
+    std::vector<Vec3> at = x;
+    at[0] += ContactSet::kStickSpeed * kStep * (slip * along + sideways * across);
+    return at;
+  }
+  /// As where an iteration has led to.
+  Slipping& update(double slip, double sideways = 0) {
+    contacts.update(slipped(slip, sideways), lag);
+    return *this;
+  }
+  /// Friction as the linear system has it, per load [1].
+  Vec3 friction(double slip, double sideways = 0) const {
+    std::vector<Vec3> f(x.size(), Vec3::Zero());
+    contacts.add_linear_forces(slipped(slip, sideways), lag, f);
+    return (f[0] - contact.normal.dot(f[0]) * contact.normal) / load_at(0.6);
+  }
+  Mat3 stiffness(double slip) const {
+    solver::LinearSystem system;
+    system.matrix = solver::BlockMatrix(static_cast<Index>(x.size()), {});
+    std::vector<Vec3> f(x.size(), Vec3::Zero());
+    contacts.linearise(slipped(slip), 1, lag, f, system);
+    return assembled(system).topLeftCorner<3, 3>();
+  }
+};
+
+TEST(ContactSet, JacobianOfSlidingIsExactWhereItGoesOnAndNeverTooSoftWhereItBegins) {
+  const Mat3 sticking = Slipping().update(0).stiffness(0);
+  const double scale = sticking.cwiseAbs().maxCoeff();
+  const Mat3 exact = differences(Slipping().contacts, Slipping().slipped(3), 1).topLeftCorner<3, 3>();
+  EXPECT_LT((Slipping().update(3).update(3).stiffness(3) - exact).norm(), 1e-4 * scale);
+
+  const Slipping begins = Slipping().update(0.01).update(3);
+  const Mat3 added = begins.stiffness(3) - exact;
+  EXPECT_LT((added * begins.across).norm(), 1e-4 * scale);
+  EXPECT_LT((added * begins.contact.normal).norm(), 1e-4 * scale);
+  EXPECT_GT(begins.along.dot(added * begins.along), 0.05 * scale);
+}
+
+TEST(ContactSet, FrictionThatSticksFollowsItsTangentToTheLaw) {
+  Slipping pair;
+  pair.update(0.5).update(0.5);
+  const auto law = [](double slip) { return 0.4 * slip * (2 - slip); };
+  EXPECT_NEAR(pair.friction(0.5).dot(pair.along), -law(0.5), 1e-12);
+  // The slope of the law is 0.4 (2 − 2 s) along and, for a turn, 0.4 (2 − s).
+  EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -(law(0.5) + 0.4 * 1.0 * 0.1), 1e-12);
+  EXPECT_NEAR(pair.friction(0.5, 0.2).dot(pair.across), -0.4 * 1.5 * 0.2, 1e-12);
+  for (int k = 0; k < 6; ++k) pair.update(0.6);
+  EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -law(0.6), 1e-12);
+  EXPECT_NEAR(pair.along.dot(pair.stiffness(0.6) * pair.along),
+              pair.lag.loads[0] * 0.4 * (2 - 2 * 0.6) / (ContactSet::kStickSpeed * kStep),
+              1e-9 * pair.lag.loads[0] * 1e6);
+}
+
+TEST(ContactSet, FrictionThatSticksLetsGoWhereItsTangentLeadsBeyondStaticFriction) {
+  Slipping pair;
+  pair.contact.static_friction = 0.6;
+  pair.contacts = pair.set();
+  pair.update(0.5).update(0.5).update(1.5, 1);
+  const FrictionLag& friction = pair.lag.frictions[0];
+  EXPECT_FALSE(friction.sticks);
+  // 0.6 times (0.75 + 1.0 · 1.0, 1.5 · 1.0), brought back to static friction.
+  EXPECT_LT((friction.drag - 0.6 * (1.75 * pair.along + 1.5 * pair.across).normalized()).norm(), 1e-12);
+  EXPECT_NEAR(pair.friction(100).norm(), 0.4, 1e-12);  // the law itself
+}
+
+TEST(ContactSet, SlipThatTurnsBackSticksTwiceInAStep) {
+  Slipping pair;
+  pair.update(3).update(4);
+  EXPECT_FALSE(pair.lag.frictions[0].sticks);
+  double slip = 4;
+  for (int turn = 0; turn < 3; ++turn) {
+    slip = -slip;
+    pair.update(slip);
+    const bool sticks = turn < ContactSet::kMostReturns;
+    EXPECT_EQ(pair.lag.frictions[0].sticks, sticks) << turn;
+    // From no friction on along its tangent, or as it slides.
+    EXPECT_NEAR(pair.friction(slip).dot(pair.along), sticks ? -0.4 * 2 * slip : std::copysign(0.4, -slip), 1e-12);
+    pair.update(slip);
+    EXPECT_FALSE(pair.lag.frictions[0].sticks) << turn;
+  }
+  // The next step begins anew.
+  pair.lag = {};
+  pair.update(4).update(-4);
+  EXPECT_TRUE(pair.lag.frictions[0].sticks);
+}
+
+TEST(ContactSet, ClothOnClothKeepsTheFrictionOfUnchangedVelocity) {
+  Slipping pair(false);
+  pair.update(0.5);
+  const Vec3 drag = pair.lag.frictions[0].drag;
+  pair.update(0.6).update(-0.6);
+  EXPECT_FALSE(pair.lag.frictions[0].sticks);
+  EXPECT_EQ(pair.lag.frictions[0].drag, drag);
+  EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -0.4 * 0.6 * (2 - 0.6), 1e-12);  // the law itself
+}
+
+TEST(ContactSet, WhatIsFoundLaterSlidesUntilItIsSeenToHold) {
+  Slipping pair;
+  pair.update(0);
+  pair.contacts.add(pair.contact);
+  pair.update(0.5);
+  EXPECT_FALSE(pair.lag.frictions[1].sticks);
+  EXPECT_EQ(pair.lag.frictions[1].drag, Vec3::Zero());
+  EXPECT_TRUE(pair.update(0.5).lag.frictions[1].sticks);
 }
 
 TEST(ContactSet, ParticleOnAnObstacleGoesIntoTheDiagonal) {
