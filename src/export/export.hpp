@@ -12,10 +12,10 @@
 namespace weft::exporter {
 
 enum class Format {
-  ply,      ///< a file for each object and frame: triangles, positions as double
-  obj,      ///< likewise: faces as simulated, with weft and warp as texture coordinates, normals, and a material (MTL)
+  ply,      ///< a file for each object and frame: triangles, positions as double, weft and warp; cut where panels meet
+  obj,      ///< likewise: faces as simulated, with weft and warp, normals, materials (MTL) and pictures
   pc2,      ///< a point cache for each object, and the object in the first frame as OBJ, which it applies to; y is up
-  gltf,     ///< one file with all visible objects, their colours and their motion
+  gltf,     ///< one file with all visible objects, their colours and pictures, and their motion
   usd,      ///< likewise, as text, and cameras; in the axes of the scene
   usdz,     ///< the same, packed
   blender,  ///< pc2, and a script that loads all of it with cameras and lights
@@ -33,8 +33,15 @@ struct Request {
   Lighting lighting = {};  ///< of blender
 };
 
-/// All files that will be written; `first` is the first frame asked for.
+/// All files that will be written but for shared_files(); `first` is the first frame asked for.
 std::vector<std::filesystem::path> files(const Request& request, const frame::FrameSnapshot& first);
+
+/// Materials and pictures beside them, which are the same for all parts of a film.
+struct SharedFile {
+  std::filesystem::path file;
+  std::string content;
+};
+std::vector<SharedFile> shared_files(const Request& request, const frame::FrameSnapshot& first);
 
 /// Reads each frame once, in order, and asks `stop` before each; returns whether all were written. Each file appears
 /// under its name when it is whole. Throws Error(output_failed), and what `read` throws.

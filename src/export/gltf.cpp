@@ -15,7 +15,6 @@
 #include "core/error.hpp"
 #include "core/temporary_file.hpp"
 #include "core/version.hpp"
-#include "image/color.hpp"
 
 namespace weft::exporter {
 namespace {
@@ -28,15 +27,19 @@ using nlohmann::json;
 // Numbers that the specification gives to things.
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963, kTriangles = 4;
 
-json material_of(const frame::Surface& surface) {
-  const frame::Appearance& look = surface.appearance;
-  const Vec3 color = image::linear_from_srgb(look.color);
-  return {{"name", surface.name},
-          {"doubleSided", surface.kind == frame::ObjectKind::cloth},
-          {"pbrMetallicRoughness",
-           {{"baseColorFactor", {color.x(), color.y(), color.z(), 1}},
-            {"metallicFactor", 0},
-            {"roughnessFactor", look.roughness}}}};
+constexpr int kRepeat = 10497, kMirror = 33648, kClamp = 33071, kLinear = 9729, kLinearOfSizes = 9987;
+
+int wrap_number(frame::Paint::Wrap wrap) {
+  switch (wrap) {
+    case frame::Paint::Wrap::repeat:
+      return kRepeat;
+    case frame::Paint::Wrap::mirror:
+      return kMirror;
+    case frame::Paint::Wrap::clamp:
+    case frame::Paint::Wrap::once:
+      return kClamp;
+  }
+  return kRepeat;
 }
 
 // Gives each place of its own to what lies on either side of a crease; returns the group of each place.
@@ -54,6 +57,7 @@ std::vector<Index> cut_at_creases(CutSurface& cut, const NormalGroups& groups) {
       if (fresh) {
         cut.vertex_of.push_back(cut.vertex_of[place]);
         if (!cut.uv.empty()) cut.uv.push_back(Vec2(cut.uv[place]));
+        if (!cut.picture_uv.empty()) cut.picture_uv.push_back(Vec2(cut.picture_uv[place]));
         group_of.push_back(group);
       }
       corner = copy->second;
@@ -82,19 +86,19 @@ void append_chunk(std::string& bytes, const char* kind, std::string_view content
 
 GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z() > 0.5), frames_{first.frame} {
   document_ = {{"asset", {{"version", "2.0"}, {"generator", fmt::format("Weft {}", kVersion)}}}, {"scene", 0}};
-  for (const char* list : {"nodes", "meshes", "materials", "accessors", "bufferViews"}) document_[list] = json::array();
+  for (const char* list : {"nodes", "meshes", "materials", "accessors", "bufferViews", "images", "samplers", "textures"}) document_[list] = json::array();
   for (std::size_t s = 0; s < first.surfaces.size(); ++s) {
     const frame::Surface& surface = *first.surfaces[s];
     if (!surface.visible) continue;
     const std::vector<Vec3>& positions = first.states[s].positions;
-    CutSurface cut = cut_at_seams(surface);
+    const Materials materials = materials_of(surface);
+    CutSurface cut = cut_at_seams(surface, materials, positions.size());
     Object object{.surface = s, .groups = group_normals(surface, positions)};
     object.group_of = cut_at_creases(cut, object.groups);
     object.vertex_of = cut.vertex_of;
     object.start = turned(positions, object.vertex_of);
     object.start_normals = normals(object, first);
-    document_["materials"].push_back(material_of(surface));
-    document_["meshes"].push_back({{"name", surface.name}, {"primitives", {primitive(cut, object)}}});
+    document_["meshes"].push_back({{"name", surface.name}, {"primitives", primitives(cut, object, surface, materials)}});
     objects_.push_back(std::move(object));
   }
 }
@@ -162,30 +166,80 @@ int GltfFile::add_scalars(const std::vector<float>& values, bool with_bounds) {
   return static_cast<int>(document_["accessors"].size()) - 1;
 }
 
-json GltfFile::primitive(const CutSurface& surface, const Object& object) {
-  json attributes{{"POSITION", add_vectors(object.start)}, {"NORMAL", add_vectors(object.start_normals)}};
-  json& accessors = document_["accessors"];
-  if (!surface.uv.empty()) {
-    std::vector<float> uv;
-    for (const Vec2& place : surface.uv) {  // v goes down there
-      uv.push_back(static_cast<float>(place.x()));
-      uv.push_back(static_cast<float>(1 - place.y()));
-    }
-    attributes["TEXCOORD_0"] = accessors.size();
-    accessors.push_back({{"bufferView", append(uv.data(), 4 * uv.size(), kVertices)},
-                         {"componentType", kFloat},
-                         {"count", surface.uv.size()},
-                         {"type", "VEC2"}});
+int GltfFile::add_places(const std::vector<Vec2>& places) {
+  std::vector<float> uv;
+  for (const Vec2& place : places) {  // v goes down there
+    uv.push_back(static_cast<float>(place.x()));
+    uv.push_back(static_cast<float>(1 - place.y()));
   }
-  const std::size_t corners = 3 * surface.triangles.size();
-  accessors.push_back({{"bufferView", append(surface.triangles.data(), 4 * corners, kIndices)},
-                       {"componentType", kUnsignedInt},
-                       {"count", corners},
-                       {"type", "SCALAR"}});
-  return {{"attributes", attributes},
-          {"indices", accessors.size() - 1},
-          {"material", document_["materials"].size() - 1},
-          {"mode", kTriangles}};
+  document_["accessors"].push_back({{"bufferView", append(uv.data(), 4 * uv.size(), kVertices)},
+                                    {"componentType", kFloat},
+                                    {"count", places.size()},
+                                    {"type", "VEC2"}});
+  return static_cast<int>(document_["accessors"].size()) - 1;
+}
+
+// Returns its number: one for each picture and way of going on beyond its edges. `images`: numbers of the pictures.
+json GltfFile::texture(const Materials& materials, const Material& material, std::vector<int>& images) {
+  if (images.empty()) images.assign(materials.pictures.size(), -1);
+  int& image = images[material.picture];
+  if (image < 0) {
+    const PictureFile& picture = materials.pictures[material.picture];
+    const std::string png = picture.png();
+    image = static_cast<int>(document_["images"].size());
+    document_["images"].push_back(
+        {{"name", picture.name}, {"mimeType", "image/png"}, {"bufferView", append(png.data(), png.size(), 0)}});
+    bytes_.append((4 - bytes_.size() % 4) % 4, '\0');  // numbers that follow start at multiples of four
+  }
+  const json sampler{{"wrapS", wrap_number(material.wrap_u)},
+                     {"wrapT", wrap_number(material.wrap_v)},
+                     {"magFilter", kLinear},
+                     {"minFilter", kLinearOfSizes}};
+  const auto number_of = [&](const char* list, const json& entry) {
+    json& all = document_[list];
+    const auto found = std::ranges::find(all, entry);
+    const auto number = static_cast<std::size_t>(found - all.begin());
+    if (found == all.end()) all.push_back(entry);
+    return number;
+  };
+  return number_of("textures", {{"source", image}, {"sampler", number_of("samplers", sampler)}});
+}
+
+// A primitive for each look; all share vertices and so the frames.
+json GltfFile::primitives(const CutSurface& cut, const Object& object, const frame::Surface& surface,
+                          const Materials& materials) {
+  json attributes{{"POSITION", add_vectors(object.start)}, {"NORMAL", add_vectors(object.start_normals)}};
+  if (!cut.uv.empty()) attributes["TEXCOORD_0"] = add_places(cut.uv);
+  if (!cut.picture_uv.empty()) attributes["TEXCOORD_1"] = add_places(cut.picture_uv);
+  json result = json::array();
+  std::vector<int> images;
+  for (const MaterialGroup& group : by_look(surface, materials)) {
+    const Material& look = materials.all[group.material];
+    const bool painted = look.has_picture() && !cut.uv.empty();
+    const Vec3 color = painted ? Vec3(1, 1, 1) : look.color;
+    json material{{"name", look.name},
+                  {"doubleSided", surface.kind == frame::ObjectKind::cloth},
+                  {"pbrMetallicRoughness",
+                   {{"baseColorFactor", {color.x(), color.y(), color.z(), 1}},
+                    {"metallicFactor", 0},
+                    {"roughnessFactor", look.roughness}}}};
+    if (painted)
+      material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture(materials, look, images)},
+                                                              {"texCoord", cut.picture_uv.empty() ? 0 : 1}};
+    if (painted && look.cutout) material["alphaMode"] = "MASK";
+    std::vector<std::array<Index, 3>> triangles;
+    for (const std::size_t t : group.triangles) triangles.push_back(cut.triangles[t]);
+    document_["accessors"].push_back({{"bufferView", append(triangles.data(), 12 * triangles.size(), kIndices)},
+                                      {"componentType", kUnsignedInt},
+                                      {"count", 3 * triangles.size()},
+                                      {"type", "SCALAR"}});
+    result.push_back({{"attributes", attributes},
+                      {"indices", document_["accessors"].size() - 1},
+                      {"material", document_["materials"].size()},
+                      {"mode", kTriangles}});
+    document_["materials"].push_back(std::move(material));
+  }
+  return result;
 }
 
 void GltfFile::add(const frame::FrameSnapshot& snapshot, double time) {
@@ -211,7 +265,7 @@ void GltfFile::add_targets(Object& object, json& mesh) {
     targets.push_back({{"POSITION", positions < 0 ? still : positions}, {"NORMAL", positions < 0 ? still : normals}});
     names.push_back(fmt::format("frame_{:05}", frames_[k + 1]));
   }
-  mesh["primitives"][0]["targets"] = std::move(targets);
+  for (json& primitive : mesh["primitives"]) primitive["targets"] = targets;
   mesh["weights"] = std::vector<int>(object.targets.size(), 0);
   mesh["extras"] = {{"targetNames", std::move(names)}};
 }
@@ -242,6 +296,8 @@ void GltfFile::write(const std::filesystem::path& file, const std::string& anima
   }
   document_["scenes"] = {{{"nodes", all}}};
   animate(moving, animation_name);
+  for (const char* list : {"images", "samplers", "textures"})
+    if (document_[list].empty()) document_.erase(list);
   document_["buffers"] = {{{"byteLength", bytes_.size()}}};
 
   const std::string text = document_.dump();

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "export/materials.hpp"
 #include "export/normals.hpp"
 #include "export/seams.hpp"
 #include "frame/frame_snapshot.hpp"
@@ -19,7 +20,8 @@ namespace weft::exporter {
 ///
 /// y is up in glTF: where z is up in the scene, (x, y, z) becomes (x, z, -y), which Blender turns back. Normals have
 /// targets as positions have: those of the first frame would be wrong in all others. Texture coordinates are weft and
-/// warp [m]; where panels meet at a seam each has vertices of its own.
+/// warp [m]; where panels meet at a seam each has vertices of its own. A second pair lays pictures, which are inside of
+/// the file; parts that look otherwise are primitives of their own over the same vertices.
 class GltfFile {
  public:
   /// Of the visible objects of the first frame.
@@ -47,7 +49,10 @@ class GltfFile {
   int append(const void* data, std::size_t size, int target);
   int add_vectors(const std::vector<float>& vectors);
   int add_scalars(const std::vector<float>& values, bool with_bounds);
-  nlohmann::json primitive(const CutSurface& surface, const Object& object);
+  int add_places(const std::vector<Vec2>& places);
+  nlohmann::json texture(const Materials& materials, const Material& material, std::vector<int>& images);
+  nlohmann::json primitives(const CutSurface& cut, const Object& object, const frame::Surface& surface,
+                            const Materials& materials);
   void add_targets(Object& object, nlohmann::json& mesh);
   void animate(const std::vector<int>& nodes, const std::string& name);
   std::vector<float> normals(const Object& object, const frame::FrameSnapshot& snapshot) const;

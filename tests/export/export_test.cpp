@@ -56,6 +56,10 @@ class Exported : public MadeFrames {
       EXPECT_TRUE(std::filesystem::exists(file)) << file;
       expected.push_back(file.filename().string());
     }
+    for (const auto& [file, content] : exporter::shared_files(request_, *snapshot(request_.frames.front()))) {
+      EXPECT_EQ(support::read_bytes(file), content) << file;
+      expected.push_back(file.filename().string());
+    }
     std::size_t there = 0;
     for (const auto& entry : std::filesystem::directory_iterator(request_.folder)) there += entry.is_regular_file();
     EXPECT_EQ(there, expected.size());

@@ -169,7 +169,7 @@ TEST_F(Staged, PackedUsdFilesHoldTheTextAsItIsAtAMultipleOf64Bytes) {
 
 // The check value of this sum (CRC-32, as of Ethernet) is that of the digits 1 to 9: 0xcbf43926.
 TEST_F(Staged, PackedFilesHaveTheSumThatArchivesCheck) {
-  write_stored(folder_ / "a.zip", "digits", "123456789");
+  write_stored(folder_ / "a.zip", {{"digits", "123456789"}});
   EXPECT_EQ(support::read_bytes(folder_ / "a.zip").substr(14, 4), "\x26\x39\xf4\xcb");
 }
 
