@@ -61,7 +61,7 @@ struct FilmPlan {
 
 bool finds_camera(const scene::Scene& scene, const std::string& name) {
   for (const scene::Camera& camera : scene.cameras)
-    if (name.empty() || camera.name == name) return camera.kind != scene::CameraKind::placed;
+    if (name.empty() || camera.name == name) return scene::is_found(camera.kind);
   return true;
 }
 

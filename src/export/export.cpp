@@ -97,7 +97,7 @@ class Sink {
       case Format::usd:
       case Format::usdz:
         if (!usd_)
-          usd_.emplace(snapshot, request_.name, request_.fps, static_cast<double>(request_.width) / request_.height);
+          usd_.emplace(snapshot, request_.name, request_.fps, aspect());
         return usd_->add(snapshot, views(snapshot));
       case Format::blender:
         if (!script_)
@@ -109,12 +109,14 @@ class Sink {
 
   void finish() {
     for (const auto& cache : caches_) cache->commit();
-    if (gltf_) gltf_->write(gltf_file(request_), request_.name);
+    if (gltf_) gltf_->write(gltf_file(request_), request_.name, aspect());
     if (usd_) usd_->write(usd_file(request_));
     if (script_) write_file(script_file(request_), script_->text(), Flush::no);
   }
 
  private:
+  double aspect() const { return static_cast<double>(request_.width) / request_.height; }
+
   std::vector<View> views(const frame::FrameSnapshot& snapshot) const {
     return request_.views ? request_.views(snapshot) : std::vector<View>{};
   }
@@ -140,6 +142,7 @@ class Sink {
       gltf_->add(snapshot, (snapshot.frame - request_.frames.front()) / request_.fps);
     else
       gltf_.emplace(snapshot);
+    gltf_->see(views(snapshot));
   }
 
   const Request& request_;

@@ -9,7 +9,10 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <numbers>
+#include <numeric>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "core/error.hpp"
@@ -26,6 +29,9 @@ using nlohmann::json;
 
 // Numbers that the specification gives to things.
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963, kTriangles = 4;
+
+// Before and behind what is seen [m].
+constexpr double kNear = 0.01, kFar = 1000;
 
 constexpr int kRepeat = 10497, kMirror = 33648, kClamp = 33071, kLinear = 9729, kLinearOfSizes = 9987;
 
@@ -86,7 +92,7 @@ void append_chunk(std::string& bytes, const char* kind, std::string_view content
 
 GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z() > 0.5), frames_{first.frame} {
   document_ = {{"asset", {{"version", "2.0"}, {"generator", fmt::format("Weft {}", kVersion)}}}, {"scene", 0}};
-  for (const char* list : {"nodes", "meshes", "materials", "accessors", "bufferViews", "images", "samplers", "textures"}) document_[list] = json::array();
+  for (const char* list : {"nodes", "meshes", "materials", "accessors", "bufferViews", "images", "samplers", "textures", "cameras"}) document_[list] = json::array();
   for (std::size_t s = 0; s < first.surfaces.size(); ++s) {
     const frame::Surface& surface = *first.surfaces[s];
     if (!surface.visible) continue;
@@ -153,11 +159,12 @@ int GltfFile::add_vectors(const std::vector<float>& vectors) {
   return static_cast<int>(document_["accessors"].size()) - 1;
 }
 
-int GltfFile::add_scalars(const std::vector<float>& values, bool with_bounds) {
+int GltfFile::add_values(const std::vector<float>& values, const char* type, bool with_bounds) {
+  const std::size_t each = type == std::string_view("SCALAR") ? 1 : type[3] - '0';  // VEC3, VEC4
   json accessor{{"bufferView", append(values.data(), 4 * values.size(), 0)},
                 {"componentType", kFloat},
-                {"count", values.size()},
-                {"type", "SCALAR"}};
+                {"count", values.size() / each},
+                {"type", type}};
   if (with_bounds) {
     accessor["min"] = {values.front()};
     accessor["max"] = {values.back()};
@@ -271,32 +278,82 @@ void GltfFile::add_targets(Object& object, json& mesh) {
 }
 
 // All that moves shares its times and weights.
-void GltfFile::animate(const std::vector<int>& nodes, const std::string& name) {
-  if (nodes.empty()) return;
+json GltfFile::animation(const std::vector<int>& nodes) {
+  json result{{"samplers", json::array()}, {"channels", json::array()}};
+  if (nodes.empty()) return result;
   const std::size_t targets = times_.size() - 1;
   std::vector<float> weights(times_.size() * targets, 0.0F);
   for (std::size_t k = 0; k < targets; ++k) weights[(k + 1) * targets + k] = 1;
-  const int input = add_scalars(times_, true), output = add_scalars(weights, false);
-  json channels = json::array();
-  for (int node : nodes) channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
-  document_["animations"] = {{{"name", name},
-                              {"samplers", {{{"input", input}, {"output", output}, {"interpolation", "LINEAR"}}}},
-                              {"channels", std::move(channels)}}};
+  const int input = add_values(times_, "SCALAR", true), output = add_values(weights, "SCALAR");
+  for (int node : nodes) result["channels"].push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
+  result["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
+  return result;
 }
 
-void GltfFile::write(const std::filesystem::path& file, const std::string& animation_name) {
-  std::vector<int> all, moving;
+void GltfFile::see(const std::vector<View>& views) {
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
+  if (z_up_) turned << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  for (std::size_t c = 0; c < views.size(); ++c) {
+    if (c == eyes_.size()) eyes_.push_back({.name = views[c].name, .field_of_view = views[c].field_of_view});
+    Eye& eye = eyes_[c];
+    const Vec3 position = turned * views[c].world_from_view.topRightCorner<3, 1>();
+    Eigen::Vector4f turn =
+        Quat(Eigen::Matrix3d(turned * views[c].world_from_view.topLeftCorner<3, 3>())).coeffs().cast<float>();
+    // Of the two quaternions of a turn that near to the one before, so that readers go the short way.
+    if (!eye.turns.empty() && turn.dot(Eigen::Map<const Eigen::Vector4f>(&*(eye.turns.end() - 4))) < 0) turn = -turn;
+    for (int axis = 0; axis < 3; ++axis) eye.positions.push_back(static_cast<float>(position[axis]));
+    for (int part = 0; part < 4; ++part) eye.turns.push_back(turn[part]);
+  }
+}
+
+// As nodes behind those of the objects.
+void GltfFile::add_cameras(json& animation, double aspect) {
+  for (const Eye& eye : eyes_) {
+    const std::size_t node = document_["nodes"].size();
+    document_["nodes"].push_back({{"name", eye.name},
+                                  {"camera", document_["cameras"].size()},
+                                  {"translation", std::vector(eye.positions.begin(), eye.positions.begin() + 3)},
+                                  {"rotation", std::vector(eye.turns.begin(), eye.turns.begin() + 4)}});
+    document_["cameras"].push_back({{"name", eye.name},
+                                    {"type", "perspective"},
+                                    {"perspective",
+                                     {{"yfov", eye.field_of_view * std::numbers::pi / 180},
+                                      {"aspectRatio", aspect},
+                                      {"znear", kNear},
+                                      {"zfar", kFar}}}});
+    for (const auto& [path, type, values] :
+         {std::tuple("translation", "VEC3", &eye.positions), std::tuple("rotation", "VEC4", &eye.turns)}) {
+      const std::ptrdiff_t each = type[3] - '0';
+      if (std::equal(values->begin() + each, values->end(), values->begin())) continue;  // all are as the one before
+      const int input = animation["samplers"].empty() ? add_values(times_, "SCALAR", true)
+                                                      : animation["samplers"][0]["input"].get<int>();
+      animation["channels"].push_back(
+          {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+      animation["samplers"].push_back(
+          {{"input", input}, {"output", add_values(*values, type)}, {"interpolation", "LINEAR"}});
+    }
+  }
+}
+
+void GltfFile::write(const std::filesystem::path& file, const std::string& animation_name, double aspect) {
+  std::vector<int> moving;
   for (std::size_t o = 0; o < objects_.size(); ++o) {
     json& mesh = document_["meshes"][o];
     document_["nodes"].push_back({{"name", mesh["name"]}, {"mesh", o}});
-    all.push_back(static_cast<int>(o));
     if (std::ranges::all_of(objects_[o].targets, [](const Target& target) { return target.positions < 0; })) continue;
     add_targets(objects_[o], mesh);
     moving.push_back(static_cast<int>(o));
   }
+  json moved = animation(moving);
+  add_cameras(moved, aspect);
+  std::vector<std::size_t> all(document_["nodes"].size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   document_["scenes"] = {{{"nodes", all}}};
-  animate(moving, animation_name);
-  for (const char* list : {"images", "samplers", "textures"})
+  if (!moved["channels"].empty()) {
+    moved["name"] = animation_name;
+    document_["animations"].push_back(std::move(moved));
+  }
+  for (const char* list : {"images", "samplers", "textures", "cameras"})
     if (document_[list].empty()) document_.erase(list);
   document_["buffers"] = {{{"byteLength", bytes_.size()}}};
 

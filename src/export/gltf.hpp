@@ -9,6 +9,7 @@
 #include "export/materials.hpp"
 #include "export/normals.hpp"
 #include "export/seams.hpp"
+#include "export/view.hpp"
 #include "frame/frame_snapshot.hpp"
 
 namespace weft::exporter {
@@ -30,8 +31,12 @@ class GltfFile {
   /// The next frame, at `time` [s] from the first.
   void add(const frame::FrameSnapshot& snapshot, double time);
 
-  /// Throws Error(output_failed), also where it would be more than the format can hold.
-  void write(const std::filesystem::path& file, const std::string& animation_name);
+  /// Cameras of the next frame, the first too. The standard's cameras keep their angle: that of the first frame.
+  void see(const std::vector<View>& views);
+
+  /// `aspect`: width over height of the pictures. Throws Error(output_failed), also where it would be more than the
+  /// format can hold.
+  void write(const std::filesystem::path& file, const std::string& animation_name, double aspect);
 
  private:
   struct Target {
@@ -46,20 +51,27 @@ class GltfFile {
     std::vector<Index> group_of = {};   // of normals, likewise; −1: of none
     std::vector<Target> targets = {};   // one per later frame
   };
+  struct Eye {
+    std::string name = {};
+    double field_of_view = 35;  // vertical [degrees]
+    std::vector<float> positions = {}, turns = {};  // of each frame: x, y, z; and w after them
+  };
   int append(const void* data, std::size_t size, int target);
   int add_vectors(const std::vector<float>& vectors);
-  int add_scalars(const std::vector<float>& values, bool with_bounds);
+  int add_values(const std::vector<float>& values, const char* type, bool with_bounds = false);
   int add_places(const std::vector<Vec2>& places);
   nlohmann::json texture(const Materials& materials, const Material& material, std::vector<int>& images);
   nlohmann::json primitives(const CutSurface& cut, const Object& object, const frame::Surface& surface,
                             const Materials& materials);
   void add_targets(Object& object, nlohmann::json& mesh);
-  void animate(const std::vector<int>& nodes, const std::string& name);
+  nlohmann::json animation(const std::vector<int>& nodes);
+  void add_cameras(nlohmann::json& animation, double aspect);
   std::vector<float> normals(const Object& object, const frame::FrameSnapshot& snapshot) const;
   std::vector<float> turned(const std::vector<Vec3>& positions, const std::vector<Index>& vertices) const;
 
   bool z_up_;
   std::vector<Object> objects_;
+  std::vector<Eye> eyes_;
   std::vector<float> times_{0};
   std::vector<int> frames_;
   nlohmann::json document_;

@@ -397,8 +397,12 @@ struct CameraKey {
   double field_of_view = 35;                ///< vertical [degrees]
 };
 
-/// Placed by the scene, or found from all frames of a run.
-enum class CameraKind { placed, whole, follow, close, track };
+/// Placed by the scene or by a file, or found from all frames of a run.
+enum class CameraKind { placed, whole, follow, close, track, file };
+
+inline bool is_found(CameraKind kind) {
+  return kind != CameraKind::placed && kind != CameraKind::file;
+}
 
 /// Of cameras that are found: a portrait lens, with little distortion.
 inline constexpr double kFoundFieldOfView = 30;  // [degrees]
@@ -417,6 +421,11 @@ struct Camera {
   double smoothing = 0.5;  ///< of the ways of the subject and the eye [s]
   double aperture = 0;     ///< f-number of a camera with 24 mm of film; 0: all is sharp
   double focus = 0;        ///< distance that is sharp [m]; 0: that of the target
+  std::filesystem::path file = {};  ///< that has its way and lens
+  std::string object = {};          ///< name of its node there; empty: the only one
+  double start = 0;                 ///< when the time of the file begins [s]
+  double scale = 1;                 ///< of its lengths
+  int line = 0, column = 0;         ///< where the scene names it, for errors of its file
 };
 
 struct LightKey {
