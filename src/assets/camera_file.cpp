@@ -131,7 +131,8 @@ const aiCamera& find_camera(const aiScene& scene, const std::string& object) {
     names += fmt::format("{}\"{}\"", names.empty() ? "" : ", ", camera->mName.C_Str());
   }
   if (names.empty()) throw std::runtime_error("expected a camera, got none");
-  if (object.empty()) throw std::runtime_error(fmt::format("it has several cameras: choose one of {} by object", names));
+  if (object.empty())
+    throw std::runtime_error(fmt::format("it has several cameras: choose one of {} by object", names));
   throw std::runtime_error(fmt::format("expected a camera \"{}\", got {}", object, names));
 }
 

@@ -27,7 +27,8 @@ void remove_stale(const exporter::Request& request, const cache::Manifest& scene
 }
 
 bool places_cameras(exporter::Format format) {
-  return format == exporter::Format::gltf || format == exporter::Format::usd || format == exporter::Format::usdz || format == exporter::Format::blender;
+  return format == exporter::Format::gltf || format == exporter::Format::usd || format == exporter::Format::usdz ||
+         format == exporter::Format::blender;
 }
 
 /// All cameras of a scene, first that which pictures show; where it names none, the one that is found for it.

@@ -70,9 +70,10 @@ void tell_odd_size(const FilmPlan& plan, video::Codec codec) {
   const int width = plan.settings.width, height = plan.settings.height;
   const bool any_size = codec == video::Codec::ffv1 || codec == video::Codec::h264_lossless;
   if (any_size || (width % 2 == 0 && height % 2 == 0)) return;
-  log::warn(fmt::format("{}x{}: expected even sides, which videos of this kind have; the video gets {}x{}, by a column "
-                        "or row twice",
-                        width, height, width + width % 2, height + height % 2));
+  log::warn(
+      fmt::format("{}x{}: expected even sides, which videos of this kind have; the video gets {}x{}, by a column "
+                  "or row twice",
+                  width, height, width + width % 2, height + height % 2));
 }
 
 /// Where the pictures go, and how they are written. Throws Error(usage) for options that do not go with it.

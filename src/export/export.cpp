@@ -96,8 +96,7 @@ class Sink {
         return add_to_gltf(snapshot);
       case Format::usd:
       case Format::usdz:
-        if (!usd_)
-          usd_.emplace(snapshot, request_.name, request_.fps, aspect());
+        if (!usd_) usd_.emplace(snapshot, request_.name, request_.fps, aspect());
         return usd_->add(snapshot, views(snapshot));
       case Format::blender:
         if (!script_)

@@ -28,7 +28,8 @@ struct Request {
   double fps = 25;                 ///< of the scene
   std::vector<int> frames;         ///< ascending, at least one, all as far apart
   int width = 1280, height = 720;  ///< of its pictures
-  /// Of a frame, the first that which pictures show; of gltf, usd, usdz and blender, and asked once for each frame, in order.
+  /// Of a frame, the first that which pictures show; of gltf, usd, usdz and blender, and asked once for each frame, in
+  /// order.
   std::function<std::vector<View>(const frame::FrameSnapshot&)> views = nullptr;
   Lighting lighting = {};  ///< of blender
 };

@@ -92,7 +92,9 @@ void append_chunk(std::string& bytes, const char* kind, std::string_view content
 
 GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z() > 0.5), frames_{first.frame} {
   document_ = {{"asset", {{"version", "2.0"}, {"generator", fmt::format("Weft {}", kVersion)}}}, {"scene", 0}};
-  for (const char* list : {"nodes", "meshes", "materials", "accessors", "bufferViews", "images", "samplers", "textures", "cameras"}) document_[list] = json::array();
+  for (const char* list :
+       {"nodes", "meshes", "materials", "accessors", "bufferViews", "images", "samplers", "textures", "cameras"})
+    document_[list] = json::array();
   for (std::size_t s = 0; s < first.surfaces.size(); ++s) {
     const frame::Surface& surface = *first.surfaces[s];
     if (!surface.visible) continue;
@@ -104,7 +106,8 @@ GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z(
     object.vertex_of = cut.vertex_of;
     object.start = turned(positions, object.vertex_of);
     object.start_normals = normals(object, first);
-    document_["meshes"].push_back({{"name", surface.name}, {"primitives", primitives(cut, object, surface, materials)}});
+    document_["meshes"].push_back(
+        {{"name", surface.name}, {"primitives", primitives(cut, object, surface, materials)}});
     objects_.push_back(std::move(object));
   }
 }
@@ -285,7 +288,8 @@ json GltfFile::animation(const std::vector<int>& nodes) {
   std::vector<float> weights(times_.size() * targets, 0.0F);
   for (std::size_t k = 0; k < targets; ++k) weights[(k + 1) * targets + k] = 1;
   const int input = add_values(times_, "SCALAR", true), output = add_values(weights, "SCALAR");
-  for (int node : nodes) result["channels"].push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
+  for (int node : nodes)
+    result["channels"].push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
   result["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
   return result;
 }

@@ -53,7 +53,7 @@ class GltfFile {
   };
   struct Eye {
     std::string name = {};
-    double field_of_view = 35;  // vertical [degrees]
+    double field_of_view = 35;                      // vertical [degrees]
     std::vector<float> positions = {}, turns = {};  // of each frame: x, y, z; and w after them
   };
   int append(const void* data, std::size_t size, int target);

@@ -123,7 +123,8 @@ Materials materials_of(const frame::Surface& surface) {
   const auto add = [&](const std::string& material, const frame::Appearance& look) {
     Material made = material_of(surface, look, materials);
     made.name = material;
-    const auto first = std::ranges::find_if(materials.all, [&](const Material& each) { return look_alike(each, made); });
+    const auto first =
+        std::ranges::find_if(materials.all, [&](const Material& each) { return look_alike(each, made); });
     made.alike = static_cast<std::size_t>(first - materials.all.begin());
     materials.all.push_back(std::move(made));
   };

@@ -53,8 +53,7 @@ std::vector<Face> quads_of(const frame::Surface& surface) {
 // In the order of their materials.
 std::vector<Face> faces_of(const frame::Surface& surface, const Materials& materials) {
   std::vector<Face> faces = surface.quads.empty() ? triangles_of(surface) : quads_of(surface);
-  for (Face& face : faces)
-    face.material = materials.all[materials.of_triangle(surface, face.corners[0].first)].alike;
+  for (Face& face : faces) face.material = materials.all[materials.of_triangle(surface, face.corners[0].first)].alike;
   std::ranges::stable_sort(faces, {}, &Face::material);
   return faces;
 }

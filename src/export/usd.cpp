@@ -114,9 +114,9 @@ void write_picture(std::ostream& out, const Material& material, const std::strin
 void write_material(std::ostream& out, const std::string& prim, const std::string& path, const Material& material,
                     const Materials& materials) {
   const Vec3& color = material.color;
-  const std::string diffuse =
-      material.has_picture() ? fmt::format(".connect = <{}/picture.outputs:rgb>", path)
-                             : fmt::format(" = ({:.6g}, {:.6g}, {:.6g})", color.x(), color.y(), color.z());
+  const std::string diffuse = material.has_picture()
+                                  ? fmt::format(".connect = <{}/picture.outputs:rgb>", path)
+                                  : fmt::format(" = ({:.6g}, {:.6g}, {:.6g})", color.x(), color.y(), color.z());
   fmt::print(out,
              "        def Material \"{0}\"\n        {{\n"
              "            token outputs:surface.connect = <{1}/surface.outputs:surface>\n\n"

@@ -24,7 +24,8 @@ class UsdFile {
   /// The next frame, the first too.
   void add(const frame::FrameSnapshot& snapshot, const std::vector<View>& views);
 
-  /// As .usda with its pictures beside it, or packed with them as .usdz, by the ending of the name. Throws Error(output_failed).
+  /// As .usda with its pictures beside it, or packed with them as .usdz, by the ending of the name. Throws
+  /// Error(output_failed).
   void write(const std::filesystem::path& file) const;
 
  private:

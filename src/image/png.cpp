@@ -107,8 +107,8 @@ bool write_all(const Writer& writer, const Rows& rows, std::FILE* file, png_text
   if (setjmp(png_jmpbuf(writer.png))) return false;
   png_set_write_fn(writer.png, file, write_bytes, flush_bytes);
   png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(rows.width), static_cast<png_uint_32>(rows.height),
-               rows.bits, rows.channels == 4 ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+               rows.bits, rows.channels == 4 ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   if (text_count > 0) png_set_text(writer.png, writer.info, texts, text_count);
   png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, kFilter);

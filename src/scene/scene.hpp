@@ -413,14 +413,14 @@ struct Camera {
   std::vector<CameraKey> keys;  ///< at least one; one: still. Found ones have one, for position and field of view
   Interpolation interpolation = Interpolation::cubic;
   std::vector<std::string> subjects =
-      {};                  ///< objects that it shows; empty: the characters, else the cloths; whole: all
-  double azimuth = 33;     ///< of the eye, from the front to the right [degrees]
-  double elevation = 17;   ///< above the subject [degrees]
-  double orbit = 0;        ///< by which the azimuth grows [degrees/s]
-  double margin = 0.14;    ///< share of each half picture that is left free around the subject
-  double smoothing = 0.5;  ///< of the ways of the subject and the eye [s]
-  double aperture = 0;     ///< f-number of a camera with 24 mm of film; 0: all is sharp
-  double focus = 0;        ///< distance that is sharp [m]; 0: that of the target
+      {};                           ///< objects that it shows; empty: the characters, else the cloths; whole: all
+  double azimuth = 33;              ///< of the eye, from the front to the right [degrees]
+  double elevation = 17;            ///< above the subject [degrees]
+  double orbit = 0;                 ///< by which the azimuth grows [degrees/s]
+  double margin = 0.14;             ///< share of each half picture that is left free around the subject
+  double smoothing = 0.5;           ///< of the ways of the subject and the eye [s]
+  double aperture = 0;              ///< f-number of a camera with 24 mm of film; 0: all is sharp
+  double focus = 0;                 ///< distance that is sharp [m]; 0: that of the target
   std::filesystem::path file = {};  ///< that has its way and lens
   std::string object = {};          ///< name of its node there; empty: the only one
   double start = 0;                 ///< when the time of the file begins [s]

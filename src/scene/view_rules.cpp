@@ -139,7 +139,8 @@ const Table& camera_rules() {
           .choice_by(
               "kind", {"placed", "whole", "follow", "close", "track", "file"},
               "placed by position and target, or found before drawing from all frames: so that all of the run is in "
-              "view; going along at one distance; as close as the subject allows; turning after it where it stands; or with the way and lens of one in a file",
+              "view; going along at one distance; as close as the subject allows; turning after it where it stands; or "
+              "with the way and lens of one in a file",
               [](Camera& c) { return static_cast<std::size_t>(c.kind); },
               [](Camera& c, std::size_t index) {
                 c.kind = static_cast<CameraKind>(index);

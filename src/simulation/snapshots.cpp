@@ -212,8 +212,7 @@ environment::Spline<7> camera_track(const scene::Scene& scene, const scene::Came
   for (std::size_t i = 0; i < loaded.times.size(); ++i) {
     const Vec3 eye = camera.scale * turned(loaded.positions[i]);
     times.push_back(camera.start + loaded.times[i]);
-    values.push_back(
-        (CameraValue() << eye, eye + ahead * turned(loaded.forward[i]), loaded.field_of_view).finished());
+    values.push_back((CameraValue() << eye, eye + ahead * turned(loaded.forward[i]), loaded.field_of_view).finished());
   }
   return {scene::Interpolation::linear, std::move(times), std::move(values)};
 }

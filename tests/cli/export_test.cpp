@@ -76,7 +76,8 @@ keys = [{ time = 0, position = [3, -4, 2], target = [0, 0, 0.5], field_of_view =
 )";
   for (const std::string up : {"z", "y"}) {
     std::ofstream(folder_ / "a.toml") << ("up = \"" + up + "\"\n" + film + keys);
-    std::ofstream(folder_ / "b.toml") << ("up = \"" + up + "\"\n" + film + "kind = \"file\"\nfile = \"a/a.glb\"\nobject = \"shot\"\n");
+    std::ofstream(folder_ / "b.toml") << ("up = \"" + up + "\"\n" + film +
+                                          "kind = \"file\"\nfile = \"a/a.glb\"\nobject = \"shot\"\n");
     const auto cameras = [&](const std::string& name) {
       expect_well({"simulate", name + ".toml", "--cache", name + "c", "--overwrite"});
       expect_exported({name + "c", "--format", "gltf", "-o", name, "--overwrite"});
@@ -88,7 +89,8 @@ keys = [{ time = 0, position = [3, -4, 2], target = [0, 0, 0.5], field_of_view =
     const auto given = cameras("a").flatten(), taken = cameras("b").flatten();
     ASSERT_EQ(given.size(), taken.size());
     for (const auto& [place, value] : given.items())
-      EXPECT_NEAR(taken[place].get<double>(), value.get<double>(), 1e-6 + 1.2e-7 * std::abs(value.get<double>())) << up << place;
+      EXPECT_NEAR(taken[place].get<double>(), value.get<double>(), 1e-6 + 1.2e-7 * std::abs(value.get<double>()))
+          << up << place;
   }
 }
 

@@ -222,7 +222,8 @@ TEST_F(Staged, TheScriptForBlenderNamesAllThatItLoads) {
   EXPECT_EQ(film["fps"], 23.976);
   EXPECT_EQ(film["size"], nlohmann::json({400, 200}));
   EXPECT_EQ(film["frames"], nlohmann::json({2, 3, 4}));
-  EXPECT_EQ(film["objects"][2], nlohmann::json({{"name", "hidden"}, {"visible", false}, {"pictures", nlohmann::json::object()}}));
+  EXPECT_EQ(film["objects"][2],
+            nlohmann::json({{"name", "hidden"}, {"visible", false}, {"pictures", nlohmann::json::object()}}));
   EXPECT_EQ(film["cameras"][0]["frames"][1], nlohmann::json({90, {1, 0, 0, 3}, {0, 1, 0, 2}, {0, 0, 1, 3}}));
   EXPECT_NEAR(film["lights"][0]["strength"].get<double>(), 2 * (1 - request_.lighting.sky_share), 1e-12);
   for (const char* file : {"red-dress.obj", "red-dress.pc2", "hidden.pc2"})
