@@ -1,7 +1,6 @@
 #include "export/export.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 
 #include "cache/reader.hpp"
@@ -11,7 +10,6 @@
 #include "cli/path_ledger.hpp"
 #include "cli/signals.hpp"
 #include "core/log.hpp"
-#include "export/obj.hpp"
 #include "render/lighting.hpp"
 #include "render/surroundings.hpp"
 #include "render/transforms.hpp"
@@ -29,7 +27,8 @@ void remove_stale(const exporter::Request& request, const cache::Manifest& scene
 }
 
 bool places_cameras(exporter::Format format) {
-  return format == exporter::Format::usd || format == exporter::Format::usdz || format == exporter::Format::blender;
+  return format == exporter::Format::gltf || format == exporter::Format::usd || format == exporter::Format::usdz ||
+         format == exporter::Format::blender;
 }
 
 /// All cameras of a scene, first that which pictures show; where it names none, the one that is found for it.
@@ -96,18 +95,11 @@ ExitCode export_frames(const ExportOptions& options) {
   for (int frame = frames.begin; frame < frames.end; frame += frames.step) request.frames.push_back(frame);
 
   const frame::SnapshotPtr first = reader.snapshot(frames.begin);
-  auto files = exporter::files(request, *first);
+  const auto files = exporter::files(request, *first);
   PathLedger paths;
   paths.reads_folder(options.cache, "the cache");
-  // Parts of a film share its materials.
-  std::erase_if(files, [](const auto& file) { return file.extension() == ".mtl"; });
   paths.writes("-o", options.output, files);
-  const bool has_materials =
-      std::ranges::any_of(std::array{exporter::Format::obj, exporter::Format::pc2, exporter::Format::blender},
-                          [&](exporter::Format format) { return format == request.format; });
-  if (has_materials)
-    for (const auto& surface : first->surfaces)
-      paths.writes_content("-o", request.folder / (surface->name + ".mtl"), exporter::mtl_text(*surface));
+  for (const auto& [file, content] : exporter::shared_files(request, *first)) paths.writes_content("-o", file, content);
   paths.check_absent(options.overwrite);
   paths.check_writable();
   std::optional<Cameras> cameras;

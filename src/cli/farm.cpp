@@ -172,17 +172,29 @@ class Farm {
     return index;
   }
 
+  /// What the program said last, on a line of its own; empty where it said nothing.
+  static std::string last_error(const fs::path& log) {
+    std::string last;
+    std::ifstream in(log);
+    for (std::string line; std::getline(in, line);)
+      if (line.starts_with("weft: ")) last = "\n  " + line.substr(6);
+    return last;
+  }
+
   /// Tasks that ended with another exit code than 0, and where they say why.
   std::vector<std::string> failures() const {
     std::vector<std::string> lines;
     std::error_code none;
     for (const auto& entry : fs::directory_iterator(folder_ / "farm/log", none)) {
       if (entry.path().extension() != ".code") continue;
+      const std::string task = entry.path().stem().string();
+      const fs::path log = fs::path(entry.path()).replace_extension(".log");
       int code = 0;
       std::ifstream(entry.path()) >> code;
-      if (code == 0) continue;
-      lines.push_back(fmt::format("{} ended with exit code {}: {}", entry.path().stem().string(), code,
-                                  fs::path(entry.path()).replace_extension(".log").string()));
+      if (entry.file_size(none) == 0)
+        lines.push_back(fmt::format("{} found no room for its exit code: is the disk full? {}", task, log.string()));
+      else if (code != 0)
+        lines.push_back(fmt::format("{} ended with exit code {}: {}{}", task, code, log.string(), last_error(log)));
     }
     std::ranges::sort(lines);
     return lines;

@@ -1,5 +1,6 @@
 #include "cli/output_target.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <system_error>
 
@@ -10,6 +11,8 @@ namespace weft::cli {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::string_view kFrame = "{frame";
 
 [[noreturn]] void bad_pattern(std::string_view text) {
   throw Error(ExitCode::usage, "-o: expected one {{frame}} or {{frame:05}} in the name of the pictures, got {}", text);
@@ -29,11 +32,12 @@ int parse_digits(std::string_view field, std::string_view text) {
 }  // namespace
 
 FramePattern::FramePattern(std::string_view text) {
-  const std::size_t open = text.find('{'), close = text.find('}');
-  if (open == std::string_view::npos || close == std::string_view::npos || close < open) bad_pattern(text);
+  // Other braces are a part of the name, as of a folder.
+  const std::size_t open = text.find(kFrame), close = text.find('}', std::min(open, text.size()));
+  if (open == std::string_view::npos || close == std::string_view::npos) bad_pattern(text);
   before_ = text.substr(0, open);
   after_ = text.substr(close + 1);
-  if (after_.find_first_of("{}") != std::string::npos) bad_pattern(text);
+  if (after_.find(kFrame) != std::string::npos) bad_pattern(text);
   digits_ = parse_digits(text.substr(open + 1, close - open - 1), text);
 }
 
@@ -73,7 +77,7 @@ OutputTarget parse_output(const std::string& text, const std::string& scene_name
   if (text.empty()) return {OutputTarget::Kind::video, (fs::path("output") / (scene_name + ".mp4")).string()};
   const std::string ending = fs::path(text).extension().string();
   if (video::is_written(ending)) {
-    if (text.find_first_of("{}") != std::string::npos) {
+    if (text.find(kFrame) != std::string::npos) {
       throw Error(ExitCode::usage, "-o: a video holds all frames, so its name has no {{frame}}, got {}", text);
     }
     return {OutputTarget::Kind::video, text};

@@ -61,8 +61,19 @@ struct FilmPlan {
 
 bool finds_camera(const scene::Scene& scene, const std::string& name) {
   for (const scene::Camera& camera : scene.cameras)
-    if (name.empty() || camera.name == name) return camera.kind != scene::CameraKind::placed;
+    if (name.empty() || camera.name == name) return scene::is_found(camera.kind);
   return true;
+}
+
+/// Before the time of the run is spent.
+void tell_odd_size(const FilmPlan& plan, video::Codec codec) {
+  const int width = plan.settings.width, height = plan.settings.height;
+  const bool any_size = codec == video::Codec::ffv1 || codec == video::Codec::h264_lossless;
+  if (any_size || (width % 2 == 0 && height % 2 == 0)) return;
+  log::warn(
+      fmt::format("{}x{}: expected even sides, which videos of this kind have; the video gets {}x{}, by a column "
+                  "or row twice",
+                  width, height, width + width % 2, height + height % 2));
 }
 
 /// Where the pictures go, and how they are written. Throws Error(usage) for options that do not go with it.
@@ -77,6 +88,7 @@ void take_output(FilmPlan& plan, const RunOptions& options) {
     throw Error(ExitCode::usage, "--codec, --crf: expected a video, got {}", plan.target.text);
   if (video && video::codec_of(plan.target.text, options.codec) != video::Codec::h264 && options.crf)
     throw Error(ExitCode::usage, "--crf: expected h264, the other codecs are not for small files");
+  if (video) tell_odd_size(plan, video::codec_of(plan.target.text, options.codec));
 }
 
 FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {

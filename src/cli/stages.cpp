@@ -142,7 +142,7 @@ void write_meshes(const std::filesystem::path& folder, const frame::FrameSnapsho
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
     mesh::write_ply(mesh_files(folder, surface.name).name(snapshot.frame), snapshot.states[i].positions,
-                    surface.triangles, surface.passed_through);
+                    surface.triangles, {.passed_through = surface.passed_through});
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
 #include <map>
@@ -36,13 +37,14 @@ std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths)
   const std::vector<Changes> list = options.list.empty() ? std::vector<Changes>{} : read_list(options.list);
   std::vector<SweepJob> jobs;
   for (SweepRun& run : plan_sweep(list, options.axes)) jobs.push_back({.run = std::move(run)});
-  std::string mistakes;
+  std::vector<std::string> mistakes;  // that of all values stands once
   std::map<std::uint64_t, std::size_t> known;
   for (std::size_t i = 0; i < jobs.size(); ++i) {
     SweepJob& job = jobs[i];
     const scene::LoadResult loaded = scene::load(options.scene, job.overrides());
     if (!loaded.ok()) {
-      mistakes += (mistakes.empty() ? "" : "\n") + mistakes_text(loaded);
+      const std::string text = mistakes_text(loaded);
+      if (std::ranges::find(mistakes, text) == mistakes.end()) mistakes.push_back(text);
       continue;
     }
     job.scene_hash = loaded.scene.hash;
@@ -53,7 +55,7 @@ std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths)
     if (!fresh) job.twin = twin->second;
     if (i == 0) add_inputs(paths, loaded.scene);
   }
-  if (!mistakes.empty()) throw Error(ExitCode::scene_invalid, mistakes);
+  if (!mistakes.empty()) throw Error(ExitCode::scene_invalid, "{}", fmt::join(mistakes, "\n"));
   if (!options.list.empty()) paths.reads(options.list, "the list of runs");
   return jobs;
 }

@@ -4,6 +4,7 @@
 
 #include "core/version.hpp"
 #include "embedded_export.hpp"
+#include "export/materials.hpp"
 #include "image/color.hpp"
 
 namespace weft::exporter {
@@ -27,6 +28,36 @@ Json light_json(const frame::Light& light, double share) {
           {"softness", light.softness}};
 }
 
+const char* extension(const Material& material) {
+  switch (material.wrap_u) {
+    case frame::Paint::Wrap::repeat:
+      return "REPEAT";
+    case frame::Paint::Wrap::mirror:
+      return "MIRROR";
+    case frame::Paint::Wrap::clamp:
+    case frame::Paint::Wrap::once:
+      return "EXTEND";
+  }
+  return "REPEAT";
+}
+
+// By material: its picture and how it is laid, which MTL cannot say of all.
+Json pictures_json(const frame::Surface& surface) {
+  Json result = Json::object();
+  const Materials materials = materials_of(surface);
+  for (const MaterialGroup& group : by_look(surface, materials)) {
+    const Material& material = materials.all[group.material];
+    if (!material.has_picture()) continue;
+    const auto& map = material.picture_from_uv;
+    result[material.name] = {{"file", materials.pictures[material.picture].name},
+                             {"across", {map(0, 0), map(0, 1), map(0, 2)}},
+                             {"up", {map(1, 0), map(1, 1), map(1, 2)}},
+                             {"extension", extension(material)},
+                             {"cutout", material.cutout}};
+  }
+  return result;
+}
+
 }  // namespace
 
 BlenderScript::BlenderScript(const frame::FrameSnapshot& first, const Lighting& lighting, std::string name, double fps,
@@ -43,7 +74,8 @@ BlenderScript::BlenderScript(const frame::FrameSnapshot& first, const Lighting& 
            {"lights", Json::array()},
            {"sky", {{"color", list(lighting.sky_color)}, {"strength", lighting.sky_share}}}};
   for (const auto& surface : first.surfaces)
-    film_["objects"].push_back({{"name", surface->name}, {"visible", surface->visible}});
+    film_["objects"].push_back(
+        {{"name", surface->name}, {"visible", surface->visible}, {"pictures", pictures_json(*surface)}});
   for (const frame::Light& light : lighting.lights)
     film_["lights"].push_back(light_json(light, 1 - lighting.sky_share));
 }

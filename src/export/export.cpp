@@ -8,8 +8,10 @@
 #include "core/temporary_file.hpp"
 #include "export/blender.hpp"
 #include "export/gltf.hpp"
+#include "export/materials.hpp"
 #include "export/obj.hpp"
 #include "export/pc2.hpp"
+#include "export/seams.hpp"
 #include "export/usd.hpp"
 #include "mesh/ply.hpp"
 
@@ -37,6 +39,10 @@ Path gltf_file(const Request& request) {
 Path usd_file(const Request& request) {
   return request.folder / (request.name + (request.format == Format::usdz ? ".usdz" : ".usda"));
 }
+// Formats whose materials and pictures lie beside the meshes.
+bool has_materials_beside(Format format) {
+  return format == Format::obj || format == Format::pc2 || format == Format::blender;
+}
 Path script_file(const Request& request) {
   return request.folder / (request.name + ".py");
 }
@@ -49,14 +55,26 @@ std::vector<Vec3> with_y_up(const frame::FrameSnapshot& snapshot, std::size_t su
   return positions;
 }
 
+void write_materials(const Request& request, const frame::Surface& surface) {
+  write_file(material_file(request, surface.name), mtl_text(surface), Flush::no);
+  for (const PictureFile& picture : materials_of(surface).pictures)
+    write_file(request.folder / picture.name, picture.png(), Flush::no);
+}
+
+void write_cut_ply(const Path& file, const frame::Surface& surface, const std::vector<Vec3>& positions) {
+  const CutSurface cut = cut_at_seams(surface, materials_of(surface), positions.size());
+  std::vector<Vec3> places;
+  for (const Index vertex : cut.vertex_of) places.push_back(positions[static_cast<std::size_t>(vertex)]);
+  mesh::write_ply(file, places, cut.triangles, {.uv = cut.uv});
+}
+
 void write_meshes(const Request& request, const frame::FrameSnapshot& snapshot) {
   for (std::size_t s = 0; s < snapshot.surfaces.size(); ++s) {
     const frame::Surface& surface = *snapshot.surfaces[s];
-    if (request.format == Format::obj && snapshot.frame == request.frames.front())
-      write_file(material_file(request, surface.name), mtl_text(surface), Flush::no);
+    if (request.format == Format::obj && snapshot.frame == request.frames.front()) write_materials(request, surface);
     const Path file = frame_file(request, surface.name, snapshot.frame);
     if (request.format == Format::ply)
-      mesh::write_ply(file, snapshot.states[s].positions, surface.triangles);
+      write_cut_ply(file, surface, snapshot.states[s].positions);
     else
       write_obj(file, surface, snapshot.states[s].positions);
   }
@@ -78,8 +96,7 @@ class Sink {
         return add_to_gltf(snapshot);
       case Format::usd:
       case Format::usdz:
-        if (!usd_)
-          usd_.emplace(snapshot, request_.name, request_.fps, static_cast<double>(request_.width) / request_.height);
+        if (!usd_) usd_.emplace(snapshot, request_.name, request_.fps, aspect());
         return usd_->add(snapshot, views(snapshot));
       case Format::blender:
         if (!script_)
@@ -91,12 +108,14 @@ class Sink {
 
   void finish() {
     for (const auto& cache : caches_) cache->commit();
-    if (gltf_) gltf_->write(gltf_file(request_), request_.name);
+    if (gltf_) gltf_->write(gltf_file(request_), request_.name, aspect());
     if (usd_) usd_->write(usd_file(request_));
     if (script_) write_file(script_file(request_), script_->text(), Flush::no);
   }
 
  private:
+  double aspect() const { return static_cast<double>(request_.width) / request_.height; }
+
   std::vector<View> views(const frame::FrameSnapshot& snapshot) const {
     return request_.views ? request_.views(snapshot) : std::vector<View>{};
   }
@@ -108,7 +127,7 @@ class Sink {
       const frame::Surface& surface = *snapshot.surfaces[s];
       const std::vector<Vec3> positions = with_y_up(snapshot, s);
       if (first) {
-        write_file(material_file(request_, surface.name), mtl_text(surface), Flush::no);
+        write_materials(request_, surface);
         write_obj(shape_file(request_, surface.name), surface, positions);
         caches_.push_back(std::make_unique<PointCache>(cache_file(request_, surface.name), positions.size(),
                                                        snapshot.frame, step, request_.frames.size()));
@@ -122,6 +141,7 @@ class Sink {
       gltf_->add(snapshot, (snapshot.frame - request_.frames.front()) / request_.fps);
     else
       gltf_.emplace(snapshot);
+    gltf_->see(views(snapshot));
   }
 
   const Request& request_;
@@ -142,11 +162,22 @@ std::vector<Path> files(const Request& request, const frame::FrameSnapshot& firs
     if (request.format == Format::pc2 || request.format == Format::blender) {
       result.push_back(shape_file(request, surface->name));
       result.push_back(cache_file(request, surface->name));
-      result.push_back(material_file(request, surface->name));
       continue;
     }
-    if (request.format == Format::obj) result.push_back(material_file(request, surface->name));
     for (int frame : request.frames) result.push_back(frame_file(request, surface->name, frame));
+  }
+  return result;
+}
+
+std::vector<SharedFile> shared_files(const Request& request, const frame::FrameSnapshot& first) {
+  std::vector<SharedFile> result;
+  const bool beside = has_materials_beside(request.format);
+  if (!beside && request.format != Format::usd) return result;
+  for (const auto& surface : first.surfaces) {
+    if (!beside && !surface->visible) continue;
+    if (beside) result.push_back({material_file(request, surface->name), mtl_text(*surface)});
+    for (const PictureFile& picture : materials_of(*surface).pictures)
+      result.push_back({request.folder / picture.name, picture.png()});
   }
   return result;
 }

@@ -9,13 +9,15 @@
 #include <cstring>
 #include <limits>
 #include <map>
+#include <numbers>
+#include <numeric>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "core/error.hpp"
 #include "core/temporary_file.hpp"
 #include "core/version.hpp"
-#include "image/color.hpp"
 
 namespace weft::exporter {
 namespace {
@@ -28,15 +30,22 @@ using nlohmann::json;
 // Numbers that the specification gives to things.
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963, kTriangles = 4;
 
-json material_of(const frame::Surface& surface) {
-  const frame::Appearance& look = surface.appearance;
-  const Vec3 color = image::linear_from_srgb(look.color);
-  return {{"name", surface.name},
-          {"doubleSided", surface.kind == frame::ObjectKind::cloth},
-          {"pbrMetallicRoughness",
-           {{"baseColorFactor", {color.x(), color.y(), color.z(), 1}},
-            {"metallicFactor", 0},
-            {"roughnessFactor", look.roughness}}}};
+// Before and behind what is seen [m].
+constexpr double kNear = 0.01, kFar = 1000;
+
+constexpr int kRepeat = 10497, kMirror = 33648, kClamp = 33071, kLinear = 9729, kLinearOfSizes = 9987;
+
+int wrap_number(frame::Paint::Wrap wrap) {
+  switch (wrap) {
+    case frame::Paint::Wrap::repeat:
+      return kRepeat;
+    case frame::Paint::Wrap::mirror:
+      return kMirror;
+    case frame::Paint::Wrap::clamp:
+    case frame::Paint::Wrap::once:
+      return kClamp;
+  }
+  return kRepeat;
 }
 
 // Gives each place of its own to what lies on either side of a crease; returns the group of each place.
@@ -54,6 +63,7 @@ std::vector<Index> cut_at_creases(CutSurface& cut, const NormalGroups& groups) {
       if (fresh) {
         cut.vertex_of.push_back(cut.vertex_of[place]);
         if (!cut.uv.empty()) cut.uv.push_back(Vec2(cut.uv[place]));
+        if (!cut.picture_uv.empty()) cut.picture_uv.push_back(Vec2(cut.picture_uv[place]));
         group_of.push_back(group);
       }
       corner = copy->second;
@@ -82,19 +92,22 @@ void append_chunk(std::string& bytes, const char* kind, std::string_view content
 
 GltfFile::GltfFile(const frame::FrameSnapshot& first) : z_up_(first.stage->up.z() > 0.5), frames_{first.frame} {
   document_ = {{"asset", {{"version", "2.0"}, {"generator", fmt::format("Weft {}", kVersion)}}}, {"scene", 0}};
-  for (const char* list : {"nodes", "meshes", "materials", "accessors", "bufferViews"}) document_[list] = json::array();
+  for (const char* list :
+       {"nodes", "meshes", "materials", "accessors", "bufferViews", "images", "samplers", "textures", "cameras"})
+    document_[list] = json::array();
   for (std::size_t s = 0; s < first.surfaces.size(); ++s) {
     const frame::Surface& surface = *first.surfaces[s];
     if (!surface.visible) continue;
     const std::vector<Vec3>& positions = first.states[s].positions;
-    CutSurface cut = cut_at_seams(surface);
+    const Materials materials = materials_of(surface);
+    CutSurface cut = cut_at_seams(surface, materials, positions.size());
     Object object{.surface = s, .groups = group_normals(surface, positions)};
     object.group_of = cut_at_creases(cut, object.groups);
     object.vertex_of = cut.vertex_of;
     object.start = turned(positions, object.vertex_of);
     object.start_normals = normals(object, first);
-    document_["materials"].push_back(material_of(surface));
-    document_["meshes"].push_back({{"name", surface.name}, {"primitives", {primitive(cut, object)}}});
+    document_["meshes"].push_back(
+        {{"name", surface.name}, {"primitives", primitives(cut, object, surface, materials)}});
     objects_.push_back(std::move(object));
   }
 }
@@ -149,11 +162,12 @@ int GltfFile::add_vectors(const std::vector<float>& vectors) {
   return static_cast<int>(document_["accessors"].size()) - 1;
 }
 
-int GltfFile::add_scalars(const std::vector<float>& values, bool with_bounds) {
+int GltfFile::add_values(const std::vector<float>& values, const char* type, bool with_bounds) {
+  const std::size_t each = type == std::string_view("SCALAR") ? 1 : type[3] - '0';  // VEC3, VEC4
   json accessor{{"bufferView", append(values.data(), 4 * values.size(), 0)},
                 {"componentType", kFloat},
-                {"count", values.size()},
-                {"type", "SCALAR"}};
+                {"count", values.size() / each},
+                {"type", type}};
   if (with_bounds) {
     accessor["min"] = {values.front()};
     accessor["max"] = {values.back()};
@@ -162,30 +176,80 @@ int GltfFile::add_scalars(const std::vector<float>& values, bool with_bounds) {
   return static_cast<int>(document_["accessors"].size()) - 1;
 }
 
-json GltfFile::primitive(const CutSurface& surface, const Object& object) {
-  json attributes{{"POSITION", add_vectors(object.start)}, {"NORMAL", add_vectors(object.start_normals)}};
-  json& accessors = document_["accessors"];
-  if (!surface.uv.empty()) {
-    std::vector<float> uv;
-    for (const Vec2& place : surface.uv) {  // v goes down there
-      uv.push_back(static_cast<float>(place.x()));
-      uv.push_back(static_cast<float>(1 - place.y()));
-    }
-    attributes["TEXCOORD_0"] = accessors.size();
-    accessors.push_back({{"bufferView", append(uv.data(), 4 * uv.size(), kVertices)},
-                         {"componentType", kFloat},
-                         {"count", surface.uv.size()},
-                         {"type", "VEC2"}});
+int GltfFile::add_places(const std::vector<Vec2>& places) {
+  std::vector<float> uv;
+  for (const Vec2& place : places) {  // v goes down there
+    uv.push_back(static_cast<float>(place.x()));
+    uv.push_back(static_cast<float>(1 - place.y()));
   }
-  const std::size_t corners = 3 * surface.triangles.size();
-  accessors.push_back({{"bufferView", append(surface.triangles.data(), 4 * corners, kIndices)},
-                       {"componentType", kUnsignedInt},
-                       {"count", corners},
-                       {"type", "SCALAR"}});
-  return {{"attributes", attributes},
-          {"indices", accessors.size() - 1},
-          {"material", document_["materials"].size() - 1},
-          {"mode", kTriangles}};
+  document_["accessors"].push_back({{"bufferView", append(uv.data(), 4 * uv.size(), kVertices)},
+                                    {"componentType", kFloat},
+                                    {"count", places.size()},
+                                    {"type", "VEC2"}});
+  return static_cast<int>(document_["accessors"].size()) - 1;
+}
+
+// Returns its number: one for each picture and way of going on beyond its edges. `images`: numbers of the pictures.
+json GltfFile::texture(const Materials& materials, const Material& material, std::vector<int>& images) {
+  if (images.empty()) images.assign(materials.pictures.size(), -1);
+  int& image = images[material.picture];
+  if (image < 0) {
+    const PictureFile& picture = materials.pictures[material.picture];
+    const std::string png = picture.png();
+    image = static_cast<int>(document_["images"].size());
+    document_["images"].push_back(
+        {{"name", picture.name}, {"mimeType", "image/png"}, {"bufferView", append(png.data(), png.size(), 0)}});
+    bytes_.append((4 - bytes_.size() % 4) % 4, '\0');  // numbers that follow start at multiples of four
+  }
+  const json sampler{{"wrapS", wrap_number(material.wrap_u)},
+                     {"wrapT", wrap_number(material.wrap_v)},
+                     {"magFilter", kLinear},
+                     {"minFilter", kLinearOfSizes}};
+  const auto number_of = [&](const char* list, const json& entry) {
+    json& all = document_[list];
+    const auto found = std::ranges::find(all, entry);
+    const auto number = static_cast<std::size_t>(found - all.begin());
+    if (found == all.end()) all.push_back(entry);
+    return number;
+  };
+  return number_of("textures", {{"source", image}, {"sampler", number_of("samplers", sampler)}});
+}
+
+// A primitive for each look; all share vertices and so the frames.
+json GltfFile::primitives(const CutSurface& cut, const Object& object, const frame::Surface& surface,
+                          const Materials& materials) {
+  json attributes{{"POSITION", add_vectors(object.start)}, {"NORMAL", add_vectors(object.start_normals)}};
+  if (!cut.uv.empty()) attributes["TEXCOORD_0"] = add_places(cut.uv);
+  if (!cut.picture_uv.empty()) attributes["TEXCOORD_1"] = add_places(cut.picture_uv);
+  json result = json::array();
+  std::vector<int> images;
+  for (const MaterialGroup& group : by_look(surface, materials)) {
+    const Material& look = materials.all[group.material];
+    const bool painted = look.has_picture() && !cut.uv.empty();
+    const Vec3 color = painted ? Vec3(1, 1, 1) : look.color;
+    json material{{"name", look.name},
+                  {"doubleSided", surface.kind == frame::ObjectKind::cloth},
+                  {"pbrMetallicRoughness",
+                   {{"baseColorFactor", {color.x(), color.y(), color.z(), 1}},
+                    {"metallicFactor", 0},
+                    {"roughnessFactor", look.roughness}}}};
+    if (painted)
+      material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture(materials, look, images)},
+                                                              {"texCoord", cut.picture_uv.empty() ? 0 : 1}};
+    if (painted && look.cutout) material["alphaMode"] = "MASK";
+    std::vector<std::array<Index, 3>> triangles;
+    for (const std::size_t t : group.triangles) triangles.push_back(cut.triangles[t]);
+    document_["accessors"].push_back({{"bufferView", append(triangles.data(), 12 * triangles.size(), kIndices)},
+                                      {"componentType", kUnsignedInt},
+                                      {"count", 3 * triangles.size()},
+                                      {"type", "SCALAR"}});
+    result.push_back({{"attributes", attributes},
+                      {"indices", document_["accessors"].size() - 1},
+                      {"material", document_["materials"].size()},
+                      {"mode", kTriangles}});
+    document_["materials"].push_back(std::move(material));
+  }
+  return result;
 }
 
 void GltfFile::add(const frame::FrameSnapshot& snapshot, double time) {
@@ -211,37 +275,90 @@ void GltfFile::add_targets(Object& object, json& mesh) {
     targets.push_back({{"POSITION", positions < 0 ? still : positions}, {"NORMAL", positions < 0 ? still : normals}});
     names.push_back(fmt::format("frame_{:05}", frames_[k + 1]));
   }
-  mesh["primitives"][0]["targets"] = std::move(targets);
+  for (json& primitive : mesh["primitives"]) primitive["targets"] = targets;
   mesh["weights"] = std::vector<int>(object.targets.size(), 0);
   mesh["extras"] = {{"targetNames", std::move(names)}};
 }
 
 // All that moves shares its times and weights.
-void GltfFile::animate(const std::vector<int>& nodes, const std::string& name) {
-  if (nodes.empty()) return;
+json GltfFile::animation(const std::vector<int>& nodes) {
+  json result{{"samplers", json::array()}, {"channels", json::array()}};
+  if (nodes.empty()) return result;
   const std::size_t targets = times_.size() - 1;
   std::vector<float> weights(times_.size() * targets, 0.0F);
   for (std::size_t k = 0; k < targets; ++k) weights[(k + 1) * targets + k] = 1;
-  const int input = add_scalars(times_, true), output = add_scalars(weights, false);
-  json channels = json::array();
-  for (int node : nodes) channels.push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
-  document_["animations"] = {{{"name", name},
-                              {"samplers", {{{"input", input}, {"output", output}, {"interpolation", "LINEAR"}}}},
-                              {"channels", std::move(channels)}}};
+  const int input = add_values(times_, "SCALAR", true), output = add_values(weights, "SCALAR");
+  for (int node : nodes)
+    result["channels"].push_back({{"sampler", 0}, {"target", {{"node", node}, {"path", "weights"}}}});
+  result["samplers"].push_back({{"input", input}, {"output", output}, {"interpolation", "LINEAR"}});
+  return result;
 }
 
-void GltfFile::write(const std::filesystem::path& file, const std::string& animation_name) {
-  std::vector<int> all, moving;
+void GltfFile::see(const std::vector<View>& views) {
+  Eigen::Matrix3d turned = Eigen::Matrix3d::Identity();
+  if (z_up_) turned << 1, 0, 0, 0, 0, 1, 0, -1, 0;
+  for (std::size_t c = 0; c < views.size(); ++c) {
+    if (c == eyes_.size()) eyes_.push_back({.name = views[c].name, .field_of_view = views[c].field_of_view});
+    Eye& eye = eyes_[c];
+    const Vec3 position = turned * views[c].world_from_view.topRightCorner<3, 1>();
+    Eigen::Vector4f turn =
+        Quat(Eigen::Matrix3d(turned * views[c].world_from_view.topLeftCorner<3, 3>())).coeffs().cast<float>();
+    // Of the two quaternions of a turn that near to the one before, so that readers go the short way.
+    if (!eye.turns.empty() && turn.dot(Eigen::Map<const Eigen::Vector4f>(&*(eye.turns.end() - 4))) < 0) turn = -turn;
+    for (int axis = 0; axis < 3; ++axis) eye.positions.push_back(static_cast<float>(position[axis]));
+    for (int part = 0; part < 4; ++part) eye.turns.push_back(turn[part]);
+  }
+}
+
+// As nodes behind those of the objects.
+void GltfFile::add_cameras(json& animation, double aspect) {
+  for (const Eye& eye : eyes_) {
+    const std::size_t node = document_["nodes"].size();
+    document_["nodes"].push_back({{"name", eye.name},
+                                  {"camera", document_["cameras"].size()},
+                                  {"translation", std::vector(eye.positions.begin(), eye.positions.begin() + 3)},
+                                  {"rotation", std::vector(eye.turns.begin(), eye.turns.begin() + 4)}});
+    document_["cameras"].push_back({{"name", eye.name},
+                                    {"type", "perspective"},
+                                    {"perspective",
+                                     {{"yfov", eye.field_of_view * std::numbers::pi / 180},
+                                      {"aspectRatio", aspect},
+                                      {"znear", kNear},
+                                      {"zfar", kFar}}}});
+    for (const auto& [path, type, values] :
+         {std::tuple("translation", "VEC3", &eye.positions), std::tuple("rotation", "VEC4", &eye.turns)}) {
+      const std::ptrdiff_t each = type[3] - '0';
+      if (std::equal(values->begin() + each, values->end(), values->begin())) continue;  // all are as the one before
+      const int input = animation["samplers"].empty() ? add_values(times_, "SCALAR", true)
+                                                      : animation["samplers"][0]["input"].get<int>();
+      animation["channels"].push_back(
+          {{"sampler", animation["samplers"].size()}, {"target", {{"node", node}, {"path", path}}}});
+      animation["samplers"].push_back(
+          {{"input", input}, {"output", add_values(*values, type)}, {"interpolation", "LINEAR"}});
+    }
+  }
+}
+
+void GltfFile::write(const std::filesystem::path& file, const std::string& animation_name, double aspect) {
+  std::vector<int> moving;
   for (std::size_t o = 0; o < objects_.size(); ++o) {
     json& mesh = document_["meshes"][o];
     document_["nodes"].push_back({{"name", mesh["name"]}, {"mesh", o}});
-    all.push_back(static_cast<int>(o));
     if (std::ranges::all_of(objects_[o].targets, [](const Target& target) { return target.positions < 0; })) continue;
     add_targets(objects_[o], mesh);
     moving.push_back(static_cast<int>(o));
   }
+  json moved = animation(moving);
+  add_cameras(moved, aspect);
+  std::vector<std::size_t> all(document_["nodes"].size());
+  std::iota(all.begin(), all.end(), std::size_t{0});
   document_["scenes"] = {{{"nodes", all}}};
-  animate(moving, animation_name);
+  if (!moved["channels"].empty()) {
+    moved["name"] = animation_name;
+    document_["animations"].push_back(std::move(moved));
+  }
+  for (const char* list : {"images", "samplers", "textures", "cameras"})
+    if (document_[list].empty()) document_.erase(list);
   document_["buffers"] = {{{"byteLength", bytes_.size()}}};
 
   const std::string text = document_.dump();

@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <iterator>
 #include <map>
+#include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "core/temporary_file.hpp"
+#include "export/materials.hpp"
 #include "export/normals.hpp"
 #include "export/seams.hpp"
-#include "image/color.hpp"
 
 namespace weft::exporter {
 namespace {
@@ -19,45 +21,73 @@ namespace {
 // Of the highlight, for what is as a mirror: readers such as Blender take roughness for 1 - sqrt(Ns / 1000).
 constexpr double kLargestExponent = 1000;
 
-constexpr Index kNone = -1;
+// A face by its corners, each that of a triangle.
+struct Face {
+  std::size_t material = 0;                                  // that looks as its own
+  std::vector<std::pair<std::size_t, std::size_t>> corners;  // triangle, and which of its corners
+};
 
-// One corner of a face: `v//vn` or `v/vt/vn`, counted from 1.
-void append_corner(Index vertex, Index texture, Index normal, std::string& text) {
-  const auto out = std::back_inserter(text);
-  if (texture != kNone)
-    fmt::format_to(out, " {}/{}/{}", vertex + 1, texture + 1, normal + 1);
-  else
-    fmt::format_to(out, " {}//{}", vertex + 1, normal + 1);
+std::vector<Face> triangles_of(const frame::Surface& surface) {
+  std::vector<Face> faces;
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t) faces.push_back({0, {{t, 0}, {t, 1}, {t, 2}}});
+  return faces;
 }
 
-void append_triangles(const CutSurface& cut, const NormalGroups& groups, std::string& text) {
-  for (std::size_t t = 0; t < cut.triangles.size(); ++t) {
-    text += 'f';
-    for (std::size_t k = 0; k < 3; ++k) {
-      const Index place = cut.triangles[t][k];
-      const Index texture = cut.uv.empty() ? kNone : place;
-      append_corner(cut.vertex_of[static_cast<std::size_t>(place)], texture, groups.of_corner[t][k], text);
-    }
-    text += '\n';
-  }
-}
-
-// A corner of a quad has the normal of a triangle that is a part of the quad: both have an edge in common.
-void append_quads(const frame::Surface& surface, const NormalGroups& groups, std::string& text) {
+// A corner of a quad is that of a triangle that is a part of the quad: both have an edge in common.
+std::vector<Face> quads_of(const frame::Surface& surface) {
   std::map<std::pair<Index, Index>, std::size_t> triangles;  // by edge, from vertex to vertex
   for (std::size_t t = 0; t < surface.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) triangles[{surface.triangles[t][k], surface.triangles[t][(k + 1) % 3]}] = t;
+  std::vector<Face> faces;
   for (const auto& quad : surface.quads) {
-    text += 'f';
+    Face& face = faces.emplace_back();
     for (std::size_t k = 0; k < 4; ++k) {
       const std::size_t t = triangles.at({quad[k], quad[(k + 1) % 4]});
       const auto& corners = surface.triangles[t];
-      const auto corner = static_cast<std::size_t>(std::ranges::find(corners, quad[k]) - corners.begin());
-      const Index texture = surface.uv.empty() ? kNone : quad[k];
-      append_corner(quad[k], texture, groups.of_corner[t][corner], text);
+      face.corners.emplace_back(t, std::ranges::find(corners, quad[k]) - corners.begin());
+    }
+  }
+  return faces;
+}
+
+// In the order of their materials.
+std::vector<Face> faces_of(const frame::Surface& surface, const Materials& materials) {
+  std::vector<Face> faces = surface.quads.empty() ? triangles_of(surface) : quads_of(surface);
+  for (Face& face : faces) face.material = materials.all[materials.of_triangle(surface, face.corners[0].first)].alike;
+  std::ranges::stable_sort(faces, {}, &Face::material);
+  return faces;
+}
+
+// Corners as `v//vn` or `v/vt/vn`, counted from 1.
+void append_faces(const std::vector<Face>& faces, const Materials& materials, const CutSurface& cut,
+                  const NormalGroups& groups, std::string& text) {
+  const auto out = std::back_inserter(text);
+  for (std::size_t f = 0; f < faces.size(); ++f) {
+    const std::size_t material = faces[f].material;
+    if (f == 0 || material != faces[f - 1].material) fmt::format_to(out, "usemtl {}\n", materials.all[material].name);
+    text += 'f';
+    for (const auto& [t, k] : faces[f].corners) {
+      const Index place = cut.triangles[t][k];
+      const Index vertex = cut.vertex_of[static_cast<std::size_t>(place)], normal = groups.of_corner[t][k];
+      if (cut.uv.empty())
+        fmt::format_to(out, " {}//{}", vertex + 1, normal + 1);
+      else
+        fmt::format_to(out, " {}/{}/{}", vertex + 1, place + 1, normal + 1);
     }
     text += '\n';
   }
+}
+
+// A picture's place and size; empty where it is turned, for which there are no words.
+std::optional<std::string> map_options(const Material& material) {
+  const auto& map = material.picture_from_uv;
+  if (map(0, 1) != 0 || map(1, 0) != 0) return std::nullopt;
+  std::string text;
+  if (map != Eigen::Matrix<double, 2, 3>::Identity())
+    text = fmt::format("-s {} {} 1 -o {} {} 0 ", map(0, 0), map(1, 1), map(0, 2), map(1, 2));
+  if (material.wrap_u == frame::Paint::Wrap::clamp && material.wrap_v == frame::Paint::Wrap::clamp)
+    text += "-clamp on ";
+  return text;
 }
 
 }  // namespace
@@ -66,28 +96,39 @@ void write_obj(const std::filesystem::path& file, const frame::Surface& surface,
   std::string text = fmt::format("# Weft, metres\nmtllib {}.mtl\no {}\n", surface.name, surface.name);
   const auto out = std::back_inserter(text);
   for (const Vec3& x : positions) fmt::format_to(out, "v {} {} {}\n", x.x(), x.y(), x.z());
-  const CutSurface cut = cut_at_seams(surface);
+  const Materials materials = materials_of(surface);
+  const CutSurface cut = cut_at_seams(surface, materials, positions.size());
   for (const Vec2& uv : cut.uv) fmt::format_to(out, "vt {} {}\n", uv.x(), uv.y());
   const NormalGroups groups = group_normals(surface, positions);
   for (const Vec3& n : normals_of(groups, surface, positions))
     fmt::format_to(out, "vn {:.6f} {:.6f} {:.6f}\n", n.x(), n.y(), n.z());
-  text += fmt::format("usemtl {}\ns 1\n", surface.name);
-  if (surface.quads.empty())
-    append_triangles(cut, groups, text);
-  else
-    append_quads(surface, groups, text);
+  text += "s 1\n";
+  append_faces(faces_of(surface, materials), materials, cut, groups, text);
   write_file(file, text, Flush::no);
 }
 
 std::string mtl_text(const frame::Surface& surface) {
-  const frame::Appearance& look = surface.appearance;
-  const Vec3 color = image::linear_from_srgb(look.color);
-  const double glossy = 1 - look.roughness;
-  return fmt::format(
-      "# Weft, colours in linear light\nnewmtl {}\nKd {:.6f} {:.6f} {:.6f}\nKs 0.5 0.5 0.5\nNs {:.3f}\nPr {}\nd "
-      "1\nillum "
-      "2\n",
-      surface.name, color.x(), color.y(), color.z(), kLargestExponent * glossy * glossy, look.roughness);
+  const Materials materials = materials_of(surface);
+  std::string text = "# Weft, colours in linear light\n";
+  const auto out = std::back_inserter(text);
+  for (const MaterialGroup& group : by_look(surface, materials)) {
+    const Material& material = materials.all[group.material];
+    const auto options = material.has_picture() ? map_options(material) : std::nullopt;
+    const Vec3 color = options ? Vec3(1, 1, 1) : material.color;
+    const double glossy = 1 - material.roughness;
+    fmt::format_to(out, "newmtl {}\nKd {:.6f} {:.6f} {:.6f}\nKs 0.5 0.5 0.5\nNs {:.3f}\nPr {}\nd 1\nillum 2\n",
+                   material.name, color.x(), color.y(), color.z(), kLargestExponent * glossy * glossy,
+                   material.roughness);
+    if (!material.has_picture()) continue;
+    const std::string& file = materials.pictures[material.picture].name;
+    if (!options) {
+      fmt::format_to(out, "# {} is laid turned, which cannot be said here\n", file);
+      continue;
+    }
+    fmt::format_to(out, "map_Kd {}{}\n", *options, file);
+    if (material.cutout) fmt::format_to(out, "map_d {}{}\n", *options, file);
+  }
+  return text;
 }
 
 }  // namespace weft::exporter

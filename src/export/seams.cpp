@@ -1,37 +1,84 @@
 #include "export/seams.hpp"
 
 #include <algorithm>
-#include <map>
 #include <numeric>
-#include <tuple>
 
 namespace weft::exporter {
+namespace {
 
-CutSurface cut_at_seams(const frame::Surface& surface) {
+struct Place {
+  Vec2 uv{0, 0}, picture_uv{0, 0};
+  bool operator==(const Place&) const = default;
+};
+
+/// The places of each vertex, the first of which has its number.
+class Places {
+ public:
+  explicit Places(std::size_t vertices) : places_(vertices), next_(vertices, kNone), taken_(vertices, 0) {}
+
+  /// Returns the number of the place, and appends to `vertex_of` where it is a new one.
+  Index of(Index vertex, const Place& place, std::vector<Index>& vertex_of) {
+    Index at = vertex;
+    if (taken_[index(at)] == 0) {
+      taken_[index(at)] = 1;
+      places_[index(at)] = place;
+      return at;
+    }
+    while (!(places_[index(at)] == place)) {
+      if (next_[index(at)] == kNone) {
+        next_[index(at)] = static_cast<Index>(places_.size());
+        places_.push_back(place);
+        next_.push_back(kNone);
+        vertex_of.push_back(vertex);
+        return static_cast<Index>(places_.size() - 1);
+      }
+      at = next_[index(at)];
+    }
+    return at;
+  }
+
+  const std::vector<Place>& all() const { return places_; }
+
+ private:
+  static constexpr Index kNone = -1;
+  static std::size_t index(Index i) { return static_cast<std::size_t>(i); }
+  std::vector<Place> places_;
+  std::vector<Index> next_;  // of the same vertex
+  std::vector<char> taken_;  // per vertex
+};
+
+// Where all pictures are laid by the coordinates as they are these need not be written twice.
+bool needs_own_coordinates(const Materials& materials) {
+  return std::ranges::any_of(materials.all, [](const Material& material) {
+    return material.has_picture() && material.picture_from_uv != Eigen::Matrix<double, 2, 3>::Identity();
+  });
+}
+
+}  // namespace
+
+CutSurface cut_at_seams(const frame::Surface& surface, const Materials& materials, std::size_t vertices) {
   CutSurface cut;
   cut.triangles = surface.triangles;
-  if (surface.paint_uv.empty()) {
-    Index vertices = static_cast<Index>(surface.uv.size());
-    for (const auto& t : surface.triangles)
-      for (const Index v : t) vertices = std::max(vertices, v + 1);
-    cut.vertex_of.resize(static_cast<std::size_t>(vertices));
-    std::iota(cut.vertex_of.begin(), cut.vertex_of.end(), 0);
-    cut.uv = surface.uv;
-    return cut;
-  }
-  std::map<std::tuple<Index, double, double>, Index> places;
-  for (std::size_t t = 0; t < cut.triangles.size(); ++t)
+  cut.vertex_of.resize(vertices);
+  std::iota(cut.vertex_of.begin(), cut.vertex_of.end(), 0);
+  const bool by_corner = !surface.paint_uv.empty();
+  if (!by_corner && surface.uv.empty()) return cut;
+  const bool own = needs_own_coordinates(materials);
+  Places places(vertices);
+  for (std::size_t t = 0; t < cut.triangles.size(); ++t) {
+    const Material& material = materials.all[materials.of_triangle(surface, t)];
     for (std::size_t k = 0; k < 3; ++k) {
       Index& corner = cut.triangles[t][k];
-      const Vec2& uv = surface.paint_uv[t][k];
-      const auto [place, fresh] =
-          places.try_emplace({corner, uv.x(), uv.y()}, static_cast<Index>(cut.vertex_of.size()));
-      if (fresh) {
-        cut.vertex_of.push_back(corner);
-        cut.uv.push_back(uv);
-      }
-      corner = place->second;
+      Place place{by_corner ? surface.paint_uv[t][k] : surface.uv[static_cast<std::size_t>(corner)]};
+      if (own)
+        place.picture_uv = material.has_picture() ? Vec2(material.picture_from_uv * place.uv.homogeneous()) : place.uv;
+      corner = places.of(corner, place, cut.vertex_of);
     }
+  }
+  for (const Place& place : places.all()) {
+    cut.uv.push_back(place.uv);
+    if (own) cut.picture_uv.push_back(place.picture_uv);
+  }
   return cut;
 }
 

@@ -17,7 +17,6 @@
 #include "core/version.hpp"
 #include "export/seams.hpp"
 #include "export/zip.hpp"
-#include "image/color.hpp"
 
 namespace weft::exporter {
 namespace {
@@ -83,19 +82,60 @@ std::string matrix_text(const Eigen::Matrix4d& matrix) {
   return text += " )";
 }
 
-void write_material(std::ostream& out, const std::string& prim, const std::string& path, const frame::Appearance& look,
-                    double roughness) {
-  const Vec3 color = image::linear_from_srgb(look.color);
+const char* wrap_name(frame::Paint::Wrap wrap) {
+  switch (wrap) {
+    case frame::Paint::Wrap::repeat:
+      return "repeat";
+    case frame::Paint::Wrap::mirror:
+      return "mirror";
+    case frame::Paint::Wrap::clamp:
+    case frame::Paint::Wrap::once:
+      return "clamp";
+  }
+  return "repeat";
+}
+
+void write_picture(std::ostream& out, const Material& material, const std::string& file, const std::string& path) {
+  fmt::print(out,
+             "\n            def Shader \"picture\"\n            {{\n"
+             "                uniform token info:id = \"UsdUVTexture\"\n"
+             "                asset inputs:file = @{0}@\n"
+             "                token inputs:sourceColorSpace = \"sRGB\"\n"
+             "                float2 inputs:st.connect = <{1}/places.outputs:result>\n"
+             "                token inputs:wrapS = \"{2}\"\n                token inputs:wrapT = \"{3}\"\n"
+             "                float outputs:a\n                float3 outputs:rgb\n            }}\n"
+             "\n            def Shader \"places\"\n            {{\n"
+             "                uniform token info:id = \"UsdPrimvarReader_float2\"\n"
+             "                string inputs:varname = \"st\"\n"
+             "                float2 outputs:result\n            }}\n",
+             file, path, wrap_name(material.wrap_u), wrap_name(material.wrap_v));
+}
+
+void write_material(std::ostream& out, const std::string& prim, const std::string& path, const Material& material,
+                    const Materials& materials) {
+  const Vec3& color = material.color;
+  const std::string diffuse = material.has_picture()
+                                  ? fmt::format(".connect = <{}/picture.outputs:rgb>", path)
+                                  : fmt::format(" = ({:.6g}, {:.6g}, {:.6g})", color.x(), color.y(), color.z());
   fmt::print(out,
              "        def Material \"{0}\"\n        {{\n"
              "            token outputs:surface.connect = <{1}/surface.outputs:surface>\n\n"
              "            def Shader \"surface\"\n            {{\n"
              "                uniform token info:id = \"UsdPreviewSurface\"\n"
-             "                color3f inputs:diffuseColor = ({2:.6g}, {3:.6g}, {4:.6g})\n"
-             "                float inputs:metallic = 0\n"
-             "                float inputs:roughness = {5}\n"
-             "                token outputs:surface\n            }}\n        }}\n",
-             prim, path, color.x(), color.y(), color.z(), roughness);
+             "                color3f inputs:diffuseColor{2}\n"
+             "                float inputs:metallic = 0\n",
+             prim, path, diffuse);
+  if (material.cutout)
+    fmt::print(out,
+               "                float inputs:opacity.connect = <{}/picture.outputs:a>\n"
+               "                float inputs:opacityThreshold = 0.5\n",
+               path);
+  fmt::print(out,
+             "                float inputs:roughness = {}\n"
+             "                token outputs:surface\n            }}\n",
+             material.roughness);
+  if (material.has_picture()) write_picture(out, material, materials.pictures[material.picture].name, path);
+  out << "        }\n";
 }
 
 // Names of the materials of the parts, none twice.
@@ -144,6 +184,8 @@ UsdFile::UsdFile(const frame::FrameSnapshot& first, const std::string& name, dou
   for (std::size_t s = 0; s < first.surfaces.size(); ++s) {
     if (!surfaces_[s]->visible) continue;
     Object object{.surface = s, .prim = unique_prim(surfaces_[s]->name)};
+    object.vertices = first.states[s].positions.size();
+    object.materials = materials_of(*surfaces_[s]);
     object.groups = group_normals(*surfaces_[s], first.states[s].positions);
     object.smooth = object.groups.of_corner == surfaces_[s]->triangles;
     objects_.push_back(std::move(object));
@@ -186,14 +228,28 @@ void UsdFile::write_materials(std::ostream& out) const {
   out << "    def Scope \"materials\"\n    {\n";
   for (const Object& object : objects_) {
     const frame::Surface& surface = *surfaces_[object.surface];
-    const auto write = [&](const std::string& prim, const frame::Appearance& look) {
-      write_material(out, prim, fmt::format("/{}/materials/{}", root_, prim), look, surface.appearance.roughness);
+    const auto write = [&](const std::string& prim, const Material& material) {
+      write_material(out, prim, fmt::format("/{}/materials/{}", root_, prim), material, object.materials);
     };
-    write(object.prim, surface.appearance);
+    write(object.prim, object.materials.all[0]);
     const std::vector<std::string> parts = part_prims(surface, object.prim);
-    for (std::size_t p = 0; p < parts.size(); ++p) write(parts[p], surface.parts[p].appearance);
+    for (std::size_t p = 0; p < parts.size(); ++p) write(parts[p], object.materials.all[p + 1]);
   }
   out << "    }\n";
+}
+
+// `st` lays pictures; without any it is weft and warp.
+void UsdFile::write_places(std::ostream& out, const frame::Surface& surface, const Object& object) {
+  const CutSurface cut = cut_at_seams(surface, object.materials, object.vertices);
+  if (cut.uv.empty()) return;
+  const bool by_corner = cut.is_cut(object.vertices);
+  const auto write = [&](const char* name, const std::vector<Vec2>& places) {
+    fmt::print(out, "        texCoord2f[] primvars:{} = {} (\n            interpolation = \"{}\"\n        )\n", name,
+               tuples(places), by_corner ? "faceVarying" : "vertex");
+    if (by_corner) fmt::print(out, "        int[] primvars:{}:indices = {}\n", name, indices(cut.triangles));
+  };
+  write("st", cut.picture_uv.empty() ? cut.uv : cut.picture_uv);
+  if (!cut.picture_uv.empty()) write("weft_warp", cut.uv);
 }
 
 void UsdFile::write_mesh(std::ostream& out, const Object& object) const {
@@ -212,13 +268,7 @@ void UsdFile::write_mesh(std::ostream& out, const Object& object) const {
   object.normals.write(out, "normal3f[] normals",
                        object.smooth ? " (\n            interpolation = \"vertex\"\n        )"
                                      : " (\n            interpolation = \"faceVarying\"\n        )");
-  const CutSurface cut = cut_at_seams(surface);
-  if (!cut.uv.empty()) {
-    const bool by_corner = !surface.paint_uv.empty();
-    fmt::print(out, "        texCoord2f[] primvars:st = {} (\n            interpolation = \"{}\"\n        )\n",
-               tuples(cut.uv), by_corner ? "faceVarying" : "vertex");
-    if (by_corner) fmt::print(out, "        int[] primvars:st:indices = {}\n", indices(cut.triangles));
-  }
+  write_places(out, surface, object);
   const std::vector<std::string> parts = part_prims(surface, object.prim);
   for (std::size_t p = 0; p < parts.size(); ++p) {
     std::string faces;
@@ -264,8 +314,14 @@ void UsdFile::write(const std::filesystem::path& file) const {
   if (file.extension() == ".usdz") {
     std::ostringstream out;
     write_all(out);
-    return write_stored(file, file.stem().string() + ".usda", out.str());
+    std::vector<StoredFile> files{{file.stem().string() + ".usda", out.str()}};
+    for (const Object& object : objects_)
+      for (const PictureFile& picture : object.materials.pictures) files.push_back({picture.name, picture.png()});
+    return write_stored(file, files);
   }
+  for (const Object& object : objects_)
+    for (const PictureFile& picture : object.materials.pictures)
+      write_file(file.parent_path() / picture.name, picture.png(), Flush::no);
   TemporaryFile temporary(file);
   std::ofstream out(temporary.path(), std::ios::binary);
   write_all(out);

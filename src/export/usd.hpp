@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "export/materials.hpp"
 #include "export/normals.hpp"
 #include "export/view.hpp"
 #include "frame/frame_snapshot.hpp"
@@ -23,7 +24,8 @@ class UsdFile {
   /// The next frame, the first too.
   void add(const frame::FrameSnapshot& snapshot, const std::vector<View>& views);
 
-  /// As .usda, or packed as .usdz, by the ending of the name. Throws Error(output_failed).
+  /// As .usda with its pictures beside it, or packed with them as .usdz, by the ending of the name. Throws
+  /// Error(output_failed).
   void write(const std::filesystem::path& file) const;
 
  private:
@@ -44,6 +46,8 @@ class UsdFile {
     std::string prim = {};  // its name in the file
     NormalGroups groups = {};
     bool smooth = false;  // a normal for each vertex, else for each corner
+    std::size_t vertices = 0;
+    Materials materials = {};
     Samples points = {}, normals = {}, extent = {};
   };
   struct Camera {
@@ -54,6 +58,7 @@ class UsdFile {
   void write_all(std::ostream& out) const;
   void write_materials(std::ostream& out) const;
   void write_mesh(std::ostream& out, const Object& object) const;
+  static void write_places(std::ostream& out, const frame::Surface& surface, const Object& object);
   void write_camera(std::ostream& out, const Camera& camera) const;
 
   std::string root_;

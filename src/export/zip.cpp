@@ -30,51 +30,66 @@ std::uint32_t crc32(const std::string& bytes) {
   return ~av_crc(av_crc_get_table(AV_CRC_32_IEEE_LE), kAllBits, data, bytes.size());
 }
 
-}  // namespace
-
-void write_stored(const std::filesystem::path& file, const std::string& name, const std::string& content) {
-  if (content.size() > std::numeric_limits<std::uint32_t>::max() - 4096)
-    throw Error(ExitCode::output_failed,
-                "{}: packed files end at 4 GiB, and this would be one of {:.3g} GB; export fewer frames with --frames, "
-                "or as usd",
-                file.string(), 1e-9 * static_cast<double>(content.size()));
-  // An extra field fills up to the alignment; it has a head of four bytes itself.
-  std::size_t padding = (kAlignment - (kLocalHeader + name.size()) % kAlignment) % kAlignment;
-  if (padding > 0 && padding < 4) padding += kAlignment;
-  std::string entry;  // what the local header and the directory share
+// What the local header of a file and the directory share.
+std::string entry_of(const StoredFile& file) {
+  std::string entry;
   append(entry, kVersion, 2);
   append(entry, kUtf8Names, 2);
   append(entry, 0, 2);  // stored
   append(entry, 0, 2);  // time of day
   append(entry, kFirstDay, 2);
-  append(entry, crc32(content), 4);
-  append(entry, content.size(), 4);
-  append(entry, content.size(), 4);
-  append(entry, name.size(), 2);
+  append(entry, crc32(file.content), 4);
+  append(entry, file.content.size(), 4);
+  append(entry, file.content.size(), 4);
+  append(entry, file.name.size(), 2);
+  return entry;
+}
 
-  std::string bytes = "PK\x03\x04" + entry;
+void append_file(std::string& bytes, const StoredFile& file, const std::string& entry) {
+  // An extra field fills up to the alignment; it has a head of four bytes itself.
+  std::size_t padding = (kAlignment - (bytes.size() + kLocalHeader + file.name.size()) % kAlignment) % kAlignment;
+  if (padding > 0 && padding < 4) padding += kAlignment;
+  bytes += "PK\x03\x04" + entry;
   append(bytes, padding, 2);
-  bytes += name;
+  bytes += file.name;
   if (padding > 0) {
     append(bytes, kPaddingId, 2);
     append(bytes, padding - 4, 2);
     bytes.append(padding - 4, '\0');
   }
-  bytes += content;
+  bytes += file.content;
+}
 
-  const std::size_t directory = bytes.size();
-  bytes += "PK\x01\x02";
-  append(bytes, kVersion, 2);
-  bytes += entry;
-  append(bytes, 0, 2 + 2 + 2 + 2 + 4 + 4);  // extra field, comment, disk, attributes, and the place of the local header
-  bytes += name;
+}  // namespace
+
+void write_stored(const std::filesystem::path& file, const std::vector<StoredFile>& files) {
+  std::size_t size = 0;
+  for (const StoredFile& stored : files) size += stored.content.size() + 4096;
+  if (size > std::numeric_limits<std::uint32_t>::max())
+    throw Error(ExitCode::output_failed,
+                "{}: packed files end at 4 GiB, and this would be one of {:.3g} GB; export fewer frames with --frames, "
+                "or as usd",
+                file.string(), 1e-9 * static_cast<double>(size));
+  std::string bytes, directory;
+  for (const StoredFile& stored : files) {
+    const std::size_t start = bytes.size();
+    const std::string entry = entry_of(stored);
+    append_file(bytes, stored, entry);
+    directory += "PK\x01\x02";
+    append(directory, kVersion, 2);
+    directory += entry;
+    append(directory, 0, 2 + 2 + 2 + 2 + 4);  // extra field, comment, disk, attributes
+    append(directory, start, 4);
+    directory += stored.name;
+  }
   const std::size_t end = bytes.size();
+  bytes += directory;
   bytes += "PK\x05\x06";
   append(bytes, 0, 2 + 2);  // disks
-  append(bytes, 1, 2);
-  append(bytes, 1, 2);
-  append(bytes, end - directory, 4);
-  append(bytes, directory, 4);
+  append(bytes, files.size(), 2);
+  append(bytes, files.size(), 2);
+  append(bytes, directory.size(), 4);
+  append(bytes, end, 4);
   append(bytes, 0, 2);  // comment
   write_file(file, bytes, Flush::no);
 }

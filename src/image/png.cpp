@@ -99,15 +99,16 @@ struct Reader {
 struct Rows {
   int width, height, bits;
   const png_byte* first;
-  std::size_t row_bytes() const { return static_cast<std::size_t>(width) * 3 * bits / 8; }
+  int channels = 3;  // 4: with alpha
+  std::size_t row_bytes() const { return static_cast<std::size_t>(width) * channels * bits / 8; }
 };
 
 bool write_all(const Writer& writer, const Rows& rows, std::FILE* file, png_text* texts, int text_count) {
   if (setjmp(png_jmpbuf(writer.png))) return false;
   png_set_write_fn(writer.png, file, write_bytes, flush_bytes);
   png_set_IHDR(writer.png, writer.info, static_cast<png_uint_32>(rows.width), static_cast<png_uint_32>(rows.height),
-               rows.bits, PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
-               PNG_FILTER_TYPE_DEFAULT);
+               rows.bits, rows.channels == 4 ? PNG_COLOR_TYPE_RGBA : PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE,
+               PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
   png_set_sRGB(writer.png, writer.info, PNG_sRGB_INTENT_PERCEPTUAL);
   if (text_count > 0) png_set_text(writer.png, writer.info, texts, text_count);
   png_set_filter(writer.png, PNG_FILTER_TYPE_BASE, kFilter);
@@ -258,10 +259,12 @@ void write_png(const std::filesystem::path& file, const Image16& image, const Me
         2 * image.rgb.size(), metadata);
 }
 
-std::string png_bytes(const Image& image) {
+namespace {
+
+// `bytes`: that there are.
+std::string bytes_of(const Rows& rows, std::size_t bytes) {
   const std::filesystem::path name = "a picture in memory";
-  const Rows rows{image.width, image.height, 8, image.rgb.data()};
-  check_size(name, rows, image.rgb.size());
+  check_size(name, rows, bytes);
   char* buffer = nullptr;
   std::size_t size = 0;
   const auto free_buffer = [](char** text) { std::free(*text); };  // NOLINT: what open_memstream() made
@@ -271,6 +274,16 @@ std::string png_bytes(const Image& image) {
   encode(name, rows, {}, out.get());
   if (std::fclose(out.release()) != 0) fail_to_write(name, std::strerror(errno));
   return {buffer, size};
+}
+
+}  // namespace
+
+std::string png_bytes(const Image& image) {
+  return bytes_of({image.width, image.height, 8, image.rgb.data()}, image.rgb.size());
+}
+
+std::string png_bytes(const Picture& picture) {
+  return bytes_of({picture.width, picture.height, 8, picture.rgba.data(), 4}, picture.rgba.size());
 }
 
 Image read_png(const std::filesystem::path& file, Metadata* metadata) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "image/image.hpp"
+#include "image/picture.hpp"
 
 namespace weft::image {
 
@@ -20,6 +21,9 @@ void write_png(const std::filesystem::path& file, const Image16& image, const Me
 
 /// The bytes of such a file. Throws Error(output_failed).
 std::string png_bytes(const Image& image);
+
+/// The same with alpha.
+std::string png_bytes(const Picture& picture);
 
 /// Reads an 8-bit PNG (gray, palette and alpha are converted to RGB over white). Throws Error(asset_unreadable).
 Image read_png(const std::filesystem::path& file, Metadata* metadata = nullptr);

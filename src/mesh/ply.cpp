@@ -15,13 +15,12 @@ namespace {
 
 // Numbers are copied as they lie in memory.
 static_assert(std::endian::native == std::endian::little);
-static_assert(sizeof(Vec3) == 3 * sizeof(double));
 
 /// One face of the file: the number of its corners as a byte, then their indices.
 constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t);
-constexpr std::size_t kVertexBytes = 3 * sizeof(double);
+constexpr std::size_t kPlaceBytes = 3 * sizeof(double), kUvBytes = 2 * sizeof(float);
 
-std::string header(std::size_t vertices, std::size_t faces, std::size_t passed_through) {
+std::string header(std::size_t vertices, bool has_uv, std::size_t faces, std::size_t passed_through) {
   return fmt::format(
       "ply\n"
       "format binary_little_endian 1.0\n"
@@ -30,28 +29,35 @@ std::string header(std::size_t vertices, std::size_t faces, std::size_t passed_t
       "property double x\n"
       "property double y\n"
       "property double z\n"
-      "element face {}\n"
+      "{}element face {}\n"
       "property list uchar int vertex_indices\n"
       "end_header\n",
       passed_through > 0 ? fmt::format("comment cloth passes through the last {} faces\n", passed_through) : "",
-      vertices, faces);
+      vertices, has_uv ? "property float s\nproperty float t\n" : "", faces);
 }
 
 }  // namespace
 
 void write_ply(const std::filesystem::path& file, std::span<const Vec3> positions,
-               std::span<const std::array<Index, 3>> triangles, std::span<const std::uint8_t> passed_through) {
-  const auto last = static_cast<std::size_t>(std::ranges::count(passed_through, 1));
-  std::string content = header(positions.size(), triangles.size(), last);
+               std::span<const std::array<Index, 3>> triangles, const PlyExtras& extras) {
+  const auto last = static_cast<std::size_t>(std::ranges::count(extras.passed_through, 1));
+  const bool has_uv = !extras.uv.empty();
+  std::string content = header(positions.size(), has_uv, triangles.size(), last);
+  const std::size_t vertex_bytes = kPlaceBytes + (has_uv ? kUvBytes : 0);
   const std::size_t vertices_at = content.size();
-  const std::size_t faces_at = vertices_at + kVertexBytes * positions.size();
+  const std::size_t faces_at = vertices_at + vertex_bytes * positions.size();
   content.resize(faces_at + kFaceBytes * triangles.size());
-  if (!positions.empty())
-    std::memcpy(&content[vertices_at], static_cast<const void*>(positions.data()), kVertexBytes * positions.size());
+  char* vertex = content.data() + vertices_at;
+  for (std::size_t v = 0; v < positions.size(); ++v, vertex += vertex_bytes) {
+    std::memcpy(vertex, positions[v].data(), kPlaceBytes);
+    if (!has_uv) continue;
+    const std::array<float, 2> uv{static_cast<float>(extras.uv[v].x()), static_cast<float>(extras.uv[v].y())};
+    std::memcpy(vertex + kPlaceBytes, uv.data(), kUvBytes);
+  }
   char* face = content.data() + faces_at;
   for (const bool passed : {false, true})
     for (std::size_t t = 0; t < triangles.size(); ++t) {
-      if ((!passed_through.empty() && passed_through[t] != 0) != passed) continue;
+      if ((!extras.passed_through.empty() && extras.passed_through[t] != 0) != passed) continue;
       *face = 3;
       std::memcpy(face + 1, triangles[t].data(), kFaceBytes - 1);
       face += kFaceBytes;

@@ -11,11 +11,17 @@
 
 namespace weft::mesh {
 
+/// What of a mesh is optional.
+struct PlyExtras {
+  std::span<const std::uint8_t> passed_through = {};  ///< per triangle: 1 where cloth passes through; those come last
+  std::span<const Vec2> uv = {};                      ///< per vertex
+};
+
 /// Writes positions as double and faces as triangles, binary little endian, under a temporary name first. Quad meshes
-/// are written as the triangles of their split too: one surface, the one that collision uses. Those that cloth passes
-/// through (1 in `passed_through`, which has one entry for each or none) come last, and a comment says how many they
-/// are. Throws Error(output_failed) with the system's reason.
+/// are written as the triangles of their split too: one surface, the one that collision uses. Of those that cloth
+/// passes through a comment says how many they are. Texture coordinates are the properties `s` and `t`. Throws
+/// Error(output_failed) with the system's reason.
 void write_ply(const std::filesystem::path& file, std::span<const Vec3> positions,
-               std::span<const std::array<Index, 3>> triangles, std::span<const std::uint8_t> passed_through = {});
+               std::span<const std::array<Index, 3>> triangles, const PlyExtras& extras = {});
 
 }  // namespace weft::mesh

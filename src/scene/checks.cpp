@@ -249,6 +249,8 @@ void check_cameras(const Scene& scene, Findings& findings) {
     check_times(camera.keys, path, findings);
     for (const std::string& name : camera.subjects)
       check_reference(name, objects, "a cloth, obstacle or character", path + ".subject", findings);
+    if (camera.kind == CameraKind::file && camera.aperture > 0 && camera.focus <= 0)
+      findings.report(path + ".aperture", "expected focus beside it: nothing says what a camera of a file looks at");
     if (camera.kind != CameraKind::placed) continue;
     for (std::size_t k = 0; k < camera.keys.size(); ++k) {
       if (camera.keys[k].position != camera.keys[k].target) continue;

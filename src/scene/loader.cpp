@@ -32,6 +32,11 @@ void read_document(toml::table document, const std::vector<std::string>& overrid
     scene.characters[i].line = place.line;
     scene.characters[i].column = place.column;
   }
+  for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+    const Place& place = findings.place(findings.entry("camera", i));
+    scene.cameras[i].line = place.line;
+    scene.cameras[i].column = place.column;
+  }
   for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
     const Place& place = findings.place(findings.entry("cloth", i));
     scene.cloths[i].line = place.line;

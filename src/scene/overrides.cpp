@@ -61,6 +61,12 @@ toml::node* find_entry(toml::array& list, const std::string& part, std::vector<s
   return is_index ? list.get(index) : nullptr;
 }
 
+/// The nearest name, or all where none is near.
+std::string instead(const std::string& part, const std::vector<std::string>& names) {
+  const std::string nearest = suggestion(part, names);
+  return !nearest.empty() || names.empty() ? nearest : fmt::format("; there is {}", fmt::join(names, ", "));
+}
+
 }  // namespace
 
 void apply_override(const std::string& override_text, toml::table& document, Findings& findings) {
@@ -102,7 +108,7 @@ void apply_override(const std::string& override_text, toml::table& document, Fin
       node = find_entry(*list, parts[i], names);
       if (node == nullptr) {
         return refuse(walked, fmt::format("expected the name or index of an entry, got {}{}", parts[i],
-                                          suggestion(parts[i], names)));
+                                          instead(parts[i], names)));
       }
     } else {
       return refuse(walked, "expected a key of a table");

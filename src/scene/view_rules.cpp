@@ -89,6 +89,16 @@ void direction_rows(TableBuilder<Camera>& rows) {
       .with(subject_rows);
 }
 
+void file_rows(TableBuilder<Camera>& rows) {
+  rows.plain(Type::file, "file", &Camera::file,
+             "glTF (.glb, .gltf), as modellers export it; relative paths start at the scene's folder")
+      .need(Need::required)
+      .plain(Type::text, "object", &Camera::object, "name of the node with the camera")
+      .by_default("the only one")
+      .number("start", &Camera::start, kMoment, "s", "of the scene, when the time of the file begins")
+      .number("scale", &Camera::scale, above(0, 1e6), "", "factor on lengths of the file, which are metres there");
+}
+
 /// What the keys of suns and spots have in common; `rows` adds the rest.
 Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) {
   return TableBuilder<LightKey>("A light at a time.")
@@ -127,13 +137,14 @@ const Table& camera_rules() {
           .plain(Type::name, "name", &Camera::name, "unlike that of any other camera")
           .need(Need::required)
           .choice_by(
-              "kind", {"placed", "whole", "follow", "close", "track"},
+              "kind", {"placed", "whole", "follow", "close", "track", "file"},
               "placed by position and target, or found before drawing from all frames: so that all of the run is in "
-              "view; going along at one distance; as close as the subject allows; turning after it where it stands",
+              "view; going along at one distance; as close as the subject allows; turning after it where it stands; or "
+              "with the way and lens of one in a file",
               [](Camera& c) { return static_cast<std::size_t>(c.kind); },
               [](Camera& c, std::size_t index) {
                 c.kind = static_cast<CameraKind>(index);
-                if (c.kind != CameraKind::placed) c.keys.front().field_of_view = kFoundFieldOfView;
+                if (is_found(c.kind)) c.keys.front().field_of_view = kFoundFieldOfView;
                 if (c.kind == CameraKind::track) c.keys.front().field_of_view = 0;
               })
           .selects()
@@ -151,6 +162,7 @@ const Table& camera_rules() {
                        .written_if([](Camera& c) { return c.keys.front().field_of_view > 0; })
                        .with(subject_rows)
                        .with(smoothing_row))
+          .variant("file", Rows().with(file_rows))
           .build();
   return kTable;
 }

@@ -6,6 +6,7 @@
 #include <numbers>
 #include <utility>
 
+#include "assets/camera_file.hpp"
 #include "core/error.hpp"
 #include "core/log.hpp"
 #include "image/color.hpp"
@@ -20,6 +21,9 @@ using LightValue = environment::Spline<10>::Value;
 
 // Bodies of characters are round: what is modelled with few faces is drawn smooth up to this angle [degrees].
 constexpr double kCharacterCrease = 80;
+
+// A camera of a file that is tilted by less stands level but for rounding [degrees].
+constexpr double kLeastRoll = 0.1;
 
 // How much paler the back of a cloth is than its front where the scene does not say.
 constexpr double kBackPaleness = 0.35;
@@ -194,6 +198,25 @@ environment::Spline<7> camera_track(const scene::Camera& camera) {
   return {camera.interpolation, std::move(times), std::move(values)};
 }
 
+// Of a file, in which y is up and the front toward z.
+environment::Spline<7> camera_track(const scene::Scene& scene, const scene::Camera& camera) {
+  const std::string where =
+      fmt::format("{}:{}:{}: camera.{}", scene.file.string(), camera.line, camera.column, camera.name);
+  const assets::LoadedCamera loaded = assets::load_camera(camera.file, camera.object, where);
+  if (loaded.roll > kLeastRoll)
+    log::warn(fmt::format("{}: it is tilted to a side by up to {:.2g} degrees, which is left out", where, loaded.roll));
+  const auto turned = [&](const Vec3& x) { return scene.up == scene::UpAxis::z ? Vec3(x.x(), -x.z(), x.y()) : x; };
+  const double ahead = camera.focus > 0 ? camera.focus : 1;  // [m], of the target
+  std::vector<double> times;
+  std::vector<CameraValue> values;
+  for (std::size_t i = 0; i < loaded.times.size(); ++i) {
+    const Vec3 eye = camera.scale * turned(loaded.positions[i]);
+    times.push_back(camera.start + loaded.times[i]);
+    values.push_back((CameraValue() << eye, eye + ahead * turned(loaded.forward[i]), loaded.field_of_view).finished());
+  }
+  return {scene::Interpolation::linear, std::move(times), std::move(values)};
+}
+
 environment::Spline<10> light_track(const scene::Light& light) {
   std::vector<double> times;
   std::vector<LightValue> values;
@@ -222,7 +245,8 @@ Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
   for (const auto& character : scene.characters) looks_[character.name] = character.look;
   for (const scene::Camera& camera : scene.cameras) {
     cameras_.push_back({.name = camera.name,
-                        .kind = static_cast<frame::Camera::Kind>(camera.kind),
+                        .kind = scene::is_found(camera.kind) ? static_cast<frame::Camera::Kind>(camera.kind)
+                                                             : frame::Camera::Kind::placed,
                         .subjects = camera.subjects,
                         .azimuth = camera.azimuth,
                         .elevation = camera.elevation,
@@ -230,7 +254,8 @@ Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
                         .smoothing = camera.smoothing});
     cameras_.back().aperture = camera.aperture;
     cameras_.back().focus = camera.focus;
-    camera_tracks_.push_back(camera_track(camera));
+    camera_tracks_.push_back(camera.kind == scene::CameraKind::file ? camera_track(scene, camera)
+                                                                    : camera_track(camera));
     orbits_.push_back(camera.orbit);
   }
   for (const scene::Light& light : scene.lights) {

@@ -95,6 +95,21 @@ std::string glb_tetrahedron() {
   return bytes + std::string("BIN\0", 4) + buffer;
 }
 
+std::string gltf_camera() {
+  std::string keys;
+  for (const float time : {0.0F, 2.0F}) append(keys, time);
+  for (const float part : {0.0F, 0.0F, 0.0F, 1.0F, 0.0F, 0.70710678F, 0.0F, 0.70710678F}) append(keys, part);
+  keys.append(2, '\0');  // up to a multiple of three
+  return R"({"asset":{"version":"2.0"},"scene":0,"scenes":[{"nodes":[0]}],
+"nodes":[{"name":"rig","children":[1]},{"name":"eye","camera":0,"translation":[0,1,3]}],
+"cameras":[{"name":"lens","type":"perspective","perspective":{"yfov":0.5,"aspectRatio":1.6,"znear":0.1,"zfar":100}}],
+"animations":[{"samplers":[{"input":0,"output":1}],"channels":[{"sampler":0,"target":{"node":0,"path":"rotation"}}]}],
+"buffers":[{"byteLength":42,"uri":"data:application/octet-stream;base64,)" +
+         base64(keys) + R"("}],"bufferViews":[{"buffer":0,"byteLength":8},{"buffer":0,"byteOffset":8,"byteLength":32}],
+"accessors":[{"bufferView":0,"componentType":5126,"count":2,"type":"SCALAR","min":[0],"max":[2]},
+{"bufferView":1,"componentType":5126,"count":2,"type":"VEC4"}]})";
+}
+
 std::string fbx_square() {
   return R"(; FBX 7.3.0 project file
 FBXHeaderExtension:  {

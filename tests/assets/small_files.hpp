@@ -19,6 +19,9 @@ std::string gltf_tetrahedron();
 /// And as binary glTF.
 std::string glb_tetrahedron();
 
+/// A camera "eye" 1 m above and 3 m along z from a rig that turns by 90 degrees about y in two seconds, as glTF.
+std::string gltf_camera();
+
 /// A square of 1 m as FBX in centimetres, and as Collada in inches, each with texture coordinates.
 std::string fbx_square();
 std::string collada_square();

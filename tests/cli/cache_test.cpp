@@ -53,6 +53,23 @@ TEST_F(CachedRun, VideoFromACacheIsThatOfRun) {
   EXPECT_EQ(probe_video(folder_ / "a.mp4").metadata, probe_video(folder_ / "b.mp4").metadata);
 }
 
+TEST_F(CachedRun, OddSizesOfVideosAreTold) {
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", "0:2"});
+  const auto told = [&](const std::string& size, const Arguments& more) {
+    Arguments arguments{"render", "c", "--size", size, "--partial", "--overwrite", "-o"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    const Outcome outcome = run_weft(arguments, folder_);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    const auto at = outcome.err.find("the video gets ");
+    return at == std::string::npos ? "" : outcome.err.substr(at + 15, outcome.err.find(',', at) - at - 15);
+  };
+  EXPECT_EQ(told("65x37", {"a.mp4"}), "66x38");
+  EXPECT_EQ(told("64x37", {"a.mov", "--codec", "prores"}), "64x38");
+  EXPECT_EQ(told("64x36", {"a.mp4"}), "");
+  EXPECT_EQ(told("65x37", {"a.mkv", "--codec", "ffv1"}), "") << "which keeps any size";
+  EXPECT_EQ(told("65x37", {"{frame}.png"}), "");
+}
+
 TEST_F(CachedRun, FourProcessesAtOnceRenderTheQuartersOfOneCache) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   expect_well({"render", "c", "-o", std::string("whole/") + kPictures});

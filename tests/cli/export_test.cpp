@@ -1,10 +1,26 @@
 // weft export, as a shell starts it.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string_view>
+
 #include "cli/cached_run.hpp"
 
 namespace weft::cli {
 namespace {
+
+/// A PLY file without the texture coordinates of its vertices.
+std::string without_uv(const std::string& ply) {
+  const std::string_view words = "property float s\nproperty float t\n", end = "end_header\n";
+  const std::size_t at = ply.find(words), body = ply.find(end) + end.size();
+  if (at > body) return ply;
+  const std::size_t vertices = std::stoul(ply.substr(ply.find("element vertex ") + 15));
+  std::string plain = ply.substr(0, at) + ply.substr(at + words.size(), body - at - words.size());
+  for (std::size_t v = 0; v < vertices; ++v) plain += ply.substr(body + 32 * v, 24);
+  return plain + ply.substr(body + 32 * vertices);
+}
 
 class ExportCommand : public CachedRun {
  protected:
@@ -22,7 +38,9 @@ class ExportCommand : public CachedRun {
 TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
   expect_well({"simulate", "s.toml", "--cache", "c", "--meshes", "meshes"});
   expect_exported({"c", "--format", "ply", "-o", "ply"});
-  expect_same("meshes", "ply", ".ply", 3 * kFrames);
+  const auto meshes = contents("meshes", ".ply"), exported = contents("ply", ".ply");
+  EXPECT_EQ(exported.size(), 3U * kFrames);
+  for (const auto& [name, bytes] : exported) EXPECT_EQ(without_uv(bytes), meshes.at(name)) << name;
   expect_exported({"c", "--format", "obj", "-o", "obj", "--frames", "2:21:6"});
   EXPECT_EQ(contents("obj", ".obj").size(), 3U * 4);
   expect_exported({"c", "--format", "obj", "-o", "obj", "--frames", "3:4"});  // beside the same materials
@@ -39,6 +57,41 @@ TEST_F(ExportCommand, WritesTheMeshesOfRunAndWhatElseItIsAskedFor) {
   expect_exported({"c", "--format", "blender", "-o", "blender"});
   expect_same("pc2", "blender", ".pc2", 3);
   EXPECT_EQ(contents("blender", ".py").size(), 1U);
+}
+
+// Out, and in again: a camera that a glTF file has is that of the scene that wrote it, with either axis up.
+TEST_F(ExportCommand, CamerasOfGltfFilesAreTakenByScenes) {
+  const std::string film = R"([time]
+duration = 0.4
+fps = 25
+[[obstacle]]
+name = "ball"
+shape = "sphere"
+[[camera]]
+name = "shot"
+)";
+  const std::string keys = R"(interpolation = "linear"
+keys = [{ time = 0, position = [3, -4, 2], target = [0, 0, 0.5], field_of_view = 40 },
+  { time = 0.4, position = [5, -1, 1], target = [0, 1, 0.5] }]
+)";
+  for (const std::string up : {"z", "y"}) {
+    std::ofstream(folder_ / "a.toml") << ("up = \"" + up + "\"\n" + film + keys);
+    std::ofstream(folder_ / "b.toml") << ("up = \"" + up + "\"\n" + film +
+                                          "kind = \"file\"\nfile = \"a/a.glb\"\nobject = \"shot\"\n");
+    const auto cameras = [&](const std::string& name) {
+      expect_well({"simulate", name + ".toml", "--cache", name + "c", "--overwrite"});
+      expect_exported({name + "c", "--format", "gltf", "-o", name, "--overwrite"});
+      expect_exported({name + "c", "--format", "blender", "-o", name, "--overwrite"});
+      const std::string text = contents(name, ".py").at(name + ".py");
+      const auto start = text.find("r\"\"\"") + 4;
+      return nlohmann::json::parse(text.substr(start, text.find("\"\"\"", start) - start))["cameras"][0]["frames"];
+    };
+    const auto given = cameras("a").flatten(), taken = cameras("b").flatten();
+    ASSERT_EQ(given.size(), taken.size());
+    for (const auto& [place, value] : given.items())
+      EXPECT_NEAR(taken[place].get<double>(), value.get<double>(), 1e-6 + 1.2e-7 * std::abs(value.get<double>()))
+          << up << place;
+  }
 }
 
 TEST_F(ExportCommand, RefusesWithTheCodesOfTheContract) {

@@ -13,6 +13,7 @@ TEST(FramePattern, PutsTheFrameNumberInItsPlace) {
   EXPECT_EQ(FramePattern("out/{frame:5}.png").name(42), "out/00042.png");
   EXPECT_EQ(FramePattern("a{frame}b.png").name(42), "a42b.png");
   EXPECT_EQ(FramePattern("{frame:02}.png").name(12345), "12345.png");
+  EXPECT_EQ(FramePattern("take {1}/{frame:03}_{a}.png").name(7), "take {1}/007_{a}.png") << "other braces are names";
 }
 
 TEST(FramePattern, RefusesNamesThatAllFramesWouldShareOrThatMeanSomethingElse) {
@@ -52,6 +53,7 @@ TEST_F(FramesOnDisk, InFoldersOfTheirOwnAreFoundToo) {
 TEST(OutputTarget, IsChosenByTheEnding) {
   EXPECT_EQ(parse_output("", "band").file(3), "output/band.mp4");
   EXPECT_EQ(parse_output("x/y.mp4", "band").kind, OutputTarget::Kind::video);
+  EXPECT_EQ(parse_output("take {1}/y.mp4", "band").file(3), "take {1}/y.mp4");
   EXPECT_EQ(parse_output("x/{frame}.png", "band").kind, OutputTarget::Kind::images);
   EXPECT_EQ(parse_output("x/{frame}.png", "band").file(7), "x/7.png");
   for (const char* text : {"x.avi", "x", "x.png", "{frame}.mp4", ".mp4x"}) {

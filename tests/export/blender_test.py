@@ -1,7 +1,9 @@
-"""Blender runs the script of `weft export --format blender` and shows every frame where the PLY files say.
+"""Blender runs the script of `weft export --format blender` and shows every frame where the PLY files say, with its print
+where the keys of the scene say; what it reads in the PLY, OBJ and glTF files is the same.
 
 blender_test.py WEFT    ends with 77 where Blender is not installed. Run inside Blender, it measures instead.
 """
+import math
 import os
 import shutil
 import struct
@@ -9,7 +11,7 @@ import subprocess
 import sys
 import tempfile
 
-LIMIT = 1e-6  # metres; point caches are in single precision
+LIMIT = 1e-6  # metres, or widths of the picture; files for it are in single precision
 
 SCENE = """
 up = "{up}"
@@ -25,6 +27,7 @@ name = "cloth"
 size = [0.5, 0.5]
 particles = [9, 9]
 position = [0, 0, 0]
+look = {{ image = "{picture}", image_width = 0.2, image_rotation = {rotation}, image_offset = [0.1, 0.05] }}
 [[obstacle]]
 name = "ball"
 shape = "sphere"
@@ -39,13 +42,68 @@ field_of_view = 40
 """
 
 
-def positions(ply):
+ROTATION = 30  # degrees
+PICTURE = os.path.join(os.path.dirname(os.path.abspath(__file__)), "../../scenes/gallery/pictures/flowers.png")
+
+
+def vertices(ply):
+    """x, y, z and, of cloth, weft and warp."""
     with open(ply, "rb") as file:
         content = file.read()
     end = content.index(b"end_header\n") + 11
     lines = content[:end].decode().splitlines()
     count = next(int(line.split()[2]) for line in lines if line.startswith("element vertex"))
-    return list(struct.iter_unpack("<3d", content[end:end + 24 * count]))
+    vertex = struct.Struct("<3d2f" if "property float s" in lines else "<3d")
+    return list(vertex.iter_unpack(content[end:end + vertex.size * count]))
+
+
+def laid(uv):
+    """The place in the picture, which is square, by the meaning of the keys: turned to the left about its corner."""
+    angle = math.radians(ROTATION)
+    x, y = uv[0] - 0.1, uv[1] - 0.05
+    return ((math.cos(angle) * x + math.sin(angle) * y) / 0.2, (math.cos(angle) * y - math.sin(angle) * x) / 0.2)
+
+
+def farthest(mesh, matrix, expected, turned, layers):
+    """Of the corners of faces, in space and in their texture coordinates."""
+    from mathutils import Vector
+    worst = 0
+    for loop in mesh.loops:
+        place = matrix @ mesh.vertices[loop.vertex_index].co
+        distance, nearest = min(((place - turned(x[:3])).length, i) for i, x in enumerate(expected))
+        worst = max(worst, distance)
+        for layer, meaning in layers.items():
+            uv = mesh.uv_layers[layer].data[loop.index].uv
+            worst = max(worst, (uv - Vector(meaning(expected[nearest][3:]))).length)
+    return worst
+
+
+def read_others(folder, turned):
+    """What else Blender reads, of frame 2."""
+    import bpy
+    expected, metres = vertices(os.path.join(folder, "ply/cloth_00002.ply")), {"UVMap": lambda uv: uv}
+    read = {"OBJ": (lambda: bpy.ops.wm.obj_import(filepath=os.path.join(folder, "b/cloth.obj")), turned, metres),
+            "PLY": (lambda: bpy.ops.import_mesh.ply(filepath=os.path.join(folder, "ply/cloth_00002.ply")), Vector3,
+                    metres)}
+    try:
+        import numpy
+        numpy.bool = bool  # Debian's importer asks for an older one
+        read["glTF"] = (lambda: bpy.ops.import_scene.gltf(filepath=os.path.join(folder, "g/s.glb")), turned,
+                        {"UVMap": metres["UVMap"], "UVMap.001": laid})
+    except ImportError:
+        print("glTF is left out: apt-get install python3-numpy")
+    for name, (load, axes, layers) in read.items():
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        load()
+        cloth = next(each for each in bpy.data.objects if each.name.startswith("cloth"))
+        worst = farthest(cloth.data, cloth.matrix_world, expected, axes, layers)
+        print(f"{name}: farthest from its place {worst:.3g}")
+        assert worst < LIMIT, name
+
+
+def Vector3(x):
+    from mathutils import Vector
+    return Vector(x)
 
 
 def measure(folder, up):
@@ -64,18 +122,23 @@ def measure(folder, up):
         graph = bpy.context.evaluated_depsgraph_get()
         for name in ("cloth", "ball"):
             shown = bpy.data.objects[name].evaluated_get(graph)
-            expected = positions(os.path.join(folder, f"{name}_{frame:05}.ply"))
+            expected = vertices(os.path.join(folder, f"ply/{name}_{frame:05}.ply"))
             mesh = shown.to_mesh()
             assert len(mesh.vertices) == len(expected), name
             for vertex, place in zip(mesh.vertices, expected):
-                worst = max(worst, (shown.matrix_world @ vertex.co - turned(place)).length)
+                worst = max(worst, (shown.matrix_world @ vertex.co - turned(place[:3])).length)
+            if name == "cloth":
+                worst = max(worst, farthest(mesh, shown.matrix_world, expected, turned, {"picture": laid}))
     camera = scene.camera.matrix_world
     worst = max(worst, (camera.translation - turned((0.5, -4, 1.5))).length)
     aim = (turned((0, 0, 0.25)) - camera.translation).normalized()
     worst = max(worst, (camera.to_3x3() @ Vector((0, 0, -1)) - aim).length)
     assert abs(scene.camera.data.angle_y - 0.6981317) < 1e-6, "field of view"
+    image = next(node for node in bpy.data.materials["cloth"].node_tree.nodes if node.type == "TEX_IMAGE").image
+    assert image.size[0] > 0 and image.filepath.endswith("cloth.png"), "picture"
     print(f"farthest from its place: {worst:.3g} m")
     assert worst < LIMIT
+    read_others(folder, turned)
 
 
 def main(weft):
@@ -89,13 +152,15 @@ def main(weft):
                 subprocess.run(command, cwd=folder, check=True, stdout=subprocess.DEVNULL)
 
             with open(os.path.join(folder, "s.toml"), "w", encoding="utf-8") as file:
-                file.write(SCENE.format(up=up))
+                file.write(SCENE.format(up=up, picture=PICTURE, rotation=ROTATION))
             run(weft, "simulate", "s.toml", "--cache", "c", "--progress", "none")
             run(weft, "export", "c", "--format", "ply", "-o", "ply")
+            run(weft, "export", "c", "--format", "gltf", "-o", "g", "--frames", "2:3")
             run(weft, "export", "c", "--format", "blender", "-o", "b", "--frames", "2:11:2")
             subprocess.run([blender, "-b", "--factory-startup", "--python-exit-code", "1", "-P",
                             os.path.join(folder, "b/s.py"), "-P", os.path.abspath(__file__), "--",
-                            os.path.join(folder, "film.blend"), os.path.join(folder, "ply"), up], check=True)
+                            os.path.join(folder, "film.blend"), folder, up], check=True,
+                           env={**os.environ, "PATH": os.defpath})  # else it takes the modules of the first python3
     return 0
 
 

@@ -13,6 +13,7 @@
 #include "export/made_frames.hpp"
 #include "export/normals.hpp"
 #include "image/color.hpp"
+#include "image/picture.hpp"
 
 namespace weft::exporter {
 namespace {
@@ -54,6 +55,10 @@ class Exported : public MadeFrames {
     std::vector<std::string> expected;
     for (const auto& file : exporter::files(request_, *snapshot(request_.frames.front()))) {
       EXPECT_TRUE(std::filesystem::exists(file)) << file;
+      expected.push_back(file.filename().string());
+    }
+    for (const auto& [file, content] : exporter::shared_files(request_, *snapshot(request_.frames.front()))) {
+      EXPECT_EQ(support::read_bytes(file), content) << file;
       expected.push_back(file.filename().string());
     }
     std::size_t there = 0;
@@ -131,10 +136,11 @@ TEST_F(Exported, PanelsAreApartInTextureCoordinatesAndOneInTheMesh) {
                       {Vec2(0.5, 0.7), Vec2(0.6, 0.8), Vec2(0.5, 0.8)}};
   surfaces_[0] = std::make_shared<frame::Surface>(garment);
   for (const auto& [format, name] :
-       {std::pair(Format::obj, "cloth_00003.obj"), std::pair(Format::gltf, "flutter.glb")}) {
+       {std::pair(Format::obj, "cloth_00003.obj"), std::pair(Format::ply, "cloth_00003.ply"),
+        std::pair(Format::gltf, "flutter.glb")}) {
     request_.folder = folder_ / name;
     write(format, {3});
-    const assets::LoadedMesh loaded = assets::load_mesh(file(name), 1, "a test", "cloth");
+    const assets::LoadedMesh loaded = assets::load_mesh(file(name), 1, "a test", format == Format::ply ? "" : "cloth");
     EXPECT_EQ(loaded.mesh.positions.size(), 6U) << name;
     EXPECT_EQ(loaded.mesh.topology.triangles.size(), 4U) << name;
     ASSERT_EQ(loaded.uv.size(), 4U) << name;
@@ -142,6 +148,62 @@ TEST_F(Exported, PanelsAreApartInTextureCoordinatesAndOneInTheMesh) {
       for (std::size_t k = 0; k < 3; ++k)
         EXPECT_LT((loaded.uv[t][k] - garment.paint_uv[t][k]).norm(), kSingle) << name << t;
   }
+}
+
+// Two pixels, the right one of which lets the colour through by a half; laid once, turned by 90 degrees, 0.1 m wide.
+TEST_F(Exported, PicturesLieAndLookAsOurs) {
+  frame::Surface printed = *surfaces_[0];
+  frame::Paint& paint = printed.appearance.paint;
+  paint.texture = std::make_shared<frame::Texture>(frame::Texture{2, 1, {255, 0, 0, 255, 0, 0, 255, 128}});
+  paint.texture_from_uv << 0, 10, 0, -20, 0, 1;
+  paint.wrap_u = paint.wrap_v = frame::Paint::Wrap::once;
+  paint.alpha = frame::Paint::Alpha::over_color;
+  surfaces_[0] = std::make_shared<frame::Surface>(printed);
+  write(Format::gltf, {3});
+  Assimp::Importer importer;
+  const aiScene* scene = importer.ReadFile(file("flutter.glb").string(), 0);
+  ASSERT_NE(scene, nullptr) << importer.GetErrorString();
+  const aiMesh& mesh = *scene->mMeshes[0];
+  ASSERT_TRUE(mesh.HasTextureCoords(1));
+  for (std::size_t v = 0; v < 6; ++v) {
+    const Vec2& uv = printed.uv[v];
+    // A pixel more on every side: 4 by 3 of them.
+    EXPECT_NEAR(mesh.mTextureCoords[1][v].x, (2 * 10 * uv.y() + 1) / 4, 4 * kSingle);
+    EXPECT_NEAR(mesh.mTextureCoords[1][v].y, (1 - 20 * uv.x() + 1) / 3, 4 * kSingle);
+    EXPECT_NEAR(mesh.mTextureCoords[0][v].x, uv.x(), kSingle);
+  }
+  ASSERT_EQ(scene->mNumTextures, 1U);
+  const aiTexture& held = *scene->mTextures[0];
+  const image::Picture picture =
+      image::decode_picture({reinterpret_cast<const char*>(held.pcData), static_cast<std::size_t>(held.mWidth)});
+  ASSERT_EQ(std::pair(picture.width, picture.height), std::pair(4, 3));
+  const auto pixel = [&](int x, int y) { return &picture.rgba[4 * static_cast<std::size_t>(4 * y + x)]; };
+  const Vec3 light = image::linear_from_srgb(printed.appearance.color);
+  for (int c = 0; c < 3; ++c) {
+    EXPECT_EQ(pixel(1, 1)[c], c == 0 ? 255 : 0) << "its own";
+    const double mixed = 127.0 / 255 * light[c] + (c == 2 ? 128.0 / 255 : 0);
+    EXPECT_NEAR(pixel(2, 1)[c], 255 * image::srgb_from_linear(mixed), 0.51) << "light adds up";
+    for (const auto& [x, y] : {std::pair(0, 1), {3, 1}, {1, 0}, {2, 2}})
+      EXPECT_NEAR(pixel(x, y)[c], 255 * printed.appearance.color[c], 0.51) << "around it: the colour";
+  }
+  request_.folder = folder_ / "obj";
+  write(Format::obj, {3});
+  EXPECT_NE(support::read_bytes(file("cloth.mtl")).find("laid turned"), std::string::npos);
+}
+
+// A picture that is neither turned nor laid once is said in MTL too; holes are cut by its alpha.
+TEST_F(Exported, MaterialFilesNameThePicture) {
+  frame::Surface lace = *surfaces_[0];
+  frame::Paint& paint = lace.appearance.paint;
+  paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {255, 255, 255, 128}});
+  paint.texture_from_uv << 4, 0, 0.5, 0, 8, 0.25;
+  paint.alpha = frame::Paint::Alpha::cutout;
+  surfaces_[0] = std::make_shared<frame::Surface>(lace);
+  write(Format::obj, {3});
+  const std::string text = support::read_bytes(file("cloth.mtl"));
+  for (const char* line : {"map_Kd -s 4 8 1 -o 0.5 0.25 0 cloth.png\n", "map_d -s 4 8 1 -o 0.5 0.25 0 cloth.png\n"})
+    EXPECT_NE(text.find(line), std::string::npos) << text;
+  EXPECT_EQ(image::read_picture(file("cloth.png")).rgba[3], 128);
 }
 
 template <class T>

@@ -11,6 +11,7 @@
 #include "export/made_frames.hpp"
 #include "export/zip.hpp"
 #include "image/color.hpp"
+#include "image/picture.hpp"
 
 namespace weft::exporter {
 namespace {
@@ -140,6 +141,33 @@ TEST_F(Staged, UsdFilesHavePanelsNormalsAndMaterials) {
             std::string::npos);
 }
 
+TEST_F(Staged, UsdMaterialsShowThePictureOfAPart) {
+  frame::Surface dress = *surfaces_[0];
+  frame::Paint& paint = dress.parts[1].appearance.paint;
+  paint.texture = std::make_shared<frame::Texture>(frame::Texture{1, 1, {10, 20, 30, 255}});
+  paint.texture_from_uv << 0, 2, 1, -3, 0, 1;
+  paint.alpha = frame::Paint::Alpha::over_color;
+  surfaces_[0] = std::make_shared<frame::Surface>(dress);
+  const std::string text = written(Format::usd, "1st film.usda");
+  const std::string back = block(text, "def Material \"red_dress_1_back\"");
+  EXPECT_NE(back.find("asset inputs:file = @red-dress.png@"), std::string::npos);
+  EXPECT_NE(back.find("diffuseColor.connect = </_1st_film/materials/red_dress_1_back/picture.outputs:rgb>"),
+            std::string::npos);
+  EXPECT_EQ(image::read_picture(request_.folder / "red-dress.png").rgba, (std::vector<std::uint8_t>{10, 20, 30, 255}));
+  // Where the picture lies, and beside that weft and warp.
+  const std::string mesh = block(text, "def Mesh \"red_dress\"");
+  const std::vector<double> st = value(mesh, "primvars:st"), at = value(mesh, "primvars:st:indices");
+  const std::vector<double> pattern = value(mesh, "primvars:weft_warp");
+  for (std::size_t c = 3; c < 6; ++c) {
+    const Vec2& uv = dress.paint_uv[1][c % 3];
+    const auto place = 2 * static_cast<std::size_t>(at[c]);
+    EXPECT_EQ(Vec2(st[place], st[place + 1]), Vec2(2 * uv.y() + 1, 1 - 3 * uv.x())) << c;
+    EXPECT_EQ(Vec2(pattern[place], pattern[place + 1]), uv) << c;
+  }
+  const std::string packed = written(Format::usdz, "1st film.usdz");
+  EXPECT_NE(packed.find(support::read_bytes(request_.folder / "red-dress.png")), std::string::npos);
+}
+
 TEST_F(Staged, PackedUsdFilesHoldTheTextAsItIsAtAMultipleOf64Bytes) {
   // With names of all lengths, so that the field that fills up has all of its lengths too.
   for (request_.name = "a"; request_.name.size() < 68; request_.name += 'a') {
@@ -169,7 +197,7 @@ TEST_F(Staged, PackedUsdFilesHoldTheTextAsItIsAtAMultipleOf64Bytes) {
 
 // The check value of this sum (CRC-32, as of Ethernet) is that of the digits 1 to 9: 0xcbf43926.
 TEST_F(Staged, PackedFilesHaveTheSumThatArchivesCheck) {
-  write_stored(folder_ / "a.zip", "digits", "123456789");
+  write_stored(folder_ / "a.zip", {{"digits", "123456789"}});
   EXPECT_EQ(support::read_bytes(folder_ / "a.zip").substr(14, 4), "\x26\x39\xf4\xcb");
 }
 
@@ -194,7 +222,8 @@ TEST_F(Staged, TheScriptForBlenderNamesAllThatItLoads) {
   EXPECT_EQ(film["fps"], 23.976);
   EXPECT_EQ(film["size"], nlohmann::json({400, 200}));
   EXPECT_EQ(film["frames"], nlohmann::json({2, 3, 4}));
-  EXPECT_EQ(film["objects"][2], nlohmann::json({{"name", "hidden"}, {"visible", false}}));
+  EXPECT_EQ(film["objects"][2],
+            nlohmann::json({{"name", "hidden"}, {"visible", false}, {"pictures", nlohmann::json::object()}}));
   EXPECT_EQ(film["cameras"][0]["frames"][1], nlohmann::json({90, {1, 0, 0, 3}, {0, 1, 0, 2}, {0, 0, 1, 3}}));
   EXPECT_NEAR(film["lights"][0]["strength"].get<double>(), 2 * (1 - request_.lighting.sky_share), 1e-12);
   for (const char* file : {"red-dress.obj", "red-dress.pc2", "hidden.pc2"})

@@ -39,6 +39,10 @@ RETRY = b"exit code 137: try 1 of 3"
 ELSEWHERE = b"goes on from here in a new place in the queue"
 SWEEP = ("s.toml", "--quality", "draft", "--set", "obstacle.ball.radius=0.1,0.11,0.12,0.13", "--set",
          "cloth.cloth.material.density=0.1,0.2,0.3", "--set", "obstacle.ball.position=[0,0,0],[0.1,0,0]")
+# Some of these runs, for a disk that is full.
+FILLING = 8
+FILLING_SWEEP = ("s.toml", "--quality", "draft", "--set", "obstacle.ball.radius=0.1,0.11", "--set",
+                 "cloth.cloth.material.density=0.1,0.2", "--set", "obstacle.ball.position=[0,0,0],[0.1,0,0]")
 
 
 class Test:
@@ -53,8 +57,8 @@ class Test:
         assert done.returncode == code, f"{words}: {done.returncode}\n{done.stdout}{done.stderr}"
         return done.stdout + done.stderr
 
-    def status(self):
-        done = subprocess.run([self.weft, "farm", "status", "farm"], cwd=self.folder, capture_output=True, text=True,
+    def status(self, folder="farm"):
+        done = subprocess.run([self.weft, "farm", "status", folder], cwd=self.folder, capture_output=True, text=True,
                               check=False)
         return done.returncode, done.stdout
 
@@ -70,8 +74,8 @@ class Test:
         rows = list(csv.DictReader(self.read(sweep, "table.csv").decode().splitlines()))
         return [{key: value for key, value in row.items() if not key.startswith("CPU")} for row in rows]
 
-    def submit(self, code=0):
-        return self.run("farm", "submit", *SWEEP, "-o", "farm", "--part", "8", code=code)
+    def submit(self, code=0, folder="farm", sweep=SWEEP):
+        return self.run("farm", "submit", *sweep, "-o", folder, "--part", "8", code=code)
 
     def queue_is_empty(self):
         return not subprocess.run(["squeue", "-h"], capture_output=True, text=True, check=True).stdout
@@ -124,10 +128,62 @@ class Test:
             slurm.wait(lambda: self.status()[0] == 0 and self.queue_is_empty(), "all runs", 600)
             print("at the end:", self.status()[1].splitlines()[-1])
             assert "all runs are done" in self.submit(), "nothing is done twice"
+            self.fill_disk(slurm)
         finally:
             if slurm:
                 slurm.stop()
         self.compare()
+
+    def fill_disk(self, slurm):
+        """A shared folder with room for half of the simulations, then for half of the pictures, and then for all."""
+        names = [row["run"] for row in self.table("one")
+                 if row["run"].startswith(("radius=0.1_density=0.1_", "radius=0.1_density=0.2_",
+                                           "radius=0.11_density=0.1_", "radius=0.11_density=0.2_"))]
+        assert len(names) == FILLING, names
+        def size(*folder):
+            """In the pages of a disk in memory."""
+            return sum(-(-os.path.getsize(os.path.join(place, file)) // 4096) * 4096 for name in names
+                       for place, _, files in os.walk(os.path.join(self.folder, "farm", name, *folder)) for file in files)
+
+        caches = size("cache")
+        disk = os.path.join(self.folder, "disk")
+        os.mkdir(disk)
+        mount = ["mount", "-t", "tmpfs", "-o"]
+        if subprocess.run([*mount, f"size={caches // 2}", "tmpfs", disk], capture_output=True, check=False).returncode:
+            print("no full disk: this machine does not let us mount one")
+            return
+        try:
+            for room, task in ((caches // 2, "simulate_"), (caches + size("frames") // 2 + 2**19, "draw_")):
+                subprocess.run([*mount, f"remount,size={room}", "tmpfs", disk], check=True)
+                self.submit(folder="disk/farm", sweep=FILLING_SWEEP)
+                slurm.wait(self.queue_is_empty, "the end of what has no room", 300)
+                code, text = self.status("disk/farm")
+                print("on a full disk:", text, sep="\n")
+                assert code == 9 and "No space left on device" in text and task in text, text
+                kept = self.whole_files(names)
+            assert kept, "some pictures found room"
+            subprocess.run([*mount, f"remount,size={4 * size() + 2**24}", "tmpfs", disk], check=True)
+            self.submit(folder="disk/farm", sweep=FILLING_SWEEP)
+            slurm.wait(lambda: self.status("disk/farm")[0] == 0 and self.queue_is_empty(), "all runs, with room", 300)
+            for file, changed in kept.items():
+                assert os.stat(os.path.join(disk, "farm", file)).st_mtime_ns == changed, f"{file} was made again"
+            made = self.whole_files(names)
+            print(f"with room again: {len(made)} pictures and videos, {len(kept)} of them kept")
+            assert len(made) == FILLING * (FRAMES + 1), sorted(made)
+        finally:
+            subprocess.run(["umount", "-l", disk], check=True)
+
+    def whole_files(self, names):
+        """Pictures and videos on the disk, with their times; each is that of the other farm, to the bit."""
+        found = {}
+        for name in names:
+            for folder, _, files in os.walk(os.path.join(self.folder, "disk/farm", name)):
+                for file in files:
+                    if file.endswith((".png", ".mp4")) and not file.startswith("."):
+                        path = os.path.relpath(os.path.join(folder, file), os.path.join(self.folder, "disk/farm"))
+                        assert self.read("disk/farm", path) == self.read("farm", path), f"{path} is not whole"
+                        found[path] = os.stat(os.path.join(folder, file)).st_mtime_ns
+        return found
 
     def compare(self):
         assert self.table("farm") == self.table("one"), "tables differ"

@@ -91,7 +91,7 @@ TEST(Override, ThatLeadsNowhereSaysWhere) {
   EXPECT_EQ(messages({"cloth.bnd.size=1"}),
             "--set cloth.bnd.size=1: cloth.bnd: expected the name or index of an entry, got bnd; did you mean band?\n");
   EXPECT_EQ(messages({"cloth.7.size=1"}),
-            "--set cloth.7.size=1: cloth.7: expected the name or index of an entry, got 7\n");
+            "--set cloth.7.size=1: cloth.7: expected the name or index of an entry, got 7; there is band, sheet\n");
   EXPECT_EQ(messages({"cloth.band.name.x=1"}),
             "--set cloth.band.name.x=1: cloth.band.name.x: expected a key of a table\n");
   EXPECT_EQ(messages({"cloth.band=1"}), "--set cloth.band=1: cloth.band: expected a key of a table\n");

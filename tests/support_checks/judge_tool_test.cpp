@@ -66,7 +66,7 @@ TEST_F(JudgeToolTest, FacesThatClothPassesThroughAreLeftOut) {
   const std::vector<Vec3> places{{0.25, 0.25, -0.1}, {0.25, 0.25, 1}, {0.5, 0.25, 1}, {0.25, 0.5, 1}};
   const std::vector<std::array<Index, 3>> faces{{0, 1, 2}, {1, 2, 3}};
   const auto write_hand = [&](const std::vector<std::uint8_t>& passed_through) {
-    mesh::write_ply(folder_ / "hand_00000.ply", places, faces, passed_through);
+    mesh::write_ply(folder_ / "hand_00000.ply", places, faces, {.passed_through = passed_through});
   };
   write_hand({});
   EXPECT_EQ(run("--obstacle hand").exit_code, 1);

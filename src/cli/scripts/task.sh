@@ -6,7 +6,8 @@ pause=${WEFT_PAUSE:-10} # before the next try, times the number of the try [s]
 stopped= child=
 
 echo "== $(date -u '+%F %T') $label on $(uname -n)"
-rm -f "farm/log/$label.code"
+code_file=farm/log/$label.code
+echo '    ' >"$code_file" # room for the exit code, also where the disk is full by then
 
 # A time limit comes near: the frame in hand is finished, and the task goes on in a new place in the queue. Schedulers
 # that end a task tell all its processes themselves.
@@ -63,5 +64,5 @@ case $code in
     ;;
 esac
 echo "exit code $code"
-echo "$code" >"farm/log/$label.code"
+printf '%-4s\n' "$code" 1<>"$code_file"
 exit "$code"

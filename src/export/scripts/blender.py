@@ -40,11 +40,46 @@ def link(item, collection):
     collection.objects.link(item)
 
 
-def add_mesh(name, visible, collection):
+def lay_pictures(mesh, pictures):
+    """Texture coordinates of their own, for a picture may be turned as well as scaled."""
+    if not pictures:
+        return
+    pattern = mesh.uv_layers.active
+    laid = mesh.uv_layers.new(name="picture")
+    slots = [pictures.get(material.name.split(".")[0]) if material else None for material in mesh.materials]
+    for face in mesh.polygons:
+        picture = slots[face.material_index]
+        for corner in face.loop_indices if picture else ():
+            u, v = pattern.data[corner].uv
+            laid.data[corner].uv = [row[0] * u + row[1] * v + row[2] for row in (picture["across"], picture["up"])]
+    for material, picture in zip(mesh.materials, slots):
+        if picture:
+            lay_picture(material, picture)
+
+
+def lay_picture(material, picture):
+    nodes, links = material.node_tree.nodes, material.node_tree.links
+    for node in [node for node in nodes if node.type in ("TEX_IMAGE", "MAPPING", "TEX_COORD", "UVMAP")]:
+        nodes.remove(node)
+    places, image = nodes.new("ShaderNodeUVMap"), nodes.new("ShaderNodeTexImage")
+    places.uv_map = "picture"
+    image.image = bpy.data.images.load(os.path.join(FOLDER, picture["file"]), check_existing=True)
+    if picture["extension"] in image.bl_rna.properties["extension"].enum_items:  # MIRROR came after 3.4
+        image.extension = picture["extension"]
+    links.new(places.outputs["UV"], image.inputs["Vector"])
+    surface = next(node for node in nodes if node.type == "BSDF_PRINCIPLED")
+    links.new(image.outputs["Color"], surface.inputs["Base Color"])
+    if picture["cutout"]:
+        links.new(image.outputs["Alpha"], surface.inputs["Alpha"])
+        material.blend_method = "CLIP"
+
+
+def add_mesh(name, visible, pictures, collection):
     bpy.ops.object.select_all(action="DESELECT")
     bpy.ops.wm.obj_import(filepath=os.path.join(FOLDER, name + ".obj"))
     mesh = bpy.context.selected_objects[0]
     mesh.name = name
+    lay_pictures(mesh.data, pictures)
     mesh.hide_render = not visible
     mesh.hide_set(not visible)
     motion = mesh.modifiers.new("Weft", "MESH_CACHE")
@@ -123,7 +158,7 @@ def main():
     scene.collection.children.link(collection)
     set_scene(scene)
     for film_object in FILM["objects"]:
-        add_mesh(film_object["name"], film_object["visible"], collection)
+        add_mesh(film_object["name"], film_object["visible"], film_object["pictures"], collection)
     for film_light in FILM["lights"]:
         add_light(film_light, collection)
     cameras = [add_camera(film_camera, collection) for film_camera in FILM["cameras"]]

@@ -1,0 +1,89 @@
+// Cameras of glTF files stand, look and move as the files say.
+#include "assets/camera_file.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <numbers>
+
+#include "assets/small_files.hpp"
+#include "core/error.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::assets {
+namespace {
+
+class CameraFile : public support::TestFolder {
+ protected:
+  /// On a rig that turns by 90 degrees to the left about y in two seconds, 3 m out along z, 1 m up.
+  nlohmann::json document_ = nlohmann::json::parse(gltf_camera());
+
+  LoadedCamera load(const std::string& object = "") {
+    std::ofstream(folder_ / "shot.gltf") << document_;
+    return load_camera(folder_ / "shot.gltf", object, "s.toml:1:1: camera.shot");
+  }
+  void expect_refused(const std::string& reason, const std::string& object = "") {
+    try {
+      load(object);
+      FAIL() << "expected an error that has: " << reason;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::asset_unreadable);
+      EXPECT_NE(std::string(error.what()).find(reason), std::string::npos) << error.what();
+      EXPECT_TRUE(std::string(error.what()).starts_with("s.toml:1:1: camera.shot: camera file ")) << error.what();
+    }
+  }
+};
+
+// Single precision of positions some metres out.
+constexpr double kSingle = 1e-6;
+
+TEST_F(CameraFile, GoesAroundWithTheRigThatItIsOn) {
+  const LoadedCamera camera = load();
+  ASSERT_FALSE(camera.times.empty());
+  EXPECT_EQ(camera.times.front(), 0);
+  EXPECT_NEAR(camera.times.back(), 2, kSingle);
+  for (std::size_t i = 0; i < camera.times.size(); ++i) {
+    const double angle = std::numbers::pi / 4 * camera.times[i];
+    EXPECT_LT((camera.positions[i] - Vec3(3 * std::sin(angle), 1, 3 * std::cos(angle))).norm(), kSingle) << i;
+    EXPECT_LT((camera.forward[i] - Vec3(-std::sin(angle), 0, -std::cos(angle))).norm(), kSingle) << i;
+    EXPECT_LT(camera.times[i] - camera.times[i == 0 ? 0 : i - 1], 0.0201);
+  }
+  EXPECT_NEAR(camera.field_of_view, 28.6478898, 1e-5) << "half a radian, whatever the sides' ratio";
+  EXPECT_NEAR(camera.roll, 0, 1e-4);
+  document_["cameras"][0]["perspective"].erase("aspectRatio");
+  EXPECT_NEAR(load().field_of_view, 28.6478898, 1e-5);
+}
+
+TEST_F(CameraFile, StandsStillWithoutAnAnimation) {
+  document_.erase("animations");
+  const LoadedCamera camera = load("eye");
+  ASSERT_EQ(camera.times, std::vector<double>{0});
+  EXPECT_LT((camera.positions[0] - Vec3(0, 1, 3)).norm(), kSingle);
+}
+
+TEST_F(CameraFile, TellsByHowMuchItIsTilted) {
+  document_["nodes"][1]["rotation"] = {0, 0, std::sin(0.05), std::cos(0.05)};
+  EXPECT_NEAR(load().roll, 0.1 * 180 / std::numbers::pi, 1e-4);
+}
+
+TEST_F(CameraFile, IsRefusedByNameWhereItIsNotThere) {
+  expect_refused("expected a camera \"wide\", got \"eye\"", "wide");
+  nlohmann::json second = document_["nodes"][1];
+  second["name"] = "other";
+  second["camera"] = 1;
+  document_["cameras"].push_back(document_["cameras"][0]);
+  document_["nodes"].push_back(second);
+  document_["nodes"][0]["children"].push_back(2);
+  expect_refused("choose one of \"eye\", \"other\" by object");
+  document_["cameras"][0]["perspective"]["yfov"] = 3.1;
+  expect_refused("expected a vertical field of view of 1 to 170 degrees", "eye");
+  document_.erase("cameras");
+  for (auto& node : document_["nodes"]) node.erase("camera");
+  expect_refused("expected a camera, got none");
+}
+
+}  // namespace
+}  // namespace weft::assets
