@@ -139,8 +139,8 @@ TEST(Rules, EachKeyOfAVariantChangesTheSceneAndItsHash) {
     const Table& table = *scene_rules().find(list)->table;
     for (const Variant& variant : table.variants) {
       const std::string file = variant.name == "mesh" || variant.name == "pattern" ? ", file = 'triangle.obj'"
-                               : variant.name == "file"      ? ", file = 'triangle.obj', blend = 1"
-                               : variant.name == "mannequin" ? ", blend = 1"
+                               : variant.name == "file"      ? ", file = 'triangle.obj', blend = 1, dressing = 60"
+                               : variant.name == "mannequin" ? ", blend = 1, dressing = 60"
                                : variant.name == "sequence"  ? ", files = 'frames'"
                                                              : "";
       std::string text = list + " = [{ name = 'x', " + table.selector + " = '" + variant.name + "'" + file + " }]\n";
