@@ -95,8 +95,14 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   const garment::Wearer* wearer = pattern.wraps() ? &wearers.of(cloth, where) : nullptr;
   Vec2 factors(cloth.scale, cloth.scale);
   if (cloth.fit) {
-    const Vec2 fit = garment::fit_factors(pattern, wearer != nullptr ? *wearer : wearers.of(cloth, where), where);
-    object.fitted = fmt::format("{:.3g} times as wide and {:.3g} times as long as drawn", fit.x(), fit.y());
+    const garment::Wearer& body = wearer != nullptr ? *wearer : wearers.of(cloth, where);
+    const Vec2 fit = garment::fit_factors(pattern, body, where);
+    const garment::Measures own = garment::measure(body);
+    object.fitted = fmt::format(
+        "{:.3g} times as wide and {:.3g} times as long as drawn; its wearer has {:.2f} m around the chest, {:.2f} "
+        "around "
+        "the waist, {:.2f} around the hips, and is {:.2f} m tall",
+        fit.x(), fit.y(), *own.chest, *own.waist, *own.hip, *own.height);
     factors = factors.cwiseProduct(fit);
   }
   pattern.scale_by(factors);
