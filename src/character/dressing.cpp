@@ -31,7 +31,7 @@ Vec3 place_on(const std::vector<Segment>& segments, const Vec3& x) {
   Vec3 sum = Vec3::Zero();
   double weights = 0;
   for (const Segment& segment : segments) {
-    const Vec3 place = nearest_on(segment, x);
+    Vec3 place = nearest_on(segment, x);
     const double distance_sq = (x - place).squaredNorm();
     if (distance_sq <= 0) return place;
     const double weight = 1 / (distance_sq * distance_sq);
