@@ -25,17 +25,17 @@ double clip_time(const Timing& timing, double t) {
 }
 
 Performance::Performance(const Character& character, const Clip& clip, const Playing& playing, const Vec3& up)
-    : character_(character), clip_(clip), playing_(playing), up_(up), rest_(rest_pose(character)) {
+    : character_(character), clip_(clip), playing_(playing), up_(up) {
   root_ = traveling_node(clip);
   if (root_ >= 0) {
     const Index parent = character.nodes[root_].parent;
-    if (parent >= 0) root_to_world_ = global_transforms(character, rest_)[parent].linear();
+    if (parent >= 0) root_to_world_ = global_transforms(character, rest_pose(character))[parent].linear();
   }
   const double fade = std::min(playing.crossfade, clip.duration / 2);
   playing_.crossfade = fade;
   period_ = clip.duration - fade;
   if (playing.loop) travel_ = way(pose_at(character, clip, fade / 2), pose_at(character, clip, period_ + fade / 2));
-  if (playing.from_rest) shift_ = way(at_clip_time(playing.timing.start), rest_);
+  if (playing.stance) shift_ = way(at_clip_time(playing.timing.start), *playing.stance);
 }
 
 Vec3 Performance::way(const Pose& a, const Pose& b) const {
@@ -64,11 +64,11 @@ Pose Performance::at_clip_time(double t) const {
 
 Pose Performance::at(double t) const {
   const Timing& timing = playing_.timing;
-  if (playing_.from_rest && t <= timing.dressing) return rest_;
+  if (playing_.stance && t <= timing.dressing) return *playing_.stance;
   Pose pose = at_clip_time(clip_time(timing, t));
   displace(pose, shift_);
-  if (playing_.from_rest && t < timing.dressing + timing.blend)
-    pose = blend(rest_, pose, smooth((t - timing.dressing) / timing.blend));
+  if (playing_.stance && t < timing.dressing + timing.blend)
+    pose = blend(*playing_.stance, pose, smooth((t - timing.dressing) / timing.blend));
   return pose;
 }
 

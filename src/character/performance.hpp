@@ -1,6 +1,8 @@
 // A clip as a scene plays it: standing first, then getting going, once or again and again.
 #pragma once
 
+#include <optional>
+
 #include "character/character.hpp"
 #include "character/pose.hpp"
 
@@ -19,9 +21,9 @@ double clip_time(const Timing& timing, double t);
 
 struct Playing {
   Timing timing;
-  bool loop = false;       ///< each round goes on from where the last one has come to, level
-  double crossfade = 0;    ///< [s] of the clip at the end of a round that pass over into the next; at most half of it
-  bool from_rest = false;  ///< stands in the rest pose, where the clip begins, instead of in the clip's pose at `start`
+  bool loop = false;     ///< each round goes on from where the last one has come to, level
+  double crossfade = 0;  ///< [s] of the clip at the end of a round that pass over into the next; at most half of it
+  std::optional<Pose> stance = {};  ///< that it stands in, where the clip begins, instead of the clip's pose at `start`
 };
 
 class Performance {
@@ -50,7 +52,6 @@ class Performance {
   Mat3 root_to_world_ = Mat3::Identity();  // directions of its parent
   double period_ = 0;                      // of a round [s]
   Vec3 travel_{0, 0, 0}, shift_{0, 0, 0};  // of a round; of all poses of the clip [m]
-  Pose rest_;
 };
 
 /// Keys a second of the channel of a clip that has the most; 0 for a clip that does not move.

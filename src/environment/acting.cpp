@@ -10,6 +10,7 @@
 #include "assets/character_file.hpp"
 #include "assets/sequence_file.hpp"
 #include "assets/source.hpp"
+#include "character/dressing.hpp"
 #include "character/gait.hpp"
 #include "character/joints.hpp"
 #include "character/mannequin.hpp"
@@ -29,6 +30,9 @@ namespace {
 
 /// Clips with fewer or more keys a second than this are sampled at these rates [1/s].
 constexpr double kLeastRate = 10, kMostRate = 120;
+
+/// A body that grows or lowers its arms takes at least so many keys a second.
+constexpr double kDressingRate = 25;
 
 /// Key frames of one character [bytes]; more than that, and somebody has mistyped a rate.
 constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
@@ -188,6 +192,11 @@ void follow(const Cast& cast, const FollowingPin& pin, const std::vector<Part>& 
   character::add_followers(body, start, mask, places);
 }
 
+/// When a run begins [s].
+double begin_of(const scene::Scene& scene) {
+  return -scene.preroll_frames() / scene.time.fps;
+}
+
 /// Which key frames a character needs, k / rate for k from first on.
 struct KeyTimes {
   double rate = kLeastRate;  // [1/s]
@@ -201,15 +210,18 @@ struct KeyTimes {
 };
 
 /// `clip_rate`: keys a second of what is sampled; 0 if it does not move.
-KeyTimes key_times(const Cast& cast, double clip_rate) {
+KeyTimes key_times(const Cast& cast, double clip_rate, bool changes_stance) {
   const scene::Character& settings = cast.settings;
   KeyTimes times;
-  const double duration = cast.scene.time.duration;
-  if (clip_rate <= 0 || duration <= cast.leaves()) return times;
+  const double duration = cast.scene.time.duration, begin = begin_of(cast.scene);
+  const bool grows = settings.grow > 0, moves = (clip_rate > 0 || changes_stance) && duration > cast.leaves();
+  if (!grows && !moves) return times;
   times.rate = settings.keys_per_second.value_or(std::clamp(clip_rate * settings.speed, kLeastRate, kMostRate));
-  times.first = static_cast<long>(std::floor(cast.leaves() * times.rate));
+  if (!settings.keys_per_second && (grows || changes_stance)) times.rate = std::max(times.rate, kDressingRate);
+  times.first = static_cast<long>(std::floor((grows ? begin : cast.leaves()) * times.rate));
   // One key past the end, so that the last moment still has its velocity.
-  times.count = static_cast<std::size_t>(static_cast<long>(std::ceil(duration * times.rate)) + 2 - times.first);
+  const double end = moves ? duration : begin + settings.grow;
+  times.count = static_cast<std::size_t>(static_cast<long>(std::ceil(end * times.rate)) + 2 - times.first);
   return times;
 }
 
@@ -257,15 +269,14 @@ void check_size(const Cast&, const scene::Mannequin&, Body&) {}
 template <class Source>
 character::Performance performance_of(const Cast& cast, const Source& source, const Body& body,
                                       const character::Clip& clip) {
-  return {body.character,
-          clip,
-          {cast.timing(), source.loop, source.crossfade, source.stance == scene::Stance::rest && body.clip},
-          cast.up()};
-}
-
-/// When a run begins [s].
-double begin_of(const scene::Scene& scene) {
-  return -scene.preroll_frames() / scene.time.fps;
+  std::optional<character::Pose> stance;
+  if (source.stance == scene::Stance::rest && body.clip) stance = character::rest_pose(body.character);
+  if (source.stance_arms) {
+    if (!stance) stance = character::pose_at(body.character, clip, cast.settings.start);
+    const auto joints = joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source);
+    stance = character::raise_arms({body.character, joints}, *stance, *source.stance_arms, cast.up());
+  }
+  return {body.character, clip, {cast.timing(), source.loop, source.crossfade, std::move(stance)}, cast.up()};
 }
 
 template <class Source>
@@ -317,9 +328,16 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
     limbs.push_back(static_cast<Index>(limb));
   const character::Pose start = performance.at(begin_of(cast.scene));
   for (const FollowingPin& pin : following) follow(cast, pin, parts, start, vertices, body.character);
-  const KeyTimes times = key_times(cast, character::key_rate(clip));
+  const KeyTimes times = key_times(cast, character::key_rate(clip), source.stance_arms.has_value());
+  std::vector<Vec3> bones;  // of the vertices, not of what follows
+  if (cast.settings.grow > 0) bones = character::places_on_bones(body.character, start);
+  bones.resize(std::min(bones.size(), vertices));
   KeyFrames keys = sample(cast, times, body.character.mesh.positions.size(), [&](double t, std::vector<Vec3>& x) {
     character::skin(body.character, performance.at(t), x);
+    const double since = t - begin_of(cast.scene);
+    if (since >= cast.settings.grow) return;
+    for (std::size_t v = 0; v < bones.size(); ++v)
+      x[v] = bones[v] + character::grown(since, cast.settings.grow) * (x[v] - bones[v]);
   });
   if (const auto doubt = doubt_of_speed(keys, static_cast<double>(times.first) / times.rate, times.rate, times.count,
                                         body.character.mesh.positions.size()))
@@ -339,8 +357,9 @@ Actor act(const Cast& cast, const scene::MeshSequence& source, std::span<const F
   const std::size_t vertices = loaded.mesh.positions.size();
   if (!cast.settings.parts.empty() || !std::ranges::all_of(following, [](const auto& pin) { return pin.part.empty(); }))
     cast.fail("part", "expected none of a body from a sequence of meshes, which has no bones");
+  if (cast.settings.grow > 0) cast.fail("grow", "expected 0 of a body from a sequence of meshes, which has no bones");
   const KeyFrames files(cast.settings.interpolation, 0, 1 / source.fps, std::move(loaded.positions), false);
-  KeyFrames keys = sample(cast, key_times(cast, source.fps), vertices,
+  KeyFrames keys = sample(cast, key_times(cast, source.fps, false), vertices,
                           [&](double t, std::vector<Vec3>& x) { files.at(character::clip_time(cast.timing(), t), x); });
   keys.at(0, loaded.mesh.positions);
   std::vector<Index> limbs = mesh::components(loaded.mesh.topology.triangles, vertices);
@@ -354,8 +373,9 @@ KeyFrameCount count(const Cast& cast, const KeyTimes& times, std::size_t vertice
 template <class Source>
 KeyFrameCount count(const Cast& cast, const Source& source) {
   Body body = cast_body(cast, source);
-  KeyFrameCount counted = count(cast, key_times(cast, body.clip ? character::key_rate(*body.clip) : 0),
-                                body.character.mesh.positions.size());
+  KeyFrameCount counted =
+      count(cast, key_times(cast, body.clip ? character::key_rate(*body.clip) : 0, source.stance_arms.has_value()),
+            body.character.mesh.positions.size());
   for (const Part& part : parts_of(cast, source, {}, body))
     if (!part.collide) counted.left_out.emplace_back(part.name, std::ranges::count(part.vertices, 1));
   return counted;
@@ -364,7 +384,7 @@ KeyFrameCount count(const Cast& cast, const Source& source) {
 KeyFrameCount count(const Cast& cast, const scene::MeshSequence& source) {
   const std::vector<std::filesystem::path> files = scene::sequence_files(source.files);
   const auto first = assets::load_sequence(std::span(files).first(1), cast.axes(), cast.where);
-  return count(cast, key_times(cast, source.fps), first.mesh.positions.size());
+  return count(cast, key_times(cast, source.fps, false), first.mesh.positions.size());
 }
 
 }  // namespace

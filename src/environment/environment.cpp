@@ -8,6 +8,7 @@
 #include <utility>
 #include <variant>
 
+#include "assets/mending.hpp"
 #include "assets/mesh_file.hpp"
 #include "core/error.hpp"
 #include "core/grading.hpp"
@@ -94,8 +95,14 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
   const garment::Wearer* wearer = pattern.wraps() ? &wearers.of(cloth, where) : nullptr;
   Vec2 factors(cloth.scale, cloth.scale);
   if (cloth.fit) {
-    const Vec2 fit = garment::fit_factors(pattern, wearer != nullptr ? *wearer : wearers.of(cloth, where), where);
-    object.fitted = fmt::format("{:.3g} times as wide and {:.3g} times as long as drawn", fit.x(), fit.y());
+    const garment::Wearer& body = wearer != nullptr ? *wearer : wearers.of(cloth, where);
+    const Vec2 fit = garment::fit_factors(pattern, body, where);
+    const garment::Measures own = garment::measure(body);
+    object.fitted = fmt::format(
+        "{:.3g} times as wide and {:.3g} times as long as drawn; its wearer has {:.2f} m around the chest, {:.2f} "
+        "around "
+        "the waist, {:.2f} around the hips, and is {:.2f} m tall",
+        fit.x(), fit.y(), *own.chest, *own.waist, *own.hip, *own.height);
     factors = factors.cwiseProduct(fit);
   }
   pattern.scale_by(factors);
@@ -124,11 +131,19 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
     }
 }
 
-/// The triangles of a cloth's file. Throws Error(asset_unreadable) where they are no sheet.
-assets::LoadedMesh load_sheet(const scene::Cloth& cloth, const std::string& where) {
+// How many times the least height of a cloth's triangles, or the least spacing of its quads, the longest edge may be
+// where it meets obstacles. A row of needles in an even sheet that falls on a ball, at default settings: with 71 all of
+// nine runs but one were solved, with 141 none of nine; of rectangles, graded by 50 all, by 100 none.
+constexpr double kLargestUnevenness = 80;
+
+/// The triangles of a cloth's file, made a sheet where they are none. Throws Error(asset_unreadable) where that fails.
+assets::LoadedMesh load_sheet(const scene::Cloth& cloth, const std::string& where, ClothObject& object) {
   assets::LoadedMesh loaded = assets::load_mesh(cloth.file, cloth.scale, where, cloth.object);
   mesh::Mesh& mesh = loaded.mesh;
   mesh.topology.quads.clear();
+  if (const assets::Mended mended = assets::mend_sheet(loaded, 1 / kLargestUnevenness); mended.any())
+    object.warnings.push_back(
+        fmt::format("{}: mesh file {}: made a sheet: {}", where, cloth.file.string(), mended.describe()));
   const mesh::TopologyReport report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
   if (!report.manifold())
     throw Error(
@@ -181,9 +196,10 @@ bool takes_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std:
 /// Cloth from a file: its start is the mesh, its shape at rest that too, or the flat panels that its UVs are. Returns
 /// what else the file says of its vertices.
 assets::LoadedMesh use_mesh_file(const scene::Cloth& cloth, const std::string& where, ClothObject& object) {
-  assets::LoadedMesh loaded = load_sheet(cloth, where);
+  assets::LoadedMesh loaded = load_sheet(cloth, where, object);
   garment::UvRest rest;
-  if (cloth.rest != scene::ClothRest::mesh) rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale);
+  if (cloth.rest != scene::ClothRest::mesh)
+    rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale, 1 / kLargestUnevenness);
   if (cloth.rest == scene::ClothRest::mesh) object.rest_from = "the mesh: the scene says so";
   const bool panels = cloth.rest != scene::ClothRest::mesh && takes_uv(cloth, rest, where, object);
   if (panels) {
@@ -205,11 +221,6 @@ assets::LoadedMesh use_mesh_file(const scene::Cloth& cloth, const std::string& w
   }
   return loaded;
 }
-
-// How many times the least height of a cloth's triangles, or the least spacing of its quads, the longest edge may be
-// where it meets obstacles. A row of needles in an even sheet that falls on a ball, at default settings: with 71 all of
-// nine runs but one were solved, with 141 none of nine; of rectangles, graded by 50 all, by 100 none.
-constexpr double kLargestUnevenness = 80;
 
 bool meets_obstacles(const scene::Scene& scene) {
   return scene.contact.obstacles &&

@@ -27,6 +27,8 @@ using scene::within;
 
 // Points per curve by which crossings of an outline with itself are looked for.
 constexpr int kPointsPerCurve = 16;
+// What is taken for straight, as a share of its length [1]: files round.
+constexpr double kFoldOff = 1e-3;
 // Largest panel [m].
 constexpr double kMaxSize = 100;
 
@@ -75,6 +77,11 @@ const Table& panel_rules() {
           .plain(Type::text, "edges", &Panel::edge_names,
                  "names of the curves of the outline, in their order; neighbours of one name are one edge")
           .by_default("those in the drawing, else 1 2 3 and so on")
+          .plain(
+              Type::text, "fold", &Panel::fold,
+              "straight edge at which the outline is half of a panel cut on the fold: the whole has the mirror image "
+              "too, whose edges have left and right, _l and _r exchanged, or _2 behind; those that meet the fold go on")
+          .by_default("none")
           .number("grain", &Panel::grain, within(-360, 360), "degrees",
                   "direction of the warp, counter-clockwise from the panel's y axis")
           .vector("position", &Panel::position, {"across", "up"}, within(-100, 100), "m",
@@ -125,10 +132,55 @@ std::vector<PanelEdge> joined(const Outline& outline, const std::vector<std::str
   return edges;
 }
 
+/// What an edge is called on the other side of a fold.
+std::string across_fold(const std::string& name) {
+  for (const auto& [one, other] : {std::pair{"left", "right"}, std::pair{"right", "left"}})
+    if (const std::size_t at = name.find(one); at != std::string::npos)
+      return std::string(name).replace(at, std::string_view(one).size(), other);
+  for (const auto& [one, other] : {std::pair{"_l", "_r"}, std::pair{"_r", "_l"}})
+    if (name.ends_with(one)) return name.substr(0, name.size() - 2) + other;
+  return name + "_2";
+}
+
+/// Makes the whole of a half that is cut on the fold: without the edge `fold`, and with its mirror image across that.
+/// Edges that meet the fold go on beyond it. Returns what is wrong, or nothing.
+std::string unfold(const std::string& fold, Outline& outline, std::vector<std::string>& names) {
+  const std::size_t n = outline.size();
+  std::size_t first = 0;
+  while (first < n && (names[first] != fold || names[(first + n - 1) % n] == fold)) ++first;
+  if (first == n) return fmt::format("expected the name of an edge, got {}", scene::in_quotes(fold));
+  std::size_t count = 1;
+  while (count < n && names[(first + count) % n] == fold) ++count;
+  const Vec2 a = outline[first].start(), b = outline[(first + count - 1) % n].end();
+  const Vec2 along = (b - a).normalized();
+  const auto off = [&](const Vec2& p) { return along.x() * (p - a).y() - along.y() * (p - a).x(); };
+  for (std::size_t i = 0; i < count; ++i)
+    for (const Vec2& p : outline[(first + i) % n].control)
+      if (!(std::abs(off(p)) <= kFoldOff * (b - a).norm()))
+        return fmt::format("expected a straight edge, got one that is {:.3g} m off a line", std::abs(off(p)));
+  Outline whole;
+  std::vector<std::string> named;
+  for (std::size_t i = count; i < n; ++i) {
+    whole.push_back(outline[(first + i) % n]);
+    named.push_back(names[(first + i) % n]);
+  }
+  const std::string at_b = named.front(), at_a = named.back();
+  for (std::size_t i = named.size(); i-- > 0;) {
+    Curve other = whole[i].reversed();
+    for (Vec2& p : other.control) p -= 2 * off(p) * Vec2(-along.y(), along.x());
+    whole.push_back(other);
+    named.push_back(named[i] == at_a || named[i] == at_b ? named[i] : across_fold(named[i]));
+  }
+  outline = std::move(whole);
+  names = std::move(named);
+  return {};
+}
+
 /// Takes over what a mirror image does not say itself.
 void mirror(const Panel& from, Panel& panel) {
   panel.path = from.path, panel.file = from.file, panel.id = from.id;
   if (panel.edge_names.empty()) panel.edge_names = from.edge_names;
+  if (panel.fold.empty()) panel.fold = from.fold;
   if (!panel.side && !panel.angle) {
     panel.side = from.side;
     if (from.angle) panel.angle = -*from.angle;
@@ -194,6 +246,9 @@ void draw_panel(Panel& panel, const std::string& path, Findings& findings, std::
     if (const std::string mistake = name_curves(panel.edge_names, outline, names); !mistake.empty())
       return findings.report(path + ".edges", mistake);
   }
+  if (!panel.fold.empty())
+    if (const std::string mistake = unfold(panel.fold, outline, names); !mistake.empty())
+      return findings.report(path + ".fold", mistake);
   const std::vector<Vec2> points = sampled(outline);
   Vec2 low = points[0], high = points[0];
   for (const Vec2& p : points) low = low.cwiseMin(p), high = high.cwiseMax(p);

@@ -31,6 +31,7 @@ struct Panel {
   std::filesystem::path file;  ///< a drawing, and in it
   std::string id;              ///< the element with this id
   std::string edge_names;      ///< one for each curve, apart by spaces, in the order they are written; empty: 1 2 3 ...
+  std::string fold;            ///< edge at which the outline is half of the panel; empty: it is whole
   double grain = 0;            ///< of the warp, counter-clockwise from the panel's y axis [degrees]
   std::string mirror_of;       ///< or the panel whose outline it has, left and right exchanged
   Around around = Around::none;  ///< part of the wearer that it starts bent around; none of all panels: flat

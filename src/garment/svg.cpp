@@ -316,9 +316,10 @@ DrawnPanel panel_of(const Drawing& drawing, const Sheet& sheet, const pugi::xml_
                                group.outlines.size()));
   DrawnPanel panel{sheet.place(outline_of(drawing, group.outlines[0]), group.outlines[0]), {}};
   if (!group.edges.empty()) panel.names = name_edges(panel.outline, group.edges);
-  if (group.origin)
-    for (Curve& curve : panel.outline)
-      for (Vec2& p : curve.control) p -= *group.origin;
+  // A part that was moved on its sheet stays the same part.
+  const Vec2 origin = group.origin.value_or(sheet.to_metres(node) * Vec2(0, 0));
+  for (Curve& curve : panel.outline)
+    for (Vec2& p : curve.control) p -= origin;
   return panel;
 }
 

@@ -155,6 +155,25 @@ std::size_t count_islands(const mesh::Mesh& mesh, std::span<const UvCorners> uv)
   return islands;
 }
 
+/// Gives triangles that are flatter than a share of the longest edge the shape that they have in the mesh, if that is
+/// higher; returns how many.
+std::size_t unflatten(const mesh::Mesh& mesh, double flattest, std::vector<UvCorners>& material) {
+  const auto longest_edge = [](const UvCorners& c) {
+    return std::max({(c[1] - c[0]).norm(), (c[2] - c[1]).norm(), (c[0] - c[2]).norm()});
+  };
+  double longest = 0;
+  for (const UvCorners& c : material) longest = std::max(longest, longest_edge(c));
+  std::size_t changed = 0;
+  for (std::size_t t = 0; t < material.size(); ++t) {
+    const auto height = [&](const UvCorners& c) { return twice_area(c) / longest_edge(c); };
+    const UvCorners own = flat(mesh.topology.triangles[t], mesh.positions);
+    if (height(material[t]) >= flattest * longest || height(own) <= height(material[t])) continue;
+    material[t] = own;
+    ++changed;
+  }
+  return changed;
+}
+
 /// Where so much of the weight is below. `values`: value and weight.
 double quantile(std::vector<std::pair<double, double>> values, double share) {
   std::ranges::sort(values);
@@ -182,7 +201,8 @@ std::string UvRest::describe() const {
       100 * median_stretch, 100 * most_stretch);
 }
 
-UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale) {
+UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale,
+                    double flattest) {
   UvRest rest;
   if (uv.empty()) return rest;
   const std::vector<UvEdge> edges = edges_of(mesh, uv);
@@ -214,6 +234,7 @@ UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const
     }
     off.emplace_back(std::max(std::abs(stretch.x() - 1), std::abs(stretch.y() - 1)), area);
   }
+  rest.unusable += unflatten(mesh, flattest, rest.material);
   rest.unusable_area /= total;
   rest.median_stretch = quantile(off, 0.5);
   rest.most_stretch = quantile(off, 0.95);

@@ -41,6 +41,8 @@ struct UvRest {
 /// Without a `scale` it is that of metres, centimetres, millimetres or inches at which most edges are as long as in the
 /// mesh, if a fifth of them are; else the one at which most are, of u and v each where these differ. `uv` has as many
 /// entries as the mesh triangles, or none.
-UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale);
+/// `flattest`: triangles with less height in the UVs, as a share of the longest edge there, are unusable.
+UvRest rest_from_uv(const mesh::Mesh& mesh, std::span<const UvCorners> uv, const std::optional<Vec2>& scale,
+                    double flattest = 0);
 
 }  // namespace weft::garment

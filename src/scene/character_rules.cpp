@@ -81,6 +81,9 @@ void acting_rows(TableBuilder<Character>& rows) {
           [](Character& c, const Value& value) { of_source<Kind> (&Acting::travel)(c) = travel_from(value); })
       .choice("stance", of_source<Kind>(&Acting::stance), {"first", "rest"},
               "pose that it stands in before: the one at start, or that without any animation")
+      .number("stance_arms", of_source<Kind>(&Acting::stance_arms), within(0, 120), "degrees",
+              "of straight arms from hanging down in that pose, as sleeves have them; 90 of a T")
+      .by_default("as the pose has them")
       .plain(Type::boolean, "loop", of_source<Kind>(&Acting::loop),
              "again and again, each round from where the last one has come to")
       .number("crossfade", of_source<Kind>(&Acting::crossfade), within(0, 60), "s",
@@ -147,6 +150,10 @@ const Table& character_rules() {
           .number("dressing", &Character::dressing, within(0, 3600), "s",
                   "how long it stands still from the start of the preroll on, before it moves")
           .number("blend", &Character::blend, within(0, 60), "s", "in which it then gets going")
+          .number(
+              "grow", &Character::grow, within(0, 60), "s",
+              "in which it grows from its bones to its size at the beginning of its dressing, into clothes that are "
+              "narrower than it is but hold its bones")
           .number("start", &Character::start, within(0, 86400), "s", "time of the clip that it gets going from")
           .number("speed", &Character::speed, above(0, 100), "", "of the clip; 1 as it is")
           .number("keys_per_second", &Character::keys_per_second, within(1, 1000), "Hz",

@@ -225,9 +225,12 @@ void check_characters(const Scene& scene, Findings& findings) {
       findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth or obstacle has",
                                                   in_quotes(character.name)));
     if (const Acting* acting = acting_of(character);
-        acting != nullptr && acting->stance == Stance::rest && character.blend <= 0)
-      findings.report(path + ".blend",
-                      fmt::format("expected > 0 s to get from the rest pose to the clip, got {}", character.blend));
+        acting != nullptr && (acting->stance == Stance::rest || acting->stance_arms) && character.blend <= 0)
+      findings.report(path + ".blend", fmt::format("expected > 0 s to get from the {} to the clip, got {}",
+                                                   acting->stance_arms ? "stance" : "rest pose", character.blend));
+    if (character.grow > character.dressing)
+      findings.report(path + ".grow", fmt::format("expected at most the {} s of dressing, in which it stands, got {}",
+                                                  character.dressing, character.grow));
     if (const auto* mannequin = std::get_if<Mannequin>(&character.source);
         mannequin != nullptr && mannequin->motion && mannequin->walk > 0)
       findings.report(path + ".walk", fmt::format("expected 0 beside a motion, got {}", mannequin->walk));

@@ -322,9 +322,10 @@ struct Acting {
   FileUp motion_up = FileUp::as_file;           ///< axis of `motion` that points up
   std::vector<JointNames> joints;
   Travel travel;
-  Stance stance = Stance::first;  ///< pose that is held while dressing
-  bool loop = false;              ///< again and again, each round from where the last one has come to
-  double crossfade = 0;           ///< [s] of clip time at the end of a round that pass over into the next
+  Stance stance = Stance::first;      ///< pose that is held while dressing
+  std::optional<double> stance_arms;  ///< angle of its straight arms from hanging down; absent: as they are [degrees]
+  bool loop = false;                  ///< again and again, each round from where the last one has come to
+  double crossfade = 0;               ///< [s] of clip time at the end of a round that pass over into the next
 };
 
 /// A skinned and animated character from a file.
@@ -371,6 +372,7 @@ struct Character {
   Pose pose;                              ///< of the file's origin, or of the floor below the mannequin
   double dressing = 0;                    ///< [s] it stands still
   double blend = 0;                       ///< [s] in which it then gets going
+  double grow = 0;                        ///< [s] of the dressing in which it grows from its bones to its size
   double start = 0;                       ///< time of the clip that it gets going from [s]
   double speed = 1;                       ///< of the clip
   std::optional<double> keys_per_second;  ///< absent: those of the clip

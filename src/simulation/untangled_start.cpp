@@ -94,7 +94,8 @@ void CollisionStage::untangle(const scene::Scene& scene, std::span<const integra
     }
     throw Error(ExitCode::scene_invalid,
                 "{}: expected a start that can be untangled, got {} pairs of triangles that cross, and cloth that an "
-                "obstacle goes through; it would have to move: {}; 'weft thumbnail --start' draws it; move it",
+                "obstacle goes through; it would have to move: {}; 'weft thumbnail --start' draws it; move it, or have "
+                "the body raise its arms as sleeves do (stance_arms) or grow into it (grow)",
                 scene.file.string(), report.pairs_before, regions);
   }
   if (report.pairs_before > 0 || report.farthest > 0)

@@ -180,6 +180,15 @@ TEST_F(MeshFiles, OfBinaryGltfAreReadWhateverTheyAreCalled) {
     EXPECT_NEAR(volume(load(name, glb_tetrahedron())), 1.0 / 6, 1e-15) << name;
 }
 
+TEST_F(MeshFiles, OfCompressedGltfAreRefusedByTheNameOfTheCompression) {
+  for (const std::string name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"}) {
+    const std::string file =
+        R"({"asset": {"version": "2.0"}, "extensionsRequired": ["KHR_materials_unlit", ")" + name + "\"]}";
+    EXPECT_EQ(refusal("packed.gltf", file),
+              "expected meshes without compression, got " + name + ", which is not read; export the file without it");
+  }
+}
+
 /// Two squares of 0.1 m side by side, so far apart.
 std::string two_squares(double apart) {
   const double x = 0.1 + apart;

@@ -76,7 +76,7 @@ TEST(Performance, WithACrossfadeDoesNotJump) {
 
 TEST(Performance, FromRestStandsInTheRestPoseAndStartsTheClipThere) {
   const Slider slider;
-  const Playing playing{.timing = {1, 0.5, 0, 1}, .loop = false, .crossfade = 0, .from_rest = true};
+  const Playing playing{.timing = {1, 0.5, 0, 1}, .loop = false, .crossfade = 0, .stance = rest_pose(slider.body)};
   EXPECT_EQ(slider.at(playing, 0), Vec3(0, 0, 0));
   EXPECT_EQ(slider.at(playing, 1), Vec3(0, 0, 0));
   EXPECT_LT((slider.at(playing, 1 + 1e-6) - Vec3(0, 0, 0)).norm(), 1e-9) << "no jump";

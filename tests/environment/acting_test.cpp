@@ -98,6 +98,22 @@ TEST_F(Acting, PlaysTheClipThatItsSceneNamesAfterDressing) {
   EXPECT_NEAR((at(waving, 1.5)[kHigh] - at(waving, 0)[kHigh]).norm(), 1, 1e-5);
 }
 
+TEST_F(Acting, GrowsFromItsBonesWhileItIsDressedAndThenMoves) {
+  scene_.time.preroll = 1;
+  character_.dressing = 0.8;
+  const Actor whole = make();
+  character_.grow = 0.5;
+  const Actor growing = make();
+  // Its bone is from the hips, at the origin, along y of the file to the spine, and beyond.
+  const Vec3 low = at(whole, -1)[kLow], on_bone(0, 0, 0);
+  EXPECT_LT((at(growing, -1)[kLow] - (on_bone + 0.1 * (low - on_bone))).norm(), kSingle);
+  EXPECT_LT((at(growing, -0.75)[kLow] - (on_bone + 0.55 * (low - on_bone))).norm(), 1e-4) << "half, between keys";
+  // The keys of both are elsewhere: splines through a start of 2 m/s.
+  for (const double t : {-0.5, -0.2, 0.5, 1.7})
+    EXPECT_LT((at(growing, t)[kLow] - at(whole, t)[kLow]).norm(), 0.02) << t;
+  for (const double t : {-0.5, -0.3}) EXPECT_LT((at(growing, t)[kLow] - low).norm(), 1e-3) << t;
+}
+
 TEST_F(Acting, LoopsAClipWithItsWay) {
   file_.loop = true;
   scene_.time.duration = 6;

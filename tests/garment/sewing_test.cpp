@@ -178,6 +178,38 @@ TEST_F(SewingText, BandsFollowTheirEdges) {
   EXPECT_GT(garment.sheet.bands[4].mass, 0);
 }
 
+// The half is on the wearer's left; its fold is slanted, so that the reflection is not that of x.
+TEST_F(SewingText, AHalfCutOnTheFoldIsAWholePanel) {
+  const auto panel = [&](const std::string& text) {
+    support::write_bytes(folder_ / "p.toml", "[[panel]]\nname = 'p'\n" + text);
+    return load_pattern(folder_ / "p.toml", "a test").panels.at(0);
+  };
+  const std::string half = "path = 'M 0 0 L 0.2 -0.15 C 0.3 0.1 0.3 0.3 0.4 0.35 L 0.3 0.4 Z'\n";
+  const Panel whole = panel(half + "edges = 'hem side_l neck fold'\nfold = 'fold'\n");
+  std::vector<std::string> names;
+  double hem = 0;
+  for (const PanelEdge& edge : whole.edges) {
+    names.push_back(edge.name);
+    if (edge.name == "hem") hem = Arclength(edge.curves).length();
+  }
+  std::ranges::sort(names);
+  EXPECT_EQ(names, (std::vector<std::string>{"hem", "neck", "side_l", "side_r"}));
+  EXPECT_NEAR(hem, 2 * std::hypot(0.2, 0.15), 1e-12) << "goes on beyond the fold";
+  // The line of the fold is along (3, 4) / 5: what is reflected there keeps its distance from the origin.
+  const auto end_of = [&](const std::string& name, bool end) {
+    const std::vector<Curve>& curves = std::ranges::find(whole.edges, name, &PanelEdge::name)->curves;
+    return end ? curves.back().end() : curves.front().start();
+  };
+  EXPECT_LT((end_of("side_l", false) - Vec2(0.2, -0.15)).norm(), 1e-12);
+  EXPECT_LT((end_of("side_r", true) - Vec2(-0.2, 0.15)).norm(), 1e-12) << "at a right angle to the fold";
+  const Vec2 shoulder(0.4, 0.35), along(0.6, 0.8);
+  EXPECT_LT((end_of("side_r", false) - (2 * shoulder.dot(along) * along - shoulder)).norm(), 1e-12);
+  expect_mistake("[[panel]]\nname = 'p'\n" + half + "edges = 'hem side_l neck fold'\nfold = 'side_l'\n",
+                 "p.toml:5:8: panel.p.fold: expected a straight edge, got one that is 0.0");
+  expect_mistake("[[panel]]\nname = 'p'\n" + half + "edges = 'hem side_l neck fold'\nfold = 'folt'\n",
+                 "panel.p.fold: expected the name of an edge, got \"folt\"");
+}
+
 TEST_F(SewingText, MistakesAreAllNamedWithTheirPlaces) {
   expect_mistake(kDart + "[[seam]]\na = 'front.lft'\nb = 'back.left'\n",
                  "p.toml:13:5: seam.0.a: expected an edge such as "

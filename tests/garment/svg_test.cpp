@@ -82,6 +82,7 @@ TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
       <text x='100' y='300'>origin</text>
     </g>
     <g id='back'><rect x='500' y='0' width='200' height='300'/></g>
+    <g id='moved' transform='translate(7 9)'><rect x='1' y='2' width='200' height='300'/></g>
     <g id='both'><rect x='0' y='0' width='2' height='3'/><g><polygon points='0 0 1 0 1 1'/></g></g>
     <g id='odd'><rect x='0' y='0' width='2' height='3'/><text x='0' y='0'>edge: two words</text></g>
   </svg>)";
@@ -92,10 +93,12 @@ TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
   EXPECT_EQ(front.names, names);
   EXPECT_LT((front.outline[0].start() - Vec2(-0.1, 0.3)).norm(), 1e-12) << "from the middle of the hem";
   EXPECT_TRUE(load_svg_panel(folder_ / "d.svg", "back").names.empty());
+  const Vec2 corner = load_svg_panel(folder_ / "d.svg", "moved").outline[0].start();
+  EXPECT_LT((corner - Vec2(0.001, -0.002)).norm(), 1e-12) << "from where the group has its own origin";
   const auto refused = [&](const std::string& id, const std::string& words) {
     support::expect_error(ExitCode::asset_unreadable, words, [&] { load_svg_panel(folder_ / "d.svg", id); });
   };
-  refused("both", "d.svg:14:6: g \"both\": expected a group with one closed outline, got 2");
+  refused("both", "d.svg:15:6: g \"both\": expected a group with one closed outline, got 2");
   refused("odd", "text: expected edge: and a name of letters");
 }
 

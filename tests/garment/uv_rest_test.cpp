@@ -131,5 +131,18 @@ TEST(UvRest, ChartsOfABodyAreNoPanels) {
   EXPECT_FALSE(rest.like_panels()) << rest.describe();
 }
 
+TEST(UvRest, OfTrianglesThatAreTooFlatForTheRestIsTheMesh) {
+  Textured tube = pleated_tube();
+  UvCorners& needle = tube.uv[30];
+  needle[2] = needle[0] + 0.3 * (needle[1] - needle[0]) + Vec2(0, 2.5e-4);  // 0.25 mm high in edges of 28 mm
+  ASSERT_EQ(rest_from_uv(tube.mesh, tube.uv, Vec2(1, 1)).unusable, 0U);
+  const UvRest rest = rest_from_uv(tube.mesh, tube.uv, Vec2(1, 1), 1.0 / 80);
+  EXPECT_EQ(rest.unusable, 1U);
+  const mesh::Triangle& t = tube.mesh.topology.triangles[30];
+  for (std::size_t k = 0; k < 3; ++k)
+    EXPECT_NEAR((rest.material[30][(k + 1) % 3] - rest.material[30][k]).norm(),
+                (tube.mesh.positions[t[(k + 1) % 3]] - tube.mesh.positions[t[k]]).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace weft::garment

@@ -200,6 +200,10 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:3:8: character.band.name: expected a name used once, got \"band\", which a cloth or obstacle has\n"
      "s.toml:5:9: character.band.files: expected a folder, or a file name with a *, of at least 2 files, got "
      "\"/none/*.obj\": 0 there\n"},
+    {"StanceWithoutTime",
+     "[[character]]\nname = 'a'\nsource = 'mannequin'\nstance_arms = 90\ndressing = 0.5\ngrow = 1.0\n",
+     "s.toml:1:1: character.a.blend: expected > 0 s to get from the stance to the clip, got 0\n"
+     "s.toml:6:8: character.a.grow: expected at most the 0.5 s of dressing, in which it stands, got 1\n"},
     {"KeyOfTheOtherSource", "[[character]]\nname = 'a'\nsource = 'sequence'\nloop = true\n",
      "s.toml:1:1: character.a.files: expected a text, got none\n"
      "s.toml:4:1: character.a.loop: unknown key of a sequence; it belongs to file or mannequin\n"},

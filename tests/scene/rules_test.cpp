@@ -102,8 +102,8 @@ void expect_change(const std::string& text, const std::string& override_text) {
 bool is_plain_value(const std::string& path, const Rule& rule) {
   return rule.type != Type::name && rule.type != Type::file && rule.type != Type::texts && !path.ends_with("follow") &&
          !path.ends_with("edge") && !path.ends_with("panel") && !path.ends_with("vertex_group") &&
-         !path.ends_with("vertex_color") && !path.ends_with("fade") && path != "render.camera" &&
-         !path.ends_with("shape") && !path.ends_with("kind") && !path.ends_with("source");
+         !path.ends_with("vertex_color") && !path.ends_with("fade") && !path.ends_with("grow") &&
+         path != "render.camera" && !path.ends_with("shape") && !path.ends_with("kind") && !path.ends_with("source");
 }
 
 TEST(Rules, EachKeyChangesTheSceneAndItsHash) {
@@ -139,8 +139,8 @@ TEST(Rules, EachKeyOfAVariantChangesTheSceneAndItsHash) {
     const Table& table = *scene_rules().find(list)->table;
     for (const Variant& variant : table.variants) {
       const std::string file = variant.name == "mesh" || variant.name == "pattern" ? ", file = 'triangle.obj'"
-                               : variant.name == "file"      ? ", file = 'triangle.obj', blend = 1"
-                               : variant.name == "mannequin" ? ", blend = 1"
+                               : variant.name == "file"      ? ", file = 'triangle.obj', blend = 1, dressing = 60"
+                               : variant.name == "mannequin" ? ", blend = 1, dressing = 60"
                                : variant.name == "sequence"  ? ", files = 'frames'"
                                                              : "";
       std::string text = list + " = [{ name = 'x', " + table.selector + " = '" + variant.name + "'" + file + " }]\n";

@@ -138,6 +138,8 @@ TEST_F(EveryKey, OfACharacterFillsItsMember) {
   EXPECT_LT((character.pose.rotation * Vec3::UnitX() - Vec3::UnitY()).norm(), 1e-15);
   EXPECT_EQ(character.dressing, 1.25);
   EXPECT_EQ(character.blend, 0.55);
+  EXPECT_EQ(character.grow, 0.75);
+  EXPECT_EQ(file.stance_arms, 85);
   EXPECT_EQ(character.start, 0.35);
   EXPECT_EQ(character.speed, 1.15);
   EXPECT_EQ(character.keys_per_second, 48);

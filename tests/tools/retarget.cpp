@@ -5,11 +5,13 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <exception>
 #include <limits>
 #include <numbers>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -184,6 +186,45 @@ void measure_hands(const Rig& body, const Rig& motion, const Clip& theirs, const
   result.hips = std::sqrt(hips / std::max<double>(1, static_cast<double>(result.hips_keys)));
 }
 
+/// Prints between which angles elbows, knees, upper arms and upper legs bend in the motion, and on the body: least and
+/// most of both sides, over all keys; arms and legs against the trunk.
+void report_ranges(const Rig& body, const Rig& motion, const Clip& theirs, const Clip& ours) {
+  struct Bend {
+    const char* name;
+    Joint joint;
+    std::optional<Joint> against;  // none: the trunk
+  };
+  const Bend kBends[] = {{"elbow", Joint::left_lower_arm, Joint::left_upper_arm},
+                         {"knee", Joint::left_lower_leg, Joint::left_upper_leg},
+                         {"arm", Joint::left_upper_arm, {}},
+                         {"leg", Joint::left_upper_leg, {}}};
+  const Skeleton a(body), b(motion);
+  std::vector<double> times;
+  for (const Channel& channel : ours.channels)
+    if (channel.rotation.times.size() > times.size()) times = channel.rotation.times;
+  std::string text;
+  for (const Bend& bend : kBends) {
+    std::array<Vec2, 2> range{Vec2(180, 0), Vec2(180, 0)};
+    for (const bool right : {false, true}) {
+      const Joint joint = on_side(bend.joint, right);
+      if (!a.has(joint) || !b.has(joint)) continue;
+      const auto add = [&](const Skeleton& skeleton, const Posture& at, Vec2& to) {
+        const Vec3 other = bend.against ? skeleton.bone(at, on_side(*bend.against, right)) : Vec3(-skeleton.trunk(at));
+        const double degrees = angle(skeleton.bone(at, joint), other);
+        to = Vec2(std::min(to.x(), degrees), std::max(to.y(), degrees));
+      };
+      for (const double t : times) {
+        add(b, b.at(pose_at(motion.character, theirs, t)), range[0]);
+        add(a, a.at(pose_at(body.character, ours, t)), range[1]);
+      }
+    }
+    text += fmt::format("{} {:.0f} to {:.0f}, {:.0f} to {:.0f}", text.empty() ? "" : ";", range[0].x(), range[0].y(),
+                        range[1].x(), range[1].y());
+    text += fmt::format(" {}", bend.name);
+  }
+  std::printf("    ranges [°], of the motion and of the body:%s\n", text.c_str());
+}
+
 Character without_names(Character character) {
   for (std::size_t n = 0; n < character.nodes.size(); ++n) character.nodes[n].name = fmt::format("j{}", n);
   return character;
@@ -238,6 +279,7 @@ void report(const Character& body, const std::string& file, bool nameless) {
       f.bone.c_str(), f.arm, f.trunk, f.trunk_when, 1e3 * f.hands, f.hands_keys, 1e3 * f.hips, f.hips_keys, seconds,
       missing.empty() ? "" : (" without" + missing).c_str());
   for (const std::string& doubt : result.doubts) std::printf("    %s\n", doubt.c_str());
+  report_ranges({body, ours}, {motion.character, theirs}, clip, result.clip);
   if (nameless) report_without_names(body, motion.character, result.clip);
 }
 

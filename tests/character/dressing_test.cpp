@@ -1,0 +1,98 @@
+// How a body stands to be dressed: on skeletons made here, and on the mannequin.
+#include "character/dressing.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "character/mannequin.hpp"
+#include "mesh/topology.hpp"
+
+namespace weft::character {
+namespace {
+
+const Vec3 kUp = Vec3::UnitZ();
+
+/// Hips at (0, 0, 1), and below them two legs of one bone and its end, 0.1 m to either side.
+Character two_legs() {
+  const auto at = [](double x, double y, double z) { return Affine(Eigen::Translation3d(x, y, z)); };
+  Character body;
+  body.nodes = {{"hips", -1, at(0, 0, 1)},
+                {"left", 0, at(0.1, 0, 0)},
+                {"left_end", 1, at(0, 0, -0.9)},
+                {"right", 0, at(-0.1, 0, 0)},
+                {"right_end", 3, at(0, 0, -0.9)}};
+  for (Index n = 0; n < 5; ++n)
+    body.bones.push_back({n, Affine(global_transforms(body, rest_pose(body))[n].inverse())});
+  // Around the left leg; between the legs, held by both alike; below the left end, which holds it alone.
+  body.mesh.positions = {{0.15, 0, 0.6}, {0, 0, 0.8}, {0.1, 0.05, 0.05}};
+  body.first_influence = {0, 1, 3, 4};
+  body.influences = {{1, 1}, {1, 0.5}, {3, 0.5}, {2, 1}};
+  return body;
+}
+
+TEST(Dressing, FindsEachVertexOnItsBonesAndBetweenLegsWhereTheyPart) {
+  const Character body = two_legs();
+  const std::vector<Vec3> places = places_on_bones(body, rest_pose(body));
+  EXPECT_LT((places[0] - Vec3(0.1, 0, 0.6)).norm(), 1e-12) << "beside the vertex, on the bone";
+  EXPECT_LT((places[1] - Vec3(0, 0, 1)).norm(), 1e-12) << "between the joints, not in the middle of the gap";
+  EXPECT_LT((places[2] - body.mesh.positions[2]).norm(), 1e-12) << "an end goes on through what it holds";
+}
+
+TEST(Dressing, RaisesStraightArmsAndLeavesTheRest) {
+  const Character body = make_mannequin({.edge_length = 0.1});
+  const std::vector<Index> joints = find_joints(body);
+  const Skeleton skeleton({body, joints});
+  Pose bent = rest_pose(body);
+  for (const Joint elbow : {Joint::left_lower_arm, Joint::right_lower_arm})
+    bent.nodes[static_cast<std::size_t>(joints[place_of(elbow)])].rotation =
+        Quat(Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()));
+  const Posture rest = skeleton.at(bent);
+  for (const double degrees : {0.0, 30.0, 90.0}) {
+    const Posture raised = skeleton.at(raise_arms({body, joints}, bent, degrees, kUp));
+    const double angle = degrees * std::acos(0.0) / 90;
+    for (const bool right : {false, true}) {
+      const auto place = [&](Joint left) { return raised.places[place_of(on_side(left, right))]; };
+      const Vec3 arm = place(Joint::left_hand) - place(Joint::left_upper_arm);
+      // It looks along -y: its left is at +x.
+      const Vec3 expected((right ? -1 : 1) * std::sin(angle), 0, -std::cos(angle));
+      EXPECT_LT((arm.normalized() - expected).norm(), 1e-6) << degrees;
+      EXPECT_NEAR((place(Joint::left_lower_arm) - place(Joint::left_upper_arm)).norm() +
+                      (place(Joint::left_hand) - place(Joint::left_lower_arm)).norm(),
+                  arm.norm(), 1e-9)
+          << "straight";
+    }
+    for (const Joint still : {Joint::hips, Joint::head, Joint::left_foot, Joint::left_upper_arm})
+      EXPECT_LT((raised.places[place_of(still)] - rest.places[place_of(still)]).norm(), 1e-12);
+  }
+}
+
+TEST(Dressing, BonesOfTheMannequinAreInsideOfIt) {
+  const Character body = make_mannequin({.edge_length = 0.1});
+  std::vector<Vec3> skinned(body.mesh.positions.size());
+  skin(body, rest_pose(body), skinned);
+  const std::vector<Vec3> places = places_on_bones(body, rest_pose(body));
+  // Winding number of the skin around them (van Oosterom & Strackee 1983): 1 inside, 0 outside.
+  int outside = 0;
+  for (std::size_t v = 0; v < places.size(); ++v) {
+    double angle = 0;
+    for (const mesh::Triangle& t : body.mesh.topology.triangles) {
+      const Vec3 a = skinned[t[0]] - places[v], b = skinned[t[1]] - places[v], c = skinned[t[2]] - places[v];
+      angle += 2 * std::atan2(a.dot(b.cross(c)), a.norm() * b.norm() * c.norm() + a.dot(b) * c.norm() +
+                                                     b.dot(c) * a.norm() + c.dot(a) * b.norm());
+    }
+    outside += std::abs(angle) > 2 * std::acos(-1) ? 0 : 1;
+  }
+  EXPECT_EQ(outside, 0) << "of " << places.size();
+}
+
+TEST(Dressing, GrowsFromATenthToAllWithoutAJerk) {
+  EXPECT_NEAR(grown(-1, 2), 0.1, 1e-15);
+  EXPECT_NEAR(grown(0, 2), 0.1, 1e-15);
+  EXPECT_NEAR(grown(1, 2), 0.55, 1e-15);
+  EXPECT_NEAR(grown(2, 2), 1, 1e-15);
+  EXPECT_NEAR((grown(1e-4, 2) - grown(0, 2)) / 1e-4, 0, 1e-3);
+}
+
+}  // namespace
+}  // namespace weft::character
