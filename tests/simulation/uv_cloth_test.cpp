@@ -114,7 +114,7 @@ TEST_F(UvCloth, AGarmentThatIsExportedAndReadBackDrapesAsItDid) {
   const scene::Scene sewn =
       support::scene_of_text(post + "shape = 'pattern'\nfile = '" + (folder_ / "tube.toml").string() +
                              "'\nedge_length = 0.04\nsewing = 0.4\nposition = [0, 0, 0.05]\n");
-  constexpr int kExported = 25, kOn = 15;
+  constexpr int kExported = 40, kOn = 10;
   Simulation simulation(sewn);
   for (int k = 0; k < kExported; ++k) simulation.advance();
   const frame::SnapshotPtr exported = simulation.snapshot();
