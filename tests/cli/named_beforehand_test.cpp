@@ -36,11 +36,9 @@ TEST_F(UnevenCells, AreNamedByCheckAndRunWhereObstaclesAreMet) {
   };
   support::write_bytes(folder_ / "needles.obj", needles(0.001));
   const Outcome flat = check(mesh + ball);
-  EXPECT_EQ(flat.exit_code, 3);
-  EXPECT_TRUE(contains(flat.err, "uneven.toml:1:1: cloth.sheet: expected triangles at least 1.77 mm high")) << flat.err;
-  EXPECT_TRUE(contains(flat.err, "got 4 flatter, the flattest number 5 ")) << flat.err;
-  EXPECT_TRUE(contains(flat.err, "merge vertices")) << flat.err;
-  EXPECT_EQ(run_weft({"simulate", "uneven.toml", "--cache", "uneven"}, folder_).exit_code, 3);
+  EXPECT_EQ(flat.exit_code, 0);
+  EXPECT_TRUE(contains(flat.err, "uneven.toml:1:1: cloth.sheet: mesh file ")) << flat.err;
+  EXPECT_TRUE(contains(flat.err, "made a sheet: 3 edges of flat triangles collapsed or turned")) << flat.err;
   EXPECT_EQ(check(mesh).exit_code, 0) << "nothing to meet";
   support::write_bytes(folder_ / "needles.obj", needles(0.002));
   EXPECT_EQ(check(mesh + ball).exit_code, 0);

@@ -85,8 +85,8 @@ class ContactSet {
   /// Friction goes by λ from here on. Within one iteration it does not change, so that friction too has a potential.
   ///
   /// Friction on an obstacle that sticks follows its tangent likewise, and slides from where that leads beyond static
-  /// friction; what slides sticks once its slip is within the stick slip, or has turned back. Cloth on cloth, where both
-  /// sides give way, does not gain by that.
+  /// friction; what slides sticks once its slip is within the stick slip, or has turned back. Cloth on cloth, where
+  /// both sides give way, does not gain by that.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const;
 
   /// force += contact forces [N] with the particles at x_end. Friction goes by the loads there, as long as they are
