@@ -137,8 +137,11 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
     const double force = tangent_force(load_at(contact, lag.depths[c]), lag.depths[c], depth);
     lag.depths[c] = depth_with(contact, force, std::max(depth, lag.depths[c]));
     if (lag.updates < kLoadUpdates) lag.loads[c] = force;
-    if (contact.against_obstacle && contact.static_friction > 0)
+    if (!contact.against_obstacle || contact.static_friction == 0) continue;
+    if (lag.updates < kLoadUpdates)
       follow(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
+    else
+      lag.frictions[c].sticks = false;
   }
   for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
     lag.depths.push_back(std::max(0.0, contacts_[c].depth));

@@ -60,7 +60,8 @@ class ContactSet {
   static constexpr double kStickSpeed = 2e-4;
   /// Updates of a step, over all of its solves, in which friction follows the loads. From then on it keeps those it
   /// has: that the load changes with the positions is not in the matrix, and where folds press on each other in steps
-  /// below a millisecond the two would go on chasing each other, however short the step.
+  /// below a millisecond the two would go on chasing each other, however short the step. Nor does friction go on to
+  /// stick and let go in turns: a step of sphere_drape took 236 iterations and two rejections.
   static constexpr int kLoadUpdates = 20;
   /// Times in a step that a contact which let go sticks again because its slip turned back: as long as cloth around
   /// moves with it, what would stick is seen to slide to and fro. The first 11 frames of the catwalk took 612, 460, 536

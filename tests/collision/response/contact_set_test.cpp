@@ -403,6 +403,18 @@ TEST(ContactSet, SlipThatTurnsBackSticksTwiceInAStep) {
   EXPECT_TRUE(pair.lag.frictions[0].sticks);
 }
 
+TEST(ContactSet, FrictionThatIsNotFoundInManyUpdatesSlidesOn) {
+  Slipping pair;
+  pair.update(0);
+  for (int k = 1; k < ContactSet::kLoadUpdates; ++k) pair.update(0.5 + 0.01 * k);
+  EXPECT_TRUE(pair.lag.frictions[0].sticks);
+  const Vec3 drag = pair.lag.frictions[0].drag;
+  pair.update(0.2).update(0.3);
+  EXPECT_FALSE(pair.lag.frictions[0].sticks);
+  EXPECT_EQ(pair.lag.frictions[0].drag, drag);
+  EXPECT_NEAR(pair.friction(0.3).dot(pair.along), -0.4 * 0.3 * (2 - 0.3), 1e-12);  // the law itself
+}
+
 TEST(ContactSet, ClothOnClothKeepsTheFrictionOfUnchangedVelocity) {
   Slipping pair(false);
   pair.update(0.5);
