@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 namespace weft::environment {
 namespace {
@@ -35,11 +36,27 @@ Vec3 log_near(const Quat& q, const Vec3& guess) {
   return w + 2 * kPi * std::round((guess.dot(axis) - angle) / (2 * kPi)) * axis;
 }
 
-/// Turns from key to key [rad], shortest way.
-std::vector<Vec3> turns_between(const std::vector<Quat>& rotations) {
+/// The turn of a change of one angle alone [rad], by all that it says; nothing where more than one changes.
+std::optional<Vec3> turn_of_one_angle(const scene::Pose& from, const scene::Pose& to) {
+  const std::optional<Vec3> change = scene::change_of_angles(from, to);
+  if (!change || (change->array() != 0).count() > 1) return std::nullopt;
+  // The turn about x comes first and is turned by those about y and z, that about y by the one about z.
+  const Vec3 angles = kPi / 180 * to.angles.value_or(Vec3::Zero());
+  Vec3 axis = Vec3::UnitZ();
+  if (change->x() != 0) axis = Eigen::AngleAxisd(angles.y(), Vec3::UnitY()) * Vec3::UnitX();
+  if (change->y() != 0) axis = Vec3::UnitY();
+  return Vec3(kPi / 180 * change->sum() * (Eigen::AngleAxisd(angles.z(), Vec3::UnitZ()) * axis));
+}
+
+/// Turns from key to key [rad].
+std::vector<Vec3> turns_between(const std::vector<scene::Pose>& poses) {
   std::vector<Vec3> turns;
-  for (std::size_t i = 0; i + 1 < rotations.size(); ++i) {
-    Vec3 turn = log(rotations[i + 1] * rotations[i].conjugate());
+  for (std::size_t i = 0; i + 1 < poses.size(); ++i) {
+    if (const auto turn = turn_of_one_angle(poses[i], poses[i + 1])) {
+      turns.push_back(*turn);
+      continue;
+    }
+    Vec3 turn = log(poses[i + 1].rotation * poses[i].rotation.conjugate());
     // The sign of a half turn's axis is noise: go on turning the way we did.
     if (!turns.empty() && kPi - turn.norm() < kHalfTurnTolerance && turn.dot(turns.back()) < 0)
       turn -= 2 * kPi * turn.normalized();
@@ -70,18 +87,22 @@ std::vector<Vec3> positions_of(const scene::PoseTrack& track, const scene::Pose&
   return positions.empty() ? std::vector{rest.position} : positions;
 }
 
-std::vector<Quat> rotations_of(const scene::PoseTrack& track, const scene::Pose& rest) {
-  std::vector<Quat> rotations;
-  for (const auto& key : track.keys) rotations.push_back(key.pose.rotation.normalized());
-  return rotations.empty() ? std::vector{rest.rotation.normalized()} : rotations;
+std::vector<scene::Pose> poses_of(const scene::PoseTrack& track, const scene::Pose& rest) {
+  std::vector<scene::Pose> poses;
+  for (const auto& key : track.keys) poses.push_back(key.pose);
+  return poses.empty() ? std::vector{rest} : poses;
 }
 
 }  // namespace
 
 RotationSpline::RotationSpline(scene::Interpolation interpolation, std::vector<double> times,
-                               std::vector<Quat> rotations)
-    : interpolation_(interpolation), times_(std::move(times)), rotations_(std::move(rotations)) {
-  const std::vector<Vec3> turns = turns_between(rotations_);
+                               std::vector<scene::Pose> poses)
+    : interpolation_(interpolation), times_(std::move(times)) {
+  for (scene::Pose& pose : poses) {
+    pose.rotation.normalize();
+    rotations_.push_back(pose.rotation);
+  }
+  const std::vector<Vec3> turns = turns_between(poses);
   std::vector<double> lengths;
   std::vector<Vec3> chords;
   for (std::size_t i = 0; i < turns.size(); ++i) {
@@ -122,7 +143,7 @@ RotationSpline::Sample RotationSpline::at(double t) const {
 
 Track::Track(const scene::PoseTrack& track, const scene::Pose& rest)
     : position_(track.interpolation, times_of(track), positions_of(track, rest)),
-      rotation_(track.interpolation, times_of(track), rotations_of(track, rest)),
+      rotation_(track.interpolation, times_of(track), poses_of(track, rest)),
       moving_(track.keys.size() > 1) {}
 
 PoseSample Track::at(double t) const {

@@ -26,12 +26,12 @@ struct PoseSample {
   }
 };
 
-/// Rotations through keys along the shortest way between neighbours; a half turn goes on in the direction of the one
-/// before. Linear: constant angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit
-/// quaternions (Kim, Kim & Shin, "A general construction scheme for unit quaternion curves with simple high order
-/// derivatives", SIGGRAPH 1995), which has closed derivatives; angular velocity is continuous. Its values at the keys
-/// come from the spline (spline.hpp) over the turns between keys, so that motion about one axis is exactly that of the
-/// angle.
+/// Rotations through keys: where one angle alone changes, by as much as it does, whole turns and all; else along the
+/// shortest way between neighbours, and a half turn goes on in the direction of the one before. Linear: constant
+/// angular velocity between keys (slerp). Cubic: a chain of cubic Bézier curves of unit quaternions (Kim, Kim & Shin,
+/// "A general construction scheme for unit quaternion curves with simple high order derivatives", SIGGRAPH 1995), which
+/// has closed derivatives; angular velocity is continuous. Its values at the keys come from the spline (spline.hpp)
+/// over the turns between keys, so that motion about one axis is exactly that of the angle.
 class RotationSpline {
  public:
   struct Sample {
@@ -40,8 +40,8 @@ class RotationSpline {
     Vec3 angular_acceleration{0, 0, 0};  ///< [rad/s²], world
   };
 
-  /// At least one key; times [s] strictly increasing, as many as rotations.
-  RotationSpline(scene::Interpolation interpolation, std::vector<double> times, std::vector<Quat> rotations);
+  /// At least one key; times [s] strictly increasing, as many as poses.
+  RotationSpline(scene::Interpolation interpolation, std::vector<double> times, std::vector<scene::Pose> poses);
 
   Sample at(double t) const;
 

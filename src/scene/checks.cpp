@@ -54,6 +54,20 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
   }
 }
 
+/// Whole turns have an axis, which one angle alone names.
+template <class Key>
+void check_turns(const std::vector<Key>& keys, const std::string& path, Findings& findings) {
+  for (std::size_t i = 1; i < keys.size(); ++i) {
+    const std::string key = fmt::format("{}.keys.{}.rotation", path, i);
+    if (!findings.has(key) || findings.faulty(key)) continue;
+    const auto change = change_of_angles(keys[i - 1].pose, keys[i].pose);
+    if (!change || (change->array() != 0).count() < 2 || change->cwiseAbs().maxCoeff() <= 180) continue;
+    findings.report(key, fmt::format("expected a change of one angle alone, or of none by more than half a turn, "
+                                     "since the key before; got a change by [{:g}, {:g}, {:g}] degrees",
+                                     change->x(), change->y(), change->z()));
+  }
+}
+
 /// Reads the picture, so that what is wrong with it shows with all other mistakes.
 void check_image(const std::optional<std::filesystem::path>& image, const std::string& key, Findings& findings) {
   if (!image || !findings.has(key) || findings.faulty(key)) return;
@@ -105,6 +119,7 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
 
 void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std::string& path, Findings& findings) {
   check_times(pin.motion.keys, path, findings);
+  check_turns(pin.motion.keys, path, findings);
   const Followed followed = scene::followed(pin);
   const std::vector<std::string> characters = names_of(scene.characters);
   std::vector<std::string> bodies = names_of(scene.obstacles);
@@ -207,6 +222,7 @@ void check_obstacles(const Scene& scene, Findings& findings) {
     const std::string& path = findings.entry("obstacle", i);
     check_shape(obstacle.shape, path, findings);
     check_times(obstacle.motion.keys, path, findings);
+    check_turns(obstacle.motion.keys, path, findings);
     // One name each: it names the object in pictures, statistics and mesh files.
     if (!obstacle.name.empty() && std::find(cloths.begin(), cloths.end(), obstacle.name) != cloths.end()) {
       findings.report(path + ".name",

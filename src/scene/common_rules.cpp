@@ -4,11 +4,20 @@
 
 namespace weft::scene {
 
-Quat from_angles(const std::vector<double>& degrees) {
-  const auto turn = [&](std::size_t i, const Vec3& axis) {
+Quat from_angles(const Vec3& degrees) {
+  const auto turn = [&](int i, const Vec3& axis) {
     return Quat(Eigen::AngleAxisd(degrees[i] * std::numbers::pi / 180, axis));
   };
   return turn(2, Vec3::UnitZ()) * turn(1, Vec3::UnitY()) * turn(0, Vec3::UnitX());
+}
+
+std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to) {
+  // Who says nothing of the rotation means that of angles of 0.
+  const auto angles = [](const Pose& pose) {
+    return !pose.angles && pose.rotation.coeffs() == Quat::Identity().coeffs() ? Vec3(Vec3::Zero()) : pose.angles;
+  };
+  const std::optional<Vec3> first = angles(from), last = angles(to);
+  return first && last ? std::optional<Vec3>(*last - *first) : std::nullopt;
 }
 
 const Table& obstacle_look_rules() {

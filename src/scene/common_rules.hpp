@@ -17,19 +17,26 @@ inline const std::vector<std::string> kWeftWarp = {"weft", "warp"};
 inline const std::vector<std::string> kInterpolations = {"linear", "cubic"};
 
 /// Turns about the fixed x, then y, then z axis.
-Quat from_angles(const std::vector<double>& degrees);
+Quat from_angles(const Vec3& degrees);
 
 /// The rotation of a pose.
 template <class S, class Member>
 void rotation_rows(TableBuilder<S>& rows, Member pose, const std::string& otherwise) {
-  const auto rotation = [pose](S& s) -> Quat& { return std::invoke(pose, s).rotation; };
-  rows.vector("quaternion", rotation, {"w", "x", "y", "z"}, within(-1e3, 1e3), "",
-              "rotation as a quaternion, of any length but 0")
+  const auto of = [pose](S& s) -> Pose& { return std::invoke(pose, s); };
+  rows.vector(
+          "quaternion", [of](S& s) -> Quat& { return of(s).rotation; }, {"w", "x", "y", "z"}, within(-1e3, 1e3), "",
+          "rotation as a quaternion, of any length but 0")
       .nonzero()
-      .by_default(otherwise);
-  rows.respelling("rotation", "quaternion", {"rx", "ry", "rz"}, within(-36000, 36000), "degrees",
-                  "rotation about the fixed x, then y, then z axis",
-                  [rotation](S& s, const std::vector<double>& angles) { rotation(s) = from_angles(angles); });
+      .by_default(otherwise)
+      .written_if([of](S& s) { return !of(s).angles; })
+      .when_given([of](S& s) { of(s).angles.reset(); });
+  rows.vector(
+          "rotation", [of](S& s) -> std::optional<Vec3>& { return of(s).angles; }, {"rx", "ry", "rz"},
+          within(-36000, 36000), "degrees",
+          "rotation about the fixed x, then y, then z axis; from key to key, one angle that changes alone turns by "
+          "all of its change, whole turns too; several turn the shortest way")
+      .excludes("quaternion")
+      .when_given([of](S& s) { of(s).rotation = from_angles(*of(s).angles); });
 }
 
 /// position, and quaternion or rotation. `otherwise` says what holds where they are absent.

@@ -150,7 +150,11 @@ struct Look : Paint {
 struct Pose {
   Vec3 position{0, 0, 0};  ///< [m]
   Quat rotation{1, 0, 0, 0};
+  std::optional<Vec3> angles{};  ///< of the same rotation, where it was given by them [degrees]: with whole turns
 };
+
+/// How far the angles differ from one key to the next [degrees]: nothing where one of them has none.
+std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to);
 
 struct PoseKey {
   double time = 0;  ///< [s], strictly increasing

@@ -114,19 +114,6 @@ class TableBuilder {
     rule.range = within(0, 1);
     return *this;
   }
-  /// A second way to give what `key_meant` gives: an array that `set` turns into it. Read only.
-  TableBuilder& respelling(std::string key, std::string key_meant, std::vector<std::string> components, Range range,
-                           std::string unit, std::string documentation,
-                           std::function<void(S&, const std::vector<double>&)> set) {
-    Rule& rule = add(std::move(key), Type::number, std::move(documentation));
-    rule.components = std::move(components);
-    rule.range = range;
-    rule.unit = std::move(unit);
-    rule.excludes = std::move(key_meant);
-    rule.get = [](void*) { return Value{}; };
-    rule.set = [set](void* s, const Value& value) { set(*static_cast<S*>(s), numbers_of(value)); };
-    return *this;
-  }
   /// A flag, text, list of texts, name or file.
   template <class Member>
   TableBuilder& plain(Type type, std::string key, Member member, std::string documentation) {

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "scene/common_rules.hpp"
+
 namespace weft::environment {
 namespace {
 
@@ -127,6 +129,26 @@ TEST(LinearTrack, TurnsEvenlyTheShortestWay) {
     EXPECT_LT(between(pose.rotation, about({0, 0, 1}, 175 * kPi / 180)), kRounding);
     EXPECT_LT((pose.angular_velocity - Vec3(0, 0, 10 * kPi / 180)).norm(), kRounding);
     EXPECT_EQ(pose.angular_acceleration, Vec3(0, 0, 0));
+  }
+}
+
+TEST(Track, TurnsByAllOfTheChangeOfOneAngle) {
+  // About x, y, z in turn: 3 turns, 290 degrees the long way, back by 2.5 turns; what the others hold tilts the axis.
+  const double change[3] = {1080, 290, -900};
+  const Vec3 held(20, -40, 70);
+  for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto key = [&](double time, double share) {
+        Vec3 angles = held;
+        angles[axis] += share * change[axis];
+        return scene::PoseKey{time, {Vec3::Zero(), scene::from_angles(angles), angles}};
+      };
+      const Track track({interpolation, {key(0, 0), key(0.5, 0.25), key(2, 1)}});
+      for (const double t : {0.0, 0.2, 0.5, 0.8, 1.1, 1.7, 1.99}) {
+        EXPECT_LT(between(track.at(t).rotation, key(t, t / 2).pose.rotation), 1e-11) << axis << ' ' << t;
+        EXPECT_NEAR(track.at(t).angular_velocity.norm(), std::abs(change[axis]) / 2 * kPi / 180, 1e-10) << axis;
+      }
+    }
   }
 }
 

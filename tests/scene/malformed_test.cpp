@@ -230,6 +230,11 @@ const std::vector<Malformed> kMalformed = {
      "[[obstacle]]\nname = 'b'\nshape = 'box'\nkeys = [{ time = 0 }, { time = 2 }, { time = 2 }, { time = 1 }]\n",
      "s.toml:4:46: obstacle.b.keys.2.time: expected > 2 s, later than the keys before, got 2\n"
      "s.toml:4:60: obstacle.b.keys.3.time: expected > 2 s, later than the keys before, got 1\n"},
+    {"TurnsWithoutAnAxis",
+     "[[obstacle]]\nname = 'b'\nshape = 'box'\n"
+     "keys = [{ time = 0 }, { time = 1, rotation = [0, 0, 720] }, { time = 2, rotation = [10, 0, 1000] }]\n",
+     "s.toml:4:84: obstacle.b.keys.2.rotation: expected a change of one angle alone, or of none by more than half a "
+     "turn, since the key before; got a change by [10, 0, 280] degrees\n"},
     {"MissingMesh", "[[obstacle]]\nname = 'b'\nshape = 'mesh'\nfile = '/no/such.obj'\n",
      "s.toml:4:8: obstacle.b.file: expected a readable file, got \"/no/such.obj\": there is no /no/such.obj\n"},
     {"MeshIsAFolder", "[[obstacle]]\nname = 'b'\nshape = 'mesh'\nfile = '/'\n",

@@ -166,6 +166,16 @@ TEST(EffectiveScene, ReadsBackAsTheSameScene) {
   EXPECT_EQ(second.scene.hash, first.scene.hash);
 }
 
+TEST(EffectiveScene, KeepsWholeTurnsOfKeys) {
+  const LoadResult loaded = load_here(
+      "obstacle = [{ name = 'a', shape = 'box', keys = [{ time = 0 }, { time = 1, rotation = [0, 1080, 0] },"
+      " { time = 2, position = [1, 0, 0] }, { time = 3, quaternion = [1, 0, 0, 0] }] }]\n");
+  const std::string text = effective_scene(loaded.scene);
+  EXPECT_NE(text.find("position = [0, 0, 0], rotation = [0, 1080, 0]"), std::string::npos) << text;
+  EXPECT_NE(text.find("position = [1, 0, 0], rotation = [0, 1080, 0]"), std::string::npos) << text;
+  EXPECT_NE(text.find("position = [1, 0, 0], quaternion = [1, 0, 0, 0]"), std::string::npos) << text;
+}
+
 TEST(Effective, SaysEitherStepOrTolerance) {
   const std::string cloth = "[[cloth]]\nname = 'a'\n[time]\n";
   const std::string by_step = effective_scene(load_here(cloth).scene);
