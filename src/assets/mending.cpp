@@ -31,10 +31,6 @@ constexpr int kRounds = 8;
 
 using mesh::Triangle;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 double area(const LoadedMesh& loaded, std::size_t t) {
   const auto& [a, b, c] = loaded.mesh.topology.triangles[t];
   const std::vector<Vec3>& x = loaded.mesh.positions;

@@ -18,10 +18,6 @@
 namespace weft::assets {
 namespace {
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 /// For each vertex the first one at exactly the same place.
 std::vector<Index> first_at_same_place(const std::vector<Vec3>& positions) {
   const auto key = [&](Index i) {

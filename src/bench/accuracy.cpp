@@ -31,7 +31,7 @@ constexpr double kDecides = 0.1;
 constexpr double kLinearTolerances[] = {0.3, 0.1, 0.03, 0.01, 0.003};
 constexpr double kRefinements[] = {2, 1, 0.5, 0.25};
 // Starts with contact, each moved by a micrometre more than the one before [m].
-constexpr double kShift = 1e-6;
+constexpr double kShiftOfStart = 1e-6;
 constexpr int kStarts = 3;
 // Runs shorter than this [s] are timed twice.
 constexpr double kShortRun = 0.3;
@@ -134,7 +134,7 @@ Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
   for (int start = 0; start < (result_.contact ? kStarts : 1); ++start) {
     sample->starts.push_back(follow(scene, limits));
     functionals.push_back(sample->starts.back().functionals);
-    for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += kShift;
+    for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += kShiftOfStart;
   }
   sample->middle = median(functionals);
   sample->work = sample->starts[0].work;

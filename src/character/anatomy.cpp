@@ -12,8 +12,6 @@
 namespace weft::character {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 /// Directions from shorter lengths than this, relative to others, are noise.
 constexpr double kNothing = 1e-9;
 

@@ -157,8 +157,7 @@ std::vector<Vec3> places_on_bones(const Character& character, const Pose& pose) 
 }
 
 double grown(double t, double duration) {
-  const double u = std::clamp(t / duration, 0.0, 1.0);
-  return kThin + (1 - kThin) * u * u * (3 - 2 * u);
+  return kThin + (1 - kThin) * ease(t / duration);
 }
 
 }  // namespace weft::character

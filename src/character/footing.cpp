@@ -31,11 +31,6 @@ constexpr double kReach = 0.999;
 /// Cosine of the angle between thigh and shin of a knee that folds by 155°, as far as calf and thigh let it.
 constexpr double kFolded = 0.906;
 
-double smooth(double u) {
-  u = std::clamp(u, 0.0, 1.0);
-  return u * u * (3 - 2 * u);
-}
-
 /// The value below which `share` of them lie.
 double quantile(std::vector<double> values, double share) {
   const auto k = static_cast<std::ptrdiff_t>(share * static_cast<double>(values.size() - 1));
@@ -56,13 +51,13 @@ std::vector<double> speeds(const std::vector<Vec3>& track, std::span<const doubl
 }
 
 /// The joints of one foot over time.
-struct Track {
+struct FootTrack {
   std::vector<Vec3> places;
   std::vector<double> speeds, heights;
 };
 
-Track track_of(Joint joint, std::span<const Posture> postures, std::span<const double> times, const Vec3& up) {
-  Track track;
+FootTrack track_of(Joint joint, std::span<const Posture> postures, std::span<const double> times, const Vec3& up) {
+  FootTrack track;
   for (const Posture& posture : postures) {
     track.places.push_back(posture.places[place_of(joint)]);
     track.heights.push_back(up.dot(track.places.back()));
@@ -71,7 +66,7 @@ Track track_of(Joint joint, std::span<const Posture> postures, std::span<const d
   return track;
 }
 
-std::vector<Contact> contacts_of(const Track& ball, std::span<const double> times, double floor, double leg) {
+std::vector<Contact> contacts_of(const FootTrack& ball, std::span<const double> times, double floor, double leg) {
   std::vector<Contact> contacts;
   const auto stands = [&](std::size_t k) {
     return ball.speeds[k] < kSlow * leg && ball.heights[k] < floor + kLow * leg;
@@ -89,10 +84,10 @@ std::vector<Contact> contacts_of(const Track& ball, std::span<const double> time
 }
 
 /// The lowest height of balls that stand on the floor; without slow ones that of all.
-double floor_height(const std::array<Track, 2>& balls, double leg) {
+double floor_height(const std::array<FootTrack, 2>& balls, double leg) {
   std::vector<double> slow;
   double lowest = std::numeric_limits<double>::infinity();
-  for (const Track& ball : balls)
+  for (const FootTrack& ball : balls)
     for (std::size_t k = 0; k < ball.heights.size(); ++k) {
       lowest = std::min(lowest, ball.heights[k]);
       if (ball.speeds[k] < kSlow * leg) slow.push_back(ball.heights[k]);
@@ -135,7 +130,7 @@ class Between {
   /// Time from contact c to the next.
   double gap(std::size_t c) const { return times_[contacts_[c + 1].first] - times_[contacts_[c].last]; }
 
-  static double weight(double after, double gap) { return 1 - smooth(after / std::min(kRamp, gap)); }
+  static double weight(double after, double gap) { return 1 - ease(after / std::min(kRamp, gap)); }
 
   const std::vector<Contact>& contacts_;
   std::span<const double> times_;
@@ -172,7 +167,7 @@ std::vector<double> spread(const std::vector<double>& needed, std::span<const do
   for (std::size_t k = 0; k < needed.size(); ++k) {
     if (needed[k] == 0) continue;
     const auto reaches = [&](std::size_t to) {
-      const double share = 1 - smooth(std::abs(times[to] - times[k]) / kRiseRamp);
+      const double share = 1 - ease(std::abs(times[to] - times[k]) / kRiseRamp);
       result[to] = std::max(result[to], needed[k] * share);
       return share > 0;
     };
@@ -189,7 +184,7 @@ Footsteps find_footsteps(const Skeleton& skeleton, std::span<const Posture> post
   Footsteps steps;
   steps.flat.assign(postures.size(), Flat{0, 0});
   steps.ankle_height = std::numeric_limits<double>::infinity();
-  std::array<Track, 2> balls, ankles;
+  std::array<FootTrack, 2> balls, ankles;
   for (const bool right : {false, true}) {
     const Joint foot = on_side(Joint::left_foot, right), toes = on_side(Joint::left_toes, right);
     if (!skeleton.has(foot)) continue;

@@ -69,10 +69,10 @@ double knee_in_the_air(double s) {
   return walking::knee.at(kStance + s * kSwing) - quintic(off, strike, kSwing * fine, s) + kLater * early_bump(s);
 }
 
-Vec3 forward_of(double yaw) {
+Vec3 ahead_of(double yaw) {
   return {std::sin(yaw), -std::cos(yaw), 0};
 }
-Vec3 left_of(double yaw) {
+Vec3 beside(double yaw) {
   return {std::cos(yaw), std::sin(yaw), 0};
 }
 
@@ -152,7 +152,7 @@ Vec3 Feet::rolling_ankle(const Plant& plant, double pitch) const {
             turned(-body_.toe_length, body_.ball_height - body_.toe_radius, toes) +
             turned(-body_.ball_forward, body_.ankle_height - body_.ball_height, pitch);
   }
-  return Vec3(plant.at.x(), plant.at.y(), 0) + ankle.x() * forward_of(plant.foot_yaw) + ankle.y() * Vec3::UnitZ();
+  return Vec3(plant.at.x(), plant.at.y(), 0) + ankle.x() * ahead_of(plant.foot_yaw) + ankle.y() * Vec3::UnitZ();
 }
 
 /// The heel of the leg behind rises until the knee is bent as it should be.
@@ -191,10 +191,10 @@ FootState Feet::swinging(int side, std::size_t number, int key) const {
     return [this, side, which](int at) {
       const FootState foot = standing(side, which, at);
       const Vec3 leg = foot.ankle - hip(side, at);
-      const double yaw = track_.yaw_at(at), forward = leg.dot(forward_of(yaw)), d = leg.norm();
+      const double yaw = track_.yaw_at(at), forward = leg.dot(ahead_of(yaw)), d = leg.norm();
       const double a = body_.thigh, b = body_.shin;
       const double bend = std::acos(std::clamp((d * d - a * a - b * b) / (2 * a * b), -1.0, 1.0)) / kDegree;
-      return Values(bend, std::atan2(forward, -leg.z()), leg.dot(left_of(yaw)), foot.pitch);
+      return Values(bend, std::atan2(forward, -leg.z()), leg.dot(beside(yaw)), foot.pitch);
     };
   };
   Jet<Values> strike = jet_of(values_of(number + 1), to.strike);
@@ -209,7 +209,7 @@ FootState Feet::swinging(int side, std::size_t number, int key) const {
   now[3] -= kClear * off.rate[3] * span * early_bump(s);
   const double d = reach(now[0]), down = std::sqrt(d * d - now[2] * now[2]), yaw = track_.yaw_at(key);
   FootState state;
-  state.ankle = hip(side, key) + down * std::sin(now[1]) * forward_of(yaw) + now[2] * left_of(yaw) -
+  state.ankle = hip(side, key) + down * std::sin(now[1]) * ahead_of(yaw) + now[2] * beside(yaw) -
                 down * std::cos(now[1]) * Vec3::UnitZ();
   state.yaw = from.yaw + (to.yaw - from.yaw) * smooth_ramp(s, 0, 1);
   state.pitch = now[3];

@@ -10,8 +10,6 @@
 
 namespace weft::character {
 
-inline constexpr double kDegree = std::numbers::pi / 180;  ///< [rad]
-
 /// What a walk needs to know of a body; a foot at rest has its sole flat on z = 0; lengths in metres.
 struct Physique {
   std::array<Vec3, kJointCount> joints;

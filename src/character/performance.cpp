@@ -5,21 +5,13 @@
 #include <vector>
 
 namespace weft::character {
-namespace {
-
-/// From 0 to 1 without a jerk at either end: zero first derivatives there.
-double smooth(double u) {
-  u = std::clamp(u, 0.0, 1.0);
-  return u * u * (3 - 2 * u);
-}
-
-}  // namespace
+namespace {}  // namespace
 
 double clip_time(const Timing& timing, double t) {
   const double going = t - timing.dressing;
   if (going <= 0) return timing.start;
   if (going >= timing.blend) return timing.start + timing.speed * (going - timing.blend / 2);
-  // The integral of smooth(): the speed rises from 0 to its whole.
+  // The integral of ease(): the speed rises from 0 to its whole.
   const double u = going / timing.blend;
   return timing.start + timing.speed * timing.blend * (u * u * u * (1 - u / 2));
 }
@@ -57,7 +49,7 @@ Pose Performance::at_clip_time(double t) const {
   if (round >= 1 && into < playing_.crossfade) {
     Pose last = pose_at(character_, clip_, period_ + into);
     displace(last, (round - 1) * travel_);
-    pose = blend(last, pose, smooth(into / playing_.crossfade));
+    pose = blend(last, pose, ease(into / playing_.crossfade));
   }
   return pose;
 }
@@ -68,7 +60,7 @@ Pose Performance::at(double t) const {
   Pose pose = at_clip_time(clip_time(timing, t));
   displace(pose, shift_);
   if (playing_.stance && t < timing.dressing + timing.blend)
-    pose = blend(*playing_.stance, pose, smooth((t - timing.dressing) / timing.blend));
+    pose = blend(*playing_.stance, pose, ease((t - timing.dressing) / timing.blend));
   return pose;
 }
 

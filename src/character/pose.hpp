@@ -1,12 +1,19 @@
 // Where every node of a character is at a moment.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
 #include "character/character.hpp"
 
 namespace weft::character {
+
+/// From 0 at u = 0 to 1 at u = 1, level at both ends and beyond them.
+inline double ease(double u) {
+  u = std::clamp(u, 0.0, 1.0);
+  return u * u * (3 - 2 * u);
+}
 
 /// Node to parent, in the parts that poses are blended by: the affine map x -> position + rotation · stretch · x.
 struct Placement {

@@ -21,8 +21,6 @@ namespace {
 /// face the same way if what the hips hang from is turned by less [radians].
 constexpr double kSameLength = 1e-3, kSameAngle = 1e-3;
 
-constexpr double kDegree = std::numbers::pi / 180;
-
 /// What people reach, and some more for limbs that others push and for noise [degrees]: knees and elbows bend by 150
 /// and overstretch by 10, thighs go up by 130, heads turn by 90 and lean by 45, the spine turns by 45 and bends by 80
 /// (American Academy of Orthopaedic Surgeons, Joint Motion, 1965).

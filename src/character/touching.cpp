@@ -18,11 +18,6 @@ constexpr double kHanging = 40 * std::numbers::pi / 180, kReaching = 70 * std::n
 // s. Hands of those who walk and run go 20 to 60 cm.
 constexpr double kStays = 0.09, kMoment = 0.1;
 
-double smooth(double u) {
-  u = std::clamp(u, 0.0, 1.0);
-  return u * u * (3 - 2 * u);
-}
-
 class Puller {
  public:
   Puller(const Places& theirs, const Places& ours, const std::array<bool, kJointCount>& both,
@@ -39,7 +34,7 @@ class Puller {
     weights_ = 0;
     const Vec3 upper = theirs_[elbow] - theirs_[shoulder], lower = theirs_[hand_] - theirs_[elbow];
     const double bend = std::atan2(upper.cross(lower).norm(), upper.dot(lower));
-    const double bent = smooth((bend - kHanging) / (kReaching - kHanging));
+    const double bent = ease((bend - kHanging) / (kReaching - kHanging));
     between(hand_, across(Joint::left_hand), 0.5, kHands, proportions_.arm);
     between(across(Joint::left_lower_arm), across(Joint::left_lower_arm), 0, kElbow, proportions_.arm);
     between(at(Joint::left_upper_leg), across(Joint::left_upper_leg), 0.5, kHips * bent, proportions_.trunk, rests);
@@ -52,7 +47,7 @@ class Puller {
     if (!both_[a] || !both_[b] || !(near > 0)) return;
     const auto place = [&](const Places& of) -> Vec3 { return (1 - share) * of[a] + share * of[b]; };
     const Vec3 way = theirs_[hand_] - place(theirs_);
-    const double weight = most * (1 - smooth(way.norm() / (near * proportions_.their_arm) - 1));
+    const double weight = most * (1 - ease(way.norm() / (near * proportions_.their_arm) - 1));
     sum_ += weight * (place(ours_) + ratio * way - ours_[hand_]);
     weights_ += weight;
   }
@@ -91,7 +86,7 @@ std::vector<std::array<double, 2>> find_rests(std::span<const Posture> postures,
       };
       for (std::size_t at = k; at > 0 && look(at - 1);) --at;
       for (std::size_t at = k; at + 1 < ways.size() && look(at + 1);) ++at;
-      rests[k][right] = 1 - smooth(furthest / (kStays * arm) - 1);
+      rests[k][right] = 1 - ease(furthest / (kStays * arm) - 1);
     }
   }
   return rests;

@@ -3,7 +3,9 @@
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
+#include <cstddef>
 #include <cstdint>
+#include <numbers>
 #include <span>
 #include <vector>
 
@@ -17,5 +19,12 @@ using Box3 = Eigen::AlignedBox3d;
 
 /// Index of a particle, a vertex or a face.
 using Index = std::int32_t;
+
+/// An index, never negative, as the place of an element.
+inline std::size_t at(Index i) {
+  return static_cast<std::size_t>(i);
+}
+
+inline constexpr double kDegree = std::numbers::pi / 180;  ///< [rad]
 
 }  // namespace weft

@@ -28,10 +28,6 @@ struct Slope {
   bool near_pin = false;  ///< whether pins change it
 };
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 class Slopes {
  public:
   Slopes(const mesh::Sheet& sheet, std::span<const char> pinned, std::span<const char> held)

@@ -22,10 +22,6 @@ constexpr double kPoint = 0.25;
 // Particles of one garment at most.
 constexpr double kMaxParticles = 1e6;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 class Sewing {
  public:
   Sewing(const Pattern& pattern, double spacing, const std::string& where, const Wearer* wearer)

@@ -20,7 +20,7 @@ using nlohmann::json;
 using scene::Findings;
 
 // Coordinates from here on are damage.
-constexpr double kMaxCoordinate = 1e5;
+constexpr double kFarthest = 1e5;
 constexpr double kDefaultUnits = 100;  // to the metre
 // Height of the origin of the forerunner's body, between pelvis and chest, above its floor [m].
 constexpr double kOldOrigin = 1.12;
@@ -30,7 +30,7 @@ constexpr double kChest = 0.998, kWaist = 0.843, kHip = 1.035, kHeight = 1.72;
 constexpr double kBelowFloor = -0.2;
 // Least height above the floor that they start at [m].
 constexpr double kClear = 0.02;
-constexpr int kPointsPerCurve = 8;
+constexpr int kPointsOfCurve = 8;
 
 /// One side of a panel; coordinates are those of the panel [m].
 struct SpecEdge {
@@ -127,10 +127,9 @@ class Reader {
     std::vector<double> list;
     if (value.is_array())
       for (const json& each : value)
-        if (each.is_number() && std::abs(each.get<double>()) < kMaxCoordinate) list.push_back(each.get<double>());
+        if (each.is_number() && std::abs(each.get<double>()) < kFarthest) list.push_back(each.get<double>());
     if (value.is_array() && list.size() == count && value.size() == count) return list;
-    mistake(key,
-            fmt::format("expected {} numbers below {:g}, got {}", count, kMaxCoordinate, value.dump().substr(0, 40)));
+    mistake(key, fmt::format("expected {} numbers below {:g}, got {}", count, kFarthest, value.dump().substr(0, 40)));
     return std::nullopt;
   }
 
@@ -174,7 +173,6 @@ class Reader {
         result.translation = unit_ * Vec3((*t)[0], (*t)[1], (*t)[2]);
     if (panel.contains("rotation"))
       if (const auto r = numbers(panel["rotation"], 3, path + ".rotation")) {
-        constexpr double kDegree = std::numbers::pi / 180;
         result.rotation =
             (Eigen::AngleAxisd(kDegree * (*r)[2], Vec3::UnitZ()) * Eigen::AngleAxisd(kDegree * (*r)[1], Vec3::UnitY()) *
              Eigen::AngleAxisd(kDegree * (*r)[0], Vec3::UnitX()))
@@ -281,7 +279,7 @@ class Reader {
       const ParsedPath path =
           edge.has_length() ? parse_path(path_of(alone, Eigen::Affine2d::Identity())) : ParsedPath{};
       for (std::size_t c = 0; c + 1 < path.outline.size(); ++c)  // without the way back
-        for (int k = 0; k < kPointsPerCurve; ++k) points.push_back(path.outline[c].at(double(k) / kPointsPerCurve));
+        for (int k = 0; k < kPointsOfCurve; ++k) points.push_back(path.outline[c].at(double(k) / kPointsOfCurve));
       if (points.empty()) points.push_back(edge.start);
       around.insert(around.end(), points.begin(), points.end());
     }
@@ -387,7 +385,6 @@ class Reader {
     pattern.measures.waist = kWaist;
     pattern.measures.hip = kHip;
     pattern.measures.height = kHeight;
-    constexpr double kDegree = std::numbers::pi / 180;
     double lowest = std::numeric_limits<double>::infinity();
     for (const SpecPanel& panel : panels_)
       for (const auto& points : panel.points)

@@ -17,10 +17,6 @@ constexpr double kAnchor = 1e-4;
 // Rounds in which vertices move between their neighbours, after the depth is found.
 constexpr int kSmoothingRounds = 10;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 double distance(const Vec2& p, const Vec2& a, const Vec2& b) {
   const Vec2 side = b - a;
   const double share = std::clamp((p - a).dot(side) / std::max(side.squaredNorm(), 1e-30), 0.0, 1.0);

@@ -16,10 +16,6 @@ constexpr double kMargin = 0.62;
 // against any angle, also summed up over the rows.
 constexpr double kRowShift = 1e-6;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 double cross(const Vec2& a, const Vec2& b) {
   return a.x() * b.y() - a.y() * b.x();
 }

@@ -35,10 +35,6 @@ struct UvEdge {
   double du, dv, length;  // of the UVs, and in the mesh [m]
 };
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 bool has_uv(const UvCorners& c) {
   return c[0].allFinite() && c[1].allFinite() && c[2].allFinite();
 }

@@ -29,9 +29,6 @@ constexpr int kSeamPoints = 16, kSeamRounds = 6;
 // leaves the arm's axis.
 constexpr double kBendOver = 0.1;
 
-std::size_t at(Index i) {
-  return static_cast<std::size_t>(i);
-}
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
 }

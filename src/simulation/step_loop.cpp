@@ -44,7 +44,7 @@ constexpr double kRecovery = 1.1;
 constexpr int kLookAfter = 6;
 
 // Particles that a thread looks for the air of at once: some 100 µs.
-constexpr std::size_t kParticlesAtOnce = 256;
+constexpr std::size_t kBlownAtOnce = 256;
 
 // Times that a step is done with pins let go that the time before had to move; then they are moved.
 constexpr int kMostTries = 4;
@@ -220,7 +220,7 @@ void StepLoop::blow(double t, double h) {
   const double later = scene_.time.integrator == scene::Integrator::implicit_midpoint ? 0.5 * h : h;
   const Moment& now = progress_.now;
   std::vector<solver::Quad<double>> air(now.v.size());
-  parallel_for(air.size(), kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(air.size(), kBlownAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       air[i] = solver::quad_of<double>(scene_.physics.wind + gusts_->at(now.x[i] + later * now.v[i], t + later));
   });

@@ -11,10 +11,6 @@ PackedBlock transposed(const PackedBlock& m) {
           m.last};
 }
 
-std::size_t at(Index index) {
-  return static_cast<std::size_t>(index);
-}
-
 }  // namespace
 
 Assembly::Assembly(const BlockMatrix& matrix) {

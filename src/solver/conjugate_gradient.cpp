@@ -16,8 +16,6 @@ constexpr double kSingleStiffness = 1e7;
 // Share of the solution that it leaves without being told apart from roundings: in the energy norm 6e-8 times the root
 // of that stiffness, and a factor of five.
 constexpr double kSingleGoal = 1e-3;
-// Rows that a thread looks at at once.
-constexpr std::size_t kRowsAtOnce = 8192;
 
 // Whether no particle is held more stiffly than that.
 bool suits_single(const LinearSystem& system) {

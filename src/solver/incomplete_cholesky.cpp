@@ -12,21 +12,17 @@ namespace {
 constexpr double kFirstShift = 1e-3;
 constexpr double kLargestShift = 10;
 
-std::size_t index(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 }  // namespace
 
 // The lower triangle of S (A + diagonal blocks of the terms) S + (I − S).
 void IncompleteCholesky::read(const LinearSystem& system) {
   const Index rows = system.matrix.rows();
-  std::vector<const Mat3*> free(index(rows), nullptr);
-  for (const ParticleConstraint& c : system.constraints) free[index(c.particle)] = &c.free;
+  std::vector<const Mat3*> free(at(rows), nullptr);
+  for (const ParticleConstraint& c : system.constraints) free[at(c.particle)] = &c.free;
   // Of both triangles' blocks the lower one has half, and the diagonal.
-  const std::size_t blocks = (system.matrix.blocks() + index(rows)) / 2;
+  const std::size_t blocks = (system.matrix.blocks() + at(rows)) / 2;
   row_start_.assign(1, 0);
-  row_start_.reserve(index(rows) + 1);
+  row_start_.reserve(at(rows) + 1);
   columns_.clear();
   columns_.reserve(blocks);
   factor_.clear();
@@ -37,14 +33,14 @@ void IncompleteCholesky::read(const LinearSystem& system) {
     factor_.push_back(block);
     if (j == i) row_start_.push_back(columns_.size());
   });
-  const auto diagonal = [&](Index i) -> Mat3& { return factor_[row_start_[index(i) + 1] - 1]; };
+  const auto diagonal = [&](Index i) -> Mat3& { return factor_[row_start_[at(i) + 1] - 1]; };
   for (const DiagonalTerm& term : system.diagonal_terms) diagonal(term.particle) += term.stiffness;
   for (const StencilTerm& term : system.terms)
     for (int k = 0; k < 4; ++k) diagonal(term.particles[k]) += term.weights[k] * term.weights[k] * term.stiffness;
   if (system.constraints.empty()) return;
   for (Index i = 0; i < rows; ++i)
-    for (std::size_t s = row_start_[index(i)]; s < row_start_[index(i) + 1]; ++s) {
-      const Mat3 *free_i = free[index(i)], *free_j = free[index(columns_[s])];
+    for (std::size_t s = row_start_[at(i)]; s < row_start_[at(i) + 1]; ++s) {
+      const Mat3 *free_i = free[at(i)], *free_j = free[at(columns_[s])];
       if (free_i != nullptr) factor_[s] = (*free_i * factor_[s]).eval();
       if (free_j != nullptr) factor_[s] = (factor_[s] * *free_j).eval();
       if (columns_[s] == i && free_i != nullptr) factor_[s] += Mat3::Identity() - *free_i;
@@ -65,7 +61,7 @@ bool IncompleteCholesky::try_factorise(double shift) {
   for (std::size_t i = 0; i + 1 < row_start_.size(); ++i) {
     const std::size_t begin = row_start_[i], last = row_start_[i + 1] - 1;
     for (std::size_t s = begin; s < last; ++s) {
-      const std::size_t j = index(columns_[s]), end_of_j = row_start_[j + 1] - 1;
+      const std::size_t j = at(columns_[s]), end_of_j = row_start_[j + 1] - 1;
       Mat3 sum = factor_[s];
       for (std::size_t p = begin, q = row_start_[j]; p < s && q < end_of_j;) {
         if (columns_[p] == columns_[q]) sum.noalias() -= factor_[p] * factor_[q].transpose();
@@ -88,18 +84,18 @@ double IncompleteCholesky::add(double factor, std::span<const Quad<double>> r, s
                                std::span<const Part> parts) {
   double sum = 0;
   for (const Part& part : parts) {
-    const std::size_t first = index(part.begin), end = index(part.end);
+    const std::size_t first = at(part.begin), end = at(part.end);
     for (std::size_t i = first; i < end; ++i) {
       Vec3 left = vec3_of(r[i]);
       const std::size_t last = row_start_[i + 1] - 1;
-      for (std::size_t s = row_start_[i]; s < last; ++s) left.noalias() -= factor_[s] * y_[index(columns_[s])];
+      for (std::size_t s = row_start_[i]; s < last; ++s) left.noalias() -= factor_[s] * y_[at(columns_[s])];
       y_[i].noalias() = factor_[last] * left;
     }
     for (std::size_t i = end; i-- > first;) {
       const std::size_t last = row_start_[i + 1] - 1;
       const Vec3 of_row = factor_[last].transpose() * y_[i];
       for (std::size_t s = row_start_[i]; s < last; ++s)
-        y_[index(columns_[s])].noalias() -= factor_[s].transpose() * of_row;
+        y_[at(columns_[s])].noalias() -= factor_[s].transpose() * of_row;
       z[i] += factor * quad_of<double>(of_row);
       sum += factor * vec3_of(r[i]).dot(of_row);
     }

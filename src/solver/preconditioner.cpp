@@ -11,8 +11,8 @@
 namespace weft::solver {
 namespace {
 
-// Rows that a thread takes at once: those whose blocks are inverted; those that are averaged.
-constexpr std::size_t kBlocksAtOnce = 512, kRowsAtOnce = 8192;
+// Rows whose blocks a thread inverts at once.
+constexpr std::size_t kBlocksAtOnce = 512;
 // Levels of groups at most, patches included.
 constexpr std::size_t kMaxLevels = 16;
 // Where constraints leave a group no motion its block has no inverse, and its residual is zero: a shift by this share
@@ -35,10 +35,6 @@ constexpr double kTermsOnGroups = 2;
 // threads of 1e5 N/m it takes 0.8 times as many, with its own of 4e3 half.
 constexpr double kStiff = 1e3;
 
-std::size_t index(Index i) {
-  return static_cast<std::size_t>(i);
-}
-
 Mat3 shift_of(const Mat3& block) {
   const double trace = block.trace();
   return (trace > 0 ? kSingularShift * trace : 1) * Mat3::Identity();
@@ -49,10 +45,10 @@ Mat3 shift_of(const Mat3& block) {
 // S_i A_ij S_j
 template <class Real>
 Mat3 Preconditioner<Real>::filtered(Index i, const Mat3& block, Index j) const {
-  const Index ci = constraint_of_[index(i)], cj = constraint_of_[index(j)];
+  const Index ci = constraint_of_[at(i)], cj = constraint_of_[at(j)];
   Mat3 result = block;
-  if (ci >= 0) result = system_->constraints[index(ci)].free * result;
-  if (cj >= 0) result = result * system_->constraints[index(cj)].free;
+  if (ci >= 0) result = system_->constraints[at(ci)].free * result;
+  if (cj >= 0) result = result * system_->constraints[at(cj)].free;
   return result;
 }
 
@@ -69,13 +65,13 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, Sums sums) {
   if (!same_levels) prepare_levels();
   if (!same) {
     constraints_ = system.constraints;
-    constraint_of_.assign(index(system.matrix.rows()), -1);
+    constraint_of_.assign(at(system.matrix.rows()), -1);
     filters_.assign(parts_.size(), {});
     for (std::size_t c = 0; c < constraints_.size(); ++c) {
       const Index particle = constraints_[c].particle;
-      constraint_of_[index(particle)] = static_cast<Index>(c);
+      constraint_of_[at(particle)] = static_cast<Index>(c);
       const auto part = std::ranges::find_if(parts_, [&](const Part& rows) { return particle < rows.end; });
-      filters_[index(static_cast<Index>(part - parts_.begin()))].push_back(
+      filters_[at(static_cast<Index>(part - parts_.begin()))].push_back(
           {particle, QuadBlock<Real>(constraints_[c].free)});
     }
   }
@@ -116,15 +112,14 @@ bool Preconditioner<Real>::is_stiff() const {
   if (system_->metric.empty()) return false;
   return std::ranges::any_of(parts_of(*system_), [&](const Part& part) {
     double metric = 0;
-    for (Index i = part.begin; i < part.end; ++i) metric += system_->metric[index(i)];
+    for (Index i = part.begin; i < part.end; ++i) metric += system_->metric[at(i)];
     const auto stiff = [&](std::size_t i) {
-      const double* block =
-          system_->matrix.values().data() + 9 * index(system_->matrix.diagonal(static_cast<Index>(i)));
+      const double* block = system_->matrix.values().data() + 9 * at(system_->matrix.diagonal(static_cast<Index>(i)));
       return block[0] + block[4] + block[8] > kStiff * metric;
     };
-    return parallel_sum(index(part.end - part.begin), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    return parallel_sum(at(part.end - part.begin), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
              int any = 0;
-             for (std::size_t k = begin; k < end; ++k) any |= stiff(index(part.begin) + k) ? 1 : 0;
+             for (std::size_t k = begin; k < end; ++k) any |= stiff(at(part.begin) + k) ? 1 : 0;
              return any;
            }) > 0;
   });
@@ -133,7 +128,7 @@ bool Preconditioner<Real>::is_stiff() const {
 // Who is in which group, and room for it all.
 template <class Real>
 void Preconditioner<Real>::prepare_levels() {
-  const std::size_t rows = index(system_->matrix.rows());
+  const std::size_t rows = at(system_->matrix.rows());
   inverse_.resize(rows);
   touched_.assign(rows, 0);
   levels_.resize(system_->groupings.size());
@@ -143,27 +138,27 @@ void Preconditioner<Real>::prepare_levels() {
     level.group_of = grouping.of;
     if (l > 0) {
       level.group_of = levels_[l - 1].group_of;
-      for (Index& group : level.group_of) group = grouping.of[index(group)];
+      for (Index& group : level.group_of) group = grouping.of[at(group)];
     }
     level.parent = l + 1 < levels_.size() ? system_->groupings[l + 1].of : std::vector<Index>();
-    level.of_matrix.assign(index(grouping.count), Mat3::Zero());
-    level.touched.assign(index(grouping.count), 0);
-    level.inverse.resize(index(grouping.count));
-    for (auto* vectors : {&level.residual, &level.correction}) vectors->assign(index(grouping.count), Quad<Real>{});
+    level.of_matrix.assign(at(grouping.count), Mat3::Zero());
+    level.touched.assign(at(grouping.count), 0);
+    level.inverse.resize(at(grouping.count));
+    for (auto* vectors : {&level.residual, &level.correction}) vectors->assign(at(grouping.count), Quad<Real>{});
     level.of_part.clear();
     for (const Part& part : parts_) {
       const auto [least, most] =
           std::minmax_element(level.group_of.begin() + part.begin, level.group_of.begin() + part.end);
-      level.of_part.push_back(part.begin == part.end ? RowRange{} : RowRange{index(*least), index(*most) + 1});
+      level.of_part.push_back(part.begin == part.end ? RowRange{} : RowRange{at(*least), at(*most) + 1});
     }
   }
   selected_.clear();
   if (levels_.empty()) return;
   const Index size = 3 * system_->groupings.back().count;
   patches_of_matrix_.setZero(size, size);
-  members_of_patch_.assign(index(system_->groupings.back().count), {});
+  members_of_patch_.assign(at(system_->groupings.back().count), {});
   for (std::size_t i = 0; i < rows; ++i)
-    members_of_patch_[index(levels_.back().group_of[i])].push_back(static_cast<Index>(i));
+    members_of_patch_[at(levels_.back().group_of[i])].push_back(static_cast<Index>(i));
   find_weights();
   find_shared_levels();
 }
@@ -181,7 +176,7 @@ void Preconditioner<Real>::find_weights() {
     const Grouping& grouping = system_->groupings[l];
     Weights<Real> weights = Weights<Real>::interpolating(grouping, smoothing, neighbours);
     of_patches_ = l == 0 ? weights : of_patches_.times(weights);
-    levels_[l].of_members = weights.transposed(index(grouping.count));
+    levels_[l].of_members = weights.transposed(at(grouping.count));
     levels_[l].of_groups = std::move(weights);
   }
 }
@@ -194,7 +189,7 @@ void Preconditioner<Real>::find_shared_levels() {
       for (Index s = pattern.start[i]; s < pattern.start[i + 1]; ++s) {
         // Groups are nested: whoever is in one with i on some level is so on all that follow.
         std::size_t l = 0;
-        while (l < levels_.size() && levels_[l].group_of[i] != levels_[l].group_of[index(pattern.columns[s])]) ++l;
+        while (l < levels_.size() && levels_[l].group_of[i] != levels_[l].group_of[at(pattern.columns[s])]) ++l;
         shared.push_back(static_cast<std::uint8_t>(l));
       }
   };
@@ -207,10 +202,10 @@ template <class Real>
 void Preconditioner<Real>::mark_touched() {
   touched_before_ = touched_;
   std::ranges::fill(touched_, 0);
-  for (const DiagonalTerm& term : system_->diagonal_terms) touched_[index(term.particle)] = 1;
+  for (const DiagonalTerm& term : system_->diagonal_terms) touched_[at(term.particle)] = 1;
   for (const StencilTerm& term : system_->terms)
     for (int a = 0; a < 4; ++a)
-      if (term.weights[a] != 0) touched_[index(term.particles[a])] = 1;
+      if (term.weights[a] != 0) touched_[at(term.particles[a])] = 1;
 }
 
 template <class Real>
@@ -218,7 +213,7 @@ void Preconditioner<Real>::invert_particles() {
   std::vector<Index> anew;
   std::vector<Index> place(inverse_.size(), -1);
   for (std::size_t p = 0; p < parts_.size(); ++p)
-    for (auto i = index(parts_[p].begin); i < index(parts_[p].end); ++i)
+    for (auto i = at(parts_[p].begin); i < at(parts_[p].end); ++i)
       if (changed_[p] || touched_[i] || touched_before_[i]) {
         place[i] = static_cast<Index>(anew.size());
         anew.push_back(static_cast<Index>(i));
@@ -227,23 +222,23 @@ void Preconditioner<Real>::invert_particles() {
   parallel_for(anew.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) blocks[k] = system_->matrix.block(system_->matrix.diagonal(anew[k]));
   });
-  for (const DiagonalTerm& term : system_->diagonal_terms) blocks[index(place[index(term.particle)])] += term.stiffness;
+  for (const DiagonalTerm& term : system_->diagonal_terms) blocks[at(place[at(term.particle)])] += term.stiffness;
   for (const StencilTerm& term : system_->terms)
     for (int a = 0; a < 4; ++a)
       if (term.weights[a] != 0)
-        blocks[index(place[index(term.particles[a])])] += term.weights[a] * term.weights[a] * term.stiffness;
+        blocks[at(place[at(term.particles[a])])] += term.weights[a] * term.weights[a] * term.stiffness;
   parallel_for(anew.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
-      const Index c = constraint_of_[index(anew[k])];
+      const Index c = constraint_of_[at(anew[k])];
       Mat3 inverse;
       if (c < 0) {
         inverse = blocks[k].inverse();
       } else {
-        const Mat3& free = constraints_[index(c)].free;
+        const Mat3& free = constraints_[at(c)].free;
         inverse = (free * blocks[k] * free + (Mat3::Identity() - free)).inverse();
         inverse = (free * inverse * free).eval();
       }
-      inverse_[index(anew[k])] = QuadBlock<Real>(inverse);
+      inverse_[at(anew[k])] = QuadBlock<Real>(inverse);
     }
   });
 }
@@ -264,7 +259,7 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
   const double share = smooth_ ? std::pow(kSpread, static_cast<double>(depth)) : 1;
   const auto add_to_patches = [&](Index i, Index j, const auto& block) {
     // The factorisation reads the lower triangle only.
-    const Index patch_i = patch_of[index(i)], patch_j = patch_of[index(j)];
+    const Index patch_i = patch_of[at(i)], patch_j = patch_of[at(j)];
     if (patch_i > patch_j) patches_of_matrix_.block<3, 3>(3 * patch_i, 3 * patch_j) += share * block;
   };
   // Groups are nested, so that what one patch sums up no other does.
@@ -276,7 +271,7 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
     if (!system_->metric.empty()) own[0] -= filtered(i, system_->metric[i] * Mat3::Identity(), i);
     for (Index s = full.start[i]; s < full.start[i + 1]; ++s) {
       const Index j = full.columns[s];
-      const Eigen::Map<const Mat3> block(matrix.values().data() + 9 * index(s));
+      const Eigen::Map<const Mat3> block(matrix.values().data() + 9 * at(s));
       const std::size_t level = shared_full_[s];
       if (is_free(i) && is_free(j))
         level < depth ? void(own[level] += block) : add_to_patches(i, j, block);
@@ -295,17 +290,17 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
       level < depth ? void(own[level] += block) : add_to_patches(i, j, block);
     }
     for (std::size_t l = 0; l < depth; ++l) {
-      Mat3& of_group = levels_[l].of_matrix[index(levels_[l].group_of[i])];
+      Mat3& of_group = levels_[l].of_matrix[at(levels_[l].group_of[i])];
       of_group += own[l];
       of_group.diagonal().array() += own_scalars[l];
     }
   };
-  parallel_for(index(last - first) / 3, 1, [&](std::size_t patch, std::size_t) {
+  parallel_for(at(last - first) / 3, 1, [&](std::size_t patch, std::size_t) {
     for (Index i : members_of_patch_[levels_.back().of_part[part].begin + patch]) sum_row(i);
   });
   for (std::size_t l = 1; l < depth; ++l)
     for (std::size_t g = levels_[l - 1].of_part[part].begin; g < levels_[l - 1].of_part[part].end; ++g)
-      levels_[l].of_matrix[index(levels_[l - 1].parent[g])] += levels_[l - 1].of_matrix[g];
+      levels_[l].of_matrix[at(levels_[l - 1].parent[g])] += levels_[l - 1].of_matrix[g];
   scale_sums(part);
 }
 
@@ -314,11 +309,11 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
 template <class Real>
 void Preconditioner<Real>::scale_sums(std::size_t part) {
   std::vector<Mat3> lasting;  // of the members, from the part's first on, then of groups
-  std::size_t first = index(parts_[part].begin);
+  std::size_t first = at(parts_[part].begin);
   for (Index i = parts_[part].begin; i < parts_[part].end; ++i) {
     lasting.push_back(system_->metric.empty() ? Mat3(Mat3::Zero()) : Mat3(system_->metric[i] * Mat3::Identity()));
     if (is_free(i)) continue;
-    const Mat3 free = constraints_[index(constraint_of_[i])].free, held = Mat3::Identity() - free;
+    const Mat3 free = constraints_[at(constraint_of_[i])].free, held = Mat3::Identity() - free;
     const Mat3 block = system_->matrix.block(system_->matrix.diagonal(i));
     lasting.back() = free * lasting.back() * free + held * block * held;
   }
@@ -329,7 +324,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
     const RowRange groups = level.of_part[part];
     std::vector<Mat3> sums(groups.end - groups.begin, Mat3::Zero());
     for (std::size_t m = 0; m < lasting.size(); ++m)
-      sums[index(system_->groupings[l].of[first + m]) - groups.begin] += lasting[m];
+      sums[at(system_->groupings[l].of[first + m]) - groups.begin] += lasting[m];
     for (std::size_t g = groups.begin; g < groups.end; ++g)
       level.of_matrix[g] = share * level.of_matrix[g] + sums[g - groups.begin];
     lasting = std::move(sums);
@@ -347,7 +342,7 @@ template <class Real>
 std::vector<Mat3> Preconditioner<Real>::lumped_terms() const {
   std::vector<Mat3> lumped(inverse_.size(), Mat3::Zero());
   const auto add = [&](Index i, double weight, const Mat3& stiffness) {
-    lumped[index(i)] += is_free(i) ? Mat3(weight * stiffness) : filtered(i, weight * stiffness, i);
+    lumped[at(i)] += is_free(i) ? Mat3(weight * stiffness) : filtered(i, weight * stiffness, i);
   };
   for (const DiagonalTerm& term : system_->diagonal_terms) add(term.particle, 1, term.stiffness);
   for (const StencilTerm& term : system_->terms) {
@@ -374,7 +369,7 @@ void Preconditioner<Real>::invert_groups() {
     for (std::size_t m = 0; m < touched.size(); ++m) {
       if (!touched[m]) continue;
       for (Index s = level.of_groups.start[m]; s < level.of_groups.start[m + 1]; ++s) {
-        const std::size_t group = index(level.of_groups.columns[s]);
+        const std::size_t group = at(level.of_groups.columns[s]);
         level.touched[group] = anew[group] = 1;
         of_groups[group] += static_cast<double>(level.of_groups.values[s]) * of_members[m];
       }

@@ -9,12 +9,6 @@
 namespace weft::solver {
 namespace {
 
-// Rows per chunk of a sum: whatever threads there are, sums are made of these.
-constexpr std::size_t kChunk = 4096;
-// Rows that a thread does at once, some 20 µs: with half as many two threads took 15 % more CPU time in all over eight
-// cloths of 961 particles.
-constexpr std::size_t kRowsAtOnce = 8192;
-
 // To make the factor costs as much as some 35 iterations without it, and an iteration with it as much as 2.2 to 2.6.
 // What it gains, iterations by 1.4 (crumpled cloth of 6·10⁴ particles) to over 100 (taut threads of 1e6 N/m), shows
 // only after long: threads seem to converge at first. So a goal that is this share of the solution, and nothing else,
@@ -239,7 +233,7 @@ template <class Real>
 End Recurrence<Real>::solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                             std::span<const Vec3> start, std::span<const std::size_t> parts, Progress& progress) {
   selected_.assign(parts.begin(), parts.end());
-  rows_ = RowChunks(ranges_of(parts_, selected_), kChunk, kRowsAtOnce);
+  rows_ = RowChunks(ranges_of(parts_, selected_), kRowsOfChunk, kRowsAtOnce);
   begin(b, x, start, progress);
   const End end = iterate(goal, max_iterations, progress);
   if (end == End::needs_double && progress.iterations == 0) return end;  // that begins anew

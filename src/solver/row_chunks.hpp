@@ -11,6 +11,12 @@
 
 namespace weft::solver {
 
+/// Rows per chunk of a sum: whatever threads there are, sums are made of these.
+inline constexpr std::size_t kRowsOfChunk = 4096;
+/// Rows that a thread does at once, some 20 µs: with half as many two threads took 15 % more CPU time in all over eight
+/// cloths of 961 particles.
+inline constexpr std::size_t kRowsAtOnce = 8192;
+
 struct RowRange {
   std::size_t begin = 0, end = 0;
 };

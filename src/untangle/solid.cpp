@@ -10,7 +10,7 @@ namespace weft::untangle {
 namespace {
 
 // Above a face by this part of the body's size is what that face has outside: less than any detail, more than rounding.
-constexpr double kAbove = 1e-6;
+constexpr double kRaised = 1e-6;
 // Weight of a corner up to which the nearest point of a face is on the opposite edge.
 constexpr double kOnCorner = 1e-9;
 // Rays look this way: nearly along an axis, so that boxes around them are thin, and along no edge that a modeller
@@ -29,7 +29,7 @@ Solid::Solid(const collision::BroadPhase& surfaces, std::size_t number, Kind kin
     place_ = x[surface.triangles.front()[0]];
     return;
   }
-  const double above = kAbove * box_.diagonal().norm();
+  const double above = kRaised * box_.diagonal().norm();
   for (const collision::Triangle& t : surface.triangles)
     buried_.push_back(inside((x[t[0]] + x[t[1]] + x[t[2]]) / 3 + above * collision::face_normal(t, x)));
 }

@@ -12,7 +12,7 @@ namespace {
 
 /// Distances that differ by less than this part count as equal when duplicates are dropped: far above rounding, far
 /// below any difference that matters.
-constexpr double kTie = 1e-9;
+constexpr double kSameDistance = 1e-9;
 
 // What a thread looks at at once: pairs of triangles, a multiple of eight; pairs of features; triangles and vertices.
 constexpr std::size_t kPairsAtOnce = 4096, kFeaturesAtOnce = 1024, kTrianglesAtOnce = 2048;
@@ -196,7 +196,8 @@ class ProximityFinder::Search {
       const Triangle& around = features_.triangle(other);
       const bool contains = support[1] < 0 || has_vertex(around, support[1]);
       if (other == face || !contains || has_vertex(around, vertex)) continue;
-      if (other < face || closest_to_face(vertex, around).distance_sq < (1 - kTie) * points.distance_sq) return true;
+      if (other < face || closest_to_face(vertex, around).distance_sq < (1 - kSameDistance) * points.distance_sq)
+        return true;
     }
     return false;
   }

@@ -18,7 +18,7 @@ constexpr int kPushRounds = 24;
 constexpr int kHalfRounds = 36;
 constexpr int kRounds = 60;
 // Vertices that a thread looks at at once.
-constexpr std::size_t kVerticesAtOnce = 8192;
+constexpr std::size_t kVerticesMovedAtOnce = 8192;
 
 }  // namespace
 
@@ -46,7 +46,7 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
     looked_t0_.assign(x_t0.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
     looked_t1_ = looked_t0_;
   }
-  parallel_for(x_t0.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(x_t0.size(), kVerticesMovedAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const double most_sq = std::max((x_t0[v] - reference_[v]).squaredNorm(), (x_t1[v] - reference_[v]).squaredNorm());
       moved_[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>(most_sq));

@@ -8,7 +8,7 @@
 namespace weft::render {
 namespace {
 
-constexpr const char* kLibrary = "libEGL.so.1";
+constexpr const char* kEgl = "libEGL.so.1";
 
 // The handful of names of EGL 1.5 used here, so that building needs no EGL headers. Values: Khronos registry, egl.xml.
 using EglHandle = void*;
@@ -33,7 +33,7 @@ class EglContext : public Context {
     context_ = create_context_(display_, config, nullptr, attributes.data());
     check(context_, "eglCreateContext of OpenGL 4.5 core");
     make_current();
-    load_functions(get_proc_, std::string("EGL surfaceless (") + kLibrary + ")");
+    load_functions(get_proc_, std::string("EGL surfaceless (") + kEgl + ")");
   }
 
   // The display is shared by all contexts of the process and stays initialised.
@@ -49,14 +49,14 @@ class EglContext : public Context {
 
  private:
   void check(bool good, const char* what) const {
-    if (!good) throw Error(ExitCode::internal, "{}: {} failed with EGL error {:#x}", kLibrary, what, get_error_());
+    if (!good) throw Error(ExitCode::internal, "{}: {} failed with EGL error {:#x}", kEgl, what, get_error_());
   }
   bool check(EglHandle handle, const char* what) const {
     check(handle != nullptr, what);
     return true;
   }
 
-  SharedLibrary library_{kLibrary};
+  SharedLibrary library_{kEgl};
   using GetPlatformDisplay = EglHandle (*)(EglEnum, void*, const std::intptr_t*);
   using Initialize = EglBoolean (*)(EglHandle, EglInt*, EglInt*);
   using BindApi = EglBoolean (*)(EglEnum);

@@ -12,7 +12,7 @@
 namespace weft::render {
 namespace {
 
-constexpr const char* kLibrary = "libOSMesa.so.8";
+constexpr const char* kOsMesa = "libOSMesa.so.8";
 
 class OsmesaContext : public Context {
  public:
@@ -29,9 +29,9 @@ class OsmesaContext : public Context {
                               5,
                               0};
     context_ = create_(attributes, nullptr);
-    if (!context_) throw Error(ExitCode::internal, "{}: makes no OpenGL 4.5 core context", kLibrary);
+    if (!context_) throw Error(ExitCode::internal, "{}: makes no OpenGL 4.5 core context", kOsMesa);
     make_current();
-    load_functions(get_proc_, std::string("OSMesa (") + kLibrary + ")");
+    load_functions(get_proc_, std::string("OSMesa (") + kOsMesa + ")");
   }
 
   ~OsmesaContext() override { destroy_(context_); }
@@ -40,7 +40,7 @@ class OsmesaContext : public Context {
 
   void make_current() override {
     if (!make_current_(context_, pixels_.data(), GL_UNSIGNED_BYTE, kSide, kSide)) {
-      throw Error(ExitCode::internal, "{}: OSMesaMakeCurrent failed", kLibrary);
+      throw Error(ExitCode::internal, "{}: OSMesaMakeCurrent failed", kOsMesa);
     }
   }
 
@@ -51,7 +51,7 @@ class OsmesaContext : public Context {
   static constexpr int kSide = 4;
   std::array<std::uint8_t, kSide * kSide * 4> pixels_{};
 
-  SharedLibrary library_{kLibrary};
+  SharedLibrary library_{kOsMesa};
   decltype(&OSMesaCreateContextAttribs) create_ =
       library_.function<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
   decltype(&OSMesaDestroyContext) destroy_ = library_.function<decltype(&OSMesaDestroyContext)>("OSMesaDestroyContext");
