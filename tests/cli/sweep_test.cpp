@@ -1,6 +1,8 @@
 // weft sweep: which runs there are, and what becomes of them.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/file.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -167,6 +169,27 @@ TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
   EXPECT_EQ(sweep({"--set", kRadius, "--set", "time.step=0.002"}).exit_code, 0);
   expect_well({"run", "s.toml", "-o", "one.mp4", "--set", "time.step=0.002"});
   EXPECT_EQ(decoded("w/radius=0.1/s.mp4"), decoded("one.mp4"));
+}
+
+/// True once no process writes this cache; waits for it for five seconds.
+bool is_left(const fs::path& cache) {
+  const int lock = ::open((cache / "lock").c_str(), O_RDONLY);
+  bool left = false;
+  for (int i = 0; i < 250 && !left; ++i) {
+    left = ::flock(lock, LOCK_EX | LOCK_NB) == 0;
+    if (!left) usleep(20'000);
+  }
+  ::close(lock);
+  return left;
+}
+
+TEST_F(Sweeps, ThatAreKilledTakeTheirRunsWithThem) {
+  // Half a minute, were it not for the signal.
+  Subprocess process(with_sweep({"--set", "time.step=0.0001,0.01"}), folder_);
+  const fs::path cache = folder_ / "w/step=0.0001/.s.weft-cache";
+  for (int i = 0; i < 3000 && !fs::exists(cache / "frame_00000.weft"); ++i) usleep(20'000);
+  process.send(SIGKILL);
+  EXPECT_TRUE(is_left(cache)) << "the run goes on";
 }
 
 }  // namespace
