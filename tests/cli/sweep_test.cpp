@@ -144,7 +144,7 @@ TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {
   EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
   EXPECT_NE(outcome.err.find("exit code 2: weft: --camera: expected w, got v"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("weft: 1 of 2 runs failed:\n"), std::string::npos) << outcome.err;
-  EXPECT_NE(table().find(",2,,0,"), std::string::npos) << table();
+  EXPECT_NE(table().find(",2,,0,,,,,,\"camera="), std::string::npos) << "figures of no frame: " << table();
   EXPECT_TRUE(fs::exists(folder_ / "w/sheet.png"));
 }
 
@@ -156,6 +156,14 @@ TEST_F(Sweeps, MistakesOfAnyRunEndThemBeforeTheFirst) {
   EXPECT_FALSE(fs::exists(folder_ / "w"));
   EXPECT_EQ(sweep({}).exit_code, 2);
   EXPECT_EQ(run_weft({"sweep", "s.toml", "-o", ".", "--set", kRadius}, folder_).exit_code, 2) << "holds the scene";
+}
+
+TEST_F(Sweeps, OfWhichNoneIsWellHaveAPageThatSaysWhyAndNoSheet) {
+  const Outcome outcome = sweep({"--set", "cloth.cloth.position=[0,0,0],[0,0,0.01]"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.err.find("w: table.md, table.csv, page/index.html\n"), std::string::npos) << outcome.err;
+  EXPECT_NE(support::read_bytes(folder_ / "w/page/index.html").find("expected surfaces that are apart"),
+            std::string::npos);
 }
 
 TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
