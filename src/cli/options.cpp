@@ -34,7 +34,8 @@ void check_command_name(const Parser& parser, const std::vector<std::string>& ar
     throw Error(ExitCode::usage, "unknown option {} before the command{}; see weft --help", first,
                 did_you_mean(first, options));
   }
-  if (std::find(known.begin(), known.end(), first) != known.end()) return;
+  const auto is_it = [&](const CLI::App* command) { return command->check_name(first); };  // also by another name
+  if (std::ranges::any_of(parser.app.get_subcommands(nullptr), is_it)) return;
   if (std::filesystem::path(first).extension() == ".toml") {
     throw Error(ExitCode::usage, "expected a command before {}; did you mean weft run {}?", first, first);
   }

@@ -28,8 +28,8 @@ struct RunFiles {
 /// What weft sweep leaves beside its runs: `runs`, each with its `folder` and the values that were `set`.
 inline constexpr const char* kSweepName = "sweep.json";
 
-/// All runs below `folder`, in order of their names; those of a sweep in its own. Hidden files and review pages are passed over. Throws
-/// Error(asset_unreadable) where `folder` is none or cannot be listed.
+/// All runs below `folder`, in order of their names; those of a sweep in its own. Hidden files and review pages are
+/// passed over. Throws Error(asset_unreadable) where `folder` is none or cannot be listed.
 std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
 
 /// The file with decisions about runs; see decisions.hpp.
