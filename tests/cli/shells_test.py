@@ -61,7 +61,7 @@ def bash(line):
 
 def expected():
     """Lines, and the words that must be offered for them."""
-    commands = re.findall(r"^  ([a-z]+) ", output("weft", "--help").split("Subcommands:")[1].split("Examples:")[0], re.M)
+    commands = re.findall(r"^  ([a-z]+)[ ,]", output("weft", "--help").split("Subcommands:")[1].split("Examples:")[0], re.M)
     yield "weft ", set(commands)
     for command in commands:
         text = output("weft", command, "--help")
