@@ -1,12 +1,13 @@
 #include "cli/child_process.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
 #include <cerrno>
+#include <csignal>
 #include <cstring>
 
 #include "core/error.hpp"
@@ -14,27 +15,50 @@
 namespace weft::cli {
 namespace {
 
-/// What a process is started with, besides its name.
-class Files {
- public:
-  Files() {
-    posix_spawn_file_actions_init(&actions_);
-    posix_spawn_file_actions_addopen(&actions_, STDIN_FILENO, "/dev/null", O_RDONLY, 0);
-  }
-  ~Files() { posix_spawn_file_actions_destroy(&actions_); }
-  Files(const Files&) = delete;
-  Files& operator=(const Files&) = delete;
-  posix_spawn_file_actions_t* get() { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_{};
+/// Where a child writes; -1: where its parent does.
+struct Outputs {
+  int out = -1, err = -1;
 };
 
-int spawn(std::vector<std::string> words, Files& files, pid_t& process) {
+/// In the child: becomes the program, or returns with the reason in errno. Calls nothing that another thread of the
+/// parent may have been in at the fork.
+void become(const std::vector<char*>& arguments, Outputs outputs, pid_t parent) {
+  // Whoever kills the parent means its runs as well: the same command goes on, and two processes would write one run.
+  // posix_spawn cannot ask for this.
+  if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
+  if (::getppid() != parent) ::_exit(127);  // killed before it was asked for
+  const int input = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
+  if (input < 0 || ::dup2(input, STDIN_FILENO) < 0) return;
+  if (outputs.out >= 0 && ::dup2(outputs.out, STDOUT_FILENO) < 0) return;
+  if (outputs.err >= 0 && ::dup2(outputs.err, STDERR_FILENO) < 0) return;
+  ::execvp(arguments[0], arguments.data());
+}
+
+/// 0, or the reason why there is no such process.
+int start(std::vector<std::string> words, Outputs outputs, pid_t& process) {
   std::vector<char*> arguments;
   for (std::string& word : words) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  return ::posix_spawnp(&process, arguments[0], files.get(), nullptr, arguments.data(), environ);
+  std::array<int, 2> answer{};
+  if (::pipe2(answer.data(), O_CLOEXEC) != 0) return errno;
+  const pid_t parent = ::getpid();
+  process = ::fork();
+  int problem = process < 0 ? errno : 0;
+  if (process == 0) {
+    become(arguments, outputs, parent);
+    problem = errno;
+    ::_exit(::write(answer[1], &problem, sizeof problem) < 0 ? 126 : 127);
+  }
+  ::close(answer[1]);
+  // Closed without a word where the program runs.
+  while (process > 0 && ::read(answer[0], &problem, sizeof problem) < 0 && errno == EINTR) continue;
+  ::close(answer[0]);
+  if (process > 0 && problem != 0) ::waitpid(process, nullptr, 0);
+  return problem;
+}
+
+[[noreturn]] void fail(const std::string& program, int problem) {
+  throw Error(ExitCode::internal, "{}: cannot be started: {}", program, std::strerror(problem));
 }
 
 }  // namespace
@@ -44,25 +68,24 @@ std::filesystem::path own_program() {
 }
 
 pid_t start_process(const std::vector<std::string>& words, const std::filesystem::path& log) {
-  Files files;
+  Outputs outputs;
   if (!log.empty()) {
-    posix_spawn_file_actions_addopen(files.get(), STDOUT_FILENO, log.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-    posix_spawn_file_actions_adddup2(files.get(), STDOUT_FILENO, STDERR_FILENO);
+    outputs.out = outputs.err = ::open(log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+    if (outputs.out < 0)
+      throw Error(ExitCode::output_failed, "{}: cannot be written: {}", log.string(), std::strerror(errno));
   }
   pid_t process = -1;
-  const int problem = spawn(words, files, process);
-  if (problem != 0) throw Error(ExitCode::internal, "{}: cannot be started: {}", words[0], std::strerror(problem));
+  const int problem = start(words, outputs, process);
+  if (outputs.out >= 0) ::close(outputs.out);
+  if (problem != 0) fail(words[0], problem);
   return process;
 }
 
 ProcessResult run_process(const std::vector<std::string>& words) {
   std::array<int, 2> ends{};
-  if (::pipe2(ends.data(), O_CLOEXEC) != 0)
-    throw Error(ExitCode::internal, "{}: cannot be started: {}", words[0], std::strerror(errno));
-  Files files;
-  posix_spawn_file_actions_adddup2(files.get(), ends[1], STDOUT_FILENO);
+  if (::pipe2(ends.data(), O_CLOEXEC) != 0) fail(words[0], errno);
   pid_t process = -1;
-  const int problem = spawn(words, files, process);
+  const int problem = start(words, {.out = ends[1]}, process);
   ::close(ends[1]);
   ProcessResult result{127, {}};
   std::array<char, 4096> bytes;

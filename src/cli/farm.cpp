@@ -16,6 +16,7 @@
 #include "cli/table.hpp"
 #include "core/log.hpp"
 #include "core/temporary_file.hpp"
+#include "review/find_runs.hpp"
 
 namespace weft::cli {
 namespace {
@@ -165,7 +166,7 @@ class Farm {
 
  private:
   nlohmann::ordered_json read_index() const {
-    nlohmann::ordered_json index = read_json(folder_ / "sweep.json");
+    nlohmann::ordered_json index = read_json(folder_ / review::kSweepName);
     if (!index.is_object() || !index.contains("runs"))
       throw Error(ExitCode::asset_unreadable, "{}: expected the folder that weft farm submit was given with -o",
                   folder_.string());

@@ -223,9 +223,14 @@ bool encode(const std::vector<fs::path>& pictures, const fs::path& file, const v
 }  // namespace
 
 ExitCode join(const JoinOptions& options) {
-  if (!is_video(options.output))
-    throw Error(ExitCode::usage, "-o: expected a name ending in .mp4, got {}", options.output.string());
+  if (!video::is_written(options.output.extension().string()))
+    throw Error(ExitCode::usage, "-o: expected a name ending in .mp4, .mov or .mkv, got {}", options.output.string());
+  const video::Codec codec = codec_of(options.output, options.video);
   const Film film(options.parts);
+  if (film.of_videos() && (!is_video(options.output) || options.video.any()))
+    throw Error(ExitCode::usage,
+                "{}: videos are joined as they are, into .mp4; other endings, --codec and --crf are for pictures",
+                options.output.string());
   const FrameRange frames = film.frames(options);
   const std::vector<fs::path> files = files_of(film, frames);
   PathLedger paths;
@@ -237,9 +242,15 @@ ExitCode join(const JoinOptions& options) {
   const Metadata metadata = describe(film, frames);
   if (film.of_videos()) {
     video::join_videos(files, options.output, fps, frames.count(), metadata);
-  } else if (!encode(files, options.output,
-                     {.width = film.first().width, .height = film.first().height, .fps = fps, .metadata = metadata})) {
-    return ExitCode::interrupted;
+  } else {
+    video::Settings settings;
+    settings.width = film.first().width;
+    settings.height = film.first().height;
+    settings.fps = fps;
+    settings.codec = codec;
+    settings.crf = options.video.crf.value_or(settings.crf);
+    settings.metadata = metadata;
+    if (!encode(files, options.output, settings)) return ExitCode::interrupted;
   }
   log::info(fmt::format("{}: frames {} from {} file{}", options.output.string(), frames.text(), files.size(),
                         files.size() == 1 ? "" : "s"));

@@ -13,7 +13,7 @@ namespace weft::cli {
 namespace {
 
 struct Option {
-  std::vector<std::string> names;    ///< with their dashes, the short one first
+  std::vector<std::string> names;    ///< with their dashes, the short one first; of an argument its own
   std::string value;                 ///< `FILE.mp4`; empty: it takes none
   std::vector<std::string> choices;  ///< of the value; empty: it is no word of a few
   std::string meaning;
@@ -21,7 +21,7 @@ struct Option {
 
 bool is_word(const std::string& text) {
   return !text.empty() &&
-         std::ranges::all_of(text, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9'); });
+         std::ranges::all_of(text, [](char c) { return (c >= 'a' && c <= 'z') || (c >= '0' && c <= '9') || c == '_'; });
 }
 
 // `draft|preview|final`; nothing where one of them stands for something else, such as FILE.
@@ -35,19 +35,35 @@ std::vector<std::string> choices_of(const std::string& value) {
   return choices;
 }
 
+Option described(const CLI::Option& option) {
+  Option entry;
+  for (const std::string& name : option.get_snames()) entry.names.push_back("-" + name);
+  for (const std::string& name : option.get_lnames()) entry.names.push_back("--" + name);
+  if (entry.names.empty()) entry.names.push_back(option.get_name());
+  if (option.get_items_expected_max() > 0) entry.value = option.get_type_name();
+  entry.choices = choices_of(entry.value);
+  entry.meaning = option.get_description();
+  return entry;
+}
+
 std::vector<Option> options_of(const CLI::App& command) {
   std::vector<Option> options;
-  for (const CLI::Option* option : command.get_options()) {
-    if (!option->nonpositional()) continue;
-    Option entry;
-    for (const std::string& name : option->get_snames()) entry.names.push_back("-" + name);
-    for (const std::string& name : option->get_lnames()) entry.names.push_back("--" + name);
-    if (option->get_items_expected_max() > 0) entry.value = option->get_type_name();
-    entry.choices = choices_of(entry.value);
-    entry.meaning = option->get_description();
-    options.push_back(std::move(entry));
-  }
+  for (const CLI::Option* option : command.get_options())
+    if (option->nonpositional()) options.push_back(described(*option));
   return options;
+}
+
+std::vector<Option> arguments_of(const CLI::App& command) {
+  std::vector<Option> arguments;
+  for (const CLI::Option* option : command.get_options())
+    if (!option->nonpositional()) arguments.push_back(described(*option));
+  return arguments;
+}
+
+/// The words of which the first argument is one; empty: a file.
+std::vector<std::string> first_words(const CLI::App& command) {
+  const std::vector<Option> arguments = arguments_of(command);
+  return arguments.empty() ? std::vector<std::string>{} : arguments.front().choices;
 }
 
 std::vector<const CLI::App*> commands_of(const CLI::App& app) {
@@ -73,6 +89,8 @@ std::string quoted(const std::string& text) {
 std::string bash_completion(const CLI::App& app) {
   std::string values, names;
   for (const CLI::App* command : commands_of(app)) {
+    if (const auto words = first_words(*command); !words.empty())
+      values += fmt::format("      {0}:{0}) words='{1}' ;;\n", command->get_name(), fmt::join(words, " "));
     std::string all;
     for (const Option& option : options_of(*command)) {
       for (const std::string& name : option.names) all += (all.empty() ? "" : " ") + name;
@@ -85,12 +103,16 @@ std::string bash_completion(const CLI::App& app) {
   return fmt::format(
       "# bash completion for weft: source <(weft completion bash)\n_weft() {{\n"
       "  local current=${{COMP_WORDS[COMP_CWORD]}} before=${{COMP_WORDS[COMP_CWORD - 1]}} words=\n  COMPREPLY=()\n"
+      // --quality=draft is three words to bash.
+      "  if [ \"$current\" = = ]; then current=; elif [ \"$before\" = = ]; then before=${{COMP_WORDS[COMP_CWORD - "
+      "2]}}; "
+      "fi\n"
       "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n    words='{} --help --version'\n  else\n"
-      "    case ${{COMP_WORDS[1]}}:$before in\n{}    esac\n"
-      "    case $words$current in -*) case ${{COMP_WORDS[1]}} in\n{}    esac ;; esac\n  fi\n"
+      "    case $current in\n    -*) case ${{COMP_WORDS[1]}} in\n{}    esac ;;\n"
+      "    *) case ${{COMP_WORDS[1]}}:$before in\n{}    esac ;;\n    esac\n  fi\n"
       "  if [ -n \"$words\" ]; then mapfile -t COMPREPLY < <(compgen -W \"$words\" -- \"$current\"); fi\n}}\n"
       "complete -o default -F _weft weft\n",
-      names_of(commands_of(app)), values, names);
+      names_of(commands_of(app)), names, values);
 }
 
 std::string zsh_completion(const CLI::App& app) {
@@ -105,6 +127,8 @@ std::string zsh_completion(const CLI::App& app) {
   for (const CLI::App* command : commands_of(app)) {
     list += fmt::format("    {}\n", quoted(command->get_name() + ":" + field(command->get_description())));
     cases += fmt::format("    {}) _arguments", command->get_name());
+    if (const auto words = first_words(*command); !words.empty())
+      cases += fmt::format(" \\\n      '1:what:({})'", fmt::join(words, " "));
     for (const Option& option : options_of(*command)) {
       const std::string value =
           option.value.empty()
@@ -112,7 +136,9 @@ std::string zsh_completion(const CLI::App& app) {
               : fmt::format(":{}:{}", field(option.value),
                             option.choices.empty() ? "_files" : fmt::format("({})", fmt::join(option.choices, " ")));
       for (const std::string& name : option.names)
-        cases += " \\\n      " + quoted(fmt::format("*{}[{}]{}", name, field(option.meaning), value));
+        cases +=
+            " \\\n      " + quoted(fmt::format("*{}{}[{}]{}", name, !value.empty() && name.starts_with("--") ? "=" : "",
+                                               field(option.meaning), value));
     }
     cases += " \\\n      '*:file:_files' ;;\n";
   }
@@ -131,6 +157,11 @@ std::string fish_completion(const CLI::App& app) {
   for (const CLI::App* command : commands_of(app)) {
     fmt::format_to(out, "complete -c weft -f -n __fish_use_subcommand -a {} -d {}\n", command->get_name(),
                    word(command->get_description()));
+    if (const auto words = first_words(*command); !words.empty())
+      fmt::format_to(out,
+                     "complete -c weft -n '__fish_seen_subcommand_from {0}; and not __fish_seen_subcommand_from {1}' "
+                     "-xa '{1}'\n",
+                     command->get_name(), fmt::join(words, " "));
     for (const Option& option : options_of(*command)) {
       fmt::format_to(out, "complete -c weft -n '__fish_seen_subcommand_from {}'", command->get_name());
       for (const std::string& name : option.names)
@@ -145,13 +176,15 @@ std::string fish_completion(const CLI::App& app) {
   return text;
 }
 
-// What troff would take for its own.
+// What troff would take for its own. Quotes and the like must stay what a shell reads, also in UTF-8.
 std::string roff(const std::string& text) {
   std::string result;
   std::istringstream lines(text);
   for (std::string line; std::getline(lines, line);) {
     line = replaced(replaced(line, "\\", "\\e"), "-", "\\-");
-    if (line.starts_with('.') || line.starts_with('\'')) line.insert(0, "\\&");
+    for (const auto& [plain, name] : {std::pair("'", "\\(aq"), {"`", "\\(ga"}, {"^", "\\(ha"}, {"~", "\\(ti"}})
+      line = replaced(line, plain, name);
+    if (line.starts_with('.')) line.insert(0, "\\&");
     result += line + "\n";
   }
   return result;
@@ -180,15 +213,19 @@ std::string completion(const CLI::App& app, const std::string& shell) {
 
 std::string manual(const CLI::App& app) {
   std::string text = fmt::format(
-      ".TH WEFT 1 \"\" \"Weft {}\"\n.SH NAME\nweft \\- cloth scenes to video\n.SH SYNOPSIS\n.B weft\n"
+      ".TH WEFT 1 {} \"Weft {}\"\n.SH NAME\nweft \\- cloth scenes to video\n.SH SYNOPSIS\n.B weft\n"
       "COMMAND [OPTIONS] ...\n.SH DESCRIPTION\n{}{}",
-      kVersion, roff(app.get_description()), footer(app));
+      kVersionDate, kVersion, roff(app.get_description()), footer(app));
   for (const CLI::App* command : commands_of(app)) {
-    text += fmt::format(".SH {}\n{}.PP\n.B {}", replaced(command->get_name(), "-", "\\-"),
-                        roff(command->get_description() + "."), roff(usage(*command)));
-    for (const Option& option : options_of(*command))
-      text += fmt::format(".TP\n.B {}{}", roff(fmt::format("{} {}", fmt::join(option.names, ", "), option.value)),
+    text += fmt::format(".SH {}\n{}.PP\n.B weft {}", command->get_name(), roff(command->get_description() + "."),
+                        roff(usage(*command)));
+    std::vector<Option> all = arguments_of(*command);
+    std::ranges::copy(options_of(*command), std::back_inserter(all));
+    for (const Option& option : all) {
+      const std::string names = fmt::format("{}", fmt::join(option.names, ", "));
+      text += fmt::format(".TP\n.B {}{}", roff(option.value.empty() ? names : names + " " + option.value),
                           roff(option.meaning));
+    }
     text += footer(*command);
   }
   return text;

@@ -39,7 +39,8 @@ void add_picture(CLI::App& command, SceneOptions& options) {
             [&](const std::string& text) { options.size = parse_size(text); });
   add_value(command, "--camera", "NAME", "A camera of the scene [its choice, or automatic framing]",
             [&](const std::string& text) { options.camera = text; });
-  add_value(command, "--look", "NAME", "studio|stage|daylight|clay|wire|strain [the scene's]",
+  add_value(command, "--look", "studio|stage|daylight|clay|wire|strain",
+            "Surroundings, or a way to review [the scene's]",
             [&](const std::string& text) { options.look = parse_choice("--look", text, kLooks); });
   const char* quality = options.quality == render::Quality::preview ? "preview" : "final";
   add_value(command, "--quality", "draft|preview|final", fmt::format("Care taken in drawing [{}]", quality).c_str(),
@@ -72,13 +73,18 @@ void add_output(CLI::App& command, RunOptions& options) {
   add_value(command, "--depth", "8|16", "Bits a channel of PNG pictures [8]", [&](const std::string& text) {
     options.depth = parse_choice("--depth", text, std::array{Choice<int>{"8", 8}, Choice<int>{"16", 16}});
   });
-  add_value(command, "--codec", "NAME", "h264|h264_lossless|ffv1|prores [by the ending: h264, .mov prores, .mkv ffv1]",
-            [&](const std::string& text) { options.codec = parse_choice("--codec", text, kCodecs); });
-  add_value(command, "--crf", "N", "Of h264: 1 keeps most, 51 is smallest [18]",
-            [&](const std::string& text) { options.crf = parse_integer("--crf", text, 1, 51); });
+  add_video(command, options.video);
   add_value(
       command, "--motion-blur", "DEGREES", "Angle of the shutter, 180 as of film; 0: all is sharp [the scene's]",
       [&](const std::string& text) { options.common.motion_blur = parse_integer("--motion-blur", text, 0, 360); });
+}
+
+void add_video(CLI::App& command, VideoOptions& options) {
+  add_value(command, "--codec", "h264|h264_lossless|ffv1|prores",
+            "Of the video [by the ending: h264, .mov prores, .mkv ffv1]",
+            [&](const std::string& text) { options.codec = parse_choice("--codec", text, kCodecs); });
+  add_value(command, "--crf", "N", "Of h264: 1 keeps most, 51 is smallest [18]",
+            [&](const std::string& text) { options.crf = parse_integer("--crf", text, 1, 51); });
 }
 
 void add_frames(CLI::App& command, RunOptions& options, const char* description) {

@@ -42,6 +42,7 @@ void add_process(CLI::App& command, SceneOptions& options);
 /// The scene, and all that changes how it is read or drawn.
 void add_common(CLI::App& command, SceneOptions& options, const char* what = "The scene, a TOML file");
 void add_output(CLI::App& command, RunOptions& options);
+void add_video(CLI::App& command, VideoOptions& options);
 void add_frames(CLI::App& command, RunOptions& options, const char* description);
 /// --meshes, --stats, --log-json.
 void add_side_files(CLI::App& command, RunOptions& options);

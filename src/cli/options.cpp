@@ -34,23 +34,57 @@ void check_command_name(const Parser& parser, const std::vector<std::string>& ar
     throw Error(ExitCode::usage, "unknown option {} before the command{}; see weft --help", first,
                 did_you_mean(first, options));
   }
-  if (std::find(known.begin(), known.end(), first) != known.end()) return;
+  const auto is_it = [&](const CLI::App* command) { return command->check_name(first); };  // also by another name
+  if (std::ranges::any_of(parser.app.get_subcommands(nullptr), is_it)) return;
   if (std::filesystem::path(first).extension() == ".toml") {
     throw Error(ExitCode::usage, "expected a command before {}; did you mean weft run {}?", first, first);
   }
   throw Error(ExitCode::usage, "unknown command {}{}; the commands are {}", first, did_you_mean(first, known), list);
 }
 
-[[noreturn]] void throw_unexpected(const CLI::App& command, const std::string& prefix) {
-  const std::vector<std::string> rest = command.remaining(true);
-  for (const std::string& argument : rest) {
+// A file may be called as an option is.
+std::string as_file(const std::string& argument) {
+  const std::filesystem::path file = argument;
+  std::error_code none;
+  if (!file.has_extension() && !std::filesystem::exists(file, none)) return "";
+  return fmt::format("; a file of this name is written ./{}, or behind --", argument);
+}
+
+// Options that the command does not have; returns where there are none.
+void check_unknown(const CLI::App& command, const std::string& prefix) {
+  for (const std::string& argument : command.remaining(true)) {
     if (!argument.starts_with('-')) continue;
     const std::string name = argument.substr(0, argument.find('='));
-    throw Error(ExitCode::usage, "{}: unknown option {}{}; see {} --help", prefix, name,
-                did_you_mean(name, option_names(command)), prefix);
+    throw Error(ExitCode::usage, "{}: unknown option {}{}{}; see {} --help", prefix, name,
+                did_you_mean(name, option_names(command)), as_file(argument), prefix);
   }
-  throw Error(ExitCode::usage, "{}: unexpected argument {}; see {} --help", prefix, rest.empty() ? "" : rest.front(),
-              prefix);
+}
+
+// What CLI11 says of it, behind what it does not say: a misspelt option may be why something else is missing.
+[[noreturn]] void throw_usage(const CLI::App* command, const CLI::ParseError& error) {
+  if (command == nullptr) throw Error(ExitCode::usage, "weft: {}; see weft --help", error.what());
+  const std::string prefix = "weft " + command->get_name();
+  check_unknown(*command, prefix);
+  if (const std::vector<std::string> rest = command->remaining(true); !rest.empty())
+    throw Error(ExitCode::usage, "{}: unexpected argument {}; see {} --help", prefix, rest.front(), prefix);
+  throw Error(ExitCode::usage, "{}: {}; see {} --help", prefix, error.what(), prefix);
+}
+
+BenchOptions checked(BenchOptions bench, const std::string& option_of_speed) {
+  using Kind = BenchOptions::Kind;
+  const bool own_scenes = bench.kind == Kind::stability || bench.kind == Kind::fabrics;
+  if (own_scenes && (!bench.scene.empty() || !bench.overrides.empty()))
+    throw Error(ExitCode::usage, "weft bench {}: expected no SCENE and no --set, its scenes are its own",
+                bench.kind == Kind::fabrics ? "fabrics" : "stability");
+  if (bench.kind != Kind::speed && !option_of_speed.empty())
+    throw Error(ExitCode::usage, "weft bench: {} is for weft bench speed", option_of_speed);
+  return bench;
+}
+
+SweepOptions checked(SweepOptions sweep) {
+  if (sweep.axes.empty() && sweep.list.empty())
+    throw Error(ExitCode::usage, "weft sweep: expected --set KEY=A,B,... or --list; see weft sweep --help");
+  return sweep;
 }
 
 FarmOptions checked(FarmOptions farm) {
@@ -74,23 +108,10 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
     return PrintText{parser.app.help()};
   } catch (const CLI::CallForVersion& version) {
     return PrintText{fmt::format("{}\n", version.what())};
-  } catch (const CLI::ExtrasError&) {
-    const CLI::App* command = parser.selected();
-    throw_unexpected(command ? *command : parser.app, command ? "weft " + command->get_name() : "weft");
   } catch (const CLI::ParseError& error) {
-    const CLI::App* command = parser.selected();
-    const std::string prefix = command ? "weft " + command->get_name() : "weft";
-    throw Error(ExitCode::usage, "{}: {}; see {} --help", prefix, error.what(), prefix);
+    throw_usage(parser.selected(), error);
   }
   const std::string name = parser.selected()->get_name();
-  const bool has_scene = !parser.bench.scene.empty() || !parser.bench.overrides.empty();
-  const bool own_scenes =
-      parser.bench.kind == BenchOptions::Kind::stability || parser.bench.kind == BenchOptions::Kind::fabrics;
-  if (name == "bench" && own_scenes && has_scene)
-    throw Error(ExitCode::usage, "weft bench {}: expected no SCENE and no --set, its scenes are its own",
-                parser.bench.kind == BenchOptions::Kind::fabrics ? "fabrics" : "stability");
-  if (name == "bench" && parser.bench.kind != BenchOptions::Kind::speed && !parser.option_of_speed.empty())
-    throw Error(ExitCode::usage, "weft bench: {} is for weft bench speed", parser.option_of_speed);
   if (name == "run") return parser.run;
   if (name == "simulate") return parser.simulate;
   if (name == "render") return parser.render;
@@ -98,18 +119,14 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "thumbnail") return parser.thumbnail;
   if (name == "sheet") return parser.sheet;
   if (name == "join") return parser.join;
-  if (name == "sweep") {
-    if (parser.sweep.axes.empty() && parser.sweep.list.empty())
-      throw Error(ExitCode::usage, "weft sweep: expected --set KEY=A,B,... or --list; see weft sweep --help");
-    return parser.sweep;
-  }
+  if (name == "sweep") return checked(parser.sweep);
   if (name == "farm") return checked(parser.farm);
   if (name == "new") return parser.fresh;
   if (name == "watch") return parser.watch;
   if (name == "completion") return PrintText{completion(parser.app, parser.shell)};
   if (name == "man") return PrintText{manual(parser.app)};
   if (name == "schema") return parser.schema;
-  if (name == "bench") return parser.bench;
+  if (name == "bench") return checked(parser.bench, parser.option_of_speed);
   if (name == "diff") return parser.diff;
   if (name == "accept") return parser.accept;
   if (name == "review") return parser.review;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/frame_range.hpp"
+#include "cli/output_target.hpp"
 #include "cli/sweep_plan.hpp"
 #include "compare/compare.hpp"
 #include "core/progress.hpp"
@@ -46,8 +47,7 @@ struct RunOptions {
   std::string log_json;          ///< file, "-" for standard output; empty: none
   bool resume = false;
   int depth = 8;  ///< bits a channel of PNG pictures, 8 or 16
-  video::Codec codec = video::Codec::automatic;
-  std::optional<int> crf;                  ///< of H.264; else 18
+  VideoOptions video;
   bool error = false, mesh_error = false;  ///< whether companions are to tell the error; the second: of the mesh too
 };
 
@@ -86,6 +86,7 @@ struct SheetOptions {
 struct JoinOptions {
   std::vector<std::filesystem::path> parts;  ///< videos, or folders of pictures
   std::filesystem::path output;
+  VideoOptions video;  ///< of what is made of pictures
   FrameSelection frames;
   bool partial = false;  ///< takes the frames before the first that is missing
   bool overwrite = false;

@@ -69,6 +69,13 @@ void FramePattern::remove_others(const FrameRange& frames) const {
   }
 }
 
+video::Codec codec_of(const fs::path& file, const VideoOptions& options) {
+  const video::Codec codec = video::codec_of(file, options.codec);
+  if (codec != video::Codec::h264 && options.crf)
+    throw Error(ExitCode::usage, "--crf: expected h264, the other codecs are not for small files");
+  return codec;
+}
+
 fs::path OutputTarget::file(int frame) const {
   return kind == Kind::images ? FramePattern(text).name(frame) : fs::path(text);
 }

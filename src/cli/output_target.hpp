@@ -2,14 +2,27 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "cli/frame_range.hpp"
+#include "video/encoder.hpp"
 
 namespace weft::cli {
+
+/// How a video is written.
+struct VideoOptions {
+  video::Codec codec = video::Codec::automatic;
+  std::optional<int> crf;  ///< of H.264; else 18
+
+  bool any() const { return codec != video::Codec::automatic || crf.has_value(); }
+};
+
+/// The codec of a video of this name. Throws Error(usage) for options that do not go with it.
+video::Codec codec_of(const std::filesystem::path& file, const VideoOptions& options);
 
 /// A file name with a place for the frame number: `{frame}`, or `{frame:05}` for five digits.
 class FramePattern {

@@ -128,10 +128,12 @@ void Parser::add_sheet() {
 
 void Parser::add_join() {
   CLI::App& command = *app.add_subcommand("join", "Put videos, or folders of pictures, together to one video");
+  command.alias("encode");
   command.add_option("PART", join.parts, "Videos, or folders of pictures, that weft has drawn; in any order")
       ->required()
       ->type_name("");
-  command.add_option("-o,--output", join.output, "The video")->required()->type_name("FILE.mp4");
+  command.add_option("-o,--output", join.output, "The video")->required()->type_name("FILE");
+  add_video(command, join.video);
   add_value(command, "--frames", "A:B[:STEP]", "Frames A up to but without B, counted from 0 [all of the scene]",
             [this](const std::string& text) { join.frames = parse_frames(text); });
   add_partial(command, join.partial);
@@ -140,9 +142,11 @@ void Parser::add_join() {
       "\nExamples:\n"
       "  weft join band -o band.mp4\n"
       "  weft join first.mp4 second.mp4 -o band.mp4\n"
+      "  weft encode band -o band.mov\n"
       "\nParts say themselves which frames of which scene they hold; frames that are missing end it with exit code "
       "9.\n"
-      "Pictures become the video that weft render makes of them, byte for byte; videos are not encoded anew.");
+      "Pictures become the video that weft render makes of them, byte for byte; videos are not encoded anew.\n"
+      "encode is another name of join.");
 }
 
 std::vector<std::string> Parser::command_names() const {

@@ -76,9 +76,9 @@ void Parser::add_completion() {
           [this](const std::string& text) {
             shell = chosen("SHELL", text, {"bash", "zsh", "fish"});
           },
-          "bash, zsh or fish")
+          "Of which the words are")
       ->required()
-      ->type_name("");
+      ->type_name("bash|zsh|fish");
   command.footer(
       "\nExamples:\n  source <(weft completion bash)\n"
       "  weft completion fish > ~/.config/fish/completions/weft.fish");

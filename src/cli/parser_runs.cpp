@@ -85,7 +85,7 @@ void Parser::add_farm() {
           "submit: hand in what is not done yet; status: tell how far it is; cancel: take it back, and keep what is "
           "made")
       ->required()
-      ->type_name("");
+      ->type_name("submit|status|cancel");
   command.add_option("SCENE|DIR", farm.sweep.scene, "Of submit: the scene, a TOML file; else the folder of the runs")
       ->required()
       ->type_name("");

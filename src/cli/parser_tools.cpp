@@ -50,7 +50,7 @@ void Parser::add_bench() {
           "time by stage, iterations and memory over sizes, threads and steps; fabrics: drape, bending and extension "
           "against what was published")
       ->required()
-      ->type_name("");
+      ->type_name("stability|accuracy|speed|fabrics");
   command
       .add_option("SCENE", bench.scene, "For accuracy and speed: the scene, a TOML file [a swinging sheet; a drape]")
       ->type_name("");

@@ -84,11 +84,9 @@ void take_output(FilmPlan& plan, const RunOptions& options) {
   const bool video = plan.target.kind == Kind::video;
   if (options.depth == 16 && (video || plan.settings.layers))
     throw Error(ExitCode::usage, "--depth: expected pictures (.png), got {}", plan.target.text);
-  if (!video && (options.codec != video::Codec::automatic || options.crf))
+  if (!video && options.video.any())
     throw Error(ExitCode::usage, "--codec, --crf: expected a video, got {}", plan.target.text);
-  if (video && video::codec_of(plan.target.text, options.codec) != video::Codec::h264 && options.crf)
-    throw Error(ExitCode::usage, "--crf: expected h264, the other codecs are not for small files");
-  if (video) tell_odd_size(plan, video::codec_of(plan.target.text, options.codec));
+  if (video) tell_odd_size(plan, codec_of(plan.target.text, options.video));
 }
 
 FilmPlan plan_of(const scene::Scene& scene, const RunOptions& options) {
@@ -208,7 +206,7 @@ void Session::make(const FilmPlan& plan, FilmParts parts) {
     parts.open_painter = [&] { return make_gl_painter(plan.settings); };
     parts.open_writer = [&](const std::string& gl) {
       return make_writer({plan.target, plan.wanted, plan.settings.width, plan.settings.height, plan.scene.fps,
-                          options_.depth, options_.codec, options_.crf,
+                          options_.depth, options_.video.codec, options_.video.crf,
                           describe_pictures(plan.scene, plan.settings, gl)});
     };
   }
@@ -364,6 +362,7 @@ ExitCode run(const RunOptions& options) {
   const bool overwrite = options.common.overwrite;
   if (options.resume && !overwrite && !cache::is_cache(cache) &&
       is_whole(plan.target, plan.wanted, plan.settings, plan.scene, options.meshes, plan.objects)) {
+    if (fs::exists(cache)) cache::Lock(cache).remove();  // killed while it did this
     log::info(fmt::format("note: {} is whole already: frames {}", plan.target.text, plan.wanted.text()));
     return ExitCode::ok;
   }

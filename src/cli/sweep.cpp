@@ -33,6 +33,14 @@ struct Job : SweepJob {
 
   fs::path log() const { return folder / "run.log"; }
 
+  /// By what it has left.
+  ExitCode outcome() const {
+    if (is_done()) return ExitCode::ok;
+    const nlohmann::ordered_json json = read_json(stats());
+    const int told = json.is_object() ? json.value("exit_code", 0) : 0;
+    return told == 0 ? ExitCode::not_whole : static_cast<ExitCode>(told);
+  }
+
   std::string last_words() const {
     std::string last;
     std::ifstream in(log());
@@ -117,8 +125,7 @@ class Sweep {
     std::vector<SweepResult> results;
     for (const Job& job : jobs_) {
       const Job& made = job.twin ? jobs_[*job.twin] : job;
-      ExitCode code = made.tried ? made.code : ExitCode::interrupted;
-      if (options_.gather) code = made.is_done() ? ExitCode::ok : ExitCode::not_whole;
+      const ExitCode code = options_.gather ? made.outcome() : made.tried ? made.code : ExitCode::interrupted;
       results.push_back({job.run, made.video(), read_json(made.stats()), code});
     }
     return results;
@@ -131,14 +138,12 @@ class Sweep {
     write_file(folder / "table.md", bench::markdown(table));
     write_sweep_sheet(folder / "sheet.png", results, fmt::format("{}   {} runs", jobs_.front().scene, results.size()),
                       options_.frame);
-    const auto has_video = [](const SweepResult& result) { return fs::exists(result.video); };
-    if (stop_.requested() || !std::ranges::any_of(results, has_video)) return;
+    const auto is_shown = [](const SweepResult& r) { return r.stats.is_object() || fs::exists(r.video); };
+    if (stop_.requested() || !std::ranges::any_of(results, is_shown)) return;
     review::write_review({.folders = {folder}, .reference = {}, .output = folder / "page", .overwrite = true});
   }
 
   ExitCode tell(const std::vector<SweepResult>& results) const {
-    const std::string where =
-        fmt::format("{}: {}", options_.output.string(), "sheet.png, table.md, table.csv, page/index.html");
     const auto failed = std::ranges::find_if(results, [](const auto& r) { return r.code != ExitCode::ok; });
     const auto count = std::ranges::count_if(results, [](const auto& r) { return r.code != ExitCode::ok; });
     if (stop_.requested()) {
@@ -146,7 +151,10 @@ class Sweep {
                             results.size()));
       return ExitCode::interrupted;
     }
-    log::info(where);
+    std::vector<std::string> made;  // no sheet where no run has a picture
+    for (const char* file : {"sheet.png", "table.md", "table.csv", "page/index.html"})
+      if (fs::exists(options_.output / file)) made.emplace_back(file);
+    log::info(fmt::format("{}: {}", options_.output.string(), fmt::join(made, ", ")));
     if (failed == results.end()) return ExitCode::ok;
     log::info(
         fmt::format("weft: {} of {} runs {}:", count, results.size(), options_.gather ? "are not done" : "failed"));

@@ -10,16 +10,12 @@
 #include "cli/scene_input.hpp"
 #include "core/error.hpp"
 #include "core/temporary_file.hpp"
+#include "review/find_runs.hpp"
 
 namespace weft::cli {
-namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-
-constexpr const char* kIndexFile = "sweep.json";
-
-}  // namespace
 
 std::vector<std::string> SweepJob::overrides() const {
   std::vector<std::string> texts;
@@ -64,7 +60,7 @@ void check_sweep_folder(const SweepOptions& options, PathLedger& paths) {
   paths.fills("-o", options.output);
   const fs::path& folder = options.output;
   if (!fs::exists(folder) || fs::is_empty(folder)) return;
-  const Json before = read_json(folder / kIndexFile);
+  const Json before = read_json(folder / review::kSweepName);
   if (!before.is_object())
     throw Error(ExitCode::output_failed, "{}: is no folder of a sweep, and not empty; give another name",
                 folder.string());
@@ -85,7 +81,7 @@ void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>&
                     {"set", std::move(set)}});
   }
   const Json index{{"scene", options.scene.string()}, {"options", options.passed_on}, {"runs", std::move(runs)}};
-  write_file(options.output / kIndexFile, index.dump(2) + "\n");
+  write_file(options.output / review::kSweepName, index.dump(2) + "\n");
 }
 
 Json read_json(const fs::path& file) {

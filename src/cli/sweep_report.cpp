@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int kPictureWidth = 400;  // pixels
-constexpr int kMostColumns = 6;
+constexpr int kMostColumns = 8;
 constexpr std::uint8_t kGrey = 200;
 
 std::string text_of(const Json& value) {
@@ -53,6 +53,16 @@ std::string error_of(const Json& stats) {
   return fmt::format("{:.4g}", steps.get<double>() + solver.get<double>());
 }
 
+/// Newton iterations, rejected steps, largest strain, energy at the end, error; empty where there is no frame.
+std::vector<std::string> figures_of(const Json& stats) {
+  const Json& frames = frames_of(stats);
+  if (frames.empty()) return std::vector<std::string>(5);
+  double iterations = 0;
+  for (const Json& frame : frames) iterations += frame.value("newton_iterations", 0.0);
+  return {fmt::format("{}", iterations), text_of(at(stats, {"totals", "rejected_steps"})), largest(stats, "max_strain"),
+          text_of(at(frames.back(), {"kinetic_energy_j"})), error_of(stats)};
+}
+
 std::optional<image::Image> picture_of(const std::filesystem::path& file, std::optional<int> frame) {
   try {
     video::Decoder decoder(file);
@@ -67,6 +77,21 @@ std::optional<image::Image> picture_of(const std::filesystem::path& file, std::o
   } catch (const Error&) {
     return std::nullopt;  // a run that failed before its first picture
   }
+}
+
+/// A row of the sheet for each value of the first keys, where that is not too long: what differs by the last ones then
+/// stands side by side.
+int columns_of(const std::vector<SweepResult>& results) {
+  const Changes& first = results.front().run.difference;
+  for (std::size_t keys = 1; keys < first.size(); ++keys) {
+    const auto same = [&](const SweepResult& result) {
+      const Changes& other = result.run.difference;
+      return other.size() == first.size() && std::equal(first.begin(), first.begin() + keys, other.begin());
+    };
+    const auto row = std::ranges::find_if_not(results, same) - results.begin();
+    if (row > 1 && row <= kMostColumns) return static_cast<int>(row);
+  }
+  return std::min(kMostColumns, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(results.size())))));
 }
 
 }  // namespace
@@ -98,13 +123,7 @@ bench::Table sweep_table(const std::vector<SweepResult>& results) {
     row.push_back(fmt::format("{}", static_cast<int>(result.code)));
     row.push_back(text_of(at(result.stats, {"totals", "cpu"})));
     row.push_back(fmt::format("{}", frames.size()));
-    double iterations = 0;
-    for (const Json& frame : frames) iterations += frame.value("newton_iterations", 0.0);
-    row.push_back(fmt::format("{}", iterations));
-    row.push_back(text_of(at(result.stats, {"totals", "rejected_steps"})));
-    row.push_back(largest(result.stats, "max_strain"));
-    row.push_back(frames.empty() ? "" : text_of(at(frames.back(), {"kinetic_energy_j"})));
-    row.push_back(error_of(result.stats));
+    for (std::string& figure : figures_of(result.stats)) row.push_back(std::move(figure));
     row.push_back(result.run.name);
   }
   return table;
@@ -127,9 +146,7 @@ void write_sweep_sheet(const std::filesystem::path& file, const std::vector<Swee
         {fits ? *found[i] : none, label_of(results[i].run),
          good ? fmt::format("{} CPU s", cost) : fmt::format("exit {}", static_cast<int>(results[i].code))});
   }
-  const int columns =
-      std::min(kMostColumns, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(results.size())))));
-  image::write_png(file, image::contact_sheet(pictures, columns, heading));
+  image::write_png(file, image::contact_sheet(pictures, columns_of(results), heading));
 }
 
 }  // namespace weft::cli

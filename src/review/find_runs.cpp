@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 #include <string_view>
+#include <tuple>
 #include <utility>
 
 #include "core/error.hpp"
@@ -68,7 +69,10 @@ class Search {
     for (const fs::path& file : list_files(folder)) {
       const std::string ending = file.extension().string();
       if (ending == ".mp4") videos_.insert(file);
-      if (ending == ".json" && file.filename() != kDecisionsName) statistics_.push_back(file);
+      if (file.filename() == kSweepName)
+        add_sweep(file);
+      else if (ending == ".json" && file.filename() != kDecisionsName)
+        statistics_.push_back(file);
       if (file.filename().string().ends_with(kEffectiveEnding)) effective_.insert(file);
       if (ending != ".png") continue;
       const auto [prefix, digits] = split_number(file.stem().string());
@@ -90,16 +94,41 @@ class Search {
       runs_.push_back(std::move(run));
     }
     for (const auto& [prefix, files] : pictures_) add_pictures(prefix, files);
-    for (RunFiles& run : runs_) find_effective(run);
     for (RunFiles& run : runs_) {
+      find_effective(run);
       run.folder = folder_;
       run.key = run.name;
+      if (const auto found = swept_.find(fs::path(run.name).parent_path()); found != swept_.end())
+        run.values = found->second.values;
     }
-    std::sort(runs_.begin(), runs_.end(), [](const RunFiles& a, const RunFiles& b) { return a.name < b.name; });
+    std::ranges::sort(runs_, {}, [&](const RunFiles& run) { return place_of(run); });
     return std::move(runs_);
   }
 
  private:
+  /// A folder of a sweep, by which its runs are in order: names of values are not (10, 2).
+  struct Swept {
+    std::string sweep;      // its folder
+    std::size_t place = 0;  // among its runs
+    Json values;
+  };
+
+  void add_sweep(const fs::path& file) {
+    const Json json = Json::parse(read_text(file), nullptr, false);
+    if (!json.is_object() || !json.contains("runs") || !json["runs"].is_array()) return;
+    const fs::path beside = file.parent_path().lexically_relative(folder_);
+    for (const Json& run : json["runs"])
+      if (run.is_object() && run.contains("folder") && run["folder"].is_string())
+        swept_.try_emplace((beside / run["folder"].get<std::string>()).lexically_normal(),
+                           Swept{beside.generic_string(), swept_.size(), run.value("set", Json())});
+  }
+
+  std::tuple<std::string, std::size_t, std::string> place_of(const RunFiles& run) const {
+    const auto found = swept_.find(fs::path(run.name).parent_path());
+    if (found == swept_.end()) return {run.name, 0, {}};
+    return {found->second.sweep, found->second.place, run.name};
+  }
+
   RunFiles named(const fs::path& file) const {
     RunFiles run;
     run.name = fs::path(file).replace_extension().lexically_relative(folder_).generic_string();
@@ -157,9 +186,17 @@ class Search {
     return true;
   }
 
+  // Of which a farm has joined the video of a run: they lie in a folder of its own.
+  bool are_in_a_video(const fs::path& prefix) const {
+    const fs::path run = prefix.parent_path().parent_path();
+    return swept_.contains(run.lexically_relative(folder_)) && std::ranges::any_of(runs_, [&](const RunFiles& other) {
+             return !other.video.empty() && other.video.parent_path() == run;
+           });
+  }
+
   // One picture alone is a thumbnail or a sheet, no run.
   void add_pictures(const fs::path& prefix, const std::vector<fs::path>& files) {
-    if (files.size() < 2) return;
+    if (files.size() < 2 || are_in_a_video(prefix)) return;
     std::string name = prefix.lexically_relative(folder_).generic_string();
     name.resize(name.size() - 2);
     while (!name.empty() && std::string_view("_-./").find(name.back()) != std::string_view::npos) name.pop_back();
@@ -189,6 +226,7 @@ class Search {
   std::vector<fs::path> statistics_;
   std::set<fs::path> videos_, effective_;               // videos that belong to no run yet
   std::map<fs::path, std::vector<fs::path>> pictures_;  // by what stands before the number; of no run yet
+  std::map<fs::path, Swept> swept_;                     // by the folder of the run
   std::map<std::string, std::string> unusable_;         // JSON files by name: why
   std::vector<RunFiles> runs_;
 };

@@ -22,10 +22,14 @@ struct RunFiles {
   Json stats_json;  ///< content of `stats`
   std::filesystem::path effective;
   std::vector<std::string> problems;  ///< files that cannot be used, each with the reason
+  Json values;                        ///< of a sweep: what it changed, by key; null elsewhere
 };
 
-/// All runs below `folder`, in order of their names. Hidden files and review pages are passed over. Throws
-/// Error(asset_unreadable) where `folder` is none or cannot be listed.
+/// What weft sweep leaves beside its runs: `runs`, each with its `folder` and the values that were `set`.
+inline constexpr const char* kSweepName = "sweep.json";
+
+/// All runs below `folder`, in order of their names; those of a sweep in its own. Hidden files and review pages are
+/// passed over. Throws Error(asset_unreadable) where `folder` is none or cannot be listed.
 std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
 
 /// The file with decisions about runs; see decisions.hpp.

@@ -171,6 +171,7 @@ class Page {
     entry.place = id + "/";
     entry.json["id"] = id;
     entry.json["date"] = date_of(run);
+    if (run.values.is_object()) entry.json["values"] = run.values;
     // A page of many runs reads what only the page of one of them shows when it is opened.
     Json detail = Json::object();
     for (const char* part : {"columns", "effective"}) {

@@ -98,26 +98,54 @@ Json variant_schema(const Table& table, const Variant* variant) {
   const auto defaults = table.make();
   if (variant != nullptr) table.find(table.selector)->set(defaults.get(), variant->name);
   for (const Rule& rule : table.rules) add_rule(schema, rule, defaults.get());
-  if (variant != nullptr) {
-    schema["properties"][table.selector]["enum"] = {variant->name};
+  if (variant != nullptr)
     for (const Rule& rule : variant->rules) add_rule(schema, rule, defaults.get());
-  }
   schema["additionalProperties"] = false;
   return schema;
 }
 
-Json table_schema(const Table& table) {
-  if (table.variants.empty()) return variant_schema(table, nullptr);
-  Json schema = {{"description", table.documentation}, {"oneOf", Json::array()}};
-  for (const Variant& variant : table.variants) {
-    Json one = variant_schema(table, &variant);
-    // Without the selector, the variant of its default is meant.
-    const auto defaults = table.make();
-    if (table.find(table.selector)->need == Need::optional && table.variant_of(defaults.get()) != &variant) {
-      one["required"].push_back(table.selector);
-    }
-    schema["oneOf"].push_back(std::move(one));
+/// True if both allow the same values, whatever they say of them.
+bool allow_alike(Json one, Json other) {
+  for (Json* schema : {&one, &other}) {
+    schema->erase("description");
+    schema->erase("default");
   }
+  return one == other;
+}
+
+/// The selector's text that picks a variant.
+Json condition(const Table& table, const Variant& variant) {
+  Json when = {{"properties", {{table.selector, {{"enum", {variant.name}}}}}}};
+  // Without the selector, the variant of its default is meant.
+  const auto defaults = table.make();
+  if (table.find(table.selector)->need == Need::required || table.variant_of(defaults.get()) != &variant)
+    when["required"].push_back(table.selector);
+  return when;
+}
+
+// Properties of all variants, for editors to offer, and for each variant a condition with those that it allows. Not
+// oneOf, of which editors only say that none of it fits: of a condition they name the key that does not.
+Json table_schema(const Table& table) {
+  Json schema = variant_schema(table, nullptr);
+  if (table.variants.empty()) return schema;
+  schema.erase("additionalProperties");
+  Json& properties = schema["properties"];
+  std::vector<Json> variants;
+  for (const Variant& variant : table.variants) variants.push_back(variant_schema(table, &variant));
+  for (const Json& variant : variants)
+    for (const auto& [key, property] : variant["properties"].items()) {
+      if (!properties.contains(key)) properties[key] = property;
+      if (!allow_alike(property, properties[key])) properties[key] = {{"description", properties[key]["description"]}};
+    }
+  Json conditions = Json::array();
+  for (std::size_t i = 0; i < variants.size(); ++i) {
+    for (const char* unused : {"type", "description"}) variants[i].erase(unused);
+    // What stands above need not stand here again.
+    for (auto& [key, property] : variants[i]["properties"].items())
+      if (property == properties[key]) property = true;
+    conditions.push_back({{"if", condition(table, table.variants[i])}, {"then", std::move(variants[i])}});
+  }
+  schema["allOf"] = std::move(conditions);
   return schema;
 }
 

@@ -285,9 +285,12 @@ TEST_F(KilledRun, WithNothingThereResumeStartsAtTheBeginning) {
   EXPECT_EQ(outcome.exit_code, 0);
   EXPECT_TRUE(contains(outcome.err, "nothing to resume; starting at the beginning")) << outcome.err;
   const auto written = fs::last_write_time(folder_ / "a.mp4");
+  fs::create_directory(folder_ / ".a.weft-cache");  // killed while it took the cache away
+  support::write_bytes(folder_ / ".a.weft-cache/frame_00003.weft", "-");
   const Outcome again = resume();
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_EQ(again.err, "note: a.mp4 is whole already: frames 0:21\n");
+  EXPECT_FALSE(fs::exists(folder_ / ".a.weft-cache"));
   EXPECT_EQ(fs::last_write_time(folder_ / "a.mp4"), written) << "a finished video was replaced";
   EXPECT_EQ(weft({"run", "s.toml", "-o", "a.mp4", "--resume", "--set", "time.duration=0.4"}).exit_code, 6)
       << "another film has this name";

@@ -176,6 +176,21 @@ TEST_F(Joining, OfFoldersIsByteForByteTheVideoOfRender) {
   EXPECT_TRUE(support::read_bytes(folder_ / "third.mp4") == support::read_bytes(folder_ / "every_third.mp4"));
 }
 
+TEST_F(Joining, OfPicturesIsInTheCodecThatIsAskedFor) {
+  draw("p/{frame:05}.png", ":3");
+  for (const auto& [name, options] : {std::pair{"v.mov", Arguments{}}, {"v.mkv", {}}, {"v.mp4", {"--crf", "40"}}}) {
+    Arguments render{"render", "c", "-o", name}, encode{"encode", "p", "-o", std::string("e_") + name};
+    for (Arguments* words : {&render, &encode}) {
+      words->insert(words->end(), {"--frames", ":3"});
+      words->insert(words->end(), options.begin(), options.end());
+    }
+    expect_well(render);
+    const Outcome outcome = run_weft(encode, folder_);
+    EXPECT_EQ(outcome.exit_code, 0) << outcome.err;
+    EXPECT_EQ(decoded(std::string("e_") + name), decoded(name)) << name;
+  }
+}
+
 TEST_F(Joining, OfVideosKeepsEveryPictureAndItsTime) {
   std::string pictures;
   const auto lines = [&](const std::string& video) {
@@ -226,7 +241,11 @@ TEST_F(Joining, RefusesWhatIsNoPartOfTheFilm) {
   expect_well({"render", "d", "-o", "q/{frame:05}.png", "--frames", "9:21"});
   expect_refused({"p", "q", "-o", "joined.mp4"}, 2, "q/00009.png: expected parts of one film, its scene_hash is '");
   expect_refused({"c", "-o", "joined.mp4"}, 4, "c: holds no pictures");
-  expect_refused({"p", "-o", "p.avi"}, 2, "-o: expected a name ending in .mp4");
+  expect_refused({"p", "-o", "p.avi"}, 2, "-o: expected a name ending in .mp4, .mov or .mkv");
+  expect_refused({"p", "-o", "p.mov", "--codec", "ffv1"}, 2, "--codec: ffv1 is kept in files ending in .mkv");
+  expect_refused({"p", "-o", "p.mov", "--crf", "20"}, 2, "--crf: expected h264");
+  expect_refused({"b.mp4", "-o", "b.mov"}, 2, "b.mov: videos are joined as they are, into .mp4");
+  expect_refused({"b.mp4", "-o", "joined.mp4", "--crf", "20"}, 2, "videos are joined as they are");
 }
 
 }  // namespace

@@ -88,7 +88,8 @@ TEST_F(Helpers, CompletionAndManualKnowAllThatHelpKnows) {
     EXPECT_NE(fish.find("-a " + name + " -d"), std::string::npos) << name;
     for (const CLI::Option* option : command->get_options())
       for (const std::string& word : option->get_lnames()) {
-        EXPECT_NE(zsh.find("'*--" + word + "["), std::string::npos) << word;
+        EXPECT_NE(zsh.find("'*--" + word + (option->get_items_expected_max() > 0 ? "=[" : "[")), std::string::npos)
+            << word;
         EXPECT_NE(fish.find("from " + name + "' "), std::string::npos) << word;
         EXPECT_NE(fish.find("-l " + word + " "), std::string::npos) << word;
       }
@@ -101,13 +102,22 @@ TEST_F(Helpers, CompletionAndManualKnowAllThatHelpKnows) {
   EXPECT_EQ(completed("weft thu", 1), "thumbnail\n");
   EXPECT_EQ(completed("weft run s.toml --qual", 3), "--quality\n");
   EXPECT_EQ(completed("weft run --quality \"\"", 3), "draft preview final\n");
+  EXPECT_EQ(completed("weft run --quality = d", 4), "draft\n") << "--quality=d, as bash parts it";
+  EXPECT_EQ(completed("weft farm \"\"", 2), "submit status cancel\n");
   EXPECT_EQ(completed("weft run --output \"\"", 3), "\n") << "names of files, by the shell itself";
 }
 
 TEST_F(Helpers, TwoDashesEndTheOptions) {
   fs::copy(folder_ / "s.toml", folder_ / "-s.toml");
   EXPECT_EQ(run_weft({"check", "--", "-s.toml"}, folder_).exit_code, 0);
-  EXPECT_EQ(run_weft({"check", "-s.toml"}, folder_).exit_code, 2);
+  EXPECT_EQ(run_weft({"check", "./-s.toml"}, folder_).exit_code, 0);
+  const Outcome outcome = run_weft({"check", "-s.toml"}, folder_);
+  EXPECT_EQ(outcome.exit_code, 2);
+  EXPECT_NE(outcome.err.find("unknown option -s.toml; a file of this name is written ./-s.toml, or behind --"),
+            std::string::npos)
+      << outcome.err;
+  EXPECT_NE(run_weft({"check", "--pln"}, folder_).err.find("unknown option --pln; did you mean --plan?"),
+            std::string::npos);
 }
 
 TEST_F(Helpers, CheckEstimatesWhatARunTakes) {

@@ -1,6 +1,8 @@
 // weft sweep: which runs there are, and what becomes of them.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <signal.h>
+#include <sys/file.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -142,7 +144,7 @@ TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {
   EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
   EXPECT_NE(outcome.err.find("exit code 2: weft: --camera: expected w, got v"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("weft: 1 of 2 runs failed:\n"), std::string::npos) << outcome.err;
-  EXPECT_NE(table().find(",2,,0,"), std::string::npos) << table();
+  EXPECT_NE(table().find(",2,,0,,,,,,\"camera="), std::string::npos) << "figures of no frame: " << table();
   EXPECT_TRUE(fs::exists(folder_ / "w/sheet.png"));
 }
 
@@ -156,6 +158,14 @@ TEST_F(Sweeps, MistakesOfAnyRunEndThemBeforeTheFirst) {
   EXPECT_EQ(run_weft({"sweep", "s.toml", "-o", ".", "--set", kRadius}, folder_).exit_code, 2) << "holds the scene";
 }
 
+TEST_F(Sweeps, OfWhichNoneIsWellHaveAPageThatSaysWhyAndNoSheet) {
+  const Outcome outcome = sweep({"--set", "cloth.cloth.position=[0,0,0],[0,0,0.01]"});
+  EXPECT_EQ(outcome.exit_code, 3);
+  EXPECT_NE(outcome.err.find("w: table.md, table.csv, page/index.html\n"), std::string::npos) << outcome.err;
+  EXPECT_NE(support::read_bytes(folder_ / "w/page/index.html").find("expected surfaces that are apart"),
+            std::string::npos);
+}
+
 TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
   const Arguments arguments{"--set", kRadius, "--set", "time.step=0.002"};
   Subprocess process(with_sweep(arguments), folder_);
@@ -167,6 +177,27 @@ TEST_F(Sweeps, StopInOrderAndGoOnToTheSameVideos) {
   EXPECT_EQ(sweep({"--set", kRadius, "--set", "time.step=0.002"}).exit_code, 0);
   expect_well({"run", "s.toml", "-o", "one.mp4", "--set", "time.step=0.002"});
   EXPECT_EQ(decoded("w/radius=0.1/s.mp4"), decoded("one.mp4"));
+}
+
+/// True once no process writes this cache; waits for it for five seconds.
+bool is_left(const fs::path& cache) {
+  const int lock = ::open((cache / "lock").c_str(), O_RDONLY);
+  bool left = false;
+  for (int i = 0; i < 250 && !left; ++i) {
+    left = ::flock(lock, LOCK_EX | LOCK_NB) == 0;
+    if (!left) usleep(20'000);
+  }
+  ::close(lock);
+  return left;
+}
+
+TEST_F(Sweeps, ThatAreKilledTakeTheirRunsWithThem) {
+  // Half a minute, were it not for the signal.
+  Subprocess process(with_sweep({"--set", "time.step=0.0001,0.01"}), folder_);
+  const fs::path cache = folder_ / "w/step=0.0001/.s.weft-cache";
+  for (int i = 0; i < 3000 && !fs::exists(cache / "frame_00000.weft"); ++i) usleep(20'000);
+  process.send(SIGKILL);
+  EXPECT_TRUE(is_left(cache)) << "the run goes on";
 }
 
 }  // namespace

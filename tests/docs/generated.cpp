@@ -58,9 +58,16 @@ std::vector<Entry> section(const std::vector<std::string>& lines, const std::str
   return entries;
 }
 
+std::vector<Entry> commands_of_help() {
+  std::vector<Entry> commands = section(help({}), "Subcommands:");
+  for (Entry& command : commands)
+    command.name = command.name.substr(0, command.name.find(','));  // others mean the same
+  return commands;
+}
+
 std::string commands() {
   std::string table = "| command | |\n|---|---|\n";
-  for (const Entry& command : section(help({}), "Subcommands:")) {
+  for (const Entry& command : commands_of_help()) {
     std::string usage = command.name;
     for (const std::string& line : help({command.name})) {
       if (line.starts_with("Usage: weft ")) usage = line.substr(std::string("Usage: weft ").size());
@@ -74,7 +81,7 @@ std::string commands() {
 // One row for each option and meaning, in order of the names, with the commands that have it.
 std::string options() {
   std::vector<std::pair<std::string, std::vector<std::string>>> rows;
-  for (const Entry& command : section(help({}), "Subcommands:")) {
+  for (const Entry& command : commands_of_help()) {
     for (const Entry& option : section(help({command.name}), "Options:")) {
       if (option.name == "-h,--help") continue;
       const std::string name = std::regex_replace(option.name, std::regex(R"( REQUIRED| \.\.\.)"), "");

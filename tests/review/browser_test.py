@@ -89,11 +89,11 @@ class Page(unittest.TestCase):
         elsewhere = [url for url in self.browser.requests() if not url.startswith(("file:", "data:", "about:"))]
         self.assertEqual(elsewhere, [])
 
-    def open(self, address="", width=1280, height=800, dark=False):
+    def open(self, address="", width=1280, height=800, dark=False, page=None):
         self.browser.resize(width, height)
         self.browser.prefer(dark)
         self.browser.open("about:blank")
-        self.browser.open((self.folder / "page/index.html").as_uri() + address)
+        self.browser.open((page or self.folder / "page/index.html").as_uri() + address)
         self.browser.wait("return document.querySelector('#content > *')")
 
     def open_run(self, run, more=""):
@@ -145,6 +145,39 @@ class Page(unittest.TestCase):
         self.browser.run("[...document.querySelectorAll('.runs thead button')].find((b) => b.textContent === 'Largest strain').click()")
         order = self.browser.run(shown)
         self.assertEqual((order[-2:]), ["runs/soft-plain", f"runs/img-src-x-onerror-alert-1-co"])
+
+    def sweep(self):
+        """Runs with the values 0.02, 0.01, 0.2 of one key and two of another, of which one is no scene; once for all tests."""
+        page = self.folder / "sweep/page"
+        if not page.exists():
+            subprocess.run([WEFT, "sweep", f"{SOURCE}/scenes/falling_band.toml", "-o", "sweep", "--quality", "draft", "--size", "64x36",
+                            "--frames", "0:3", "--set", "time.step=0.02,0.01,0.2", "--set", "cloth.band.position=[0,0,2],[0,0,0]"],
+                           cwd=self.folder, check=False, capture_output=True)
+        return page / "index.html"
+
+    def test_runs_of_a_sweep_stand_in_its_order_with_their_values(self):
+        def column(k):
+            return self.browser.run("return [...document.querySelectorAll('.runs tbody tr')].map((tr) => tr.cells[arguments[0]].textContent)", k)
+
+        def sort(label):
+            self.browser.run("[...document.querySelectorAll('.runs thead button')].find((b) => b.textContent === arguments[0]).click()", label)
+
+        self.open(page=self.sweep())
+        heads = self.browser.run("return [...document.querySelectorAll('.runs thead th')].map((th) => th.textContent)")
+        step, place = heads.index("step"), heads.index("position")
+        self.assertEqual(column(step), ["0.02", "0.02", "0.01", "0.01", "0.2", "0.2"])
+        self.assertEqual(column(2)[0], "step=0.02_position=0,0,2falling_band")
+        sort("step")
+        self.assertEqual(column(step), ["0.01", "0.01", "0.02", "0.02", "0.2", "0.2"])
+        sort("position")
+        self.assertEqual(column(place), ["[0,0,2]"] * 3 + ["[0,0,0]"] * 3)
+        sort("Run")
+        self.assertEqual(column(step), ["0.02", "0.02", "0.01", "0.01", "0.2", "0.2"])
+        self.assertRegex(column(3)[1], "failed: scene.*falling_band.toml: expected surfaces that are apart")
+        self.assertEqual(self.browser.run("return review.model.versions(review.model.runs[0]).length"), 1)
+        for width in (1280, 390):
+            self.open(page=self.sweep(), width=width)
+            self.assertEqual(self.overflow(), [], width)
 
     def test_keyboard_alone_chooses_and_compares_runs(self):
         self.open()
@@ -380,13 +413,17 @@ class Page(unittest.TestCase):
         axe, violations = pathlib.Path(os.environ["WEFT_AXE"]).read_text(), []
         for dark in (False, True):
             for width in (1280, 390):
-                for address in ("", "#run=runs/plain", "#run=runs/soft-plain&view=side", "#run=runs/img-src-x-onerror-alert-1-co",
-                                "#compare=runs/plain&compare=runs/soft-plain&compare=runs/stills-plain"):
-                    self.open(address, width=width, dark=dark)
+                pages = [(None, address) for address in (
+                    "", "#run=runs/plain", "#run=runs/soft-plain&view=side", "#run=runs/img-src-x-onerror-alert-1-co",
+                    "#compare=runs/plain&compare=runs/soft-plain&compare=runs/stills-plain")]
+                failed = "#run=runs/step-0-01-position-0-0-0-falling-band"
+                for page, address in [*pages, (self.sweep(), ""), (self.sweep(), failed)]:
+                    self.open(address, width=width, dark=dark, page=page)
                     self.browser.run(axe)
                     self.browser.run("window.found = null; axe.run({preload: false}).then((result) => (window.found = result))")
                     found = self.browser.wait("return window.found && [...window.found.violations.map((v) => `${v.id}: ${v.nodes.map((n) => n.target).join(' ')}`), 'done']")
                     violations += [(address, width, dark, violation) for violation in found[:-1]]
+        self.maxDiff = None
         self.assertEqual(violations, [])
 
     def test_pages_without_statistics_pictures_or_scene_say_so(self):

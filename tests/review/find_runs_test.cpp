@@ -55,6 +55,26 @@ TEST_F(FindRuns, PicturesNamedByNumbersAloneAreNamedAsTheirFolder) {
   EXPECT_EQ(found("p"), "p: 0.png 1.png\n");
 }
 
+TEST_F(FindRuns, OfASweepAreInItsOrderAndHaveItsValues) {
+  write("w/sweep.json", R"({"runs": [{"folder": "bend=10", "set": {"a.bend": "10"}},
+                                     {"folder": "bend=2", "set": {"a.bend": "2"}}, {"folder": "bend=2"}, 1]})");
+  for (const char* run : {"w/bend=2/s", "w/bend=10/s", "w/other", "a", "z"}) write(std::string(run) + ".mp4");
+  EXPECT_EQ(found(), "a: a.mp4\nw/bend=10/s: s.mp4\nw/bend=2/s: s.mp4\nw/other: other.mp4\nz: z.mp4\n");
+  const auto runs = find_runs(folder_ / "w");
+  EXPECT_EQ(runs[0].values, (Json{{"a.bend", "10"}}));
+  EXPECT_EQ(runs[1].values, (Json{{"a.bend", "2"}}));
+  EXPECT_TRUE(runs[2].values.is_null());
+}
+
+TEST_F(FindRuns, PicturesOfWhichAFarmHasJoinedTheVideoAreNoRunOfTheirOwn) {
+  write("w/sweep.json", R"({"runs": [{"folder": "b=1", "set": {}}, {"folder": "b=2", "set": {}}]})");
+  for (const char* picture :
+       {"w/b=1/frames/00000.png", "w/b=1/frames/00001.png", "w/b=2/frames/00000.png", "w/b=2/frames/00001.png"})
+    write(picture);
+  write("w/b=1/s.mp4");
+  EXPECT_EQ(found(), "w/b=1/s: s.mp4\nw/b=2/frames: 00000.png 00001.png\n");
+}
+
 TEST_F(FindRuns, HiddenFilesAndFormerPagesArePassedOver) {
   write(".band.mp4.1.tmp.mp4");
   write(".git/band.mp4");

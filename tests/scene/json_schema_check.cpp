@@ -27,6 +27,7 @@ bool has_type(const json& value, const std::string& type) {
 class Judge {
  public:
   std::string violation(const json& schema, const json& value, const std::string& path) {
+    if (schema == true) return {};
     for (const auto& [keyword, unused] : schema.items()) {
       if (!kKnown.contains(keyword)) throw std::logic_error("unknown keyword " + keyword);
     }
@@ -45,12 +46,13 @@ class Judge {
         return at("below minimum");
       if (value > schema.value("maximum", 1e300)) return at("above maximum");
     }
-    for (const char* keyword : {"anyOf", "oneOf"}) {
-      if (!schema.contains(keyword)) continue;
-      const auto fitting = std::count_if(schema[keyword].begin(), schema[keyword].end(),
-                                         [&](const json& one) { return violation(one, value, path).empty(); });
-      if (fitting == 0) return at("none of the choices fits");
-      if (fitting > 1 && std::string(keyword) == "oneOf") return at("several choices fit");
+    const auto fits = [&](const json& one) { return violation(one, value, path).empty(); };
+    if (schema.contains("anyOf") && std::none_of(schema["anyOf"].begin(), schema["anyOf"].end(), fits))
+      return at("none of the choices fits");
+    for (const json& condition : schema.value("allOf", json::array())) {
+      if (!violation(condition["if"], value, path).empty()) continue;
+      const std::string found = violation(condition["then"], value, path);
+      if (!found.empty()) return found;
     }
     if (value.is_array()) return array_violation(schema, value, path);
     if (value.is_object()) return object_violation(schema, value, path);
@@ -88,7 +90,7 @@ class Judge {
 
   const std::set<std::string> kKnown = {
       "$schema", "title",    "description",      "default",    "type",     "enum",
-      "pattern", "minimum",  "exclusiveMinimum", "maximum",    "anyOf",    "oneOf",
+      "pattern", "minimum",  "exclusiveMinimum", "maximum",    "anyOf",    "allOf",
       "items",   "minItems", "maxItems",         "properties", "required", "additionalProperties"};
 };
 

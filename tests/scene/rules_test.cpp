@@ -247,10 +247,13 @@ void expect_in_properties(const std::vector<Rule>& rules, const json& properties
 
 void expect_in_schema(const Table& table, const json& schema, const std::string& path) {
   if (table.variants.empty()) return expect_in_properties(table.rules, schema["properties"], path);
-  ASSERT_EQ(schema["oneOf"].size(), table.variants.size());
+  ASSERT_EQ(schema["allOf"].size(), table.variants.size());
   for (std::size_t i = 0; i < table.variants.size(); ++i) {
-    const json& properties = schema["oneOf"][i]["properties"];
-    EXPECT_EQ(properties[table.selector]["enum"], json({table.variants[i].name}));
+    const json& condition = schema["allOf"][i];
+    EXPECT_EQ(condition["if"]["properties"][table.selector]["enum"], json({table.variants[i].name}));
+    json properties = condition["then"]["properties"];
+    for (auto& [key, property] : properties.items())
+      if (property == true) property = schema["properties"][key];
     expect_in_properties(table.rules, properties, path);
     expect_in_properties(table.variants[i].rules, properties, path);
   }
@@ -274,7 +277,7 @@ TEST(Schema, StatesTypeRangeDefaultAndChoices) {
   EXPECT_EQ(fps["maximum"], 1000);
   EXPECT_EQ(fps["default"], 25);
   EXPECT_EQ(time["properties"]["integrator"]["enum"], json({"implicit_euler", "implicit_midpoint", "bdf2"}));
-  EXPECT_EQ(schema["properties"]["cloth"]["items"]["oneOf"][0]["required"], json({"name"}));
+  EXPECT_EQ(schema["properties"]["cloth"]["items"]["required"], json({"name"}));
 }
 
 TEST(Schema, AcceptsWhatTheLoaderAccepts) {
@@ -291,12 +294,24 @@ TEST(Schema, RefusesWhatTheLoaderRefuses) {
   EXPECT_EQ(violation("[time]\nduraton = 1\n"), "time.duraton: unknown property");
   EXPECT_EQ(violation("[contact]\nself = 1\n"), "contact.self: wrong type");
   EXPECT_EQ(violation("[physics]\nwind = [1, 2]\n"), "physics.wind: wrong number of items");
-  EXPECT_EQ(violation("cloth = [{ name = 'a', pin = [1] }]\n"), "cloth.0: none of the choices fits");
-  EXPECT_EQ(violation("obstacle = [{ name = 'a', shape = 'sphere', height = 1 }]\n"),
-            "obstacle.0: none of the choices fits");
+  EXPECT_EQ(violation("cloth = [{ name = 'a', pin = [1] }]\n"), "cloth.0.pin.0: wrong type");
   EXPECT_EQ(violation("[render]\nsky_color = '#12'\n"), "render.sky_color: none of the choices fits");
   EXPECT_EQ(violation("camera = [{ name = '1', position = [1, 2, 3], target = [0, 0, 0] }]\n"),
-            "camera.0: none of the choices fits");
+            "camera.0.name: wrong pattern");
+}
+
+TEST(Schema, NamesTheKeyThatAVariantDoesNotHave) {
+  const json schema = json::parse(json_schema());
+  const auto violation = [&](const std::string& text) { return schema_violation(schema, json_of_toml(text)); };
+  EXPECT_EQ(violation("obstacle = [{ name = 'a', shape = 'sphere', height = 1 }]\n"),
+            "obstacle.0.height: unknown property");
+  EXPECT_EQ(violation("cloth = [{ name = 'a', particels = [3, 3] }]\n"), "cloth.0.particels: unknown property");
+  // A plane has two edges, or one for both; a box has three.
+  EXPECT_EQ(violation("obstacle = [{ name = 'a', shape = 'plane', size = 2 }]\n"), "");
+  EXPECT_EQ(violation("obstacle = [{ name = 'a', shape = 'box', size = [2, 2] }]\n"),
+            "obstacle.0.size: wrong number of items");
+  EXPECT_EQ(violation("obstacle = [{ name = 'a', shape = 'ball' }]\n"), "obstacle.0.shape: not one of the choices");
+  EXPECT_EQ(violation("obstacle = [{ name = 'a', radius = 1 }]\n"), "obstacle.0: shape is missing");
 }
 
 }  // namespace

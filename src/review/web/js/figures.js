@@ -20,7 +20,8 @@
     return { value: pair[name], frame: pair.verdict === "same" ? undefined : run.frameOf(pair.picture) };
   };
   const last = (name) => (run) => ({ value: run.digest[name]?.last });
-  const total = (name) => (run) => ({ value: run.totals[name] });
+  // Of a run without a frame all of this is 0, and says nothing.
+  const total = (name) => (run) => ({ value: run.digest.frame ? run.totals[name] : undefined });
   const perFrame = (name) => (run) => {
     const frames = (run.digest.frame?.count ?? 0) - 1; // frame 0 is given, not computed
     return { value: known(run.totals[name]) && frames > 0 ? (1e3 * run.totals[name]) / frames : undefined };
@@ -33,7 +34,7 @@
 
   review.figures = [
     figure("frames", "Frames", (run) => ({ value: run.digest.frame?.count }), count, "simulated, frame 0 included"),
-    figure("particles", "Particles", (run) => ({ value: run.stats.particles }), count),
+    figure("particles", "Particles", (run) => ({ value: run.stats.particles || undefined }), count),
     figure("strain", "Largest strain", largest("max_strain"), percent, "of any thread, stretched or squeezed"),
     figure("distance", "Smallest distance", smallest("min_distance_m"), millimetres, "between surfaces; at or below 0 they touched"),
     figure("error", "Error estimate", total("error_estimate_m"), millimetres, "of position from the time steps, summed up over all of them"),

@@ -30,6 +30,7 @@
       this.key = data.key;
       this.filed = data.decision ?? null; // of review.json
       this.accept = data.accept ?? null;
+      this.values = data.values ?? {}; // of a sweep: what it changed, by key
     }
 
     /** Reads what only its own page shows, once. A page from a file may load scripts, but read nothing else. */
@@ -54,6 +55,10 @@
 
     get scene() {
       return this.stats.scene ?? this.name;
+    }
+    /** Runs of a sweep are told by their values, all being of one scene. */
+    get title() {
+      return Object.keys(this.values).length > 0 ? this.name.replace(/\/[^/]*$/, "") : this.name;
     }
     get label() {
       return this.isReference ? `${this.name} (reference)` : this.name;
@@ -112,6 +117,10 @@
     get warnings() {
       return this.stats.warnings ?? [];
     }
+    /** Why it ended early, and what it warned of. */
+    get reasons() {
+      return this.stats.message ? [this.stats.message, ...this.warnings] : this.warnings;
+    }
     /** {level, text}: level is good, warn, bad or unknown. */
     get verdict() {
       const code = this.stats.exit_code;
@@ -128,16 +137,30 @@
   const references = data.references.map((run) => new Run(run));
   const byId = new Map([...runs, ...references].map((run) => [run.id, run]));
 
+  runs.forEach((run, place) => (run.place = place));
+
+  // Keys of which runs of a sweep have several values. Texts stand as the sweep has them, numbers by their size.
+  const keys = [...new Set(runs.flatMap(({ values }) => Object.keys(values)))];
+  const swept = keys.filter((key) => new Set(runs.map(({ values }) => values[key])).size > 1).map((key) => {
+    const texts = [...new Set(runs.map(({ values }) => values[key]))];
+    const last = key.split(".").at(-1);
+    const alone = keys.filter((other) => other.split(".").at(-1) === last).length === 1;
+    const value = ({ values }) => (known(Number(values[key])) ? Number(values[key]) : values[key] && texts.indexOf(values[key]));
+    return { key, label: alone ? last : key, text: ({ values }) => values[key] ?? "", value };
+  });
+
   const age = (run) => run.date?.getTime() ?? 0;
+  // Runs of a sweep are versions only of those that have its values.
+  const shot = (run) => JSON.stringify([run.scene, run.values]);
   /** Runs of the same scene, the newest first. */
-  const versions = (run) => runs.filter(({ scene }) => scene === run.scene).sort((a, b) => age(b) - age(a));
+  const versions = (run) => runs.filter((other) => shot(other) === shot(run)).sort((a, b) => age(b) - age(a));
   const newest = new Map();
-  for (const run of runs) if (!newest.has(run.scene) || age(run) > age(newest.get(run.scene))) newest.set(run.scene, run);
+  for (const run of runs) if (!newest.has(shot(run)) || age(run) > age(newest.get(shot(run)))) newest.set(shot(run), run);
 
   review.loaded = (id, detail) => byId.get(id)?.loaded(detail);
   review.model = {
-    version: data.version, runs, references, versions,
+    version: data.version, runs, references, versions, swept,
     find: (id) => byId.get(id) ?? null,
-    isNewest: (run) => newest.get(run.scene) === run,
+    isNewest: (run) => newest.get(shot(run)) === run,
   };
 }

@@ -3,7 +3,11 @@
 {
   const { h } = review;
   const { date, plural } = review.format;
-  const COLUMNS = ["frames", "particles", "strain", "distance", "error", "newton", "cpu_frame"].map((key) => review.figure[key]);
+  const ALL_COLUMNS = ["frames", "particles", "strain", "distance", "error", "newton", "cpu_frame"].map((key) => review.figure[key]);
+  // A sweep has columns of its own: those in which its runs are all alike make room.
+  const tells = ({ of }) => new Set(review.model.runs.map((run) => of(run).value).filter((value) => value !== undefined)).size > 1;
+  const SWEPT = review.model.swept.length > 0;
+  const COLUMNS = SWEPT ? ALL_COLUMNS.filter(tells) : ALL_COLUMNS;
   const STAGES = ["simulate_cpu", "collide_cpu", "render_cpu", "encode_cpu"];
   const SHOWN = [["", "all decisions"], ["open", "open"], ["needs work", "needs work"], ["approved", "approved"], ["changed", "changed since"]];
   const LEVELS = ["bad", "warn", "unknown", "good"];
@@ -77,7 +81,7 @@
       };
       return h("thead", {}, h("tr", {},
         h("th", {}, h("span.hidden", {}, "Choose")), h("th", {}, h("span.hidden", {}, "Picture")),
-        sorter("name", "Run"), sorter("verdict", "Verdict"), sorter("date", "Written"), COLUMNS.map(({ key, label, note }) => sorter(key, label, note))));
+        sorter("name", "Run"), sorter("verdict", "Verdict"), review.model.swept.map(({ key, label }) => sorter(key, label, key)), sorter("date", "Written"), COLUMNS.map(({ key, label, short, note }) => sorter(key, SWEPT ? short : label, note))));
     }
 
     buildRow(run) {
@@ -85,15 +89,16 @@
       const box = h("input", { type: "checkbox", "aria-label": `Choose ${run.name}`, onchange: () => this.choose(run, box.checked) });
       const figures = COLUMNS.map(({ key, short, of, format }) =>
         h("td.figure", { "data-label": short }, format(of(run).value), key === "cpu_frame" && shares(run)));
-      const notes = [...run.warnings, ...run.problems], decided = review.decisions.chip(run);
+      const notes = [...run.reasons, ...run.problems], decided = review.decisions.chip(run);
       const element = h("tr", { "data-run": run.id },
         h("td.choose", {}, h("label", {}, box)),
         h("td.poster", {}, h("a", { href: address, tabindex: -1, "aria-hidden": "true" }, review.posterOf(run))),
-        h("td.name", {}, h("a", { href: address }, review.breakable(run.name)),
+        h("td.name", {}, h("a", { href: address }, review.breakable(run.title)),
           h("small", {}, run.scene === run.name ? "" : run.scene)),
         h("td.verdict", {}, decided && review.chip(decided), review.chip(run.verdict), run.likeness && review.chip(run.likeness),
           run.problems.length > 0 && review.chip({ level: "unknown", text: "incomplete" }),
-          notes.length > 0 && h("small", { title: notes.join("\n") }, notes[0])),
+          notes.length > 0 && h("small", { title: notes.join("\n") }, notes[0].replace(/^\S*\//, ""))),
+        review.model.swept.map(({ label, text }) => h("td.figure", { "data-label": label }, text(run))),
         h("td.figure", { "data-label": "Written" }, date(run.date)), figures);
       return { run, box, element };
     }
@@ -128,7 +133,7 @@
       const wanted = this.filter.value.trim().toLowerCase();
       let shown = 0;
       for (const { run, element } of this.rows) {
-        const text = [run.name, run.scene, run.verdict.text, run.likeness?.text, ...run.warnings, ...run.problems].join(" ").toLowerCase();
+        const text = [run.name, run.scene, run.verdict.text, run.likeness?.text, ...run.reasons, ...run.problems].join(" ").toLowerCase();
         element.hidden = !text.includes(wanted) || (this.state.value !== "" && review.decisions.state(run) !== this.state.value) || (this.newest.checked && !review.model.isNewest(run));
         shown += element.hidden ? 0 : 1;
       }
@@ -141,10 +146,11 @@
     sort(key) {
       const down = this.sorters.get(key)?.ariaSort === "ascending";
       const value = ({ run }) => {
-        if (key === "name") return run.name;
+        if (key === "name") return run.place;
         if (key === "date") return run.date?.getTime();
         if (key === "verdict") return LEVELS.indexOf(run.verdict.level);
-        return review.figure[key]?.of(run).value;
+        const swept = review.model.swept.find((column) => column.key === key);
+        return swept ? swept.value(run) : review.figure[key]?.of(run).value;
       };
       const order = (a, b) => {
         const [x, y] = [value(a), value(b)];
