@@ -4,7 +4,9 @@
 layout(binding = 3) uniform sampler2D soft_light_map;
 uniform ivec2 axis;
 uniform float share_of_lit;  // that neighbours have
-const float kCrisp = 0.15;   // change of a light's share from texel to texel beyond which it is not blurred away
+// Change of a light's share from texel to texel beyond which it is not blurred away: on floor, and on what is curved, where
+// half of it may be noise of the faces.
+const float kCrispFloor = 0.25, kCrispCurved = 0.45;
 layout(location = 0) out vec4 soft_light;
 
 void main() {
@@ -30,6 +32,6 @@ void main() {
     steepest = max(steepest, abs(there - here_lit) * step(0.01, same));
   }
   // Pixels beside what is crisp search for themselves: what is blurred here would lie as a second line along the edge.
-  vec2 crisp = max(soft_crisp(center), step(kCrisp, steepest));
+  vec2 crisp = max(soft_crisp(center), step(soft_surface(center) == 1.0 ? kCrispFloor : kCrispCurved, steepest));
   soft_light = vec4(pack_soft(soft_surface(center), sum.x / sum.y), lit.xy / lit.z - 2.0 * crisp, center.w);
 }

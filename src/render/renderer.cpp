@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
+#include "render/bounced_light.hpp"
 #include "render/data_passes.hpp"
 #include "render/edges.hpp"
 #include "render/framing.hpp"
@@ -80,25 +81,6 @@ struct Plan {
   std::vector<Vec3> caster_positions;
 };
 
-/// A surface without colours of its own.
-frame::Appearance clay(const frame::Appearance& look) {
-  frame::Appearance plain = look;
-  plain.color = Vec3(0.74, 0.72, 0.69);
-  plain.back_color = Vec3(0.60, 0.58, 0.56);
-  plain.roughness = 0.7;
-  plain.thread_spacing = 0;
-  plain.finish = {0, 0.5, 0.2, 0};
-  plain.hem = 0;
-  return plain;
-}
-
-/// Share of the light that cloth stops, head-on. Dense weaves let light through, but nothing is seen behind them.
-double opacity_of(const frame::Surface& surface) {
-  constexpr double kFirst = 0.5, kSlope = 1.25;  // so that chiffon, with 0.9, stops half
-  if (surface.kind != frame::ObjectKind::cloth) return 1;
-  return 1 - kSlope * std::clamp(surface.appearance.finish.sheer - kFirst, 0.0, 0.5);
-}
-
 std::vector<Vec3> subject_positions(const frame::FrameSnapshot& snapshot) {
   std::vector<Vec3> all;
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
@@ -137,6 +119,7 @@ struct Renderer::Impl {
   // GL objects; made and deleted with the context current.
   struct Passes {
     ShadowMaps shadows;
+    BouncedLight bounced;
     SoftLight soft_light;
     GeometryBuffer geometry;
     Shading shading;
@@ -146,6 +129,7 @@ struct Renderer::Impl {
 
     Passes(const Gl& gl, const QualitySettings& quality, const Settings& settings)
         : shadows(gl, quality),
+          bounced(gl),
           soft_light(gl, quality, settings.width, settings.height),
           geometry(gl, settings.width, settings.height),
           shading(gl, quality, settings.width, settings.height, geometry),
@@ -172,6 +156,7 @@ struct Renderer::Impl {
   Shading::Features features(const Plan& plan) const;
   std::vector<Shading::Material> materials(const Plan& plan) const;
   bool reflects(const Plan& plan) const { return quality.mirrors && mirror_roughness(plan.lighting.style, plan.floor); }
+  void bounce(const Plan& plan, std::span<const DrawnMesh> meshes, double heat);
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
   void look_through_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
                           std::span<const DrawnMesh> opaque, const PixelArea& area);
@@ -272,12 +257,20 @@ Shading::Features Renderer::Impl::features(const Plan& plan) const {
 
 std::vector<Shading::Material> Renderer::Impl::materials(const Plan& plan) const {
   std::vector<Shading::Material> list;
-  for (const SurfaceBuffers& surface : passes->surfaces) {
-    const frame::Appearance& look = surface.surface().appearance;
-    list.push_back({look, surface.surface().kind == frame::ObjectKind::cloth, opacity_of(surface.surface())});
-    if (plan.lighting.style.plain) list.back().appearance = clay(list.back().appearance);
-  }
+  for (const SurfaceBuffers& surface : passes->surfaces)
+    list.push_back(material_of(surface.surface(), plan.lighting.style.plain));
   return list;
+}
+
+void Renderer::Impl::bounce(const Plan& plan, std::span<const DrawnMesh> meshes, double heat) {
+  const std::vector<Shading::Material> looks = materials(plan);
+  std::vector<BouncingSurface> surfaces;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (heat > 0 && looks[i].cloth) continue;  // its colors are no paint
+    surfaces.push_back({&passes->surfaces[i], &looks[i].appearance, plan.lighting.style.plain, meshes[i].opacity});
+  }
+  passes->bounced.draw(surfaces, plan.floor, plan.lighting.style.floor_tint, irradiance_of(plan.lighting.around),
+                       plan.subjects, passes->shadows);
 }
 
 void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
@@ -314,6 +307,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
 
   passes->shadows.draw(plan.lights, plan.caster_positions, meshes, plan.up, plan.lighting.exposure.direct);
   const double heat = heat_scale(snapshot, plan.stage);
+  bounce(plan, meshes, heat);
   const SkyView above = fit_sky(plan.subjects, plan.up, sky_reach(plan.subjects));
   if (reflects(plan)) {
     if (!mirror) mirror.emplace(gl, quality, settings.width, settings.height);

@@ -71,7 +71,30 @@ struct Grid {
   }
 };
 
+/// A surface without colours of its own.
+frame::Appearance clay(const frame::Appearance& look) {
+  frame::Appearance plain = look;
+  plain.color = Vec3(0.74, 0.72, 0.69);
+  plain.back_color = Vec3(0.60, 0.58, 0.56);
+  plain.roughness = 0.7;
+  plain.thread_spacing = 0;
+  plain.finish = {0, 0.5, 0.2, 0};
+  plain.hem = 0;
+  return plain;
+}
+
 }  // namespace
+
+double opacity_of(const frame::Surface& surface) {
+  constexpr double kFirst = 0.5, kSlope = 1.25;  // so that chiffon, with 0.9, stops half
+  if (surface.kind != frame::ObjectKind::cloth) return 1;
+  return 1 - kSlope * std::clamp(surface.appearance.finish.sheer - kFirst, 0.0, 0.5);
+}
+
+Shading::Material material_of(const frame::Surface& surface, bool plain) {
+  return {plain ? clay(surface.appearance) : surface.appearance, surface.kind == frame::ObjectKind::cloth,
+          opacity_of(surface)};
+}
 
 Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry)
     : gl_(&gl),

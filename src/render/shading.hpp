@@ -71,4 +71,10 @@ class Shading {
   int material_rows_ = 0;
 };
 
+/// Share of the light that cloth stops, head-on. Dense weaves let light through, but nothing is seen behind them.
+double opacity_of(const frame::Surface& surface);
+
+/// `plain`: of clay.
+Shading::Material material_of(const frame::Surface& surface, bool plain);
+
 }  // namespace weft::render
