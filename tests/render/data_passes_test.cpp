@@ -2,11 +2,16 @@
 #include "render/data_passes.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 
+#include <cstdlib>
 #include <random>
+#include <sstream>
 
+#include "image/exr.hpp"
 #include "render/renderer.hpp"
 #include "render/snapshots.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::render {
 namespace {
@@ -101,7 +106,7 @@ struct Viewer {
   }
 };
 
-class DataPassesTest : public testing::Test {
+class DataPassesTest : public support::TestFolder {
  protected:
   static void SetUpTestSuite() {
     Settings settings;
@@ -122,20 +127,23 @@ class DataPassesTest : public testing::Test {
     return 0;
   }
 
+  static void expect_exact(const image::Layers& layers, int top, int rows);
+
   static inline frame::FrameSnapshot first_, second_;
   static inline image::Layers still_, layers_;
   static inline image::Image picture_;
 };
 
-TEST_F(DataPassesTest, AreThoseOfASearchThroughAllTriangles) {
+/// 1,000 random pixels of so many rows.
+void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows) {
   const Viewer viewer(second_.cameras[0]), viewer_before(first_.cameras[0]);
   std::mt19937 random(1);
   int counts[4] = {}, beside = 0;
   for (int k = 0; k < 1000; ++k) {
-    const int x = static_cast<int>(random() % kWidth), y = static_cast<int>(random() % kHeight);
+    const int x = static_cast<int>(random() % kWidth), y = kHeight - 1 - top - static_cast<int>(random() % rows);
     const Vec2 pixel(x + 0.5, y + 0.5);
     const Found found = search(second_, first_, viewer.eye, viewer.along(pixel));
-    const auto at = [&](const char* name) { return value(layers_, name, x, y); };
+    const auto at = [&](const char* name) { return value(layers, name, x, y); };
     if (at("id.object") != found.object || at("id.part") != found.part) {
       ++beside;  // an edge passes through the centre
       continue;
@@ -161,66 +169,118 @@ TEST_F(DataPassesTest, AreThoseOfASearchThroughAllTriangles) {
     const Vec3 normal(at("normal.X"), at("normal.Y"), at("normal.Z"));
     const Vec3 face = found.face.normalized() * (found.face.dot(viewer.along(pixel)) > 0 ? -1 : 1);
     EXPECT_NEAR(normal.norm(), 1, 1e-6);
-    EXPECT_GT(normal.dot(face), 0.8);  // a cell of the sheet turns by up to 30 degrees
+    EXPECT_GT(normal.dot(face), 0.7);  // a cell of the sheet turns by up to 45 degrees
   }
   EXPECT_LE(beside, 2);
   EXPECT_GT(std::min({counts[1], counts[2], counts[3]}), 30) << "floor, sphere and sheet";
 }
 
-TEST_F(DataPassesTest, NothingMovesWithoutAFrameBefore) {
-  const std::vector<float> none(std::size_t{kWidth} * kHeight, 0.0f);
-  int count = 0;
-  for (const image::Layers::Channel& channel : still_.channels) {
-    if (!channel.name.starts_with("motion")) continue;
-    EXPECT_EQ(channel.values, none);
-    ++count;
-  }
-  EXPECT_EQ(count, 2);
+TEST_F(DataPassesTest, AreThoseOfASearchThroughAllTriangles) {
+  expect_exact(layers_, 0, kHeight);
 }
 
-TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
-  int whole = 0, same = 0, partly = 0;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
-      const float alpha = value(layers_, "A", x, y), red = value(layers_, "R", x, y);
-      EXPECT_GE(alpha, 0);
-      EXPECT_LE(alpha, 1);
-      EXPECT_LE(red, alpha) << "times coverage, at " << x << " " << y;
-      if (alpha == 1) {
-        ++whole;
-        same += red == value(layers_, "picture.R", x, y);
+// The file of layers as OpenImageIO prints it: names in their order, then a line for each pixel, of those in the
+// middle.
+TEST_F(DataPassesTest, AreReadBackByOpenImageIOAsThoseOfASearch) {
+  constexpr int kTop = 44, kRows = 20;
+  const std::string file = (folder_ / "a.exr").string(), out = (folder_ / "out").string();
+  image::write_exr(file, layers_);
+  const std::string part = (folder_ / "part.exr").string();
+  EXPECT_EQ(
+      std::system(fmt::format("oiiotool '{}' --crop {}x{}+0+{} -o '{}'", file, kWidth, kRows, kTop, part).c_str()), 0);
+  const auto told =
+      [&](const char* option, const std::string& of) {
+        const int cut = std::system(
+            fmt::format("oiiotool '{}' --crop {}x{}+0+{} -o '{}'", file, kWidth, kRows, kTop, part).c_str());
+        if (WEXITSTATUS(cut) == 127) GTEST_SKIP() << "oiiotool is not here: apt-get install openimageio-tools";
+        ASSERT_EQ(cut, 0);
+        const auto told = [&](const char* option, const std::string& of) {
+          EXPECT_EQ(std::system(fmt::format("oiiotool {} '{}' >'{}'", option, of, out).c_str()), 0);
+          return support::read_bytes(out);
+        };
+        const std::string header = told("--info -v", file);
+        image::Layers read{kWidth, kHeight, {}};
+        constexpr std::string_view kList = "channel list: ";
+        std::istringstream names(header.substr(header.find(kList) + kList.size()));
+        for (std::string name; names >> name && name.find(':') == std::string::npos;) {
+          std::string depth;
+          names >> depth;
+          read.channels.push_back({name, std::vector<float>(std::size_t{kWidth} * kHeight)});
+          if (depth.back() != ',') break;
+        }
+        ASSERT_EQ(read.channels.size(), layers_.channels.size());
+        std::istringstream lines(told("--dumpdata", part));
+        int pixels = 0;
+        for (std::string line; std::getline(lines, line);) {
+          int x = 0, y = 0, at = 0;
+          if (std::sscanf(line.c_str(), " Pixel (%d, %d):%n", &x, &y, &at) < 2 || at == 0) continue;
+          const char* text = line.c_str() + at;
+          for (image::Layers::Channel& channel : read.channels) {
+            char* end = nullptr;
+            channel.values[static_cast<std::size_t>(y) * kWidth + x] = std::strtof(text, &end);
+            text = end;
+          }
+          ++pixels;
+        }
+        EXPECT_EQ(pixels, kWidth * kRows);
+        expect_exact(read, kTop, kRows);
       }
-      partly += alpha > 0 && alpha < 1;
-    }
-  }
-  EXPECT_GT(whole, 1000);
-  // Where surfaces fold, as half of so small a picture does, that averages their encoded colours, this the linear ones.
-  EXPECT_GT(same, 0.45 * whole);
-  EXPECT_GT(partly, 100) << "outlines are smooth";
-}
 
-// Floor from which a ray to the sun meets something is black over a plate, as no light comes from around here; other
-// floor leaves the plate as it is. But for the width of the penumbra, in which some percents of the pixels lie.
-TEST_F(DataPassesTest, CaughtShadowsAreWhereNoSunGetsTo) {
-  const Vec3 toward_sun = Vec3(0.3, -0.4, 1).normalized();
-  int lit = 0, dark = 0, otherwise = 0;
-  for (int y = 0; y < kHeight; y += 2) {
-    for (int x = 0; x < kWidth; x += 2) {
-      const auto at = [&](const char* name) { return value(layers_, name, x, y); };
-      const float caught = at("caught.A"), covered = at("A");
-      EXPECT_GE(caught, covered - 1e-3f);
-      if (covered > 0 || at("id.object") != 1) continue;
-      const Vec3 from(at("position.X"), at("position.Y"), at("position.Z") + 1e-4);
-      const bool hidden = search(second_, first_, from, toward_sun).depth < 1e8;
-      lit += !hidden && caught < 0.05f;
-      dark += hidden && caught > 0.9f;
-      otherwise += hidden ? caught <= 0.9f : caught >= 0.05f;
+  TEST_F(DataPassesTest, NothingMovesWithoutAFrameBefore) {
+    const std::vector<float> none(std::size_t{kWidth} * kHeight, 0.0f);
+    int count = 0;
+    for (const image::Layers::Channel& channel : still_.channels) {
+      if (!channel.name.starts_with("motion")) continue;
+      EXPECT_EQ(channel.values, none);
+      ++count;
     }
+    EXPECT_EQ(count, 2);
   }
-  EXPECT_GT(lit, 500);
-  EXPECT_GT(dark, 50);
-  EXPECT_LT(otherwise, 0.05 * (lit + dark));
-}
+
+  TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
+    int whole = 0, same = 0, partly = 0;
+    for (int y = 0; y < kHeight; ++y) {
+      for (int x = 0; x < kWidth; ++x) {
+        const float alpha = value(layers_, "A", x, y), red = value(layers_, "R", x, y);
+        EXPECT_GE(alpha, 0);
+        EXPECT_LE(alpha, 1);
+        EXPECT_LE(red, alpha) << "times coverage, at " << x << " " << y;
+        if (alpha == 1) {
+          ++whole;
+          same += red == value(layers_, "picture.R", x, y);
+        }
+        partly += alpha > 0 && alpha < 1;
+      }
+    }
+    EXPECT_GT(whole, 1000);
+    // Where surfaces fold, as half of so small a picture does, that averages their encoded colours, this the linear
+    // ones.
+    EXPECT_GT(same, 0.45 * whole);
+    EXPECT_GT(partly, 100) << "outlines are smooth";
+  }
+
+  // Floor from which a ray to the sun meets something is black over a plate, as no light comes from around here; other
+  // floor leaves the plate as it is. But for the width of the penumbra, in which some percents of the pixels lie.
+  TEST_F(DataPassesTest, CaughtShadowsAreWhereNoSunGetsTo) {
+    const Vec3 toward_sun = Vec3(0.3, -0.4, 1).normalized();
+    int lit = 0, dark = 0, otherwise = 0;
+    for (int y = 0; y < kHeight; y += 2) {
+      for (int x = 0; x < kWidth; x += 2) {
+        const auto at = [&](const char* name) { return value(layers_, name, x, y); };
+        const float caught = at("caught.A"), covered = at("A");
+        EXPECT_GE(caught, covered - 1e-3f);
+        if (covered > 0 || at("id.object") != 1) continue;
+        const Vec3 from(at("position.X"), at("position.Y"), at("position.Z") + 1e-4);
+        const bool hidden = search(second_, first_, from, toward_sun).depth < 1e8;
+        lit += !hidden && caught < 0.05f;
+        dark += hidden && caught > 0.9f;
+        otherwise += hidden ? caught <= 0.9f : caught >= 0.05f;
+      }
+    }
+    EXPECT_GT(lit, 500);
+    EXPECT_GT(dark, 50);
+    EXPECT_LT(otherwise, 0.05 * (lit + dark));
+  }
 
 }  // namespace
 }  // namespace weft::render
