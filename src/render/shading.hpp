@@ -77,4 +77,10 @@ double opacity_of(const frame::Surface& surface);
 /// `plain`: of clay.
 Shading::Material material_of(const frame::Surface& surface, bool plain);
 
+/// What heat a stage shows of a frame: clay has none, and the look of strain has to have it.
+frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
+
+/// 1 / value at the hot end of the scale, 0 where no heat is to be drawn.
+double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
+
 }  // namespace weft::render
