@@ -146,8 +146,10 @@ void main() {
   }
 
   Softness soft = look_up_softness(distance_view, surface);
+  vec4 bounced_here = bounced_light(at.position_world, at.n_smooth);
+  soft.open = min(soft.open, open_at_most(bounced_here.w));
   vec3 around_light = ambient_light(at.n, soft.open, albedo);
-  around_light = max(around_light + bounced_light(at.position_world, at.n_smooth), 0.1 * around_light);
+  around_light = max(around_light + bounced_here.rgb, 0.1 * around_light);
   LightSums light = LightSums(around_light, vec3(0.0), vec3(0.0));
   add_light(light, 0, at, soft);
 #if LIGHTS > 1

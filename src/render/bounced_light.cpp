@@ -221,7 +221,7 @@ std::vector<Eigen::Vector4f> gather(const BounceGrid& grid, std::span<const LitP
       const Eigen::Array3i corner(2 * (number % blocks.x()), 2 * (number / blocks.x() % blocks.y()),
                                   2 * (number / (blocks.x() * blocks.y())));
       std::array<Lanes, 3> at, w;
-      std::array<std::array<Lanes, 3>, 6> sums;
+      std::array<std::array<Lanes, 4>, 6> sums;  // of colours, and of what is hidden
       for (auto& side : sums) side.fill(Lanes::Zero());
       for (int lane = 0; lane < kLanes; ++lane) {
         const Vector3f center = grid.middle(corner + in_block(lane), floor);
@@ -235,6 +235,7 @@ std::vector<Eigen::Vector4f> gather(const BounceGrid& grid, std::span<const LitP
         for (std::size_t side = 0; side < 6; ++side) {
           const Lanes taken = factor * (side % 2 == 0 ? w[side / 2] : Lanes(-w[side / 2])).max(0.0f);
           for (int color = 0; color < 3; ++color) sums[side][color] += taken * patch.light[color];
+          if (patch.hides) sums[side][3] += taken;
         }
       }
       for (int lane = 0; lane < kLanes; ++lane) {
@@ -244,7 +245,8 @@ std::vector<Eigen::Vector4f> gather(const BounceGrid& grid, std::span<const LitP
         const int cell = (place.z() * grid.counts.y() + place.y()) * grid.counts.x() + place.x();
         for (std::size_t side = 0; side < 6; ++side)
           light[side * grid.size() + static_cast<std::size_t>(cell)] =
-              share * Eigen::Vector4f(sums[side][0][lane], sums[side][1][lane], sums[side][2][lane], 0);
+              share *
+              Eigen::Vector4f(sums[side][0][lane], sums[side][1][lane], sums[side][2][lane], sums[side][3][lane]);
       }
     }
   });
@@ -309,9 +311,9 @@ void BouncedLight::draw(std::span<const BouncingSurface> surfaces, const std::op
     shaded = ground.patches();
     light_from_around(shaded, blockers, {}, around, false);
     std::erase_if(shaded, is_dark);
+    for (LitPatch& patch : shaded) patch.hides = false;
   }
   light_from_around(patches, blockers, shaded, around, true);
-  std::erase_if(patches, is_dark);
   const std::size_t of_surfaces = patches.size();
   patches.insert(patches.end(), shaded.begin(), shaded.end());
   const std::vector<Eigen::Vector4f> light =

@@ -21,6 +21,7 @@ struct LitPatch {
   float area = 0;                    ///< [m²]
   Eigen::Vector3f light;             ///< that it shows, linear; negative: less than is counted elsewhere
   Eigen::Vector3f color;             ///< share of the light on it that it shows
+  bool hides = true;                 ///< what is behind it; floor is part of the surroundings
 };
 
 /// Cubes that fill a box.
@@ -37,8 +38,9 @@ struct BounceGrid {
   Eigen::Vector3f middle(const Eigen::Array3i& place, const std::optional<Floor>& floor) const;
 };
 
-/// Light that matte white takes from the patches in the middle of each cell, facing +x, -x, +y, -y, +z, -z in turn;
-/// zero in the outermost. Patches do not stand in each other's way. Cells below the floor are taken as on it.
+/// Light that matte white takes from the patches in the middle of each cell, and what share of its surroundings they
+/// hide, facing +x, -x, +y, -y, +z, -z in turn; zero in the outermost. Cells below the floor are taken as right above
+/// it. `passes`: share of a patch's light that gets to a place.
 std::vector<Eigen::Vector4f> gather(const BounceGrid& grid, std::span<const LitPatch> patches,
                                     const std::optional<Floor>& floor,
                                     const std::function<float(const LitPatch&, const Eigen::Vector3f&)>& passes);
