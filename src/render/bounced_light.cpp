@@ -12,7 +12,6 @@ namespace {
 
 using Eigen::Vector3f;
 
-constexpr double kMostCells = 5000;
 constexpr double kAround = 0.35;     // of the largest side of the subjects: how far beyond them light is gathered
 constexpr int kFade = 2;             // cells at each side over which it ends
 constexpr float kOverFloor = 0.25f;  // cells by which what is asked for lies above it at least
@@ -191,9 +190,9 @@ float fade(int at, int count) {
 
 }  // namespace
 
-BounceGrid::BounceGrid(const Box3& subjects) {
+BounceGrid::BounceGrid(const Box3& subjects, int most) {
   const Vec3 size = subjects.sizes() + Vec3::Constant(2 * kAround * subjects.sizes().maxCoeff() + 1e-3);
-  const double wanted = std::cbrt(size.prod() / kMostCells);
+  const double wanted = std::cbrt(size.prod() / most);
   const double side = std::exp2(std::ceil(8 * std::log2(wanted)) / 8);
   const Vec3 low = ((subjects.center() - 0.5 * size) / side).array().floor() * side;
   const Vec3 high = subjects.center() + 0.5 * size;
@@ -253,7 +252,7 @@ std::vector<Eigen::Vector4f> gather(const BounceGrid& grid, std::span<const LitP
   return light;
 }
 
-BouncedLight::BouncedLight(const Gl& gl) : gl_(&gl), block_(gl) {}
+BouncedLight::BouncedLight(const Gl& gl, int cells) : gl_(&gl), cells_(cells), block_(gl) {}
 
 Vector3f BouncedLight::color_of(const frame::Appearance& look, bool back) {
   const Vec3 own = image::linear_from_srgb(back ? look.back_color : look.color);
@@ -277,7 +276,7 @@ Vector3f BouncedLight::color_of(const frame::Appearance& look, bool back) {
 
 void BouncedLight::draw(std::span<const BouncingSurface> surfaces, const std::optional<Floor>& floor, double floor_tint,
                         const Irradiance& around, const Box3& subjects, const ShadowMaps& shadows) {
-  const BounceGrid grid(subjects);
+  const BounceGrid grid(subjects, cells_);
   BounceGrid coarse = grid;
   coarse.cell *= 2;
   coarse.counts /= 2;

@@ -30,9 +30,9 @@ struct BounceGrid {
   float cell = 1;         ///< side [m]
   Eigen::Array3i counts;  ///< along x, y, z
 
-  /// About a box, such that the number of cells stays below some thousands. Cells lie at multiples of their side, of
+  /// About a box, of about `most` cells, those for their margin aside. Cells lie at multiples of their side, of
   /// which there are eight for each doubling, so that the light does not flicker while what moves changes the box.
-  explicit BounceGrid(const Box3& subjects);
+  BounceGrid(const Box3& subjects, int most);
   std::size_t size() const { return static_cast<std::size_t>(counts.prod()); }
   /// Of a cell; those below the floor are taken right above it.
   Eigen::Vector3f middle(const Eigen::Array3i& place, const std::optional<Floor>& floor) const;
@@ -55,7 +55,7 @@ struct BouncingSurface {
 
 class BouncedLight {
  public:
-  explicit BouncedLight(const Gl& gl);
+  BouncedLight(const Gl& gl, int cells);
 
   /// Expects the shadow maps drawn. Leaves the result bound to unit 15 and uniform block 2; shaders/bounced_light.glsl.
   void draw(std::span<const BouncingSurface> surfaces, const std::optional<Floor>& floor, double floor_tint,
@@ -65,6 +65,7 @@ class BouncedLight {
   Eigen::Vector3f color_of(const frame::Appearance& look, bool back);
 
   const Gl* gl_;
+  int cells_;  // at about most
   Texture light_;
   Eigen::Array3i counts_ = Eigen::Array3i::Zero();  // of cells that it has
   Buffer block_;

@@ -102,7 +102,7 @@ struct Renderer::Impl {
 
     Passes(const Gl& gl, const QualitySettings& quality, const Settings& settings)
         : shadows(gl, quality),
-          bounced(gl),
+          bounced(gl, quality.bounce_cells),
           soft_light(gl, quality, settings.width, settings.height),
           geometry(gl, settings.width, settings.height),
           shading(gl, quality, settings.width, settings.height, geometry),

@@ -101,7 +101,7 @@ double form_factor(double a, double b, double c) {
 
 // Pieces count as discs: a few percent at twice their width.
 TEST(BouncedLight, OfARectangleIsItsFormFactor) {
-  BounceGrid grid(Box3(Vec3(-1, -1, 0), Vec3(1, 1, 1)));
+  BounceGrid grid(Box3(Vec3(-1, -1, 0), Vec3(1, 1, 1)), 5000);
   const Eigen::Array3i place = grid.counts / 2;
   const Eigen::Vector3f from = grid.middle(place, {});
   for (const double height : {0.2, 0.5, 2.0}) {
