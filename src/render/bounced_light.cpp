@@ -146,7 +146,7 @@ void add_triangle(Heaps& heaps, const std::array<Vector3f, 3>& corners, float we
   for (int row = 0; row < pieces; ++row) {
     for (int k = 0; k < 2 * (pieces - row) - 1; ++k) {
       const float third = k % 2 == 0 ? 1.0f / 3 : 2.0f / 3;
-      const Vector3f at = corners[0] + share * ((static_cast<float>(k / 2) + third) * along +
+      const Vector3f at = corners[0] + share * ((static_cast<float>(k >> 1) + third) * along +
                                                 (static_cast<float>(row) + third) * across);
       heaps.fill(at, area);
       heaps.add(at, normal, area, colors.front, shadows.light_on(at, normal, true));
@@ -203,7 +203,7 @@ BounceGrid::BounceGrid(const Box3& subjects, int most) {
 }
 
 Vector3f BounceGrid::middle(const Eigen::Array3i& place, const std::optional<Floor>& floor) const {
-  const Vector3f at = first + cell * place.cast<float>().matrix();
+  Vector3f at = first + cell * place.cast<float>().matrix();
   if (!floor) return at;
   const Vector3f n = floor->normal.cast<float>();
   return at + std::max(n.dot(floor->point.cast<float>() - at) + kOverFloor * cell, 0.0f) * n;

@@ -137,7 +137,8 @@ Eigen::Vector3f ShadowMaps::light_on(const Eigen::Vector3f& point, const Eigen::
   return sum;
 }
 
-void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world, std::vector<float>& map) {
+void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world,
+                             std::vector<float>& map) const {
   const int size = quality_.shadow_size;
   map.assign(static_cast<std::size_t>(size) * size, 1.0f);
   const auto write = [depths = map.data()](int at, bool covered, float depth, float, float) {

@@ -31,7 +31,7 @@ class ShadowMaps {
     float nearest = 1, farthest = 0;
   };
   void reserve(int layers);
-  void draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world, std::vector<float>& map);
+  void draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world, std::vector<float>& map) const;
   void find_ranges(std::span<const float> map);
   void spread_ranges(int step, int other_step);
 
