@@ -2,6 +2,7 @@
 // the small picture shows neither shadow nor occlusion, as most floor is.
 #include "shading.glsl"
 #include "soft_look_up.glsl"
+#include "bounced_light.glsl"
 #include "open_floor.glsl"
 #ifdef REFLECTING
 #include "reflection.glsl"
@@ -34,7 +35,8 @@ void main() {
   vec3 linear = open_floor(albedo, ray_world);
 #else
   Softness soft = look_up_softness(distance_view, kFloor);
-  vec3 diffuse = ambient_light(n, soft.open, albedo) + shaded_light(0, soft, position_world, n);
+  vec4 bounced_here = bounced_light(position_world, n);
+  vec3 diffuse = ambient_light(n, min(soft.open, open_at_most(bounced_here.w)), albedo) + bounced_here.rgb + shaded_light(0, soft, position_world, n);
 #if LIGHTS > 1
   diffuse += shaded_light(1, soft, position_world, n);
 #endif

@@ -17,7 +17,7 @@ uniform vec4 back_color;  // where w is below 0; else the front, paler by w
 layout(location = 3) out vec4 paint;
 #endif
 #ifdef TRIMMED
-in vec3 surface_trim;
+in vec3 trim_distances, trim_places;  // border, border beyond a corner, seam
 layout(location = 4) out vec4 trims;  // trim.glsl
 #endif
 #ifdef PEELED
@@ -48,7 +48,9 @@ void main() {
   normal_heat = vec4(gl_FrontFacing ? surface_normal_world : -surface_normal_world, surface_heat);
   rest_uv = surface_uv;
 #ifdef TRIMMED
-  trims = vec4(surface_trim, 0.0);
+  bool other = trim_distances.y < trim_distances.x;
+  float border = other ? trim_distances.y : trim_distances.x, seam = trim_distances.z;
+  trims = vec4(border, seam, border <= seam ? (other ? trim_places.y : trim_places.x) : trim_places.z, 0.0);
 #endif
   distance_surface = vec2(1.0 / gl_FragCoord.w, surface + (gl_FrontFacing ? 0.0 : 0.5));
 }

@@ -10,8 +10,9 @@ uniform vec3 picture_u, picture_v;  // rows of the map to the picture
 out vec2 place;
 #endif
 #ifdef TRIMMED
-layout(location = 5) in vec3 vertex_trim;
-out vec3 surface_trim;
+layout(location = 5) in vec3 vertex_trim_distances;
+layout(location = 6) in vec3 vertex_trim_places;
+out vec3 trim_distances, trim_places;
 #endif
 uniform float nearer;  // [m] by which it counts as nearer than other things
 out vec3 surface_normal_world;
@@ -27,7 +28,8 @@ void main() {
   place = vec2(dot(picture_u, vec3(vertex_place, 1.0)), dot(picture_v, vec3(vertex_place, 1.0)));
 #endif
 #ifdef TRIMMED
-  surface_trim = vertex_trim;
+  trim_distances = vertex_trim_distances;
+  trim_places = vertex_trim_places;
 #endif
   gl_ClipDistance[0] =
       dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w;

@@ -5,6 +5,7 @@
 #include "lights.glsl"
 #include "shadows.glsl"
 #include "soft_light.glsl"
+#include "bounced_light.glsl"
 layout(binding = 4) uniform sampler2D normals_heat;
 layout(binding = 8) uniform sampler2D distances_surfaces;
 layout(binding = 9) uniform sampler2D small_distances;
@@ -98,6 +99,8 @@ void main() {
   open *= sky_openness(p_world, n_world, jitter.x, near);
   // Fades out, so that no edge shows where the search ends.
   open = mix(1.0, open, hidden);
+  // Floor that other things may light counts as shaded.
+  if (in_bounced_light(p_world)) open = min(open, 0.9975);
   vec2 lit = vec2(share(0, p_world, n_world, surface), 1.0);
 #if LIGHTS > 1
   lit.y = share(1, p_world, n_world, surface);

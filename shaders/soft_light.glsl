@@ -1,8 +1,10 @@
 // A texel of the small picture: x: number of the surface, and openness as the fraction; y, z: shares of the first two
-// lights; w: distance [m].
+// lights, 2 less where an edge is too crisp for this size; w: distance [m].
 float soft_surface(vec4 texel) { return floor(texel.x); }
 float soft_open(vec4 texel) { return fract(texel.x) / 0.9375; }
 float pack_soft(float surface, float open) { return surface + 0.9375 * open; }
+vec2 soft_crisp(vec4 texel) { return step(texel.yz, vec2(-0.5)); }
+vec2 soft_lit(vec4 texel) { return texel.yz + 2.0 * soft_crisp(texel); }
 
 #ifdef REDUCTION
 // The pixel of the whole picture that a texel of the small one looks at, and the other way.

@@ -4,6 +4,9 @@
 layout(binding = 3) uniform sampler2D soft_light_map;
 uniform ivec2 axis;
 uniform float share_of_lit;  // that neighbours have
+// Change of a light's share from texel to texel beyond which it is not blurred away: on floor, and on what is curved, where
+// half of it may be noise of the faces.
+const float kCrispFloor = 0.25, kCrispCurved = 0.45;
 layout(location = 0) out vec4 soft_light;
 
 void main() {
@@ -15,14 +18,20 @@ void main() {
   float before = center.w - taps[1].w, after = taps[3].w - center.w;
   float slope = before * after > 0.0 ? sign(after) * min(abs(before), abs(after)) : 0.0;
   vec2 sum = vec2(soft_open(center), 1.0);
-  vec3 lit = vec3(center.yz, 1.0);
+  vec2 here_lit = soft_lit(center), steepest = vec2(0.0);
+  vec3 lit = vec3(here_lit, 1.0);
   for (int i = 0; i < 5; ++i) {
     if (i == 2) continue;
     // A step of 2 percent of the distance is another fold.
-    float step = abs(taps[i].w - center.w - float(i - 2) * slope) / (0.01 * center.w);
-    float same = soft_surface(taps[i]) == soft_surface(center) ? clamp(2.0 - step, 0.0, 1.0) : 0.0;
+    float off = abs(taps[i].w - center.w - float(i - 2) * slope) / (0.01 * center.w);
+    float same = soft_surface(taps[i]) == soft_surface(center) ? clamp(2.0 - off, 0.0, 1.0) : 0.0;
     sum += vec2(soft_open(taps[i]), 1.0) * same;
-    if (abs(i - 2) == 1) lit += vec3(taps[i].yz, 1.0) * (share_of_lit * same);
+    if (abs(i - 2) != 1 || share_of_lit == 0.0) continue;
+    vec2 there = soft_lit(taps[i]);
+    lit += vec3(there, 1.0) * (share_of_lit * same);
+    steepest = max(steepest, abs(there - here_lit) * step(0.01, same));
   }
-  soft_light = vec4(pack_soft(soft_surface(center), sum.x / sum.y), lit.xy / lit.z, center.w);
+  // Pixels beside what is crisp search for themselves: what is blurred here would lie as a second line along the edge.
+  vec2 crisp = max(soft_crisp(center), step(soft_surface(center) == 1.0 ? kCrispFloor : kCrispCurved, steepest));
+  soft_light = vec4(pack_soft(soft_surface(center), sum.x / sum.y), lit.xy / lit.z - 2.0 * crisp, center.w);
 }

@@ -6,14 +6,14 @@ layout(binding = 3) uniform sampler2D soft_light;  // soft_light.frag
 struct Softness {
   float open;   // share of the surroundings that light this point
   vec2 lit;     // shares of the first two lights that reach it
-  bvec2 known;  // false where the neighbours disagree, as along the edge of a crisp shadow
+  bvec2 known;  // false along the edges of crisp shadows, and where no neighbour is of this surface
 };
 const Softness kAllOpen = Softness(1.0, vec2(1.0), bvec2(true));
 
 // Sums over texels of the small picture, each weighted by how surely it shows the surface seen.
 struct SoftSums {
   float weight, open;
-  vec2 lit, least, most;
+  vec2 lit, crisp;
 };
 
 void add_soft_texel(inout SoftSums sums, ivec2 at, float weight, float distance_view, float surface) {
@@ -24,9 +24,8 @@ void add_soft_texel(inout SoftSums sums, ivec2 at, float weight, float distance_
   weight *= max(same, 1e-4);
   sums.weight += weight;
   sums.open += weight * soft_open(texel);
-  sums.lit += weight * texel.yz;
-  sums.least = min(sums.least, same > 0.0 ? texel.yz : vec2(1.0));
-  sums.most = max(sums.most, same > 0.0 ? texel.yz : vec2(0.0));
+  sums.lit += weight * soft_lit(texel);
+  if (same > 0.0) sums.crisp = max(sums.crisp, soft_crisp(texel));
 }
 
 // What the small picture knows of this pixel, from its neighbours there, as far as they lie on the same surface.
@@ -34,7 +33,7 @@ Softness look_up_softness(float distance_view, float surface) {
   vec2 at = full_to_small(gl_FragCoord.xy);
   ivec2 corner = ivec2(floor(at));
   vec2 f = at - floor(at);
-  SoftSums sums = SoftSums(0.0, 0.0, vec2(0.0), vec2(1.0), vec2(0.0));
+  SoftSums sums = SoftSums(0.0, 0.0, vec2(0.0), vec2(0.0));
   for (int i = 0; i < 4; ++i) {
     ivec2 step = ivec2(i & 1, i >> 1);
     vec2 side = mix(1.0 - f, f, vec2(step));
@@ -45,8 +44,8 @@ Softness look_up_softness(float distance_view, float surface) {
   for (int i = 0; i < more; ++i) {
     add_soft_texel(sums, corner + ivec2(i & 1, i >> 1) * 3 - 1, 0.1, distance_view, surface);
   }
-  vec2 spread = sums.most - sums.least;
-  bvec2 known = bvec2(spread.x >= 0.0 && spread.x < 0.2, spread.y >= 0.0 && spread.y < 0.2);
+  bool any_same = sums.weight >= 2e-3;
+  bvec2 known = bvec2(any_same && sums.crisp.x == 0.0, any_same && sums.crisp.y == 0.0);
   return Softness(sums.open / sums.weight, sums.lit / sums.weight, known);
 }
 

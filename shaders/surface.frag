@@ -1,6 +1,7 @@
 // Cloth and solid surfaces: direct light with soft shadows, light of the sky, and the sheen or gloss of the material.
 #include "shading.glsl"
 #include "soft_look_up.glsl"
+#include "bounced_light.glsl"
 #ifdef CLOTH
 #include "weave.glsl"
 #ifdef TRIMMED
@@ -145,7 +146,11 @@ void main() {
   }
 
   Softness soft = look_up_softness(distance_view, surface);
-  LightSums light = LightSums(ambient_light(at.n, soft.open, albedo), vec3(0.0), vec3(0.0));
+  vec4 bounced_here = bounced_light(at.position_world, at.n_smooth);
+  soft.open = min(soft.open, open_at_most(bounced_here.w));
+  vec3 around_light = ambient_light(at.n, soft.open, albedo);
+  around_light = max(around_light + bounced_here.rgb, 0.1 * around_light);
+  LightSums light = LightSums(around_light, vec3(0.0), vec3(0.0));
   add_light(light, 0, at, soft);
 #if LIGHTS > 1
   add_light(light, 1, at, soft);

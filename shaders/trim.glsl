@@ -42,10 +42,12 @@ struct Trimmed {
 Trimmed trim(ivec2 pixel, vec2 rest_uv, vec3 look, bool front, Weave woven, vec3 n_world) {
   vec3 at = texelFetch(trims, pixel, 0).xyz;
   vec3 right = dFdx(at), up = dFdy(at), width = clamp(abs(right) + abs(up), 1e-6, 1.0);
-  float hem = look.x, thickness = max(look.y, 1e-5), shown = on_top(at.z, width.z);
   // The directions in which border and seam are left, in the surface.
   vec2 u_right = dFdx(rest_uv), u_up = dFdy(rest_uv);
   float area = u_right.x * u_up.y - u_right.y * u_up.x, sense = area < 0.0 ? -1.0 : 1.0;
+  // Right on a seam both sides are as far away, as if pixels had no width.
+  width.xy = max(width.xy, 0.7 * min(sqrt(abs(area)), 1.0));
+  float hem = look.x, thickness = max(look.y, 1e-5), shown = on_top(at.z, width.z);
   vec2 du = (right.xy * u_up.y - up.xy * u_right.y) * sense, dv = (up.xy * u_right.x - right.xy * u_up.x) * sense;
   vec3 inward = du.x * woven.weft_world + dv.x * woven.warp_world, aside = du.y * woven.weft_world + dv.y * woven.warp_world;
   inward *= inversesqrt(max(dot(inward, inward), 1e-20));

@@ -92,7 +92,7 @@ void GeometryBuffer::begin(std::span<const SurfaceBuffers> surfaces) {
   const bool trimmed = std::ranges::any_of(surfaces, [](const SurfaceBuffers& each) { return each.trimmed(); });
   if (painted != painted_ || trimmed != trimmed_) attach(painted, trimmed);
   // What has no hems has none near.
-  if (trimmed) gl_->VertexAttrib3f(5, kNoTrim, kNoTrim, 0);
+  if (trimmed) gl_->VertexAttrib3f(5, kNoTrim, kNoTrim, kNoTrim);
 }
 
 void GeometryBuffer::end() {

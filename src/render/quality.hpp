@@ -13,6 +13,7 @@ struct QualitySettings {
   int soft_divisor;  ///< the picture of soft light is this much smaller
   int nearby_taps, sky_taps;
   int instants;        ///< sharp pictures that make one with motion blur or depth of field
+  int bounce_cells;    ///< cubes about the subjects that hold what things throw on each other
   bool refines;        ///< cloth of few triangles is drawn with finer ones
   bool trims;          ///< hems, seams and edges of cloth, and cloth that is seen through
   bool mirrors;        ///< floors that shine show the subjects

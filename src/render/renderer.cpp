@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/timer.hpp"
+#include "render/bounced_light.hpp"
 #include "render/data_passes.hpp"
 #include "render/edges.hpp"
 #include "render/framing.hpp"
@@ -16,6 +17,7 @@
 #include "render/pixels.hpp"
 #include "render/shading.hpp"
 #include "render/shadow_catcher.hpp"
+#include "render/smear.hpp"
 #include "render/soft_light.hpp"
 #include "render/view.hpp"
 
@@ -25,6 +27,7 @@ namespace {
 // Triangles of cloth that are drawn as four each; where there are more they are small enough.
 constexpr std::size_t kMostRefined = 20000;
 constexpr std::size_t kMostLayers = 4;  // of cloth that is seen through, one behind the other
+constexpr double kWay = 5;              // of what is blurred, in one of its sharp pictures [pixels]
 constexpr double kFloorReach = 60;      // half side of the drawn floor, in radii of the subjects
 
 Vec3 up_of(const frame::FrameSnapshot& snapshot) {
@@ -39,35 +42,6 @@ void check(const frame::FrameSnapshot& snapshot) {
   }
 }
 
-/// Clay has no heat, and the look of strain has to have it.
-frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage) {
-  using Look = frame::Stage::Look;
-  if (stage.look == Look::clay || stage.look == Look::wire) return frame::Stage::Heat::none;
-  if (stage.look != Look::strain) return stage.heat;
-  const auto has_heat = [](const frame::SurfaceState& state) { return !state.heat.empty(); };
-  if (stage.heat != frame::Stage::Heat::strain || std::ranges::none_of(snapshot.states, has_heat)) {
-    throw Error(
-        ExitCode::usage,
-        "frame {}: the look strain needs what only a simulation finds; expected frames that were simulated with "
-        "render.look=strain or render.heat=strain",
-        snapshot.frame);
-  }
-  return stage.heat;
-}
-
-/// 1 / value at the hot end of the scale, 0 where no heat is to be drawn.
-double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stage) {
-  if (stage.heat == frame::Stage::Heat::none) return 0;
-  double hottest = stage.heat_max;
-  if (hottest <= 0) {
-    for (const frame::SurfaceState& state : snapshot.states) {
-      for (const float heat : state.heat) hottest = std::max(hottest, static_cast<double>(heat));
-    }
-  }
-  // A frame without any heat is drawn all cold.
-  return hottest > 0 ? 1 / hottest : 1;
-}
-
 /// One snapshot as the passes need it.
 struct Plan {
   frame::Stage stage;
@@ -79,25 +53,6 @@ struct Plan {
   Lighting lighting;
   std::vector<Vec3> caster_positions;
 };
-
-/// A surface without colours of its own.
-frame::Appearance clay(const frame::Appearance& look) {
-  frame::Appearance plain = look;
-  plain.color = Vec3(0.74, 0.72, 0.69);
-  plain.back_color = Vec3(0.60, 0.58, 0.56);
-  plain.roughness = 0.7;
-  plain.thread_spacing = 0;
-  plain.finish = {0, 0.5, 0.2, 0};
-  plain.hem = 0;
-  return plain;
-}
-
-/// Share of the light that cloth stops, head-on. Dense weaves let light through, but nothing is seen behind them.
-double opacity_of(const frame::Surface& surface) {
-  constexpr double kFirst = 0.5, kSlope = 1.25;  // so that chiffon, with 0.9, stops half
-  if (surface.kind != frame::ObjectKind::cloth) return 1;
-  return 1 - kSlope * std::clamp(surface.appearance.finish.sheer - kFirst, 0.0, 0.5);
-}
 
 std::vector<Vec3> subject_positions(const frame::FrameSnapshot& snapshot) {
   std::vector<Vec3> all;
@@ -137,6 +92,7 @@ struct Renderer::Impl {
   // GL objects; made and deleted with the context current.
   struct Passes {
     ShadowMaps shadows;
+    BouncedLight bounced;
     SoftLight soft_light;
     GeometryBuffer geometry;
     Shading shading;
@@ -146,6 +102,7 @@ struct Renderer::Impl {
 
     Passes(const Gl& gl, const QualitySettings& quality, const Settings& settings)
         : shadows(gl, quality),
+          bounced(gl, quality.bounce_cells),
           soft_light(gl, quality, settings.width, settings.height),
           geometry(gl, settings.width, settings.height),
           shading(gl, quality, settings.width, settings.height, geometry),
@@ -172,6 +129,7 @@ struct Renderer::Impl {
   Shading::Features features(const Plan& plan) const;
   std::vector<Shading::Material> materials(const Plan& plan) const;
   bool reflects(const Plan& plan) const { return quality.mirrors && mirror_roughness(plan.lighting.style, plan.floor); }
+  void bounce(const Plan& plan, std::span<const DrawnMesh> meshes, double heat);
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
   void look_through_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
                           std::span<const DrawnMesh> opaque, const PixelArea& area);
@@ -272,12 +230,20 @@ Shading::Features Renderer::Impl::features(const Plan& plan) const {
 
 std::vector<Shading::Material> Renderer::Impl::materials(const Plan& plan) const {
   std::vector<Shading::Material> list;
-  for (const SurfaceBuffers& surface : passes->surfaces) {
-    const frame::Appearance& look = surface.surface().appearance;
-    list.push_back({look, surface.surface().kind == frame::ObjectKind::cloth, opacity_of(surface.surface())});
-    if (plan.lighting.style.plain) list.back().appearance = clay(list.back().appearance);
-  }
+  for (const SurfaceBuffers& surface : passes->surfaces)
+    list.push_back(material_of(surface.surface(), plan.lighting.style.plain));
   return list;
+}
+
+void Renderer::Impl::bounce(const Plan& plan, std::span<const DrawnMesh> meshes, double heat) {
+  const std::vector<Shading::Material> looks = materials(plan);
+  std::vector<BouncingSurface> surfaces;
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    if (heat > 0 && looks[i].cloth) continue;  // its colors are no paint
+    surfaces.push_back({&passes->surfaces[i], &looks[i].appearance, plan.lighting.style.plain, meshes[i].opacity});
+  }
+  passes->bounced.draw(surfaces, plan.floor, plan.lighting.style.floor_tint, irradiance_of(plan.lighting.around),
+                       plan.subjects, passes->shadows);
 }
 
 void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
@@ -314,6 +280,7 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
 
   passes->shadows.draw(plan.lights, plan.caster_positions, meshes, plan.up, plan.lighting.exposure.direct);
   const double heat = heat_scale(snapshot, plan.stage);
+  bounce(plan, meshes, heat);
   const SkyView above = fit_sky(plan.subjects, plan.up, sky_reach(plan.subjects));
   if (reflects(plan)) {
     if (!mirror) mirror.emplace(gl, quality, settings.width, settings.height);
@@ -397,24 +364,46 @@ void Renderer::Impl::draw(const frame::FrameSnapshot& snapshot, const frame::Fra
   const double scene_blur = snapshot.stage ? snapshot.stage->motion_blur : 0;
   const double shutter = before ? settings.motion_blur.value_or(scene_blur) : 0;
   // Compositors blur by the motion and the depth that their layers have.
-  const std::vector<Instant> moments =
-      data ? std::vector<Instant>{} : instants(shutter, camera.aperture > 0, quality.instants);
-  if (moments.empty()) {
+  if (data || (shutter <= 0 && camera.aperture <= 0)) {
     const Plan plan = plan_of(snapshot, camera);
     draw_sharp(snapshot, plan);
     if (data) draw_layers(plan, before);
     return;
   }
   const frame::Camera was = before ? choose_camera(*before) : camera;
-  std::vector<Eigen::Vector3f> sums(static_cast<std::size_t>(settings.width) * settings.height,
-                                    Eigen::Vector3f::Zero());
-  for (const Instant& moment : moments) {
-    const frame::FrameSnapshot moved = shutter > 0 ? between(snapshot, *before, moment.back) : snapshot;
-    draw_sharp(moved, plan_of(moved, through_lens(between(camera, was, moment.back), up_of(moved), moment.lens)));
-    for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += linear_of(rgba[i]);
+  const auto moment = [&](double back) { return shutter > 0 ? between(snapshot, *before, back) : snapshot; };
+  const auto view_at = [&](double back, const frame::FrameSnapshot& moved) {
+    return make_view(between(camera, was, back), up_of(moved), settings.aspect(), subject_bounds(moved),
+                     find_floor(moved, up_of(moved)));
+  };
+  // Without a lens as many pictures as leave short ways between them, and along these they are smeared.
+  int count = quality.instants;
+  const bool smears = camera.aperture <= 0;
+  if (smears) {
+    const frame::FrameSnapshot opening = moment(shutter / 360);
+    const double way = longest_way(opening, view_at(shutter / 360, opening), snapshot, view_at(0, snapshot),
+                                   settings.width, settings.height);
+    count = std::clamp(static_cast<int>(std::ceil(way / kWay)), 1, quality.instants);
   }
-  for (std::size_t i = 0; i < sums.size(); ++i)
-    rgba[i] = encoded(Eigen::Vector3f(sums[i] / static_cast<float>(moments.size())));
+  std::vector<Eigen::Vector3f> sums(static_cast<std::size_t>(settings.width) * settings.height,
+                                    Eigen::Vector3f::Zero()),
+      sharp(sums.size());
+  Smear smear(settings.width, settings.height);
+  for (const Instant& instant : instants(shutter, camera.aperture > 0, count)) {
+    const frame::FrameSnapshot moved = moment(instant.back);
+    const Plan plan = plan_of(moved, through_lens(between(camera, was, instant.back), up_of(moved), instant.lens));
+    draw_sharp(moved, plan);
+    for (std::size_t i = 0; i < sums.size(); ++i) sharp[i] = linear_of(rgba[i]);
+    if (!smears) {
+      for (std::size_t i = 0; i < sums.size(); ++i) sums[i] += sharp[i];
+      continue;
+    }
+    const double half = 0.5 * shutter / 360 / count;
+    const frame::FrameSnapshot from = moment(instant.back + half), to = moment(instant.back - half);
+    smear.add(passes->surfaces, plan.view, from, view_at(instant.back + half, from), to,
+              view_at(instant.back - half, to), sharp, sums);
+  }
+  for (std::size_t i = 0; i < sums.size(); ++i) rgba[i] = encoded(Eigen::Vector3f(sums[i] / static_cast<float>(count)));
 }
 
 void Renderer::Impl::draw_layers(const Plan& plan, const frame::FrameSnapshot* before) {

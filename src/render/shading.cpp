@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "core/error.hpp"
 #include "image/color.hpp"
 #include "render/soft_light.hpp"
 
@@ -71,7 +72,30 @@ struct Grid {
   }
 };
 
+/// A surface without colours of its own.
+frame::Appearance clay(const frame::Appearance& look) {
+  frame::Appearance plain = look;
+  plain.color = Vec3(0.74, 0.72, 0.69);
+  plain.back_color = Vec3(0.60, 0.58, 0.56);
+  plain.roughness = 0.7;
+  plain.thread_spacing = 0;
+  plain.finish = {0, 0.5, 0.2, 0};
+  plain.hem = 0;
+  return plain;
+}
+
 }  // namespace
+
+double opacity_of(const frame::Surface& surface) {
+  constexpr double kFirst = 0.5, kSlope = 1.25;  // so that chiffon, with 0.9, stops half
+  if (surface.kind != frame::ObjectKind::cloth) return 1;
+  return 1 - kSlope * std::clamp(surface.appearance.finish.sheer - kFirst, 0.0, 0.5);
+}
+
+Shading::Material material_of(const frame::Surface& surface, bool plain) {
+  return {plain ? clay(surface.appearance) : surface.appearance, surface.kind == frame::ObjectKind::cloth,
+          opacity_of(surface)};
+}
 
 Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry)
     : gl_(&gl),
@@ -245,6 +269,33 @@ void Shading::read(std::vector<std::uint64_t>& rgba) const {
   rgba.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
   gl_->GetTextureImage(picture_.name(), 0, GL_RGBA, GL_UNSIGNED_SHORT, static_cast<GLsizei>(8 * rgba.size()),
                        rgba.data());
+}
+
+frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage) {
+  using Look = frame::Stage::Look;
+  if (stage.look == Look::clay || stage.look == Look::wire) return frame::Stage::Heat::none;
+  if (stage.look != Look::strain) return stage.heat;
+  const auto has_heat = [](const frame::SurfaceState& state) { return !state.heat.empty(); };
+  if (stage.heat != frame::Stage::Heat::strain || std::ranges::none_of(snapshot.states, has_heat)) {
+    throw Error(
+        ExitCode::usage,
+        "frame {}: the look strain needs what only a simulation finds; expected frames that were simulated with "
+        "render.look=strain or render.heat=strain",
+        snapshot.frame);
+  }
+  return stage.heat;
+}
+
+double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stage) {
+  if (stage.heat == frame::Stage::Heat::none) return 0;
+  double hottest = stage.heat_max;
+  if (hottest <= 0) {
+    for (const frame::SurfaceState& state : snapshot.states) {
+      for (const float heat : state.heat) hottest = std::max(hottest, static_cast<double>(heat));
+    }
+  }
+  // A frame without any heat is drawn all cold.
+  return hottest > 0 ? 1 / hottest : 1;
 }
 
 }  // namespace weft::render

@@ -71,4 +71,16 @@ class Shading {
   int material_rows_ = 0;
 };
 
+/// Share of the light that cloth stops, head-on. Dense weaves let light through, but nothing is seen behind them.
+double opacity_of(const frame::Surface& surface);
+
+/// `plain`: of clay.
+Shading::Material material_of(const frame::Surface& surface, bool plain);
+
+/// What heat a stage shows of a frame: clay has none, and the look of strain has to have it.
+frame::Stage::Heat heat_shown(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
+
+/// 1 / value at the hot end of the scale, 0 where no heat is to be drawn.
+double heat_scale(const frame::FrameSnapshot& snapshot, const frame::Stage& stage);
+
 }  // namespace weft::render

@@ -86,12 +86,14 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
   reserve(std::max<int>(1, static_cast<int>(lights.size())));
   const int size = quality_.shadow_size, coarse = size / kBlock;
   LightsUniform block;
+  lights_.resize(lights.size());
+  depths_.resize(lights.size());
   for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
     const ShadowView view = fit_shadow(lights[i], caster_positions, up, size);
-    block.lights[i] = pack_light(lights[i], view, scale, size);
-    draw_depths(casters, view.clip_from_world);
-    find_ranges();
-    gl_->TextureSubImage3D(depth_.name(), 0, 0, 0, i, size, size, 1, GL_DEPTH_COMPONENT, GL_FLOAT, depths_.data());
+    block.lights[i] = lights_[i] = pack_light(lights[i], view, scale, size);
+    draw_depths(casters, view.clip_from_world, depths_[i]);
+    find_ranges(depths_[i]);
+    gl_->TextureSubImage3D(depth_.name(), 0, 0, 0, i, size, size, 1, GL_DEPTH_COMPONENT, GL_FLOAT, depths_[i].data());
     gl_->TextureSubImage3D(range_.name(), 0, 0, 0, i, coarse, coarse, 1, GL_RG, GL_FLOAT, ranges_.data());
   }
   gl_->NamedBufferData(light_block_.name(), sizeof(block), &block, GL_STREAM_DRAW);
@@ -104,10 +106,42 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
   gl_->BindSampler(2, 0);
 }
 
-void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world) {
+Eigen::Vector3f ShadowMaps::light_on(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, bool shadowed) const {
   const int size = quality_.shadow_size;
-  depths_.assign(static_cast<std::size_t>(size) * size, 1.0f);
-  const auto write = [depths = depths_.data()](int at, bool covered, float depth, float, float) {
+  Eigen::Vector3f sum = Eigen::Vector3f::Zero();
+  for (std::size_t i = 0; i < lights_.size(); ++i) {
+    const LightUniform& light = lights_[i];
+    Eigen::Vector3f toward = light.toward_light.head<3>();
+    float cone = 1;
+    if (light.toward_light.w() != 0) {
+      toward = (light.position.head<3>() - point).normalized();
+      const float t = (toward.dot(light.toward_light.head<3>()) - light.position.w()) * light.color.w();
+      cone = std::clamp(t, 0.0f, 1.0f);
+      cone *= cone * (3 - 2 * cone);
+    }
+    const float facing = cone * normal.dot(toward);
+    if (facing <= 0) continue;
+    if (shadowed) {
+      // A step of two texels off the surface stands for the bias of the picture's shadows.
+      const Eigen::Vector4f at = light.shadow_from_world * point.homogeneous();
+      const Eigen::Vector2f texel = at.head<2>() / at.w() * static_cast<float>(size);
+      const bool inside = at.w() > 0 && texel.minCoeff() >= 0 && texel.maxCoeff() < static_cast<float>(size);
+      // Depth 1 is no caster, also for what lies beyond the far plane.
+      const float depth = std::min(at.z() / at.w() - 4 * light.shadow.z(), 1.0f);
+      if (inside &&
+          depth > depths_[i][static_cast<std::size_t>(texel.y()) * size + static_cast<std::size_t>(texel.x())])
+        continue;
+    }
+    sum += facing * light.color.head<3>();
+  }
+  return sum;
+}
+
+void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world,
+                             std::vector<float>& map) const {
+  const int size = quality_.shadow_size;
+  map.assign(static_cast<std::size_t>(size) * size, 1.0f);
+  const auto write = [depths = map.data()](int at, bool covered, float depth, float, float) {
     const float before = depths[at], nearer = std::min(before, depth);
     depths[at] = covered ? nearer : before;
   };
@@ -149,11 +183,11 @@ void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& cli
 
 /// Ranges of blocks and of what lies within reach of the widest filter, so that a block answers for every tap that
 /// starts in it.
-void ShadowMaps::find_ranges() {
+void ShadowMaps::find_ranges(std::span<const float> map) {
   const int size = quality_.shadow_size, coarse = size / kBlock;
   ranges_.assign(static_cast<std::size_t>(coarse) * coarse, {});
   for (int y = 0; y < size; ++y) {
-    const float* depths = depths_.data() + static_cast<std::size_t>(y) * size;
+    const float* depths = map.data() + static_cast<std::size_t>(y) * size;
     Range* ranges = ranges_.data() + static_cast<std::size_t>(y / kBlock) * coarse;
     for (int block = 0; block < coarse; ++block, depths += kBlock) {
       float nearest = ranges[block].nearest, farthest = ranges[block].farthest;

@@ -19,6 +19,9 @@ class ShadowMaps {
   void draw(std::span<const frame::Light> lights, std::span<const Vec3> caster_positions,
             std::span<const DrawnMesh> casters, const Vec3& up, const Vec3& scale);
 
+  /// Direct light on matte white at a point that faces `normal`, after draw(); with hard shadows or none.
+  Eigen::Vector3f light_on(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, bool shadowed) const;
+
   /// Lines for the shaders that include lights.glsl.
   static std::vector<std::string> defines(const QualitySettings& quality, const LightSet& lights);
 
@@ -28,8 +31,8 @@ class ShadowMaps {
     float nearest = 1, farthest = 0;
   };
   void reserve(int layers);
-  void draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world);
-  void find_ranges();
+  void draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world, std::vector<float>& map) const;
+  void find_ranges(std::span<const float> map);
   void spread_ranges(int step, int other_step);
 
   const Gl* gl_;
@@ -38,7 +41,8 @@ class ShadowMaps {
   Texture depth_, range_;
   Sampler compare_, raw_;
   Buffer light_block_;
-  std::vector<float> depths_;  // of one light; 1 where no caster is
+  std::vector<LightUniform> lights_;
+  std::vector<std::vector<float>> depths_;  // of each light; 1 where no caster is
   std::vector<Range> ranges_;
 };
 

@@ -43,7 +43,8 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
       vertices_(gl),
       triangles_(gl),
       places_(gl),
-      trim_buffer_(gl) {
+      trim_distances_(gl),
+      trim_places_(gl) {
   closed_ = surface_->kind != frame::ObjectKind::cloth && !has_holes(*surface_) && is_closed(surface_->triangles);
   if (detail_.refines) refinement_.emplace();
   if (detail_.trims || detail_.rims) trims_.emplace(*surface_);
@@ -56,7 +57,10 @@ SurfaceBuffers::SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surfac
     gl.VertexArrayAttribFormat(array_.name(), place, size, GL_FLOAT, GL_FALSE, 0);
     gl.VertexArrayAttribBinding(array_.name(), place, place);
   };
-  if (detail_.trims) describe_more(5, trim_buffer_, 3);
+  if (detail_.trims) {
+    describe_more(5, trim_distances_, Trim::kKinds);
+    describe_more(6, trim_places_, Trim::kKinds);
+  }
   if (!frame::is_painted(*surface_)) return;
   painted_.emplace();
   describe_more(4, places_, 2);
@@ -190,8 +194,16 @@ void SurfaceBuffers::upload_trims() {
     for (const auto& [a, b] : refinement_->edges()) trims.push_back(trims_->middle(mesh_.source[a], mesh_.source[b]));
   // Strips are in the midst of a hem, so that they show neither its stitches nor its fold.
   constexpr float kPlain = 0.3f;
-  trims.resize(positions_.size(), {kPlain * static_cast<float>(surface_->appearance.hem), kNoTrim, 0});
-  upload<Trim>(*gl_, trim_buffer_, trims);
+  Trim plain;
+  plain.distance[Trim::border] = kPlain * static_cast<float>(surface_->appearance.hem);
+  trims.resize(positions_.size(), plain);
+  std::vector<std::array<float, Trim::kKinds>> distances, places;
+  for (const Trim& trim : trims) {
+    distances.push_back(trim.distance);
+    places.push_back(trim.along);
+  }
+  upload<std::array<float, Trim::kKinds>>(*gl_, trim_distances_, distances);
+  upload<std::array<float, Trim::kKinds>>(*gl_, trim_places_, places);
   trims_uploaded_ = trims.size();
 }
 

@@ -21,7 +21,7 @@ struct Detail {
 };
 
 /// Attribute places, as in the shaders: 0 position, 1 normal, 2 rest (u,v), 3 heat; of what is painted 4 the place of
-/// the paint; of what has hems 5 a Trim.
+/// the paint; of what has hems 5 and 6 a Trim.
 class SurfaceBuffers {
  public:
   SurfaceBuffers(const Gl& gl, std::shared_ptr<const frame::Surface> surface, const Detail& detail);
@@ -70,7 +70,7 @@ class SurfaceBuffers {
   bool mapped_ = false, closed_ = false, outward_ = false;
   Box3 bounds_;
   VertexArray array_;
-  Buffer vertices_, triangles_, places_, trim_buffer_;
+  Buffer vertices_, triangles_, places_, trim_distances_, trim_places_;
   ShadedMesh mesh_;
   std::optional<Refinement> refinement_;
   std::optional<PaintedMesh> painted_;

@@ -12,71 +12,147 @@ std::uint64_t key(Index a, Index b) {
   return static_cast<std::uint64_t>(static_cast<std::uint32_t>(a)) << 32 | static_cast<std::uint32_t>(b);
 }
 
-/// Puts edges that follow each other in one row and says where along it each begins.
+constexpr double kCorner = 0.87;  // cosine of 30 degrees: borders that turn by more have a corner
+
+/// Gives the sides of a border between corners both kinds in turn. Of a closed one `from` is the first edge after a
+/// corner; where it has an odd number of them two sides of one kind meet at the last.
 template <class Segment>
-void measure(std::vector<Segment>& segments, std::span<const Vec2> uv) {
+void tell_sides(std::vector<Segment>& segments, std::span<const std::size_t> row, std::span<const Vec2> uv) {
+  const auto way = [&](std::size_t k) { return Vec2(uv[segments[row[k]].b] - uv[segments[row[k]].a]); };
+  const auto corner_before = [&](std::size_t k) {
+    // Not told across seams, which end a panel.
+    if (segments[row[(k + row.size() - 1) % row.size()]].b != segments[row[k]].a) return false;
+    const Vec2 before = way((k + row.size() - 1) % row.size()), after = way(k);
+    return before.dot(after) < kCorner * before.norm() * after.norm();
+  };
+  std::size_t from = 0;
+  if (segments[row.back()].to == segments[row.front()].from)
+    while (from + 1 < row.size() && !corner_before(from)) ++from;
+  bool other = false;
+  for (std::size_t i = 0; i < row.size(); ++i) {
+    const std::size_t k = (from + i) % row.size();
+    if (i > 0 && corner_before(k)) other = !other;
+    segments[row[k]].other = other;
+  }
+}
+
+/// Puts edges that follow each other in one row and says where along it each begins. Of a seam's two sides the first
+/// that is met tells both.
+template <class Segment>
+void measure(std::vector<Segment>& segments, std::span<const Vec2> places) {
   std::unordered_multimap<Index, std::size_t> by_start;
   std::unordered_map<Index, int> ends;
   for (std::size_t i = 0; i < segments.size(); ++i) {
-    by_start.emplace(segments[i].a, i);
-    ++ends[segments[i].b];
+    by_start.emplace(segments[i].from, i);
+    ++ends[segments[i].to];
   }
   std::vector<char> done(segments.size(), 0);
   const auto walk = [&](std::size_t first) {
     double along = 0;
-    for (std::size_t i = first;;) {
+    std::vector<std::size_t> row;
+    for (std::size_t i = first; i < segments.size();) {
       done[i] = 1;
+      row.push_back(i);
       segments[i].start = along;
-      along += (uv[segments[i].b] - uv[segments[i].a]).norm();
-      // Of several ways on the first of the list, whatever the order of the map.
+      along += (places[segments[i].b] - places[segments[i].a]).norm();
+      if (segments[i].twin >= 0) {
+        Segment& twin = segments[static_cast<std::size_t>(segments[i].twin)];
+        done[static_cast<std::size_t>(segments[i].twin)] = 1;
+        std::swap(twin.a, twin.b);
+        twin.start = segments[i].start;
+      }
+      // Of several ways the one that goes on in the same panel, or the first of the list, whatever the order of the
+      // map.
       std::size_t next = segments.size();
-      const auto [from, to] = by_start.equal_range(segments[i].b);
+      const auto [from, to] = by_start.equal_range(segments[i].to);
+      const auto rank = [&](std::size_t k) { return std::pair(segments[k].a != segments[i].b, k); };
       for (auto it = from; it != to; ++it)
-        if (!done[it->second]) next = std::min(next, it->second);
-      if (next == segments.size()) return;
+        if (!done[it->second] && (next == segments.size() || rank(it->second) < rank(next))) next = it->second;
       i = next;
     }
+    tell_sides(segments, row, places);
   };
   for (std::size_t i = 0; i < segments.size(); ++i)
-    if (!done[i] && !ends.contains(segments[i].a)) walk(i);
+    if (!done[i] && !ends.contains(segments[i].from)) walk(i);
   for (std::size_t i = 0; i < segments.size(); ++i)
     if (!done[i]) walk(i);
 }
 
 }  // namespace
 
-Trims::Trims(const frame::Surface& surface) : uv_(surface.uv) {
+/// Panels are flat by themselves: a vertex at which some are sewn together, or one to itself, has a place in each.
+std::vector<Triangle> Trims::lay_out(const frame::Surface& surface) {
   const auto& triangles = surface.triangles;
-  std::unordered_map<std::uint64_t, std::int32_t> owner;  // of each edge in its way
+  const bool by_part = surface.part_of_triangle.size() == triangles.size(),
+             by_corner = surface.paint_uv.size() == triangles.size();
+  std::vector<Triangle> corners(triangles.size());
+  places_of_.resize(surface.uv.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      constexpr double kSame = 1e-7;  // [m]
+      const auto vertex = static_cast<std::size_t>(triangles[t][k]);
+      const Vec2 place = by_corner ? surface.paint_uv[t][k] : surface.uv[vertex];
+      const std::int32_t part = by_part ? surface.part_of_triangle[t] : 0;
+      std::vector<Index>& known = places_of_[vertex];
+      auto found = std::ranges::find_if(known, [&](Index each) {
+        return part_[each] == part && (places_[each] - place).squaredNorm() < kSame * kSame;
+      });
+      if (found == known.end()) {
+        found = known.insert(known.end(), static_cast<Index>(places_.size()));
+        places_.push_back(place);
+        part_.push_back(part);
+      }
+      corners[t][k] = *found;
+    }
+  }
+  return corners;
+}
+
+Trims::Trims(const frame::Surface& surface) {
+  const auto& triangles = surface.triangles;
+  std::unordered_map<std::uint64_t, std::array<std::size_t, 2>> owner;  // of each edge in its way: triangle and corner
   for (std::size_t t = 0; t < triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k)
-      owner.emplace(key(triangles[t][k], triangles[t][(k + 1) % 3]), static_cast<std::int32_t>(t));
-  const auto& parts = surface.part_of_triangle;
+      owner.emplace(key(triangles[t][k], triangles[t][(k + 1) % 3]), std::array{t, k});
+  const bool flat = !surface.uv.empty();
+  const std::vector<Triangle> corners = flat ? lay_out(surface) : triangles;
   std::vector<Segment> borders, seams;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      const Index a = triangles[t][k], b = triangles[t][(k + 1) % 3];
-      const auto other = owner.find(key(b, a));
+      const Index from = triangles[t][k], to = triangles[t][(k + 1) % 3];
+      const Segment segment{corners[t][k], corners[t][(k + 1) % 3], from, to};
+      const auto other = owner.find(key(to, from));
       if (other == owner.end()) {
-        rims_.push_back({a, b, static_cast<std::int32_t>(t)});
-        borders.push_back({a, b, 0});
-      } else if (parts.size() == triangles.size() && parts[t] < parts[static_cast<std::size_t>(other->second)]) {
-        seams.push_back({a, b, 0});
+        rims_.push_back({from, to, static_cast<std::int32_t>(t)});
+        borders.push_back(segment);
+        continue;
       }
+      const auto [there, corner] = other->second;
+      const Index a = corners[there][(corner + 1) % 3], b = corners[there][corner];
+      if (t > there || (a == segment.a && b == segment.b)) continue;
+      seams.push_back(segment);
+      seams.push_back({b, a, to, from});
+      seams[seams.size() - 2].twin = static_cast<std::int32_t>(seams.size()) - 1;
+      seams.back().twin = static_cast<std::int32_t>(seams.size()) - 2;
     }
   }
-  if (uv_.empty()) return;
-  std::vector<std::vector<Index>> neighbors(uv_.size());
-  for (const Triangle& t : triangles)
+  if (!flat) return;
+  std::vector<std::vector<Index>> neighbors(places_.size());
+  for (const Triangle& t : corners)
     for (std::size_t k = 0; k < 3; ++k) neighbors[t[k]].insert(neighbors[t[k]].end(), {t[(k + 1) % 3], t[(k + 2) % 3]});
-  borders_ = lines(std::move(borders), neighbors);
-  seams_ = lines(std::move(seams), neighbors);
+  measure(borders, places_);
+  measure(seams, places_);
+  const auto second = std::stable_partition(borders.begin(), borders.end(), [](const Segment& s) { return !s.other; });
+  lines_[Trim::other_border] = lines({second, borders.end()}, neighbors);
+  borders.erase(second, borders.end());
+  lines_[Trim::border] = lines(std::move(borders), neighbors);
+  lines_[Trim::seam] = lines(std::move(seams), neighbors);
 }
 
 Trims::Place Trims::place(const Lines& lines, std::int32_t segment, const Vec2& at) const {
   if (segment < 0) return {};
   const Segment& line = lines.segments[segment];
-  const Vec2 from = uv_[line.a], way = uv_[line.b] - from;
+  const Vec2 from = places_[line.a], way = places_[line.b] - from;
   const double length = way.norm();
   if (!(length > 0)) return {(at - from).norm(), line.start};
   const double along = std::clamp((at - from).dot(way) / length, 0.0, length);
@@ -86,12 +162,11 @@ Trims::Place Trims::place(const Lines& lines, std::int32_t segment, const Vec2& 
 /// Hands what is nearest on from vertex to vertex, so that a line counts along the cloth: panels that are laid
 /// together may come to lie over each other.
 Trims::Lines Trims::lines(std::vector<Segment> segments, std::span<const std::vector<Index>> neighbors) const {
-  measure(segments, uv_);
-  Lines result{std::move(segments), std::vector<std::int32_t>(uv_.size(), -1)};
-  std::vector<double> distance(uv_.size(), kNoTrim);
+  Lines result{std::move(segments), std::vector<std::int32_t>(places_.size(), -1)};
+  std::vector<double> distance(places_.size(), kNoTrim);
   std::deque<Index> changed;
   const auto offer = [&](Index vertex, std::int32_t segment) {
-    const double here = place(result, segment, uv_[vertex]).distance;
+    const double here = place(result, segment, places_[vertex]).distance;
     if (here >= distance[vertex]) return;
     distance[vertex] = here;
     result.nearest[vertex] = segment;
@@ -109,26 +184,46 @@ Trims::Lines Trims::lines(std::vector<Segment> segments, std::span<const std::ve
 }
 
 Trim Trims::trim(const Vec2& at, std::span<const Index> near) const {
-  const auto nearest = [&](const Lines& lines) {
+  Trim result;
+  for (int kind = 0; kind < Trim::kKinds; ++kind) {
     Place best;
     for (const Index vertex : near)
-      if (const Place here = place(lines, lines.nearest[vertex], at); here.distance < best.distance) best = here;
-    return best;
-  };
-  const Place border = nearest(borders_), seam = nearest(seams_);
-  return {static_cast<float>(border.distance), static_cast<float>(seam.distance),
-          static_cast<float>(border.distance <= seam.distance ? border.along : seam.along)};
+      if (const Place here = place(lines_[kind], lines_[kind].nearest[vertex], at); here.distance < best.distance)
+        best = here;
+    result.distance[kind] = static_cast<float>(best.distance);
+    result.along[kind] = static_cast<float>(best.along);
+  }
+  return result;
 }
 
 Trim Trims::at(Index vertex) const {
-  if (uv_.empty()) return {kNoTrim, kNoTrim, 0};
-  return trim(uv_[vertex], std::span(&vertex, 1));
+  Trim nearest;
+  if (places_of_.empty()) return nearest;
+  for (const Index place : places_of_[vertex]) {
+    const Trim here = trim(places_[place], std::span(&place, 1));
+    for (int kind = 0; kind < Trim::kKinds; ++kind) {
+      if (here.distance[kind] >= nearest.distance[kind]) continue;
+      nearest.distance[kind] = here.distance[kind];
+      nearest.along[kind] = here.along[kind];
+    }
+  }
+  return nearest;
 }
 
 Trim Trims::middle(Index a, Index b) const {
-  if (uv_.empty()) return {kNoTrim, kNoTrim, 0};
-  const Index ends[] = {a, b};
-  return trim(0.5 * (uv_[a] + uv_[b]), ends);
+  if (places_of_.empty()) return {};
+  // Of all places of its ends those that are closest are ends of an edge.
+  std::array<Index, 2> ends{places_of_[a].front(), places_of_[b].front()};
+  double length = kNoTrim;
+  for (const Index from : places_of_[a]) {
+    for (const Index to : places_of_[b]) {
+      const double here = (places_[from] - places_[to]).norm();
+      if (part_[from] != part_[to] || here >= length) continue;
+      length = here;
+      ends = {from, to};
+    }
+  }
+  return trim(0.5 * (places_[ends[0]] + places_[ends[1]]), ends);
 }
 
 double rim_width(const frame::Appearance& look, std::span<const Vec3> positions, const View& view, int rows) {

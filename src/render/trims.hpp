@@ -10,13 +10,18 @@
 
 namespace weft::render {
 
-/// How far a point is from what lies nearest to it, in rest coordinates [m]; kNoTrim where there is no such thing.
-struct Trim {
-  float border = 0;  ///< from the border of the cloth
-  float seam = 0;    ///< from a seam between two panels
-  float along = 0;   ///< the place along the nearer of both
-};
 inline constexpr float kNoTrim = 1e3f;
+
+/// How far a point is from the nearest line of each kind, in rest coordinates [m]; kNoTrim where there is no such
+/// thing. Borders that meet at a corner are of two kinds, so that both distances are linear across it: their minimum is
+/// not.
+struct Trim {
+  enum Kind { border, other_border, seam };
+  static constexpr int kKinds = 3;
+  std::array<float, kKinds> distance{kNoTrim, kNoTrim, kNoTrim}, along{};  ///< along: the place along that line
+
+  float from_border() const { return std::min(distance[border], distance[other_border]); }
+};
 
 /// Of the rest shape, so the same in all frames.
 class Trims {
@@ -37,24 +42,30 @@ class Trims {
 
  private:
   struct Segment {
-    Index a, b;
-    double start;  // of it along its border or seam [m]
+    Index a, b;              // places
+    Index from, to;          // vertices
+    double start = 0;        // of it along its border or seam [m]
+    bool other = false;      // of two sides of a border that meet at a corner, one is
+    std::int32_t twin = -1;  // the same edge on the other side of a seam
   };
-  /// What one kind of lines is to all vertices.
+  /// What one kind of lines is to all places.
   struct Lines {
     std::vector<Segment> segments;
-    std::vector<std::int32_t> nearest;  // by vertex, -1 where there is none
+    std::vector<std::int32_t> nearest;  // by place, -1 where there is none
   };
   struct Place {
     double distance = kNoTrim, along = 0;
   };
   Place place(const Lines& lines, std::int32_t segment, const Vec2& at) const;
   Lines lines(std::vector<Segment> segments, std::span<const std::vector<Index>> neighbors) const;
+  std::vector<Triangle> lay_out(const frame::Surface& surface);
   Trim trim(const Vec2& at, std::span<const Index> near) const;
 
-  std::vector<Vec2> uv_;
+  std::vector<Vec2> places_;                   // where vertices lie in their panels [m]
+  std::vector<std::int32_t> part_;             // by place
+  std::vector<std::vector<Index>> places_of_;  // by vertex; empty without rest coordinates
   std::vector<Rim> rims_;
-  Lines borders_, seams_;
+  std::array<Lines, Trim::kKinds> lines_;
 };
 
 /// The thickness that the edge of cloth shows: a strip along each border, from the front to the back.

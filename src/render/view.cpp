@@ -11,9 +11,10 @@ namespace {
 
 // Rec. 709.
 const Vec3 kLuminance(0.2126, 0.7152, 0.0722);
+constexpr double kGround = 0.8;     // of what open floor shows comes from below: it runs out into what is darker
+constexpr double kMirrored = 0.5;   // of that: what shines sees floor in the shade of the subjects
 constexpr double kBrightest = 1.8;  // gain of direct light; scenes darker than that are meant to be dark
 constexpr double kBalance = 0.08;   // share of a channel that white balance may take or add
-constexpr double kBounce = 0.9;     // of the floor's light that comes from below, for each share of light from around
 
 }  // namespace
 
@@ -109,11 +110,13 @@ Lighting light_up(const frame::Stage& stage, const Vec3& up, const std::optional
   lighting.style = style_of(stage);
   lighting.exposure = expose(lighting.style, floor, lights);
   lighting.gain = std::exp2(stage.exposure);
-  // Floor sends back a part of what lights it, and the subjects stand in the way of that.
-  Vec3 ground = stage.ground_color ? image::linear_from_srgb(*stage.ground_color)
-                : floor            ? Vec3(kBounce * lighting.style.floor_tint * lighting.exposure.floor)
-                                   : Vec3::Constant(0.55);
-  lighting.around = surround(lighting.style, stage, up, lights, lighting.style.sky_intensity * ground);
+  // What open floor shows; what lies in the shade is taken off where it is (bounced_light.hpp).
+  const Vec3 ground =
+      floor && !stage.ground_color
+          ? Vec3(kGround * lighting.style.floor_tint * lighting.exposure.floor)
+          : lighting.style.sky_intensity *
+                (stage.ground_color ? image::linear_from_srgb(*stage.ground_color) : Vec3(Vec3::Constant(0.55)));
+  lighting.around = surround(lighting.style, stage, up, lights, ground);
   return lighting;
 }
 
@@ -148,7 +151,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   frame.right_world = four(view.axes.right, 0);
   frame.sky = four(around.sky, reach);
   frame.horizon = four(around.horizon, style.toe);
-  frame.ground = four(around.ground, above.depth_metres);
+  frame.ground = four(kMirrored * around.ground, above.depth_metres);
   frame.backdrop = four(behind(style.horizon), style.glow);
   frame.backdrop_top = four(behind(style.zenith), 0);
   frame.viewport = {static_cast<float>(width), static_cast<float>(height), 1.0f / static_cast<float>(width),

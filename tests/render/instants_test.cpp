@@ -59,6 +59,8 @@ TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
   EXPECT_NEAR(linear_at(image, 124) / white, 0.5, 0.06);
   EXPECT_NEAR(linear_at(image, 119) / white, 0.75, 0.06);
   EXPECT_NEAR(linear_at(image, 95) / white, 0.5, 0.06);
+  // Without steps: of four sharp pictures alone some are off by 0.12.
+  for (int x = 116; x < 133; ++x) EXPECT_NEAR(linear_at(image, x) / white, (134.2 - x - 0.5) / 20, 0.05) << x;
   EXPECT_LT(linear_at(image, 84), 0.02);
   EXPECT_LT(linear_at(image, 136), 0.02);
 }

@@ -5,6 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "image/color.hpp"
+#include "render/bounced_light.hpp"
+#include "render/renderer.hpp"
+#include "render/snapshots.hpp"
+
 namespace weft::render {
 namespace {
 
@@ -85,6 +90,94 @@ TEST(Surroundings, BlurKeepsTheLightOfABox) {
   EXPECT_NEAR(whole(0.05), 2 / (2 * 40.0), 1e-3);
   EXPECT_NEAR(whole(0.9), 2 / (2 * 40.0), 1e-3);
   EXPECT_LT(around.light(Vec3(0.6, 0, 0.8), 0.9).x(), 0.5);
+}
+
+/// Share of a cosine over a half sphere that a rectangle of 2a x 2b at a distance c takes, seen from below its middle:
+/// four times that of a corner (Howell, "A Catalog of Radiation Heat Transfer Configuration Factors", B-4).
+double form_factor(double a, double b, double c) {
+  const double x = a / c, y = b / c, p = std::sqrt(1 + x * x), q = std::sqrt(1 + y * y);
+  return 4 / (2 * std::numbers::pi) * (x / p * std::atan(y / p) + y / q * std::atan(x / q));
+}
+
+// Pieces count as discs: a few percent at twice their width.
+TEST(BouncedLight, OfARectangleIsItsFormFactor) {
+  BounceGrid grid(Box3(Vec3(-1, -1, 0), Vec3(1, 1, 1)), 5000);
+  const Eigen::Array3i place = grid.counts / 2;
+  const Eigen::Vector3f from = grid.middle(place, {});
+  for (const double height : {0.2, 0.5, 2.0}) {
+    constexpr int kPieces = 10;
+    std::vector<LitPatch> patches;
+    for (int i = 0; i < kPieces; ++i)
+      for (int j = 0; j < kPieces; ++j)
+        patches.push_back(
+            {from + Eigen::Vector3f((i + 0.5f) * 0.1f - 0.5f, (j + 0.5f) * 0.06f - 0.3f, static_cast<float>(height)),
+             -Eigen::Vector3f::UnitZ(),
+             0.006f,
+             {1, 0.5f, -0.25f},
+             Eigen::Vector3f::Ones()});
+    const std::vector<Eigen::Vector4f> light = gather(grid, patches, {}, [](const auto&, const auto&) { return 1.0f; });
+    const auto at = [&](int side) {
+      return light[static_cast<std::size_t>(
+          ((side * grid.counts.z() + place.z()) * grid.counts.y() + place.y()) * grid.counts.x() + place.x())];
+    };
+    const double expected = form_factor(0.5, 0.3, height);
+    EXPECT_NEAR(at(4).x(), expected, 0.05 * expected) << height;
+    EXPECT_NEAR(at(4).y(), 0.5 * expected, 0.025 * expected) << height;
+    EXPECT_NEAR(at(4).z(), -0.25 * expected, 0.0125 * expected) << height;
+    EXPECT_EQ(at(5).x(), 0);
+    EXPECT_NEAR(at(0).x(), at(1).x(), 1e-4) << height;
+  }
+}
+
+/// White floor before a wall 0.6 m wide and high, whose lower edge is at `height`, and perhaps a black shelf below
+/// that. The light comes level from the front and lights the wall alone.
+image::Image wall(double height, bool shelf) {
+  frame::FrameSnapshot snapshot;
+  auto stage = std::make_shared<frame::Stage>();
+  stage->sky_intensity = 0;
+  snapshot.stage = stage;
+  add_floor(snapshot).appearance.color = Vec3::Ones();
+  const auto add = [&](const Vec3& center, const Vec3& normal, const Vec3& color) {
+    auto& look = add_square(snapshot, frame::ObjectKind::cloth, center, normal, Vec3::UnitX(), 0.3).appearance;
+    look.color = look.back_color = color;
+  };
+  add(Vec3(0, 0, height + 0.3), -Vec3::UnitY(), Vec3(0.9, 0.3, 0.3));
+  add(Vec3(0, -0.32, shelf ? 0.3 : 5e-4), Vec3::UnitZ(), shelf ? Vec3::Zero() : Vec3::Ones());
+  snapshot.cameras = {camera_at(Vec3(0, -2.4, 0.22), Vec3(0, -0.3, 0), 10)};
+  snapshot.lights = {sun(Vec3(0, 1, 0))};
+  Settings settings;
+  settings.width = 160;
+  settings.height = 100;
+  return Renderer(settings).draw(snapshot);
+}
+
+/// Light in the middle of the picture, which shows the floor 0.3 m before the wall.
+Vec3 light_on_floor(const image::Image& image) {
+  const std::uint8_t* pixel = image.pixel(80, 50);
+  return image::linear_from_srgb(Vec3(pixel[0], pixel[1], pixel[2]) / 255);
+}
+
+// What no light meets directly shows what a lit wall throws on it, summed up over the wall. What is asked for lies
+// up to half a cell of 7 cm over the floor, and cosines are taken as squares: 1.35 and 1.25 of it are seen. A shelf in
+// between leaves less than a third.
+TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
+  for (const double height : {0.0, 0.4}) {
+    double factor = 0;
+    constexpr int kSteps = 200;
+    for (int i = 0; i < kSteps; ++i) {
+      for (int j = 0; j < kSteps; ++j) {
+        const double x = (i + 0.5) * 0.6 / kSteps - 0.3, z = (j + 0.5) * 0.6 / kSteps + height,
+                     d_sq = x * x + z * z + 0.3 * 0.3;
+        factor += 0.3 * z / (std::numbers::pi * d_sq * d_sq) * 0.36 / (kSteps * kSteps);
+      }
+    }
+    const Vec3 light = light_on_floor(wall(height, false)),
+               expected = factor * image::linear_from_srgb(Vec3(0.9, 0.3, 0.3));
+    EXPECT_NEAR(light.x(), expected.x(), 0.4 * expected.x()) << height;
+    EXPECT_NEAR(light.y(), expected.y(), 0.4 * expected.y()) << height;
+    if (height == 0) continue;
+    EXPECT_LT(light_on_floor(wall(height, true)).x(), light.x() / 3);
+  }
 }
 
 }  // namespace

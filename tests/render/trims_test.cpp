@@ -35,12 +35,12 @@ TEST(Trims, AreDistancesFromBordersAndSeams) {
   for (std::size_t v = 0; v < surface.uv.size(); ++v) {
     const Vec2 at = surface.uv[v];
     const Trim trim = trims.at(static_cast<Index>(v));
-    EXPECT_NEAR(trim.border, std::min({at.x(), at.y(), 1 - at.x(), 1 - at.y()}), 1e-6) << at.transpose();
-    EXPECT_NEAR(trim.seam, std::abs(at.x() - 0.5), 1e-6) << at.transpose();
+    EXPECT_NEAR(trim.from_border(), std::min({at.x(), at.y(), 1 - at.x(), 1 - at.y()}), 1e-6) << at.transpose();
+    EXPECT_NEAR(trim.distance[Trim::seam], std::abs(at.x() - 0.5), 1e-6) << at.transpose();
   }
   // A diagonal across a corner: both of its ends lie on the border.
   const Trim corner = trims.middle(0 + 1, 9);
-  EXPECT_NEAR(corner.border, 1.0 / 16, 1e-6);
+  EXPECT_NEAR(corner.from_border(), 1.0 / 16, 1e-6);
   EXPECT_EQ(trims.rims().size(), 4U * 8);
 }
 
@@ -49,11 +49,57 @@ TEST(Trims, PlacesAlongABorderGoOnFromEdgeToEdge) {
   const Trims trims(surface);
   int jumps = 0;
   for (const auto& [a, b, triangle] : trims.rims()) {
-    EXPECT_EQ(trims.at(a).seam, kNoTrim);
-    const float apart = std::abs(trims.at(b).along - trims.at(a).along);
+    const Trim from = trims.at(a), to = trims.at(b);
+    const int kind =
+        from.distance[Trim::border] + to.distance[Trim::border] < 1e-9f ? Trim::border : Trim::other_border;
+    EXPECT_EQ(from.distance[kind] + to.distance[kind], 0);
+    EXPECT_EQ(trims.at(a).distance[Trim::seam], kNoTrim);
+    const float apart = std::abs(to.along[kind] - from.along[kind]);
     if (std::abs(apart - 0.125f) > 1e-5f) ++jumps;
   }
-  EXPECT_EQ(jumps, 1) << "but where the border comes back to its start";
+  EXPECT_EQ(jumps, 0) << "as each side has places of its own";
+}
+
+// Cells that are wider than high, cut by either diagonal: what is nearest to a corner changes within triangles. Between
+// its vertices each of both distances is linear, so that their minimum is exact everywhere.
+TEST(Trims, LinesTurnSharplyAtCorners) {
+  frame::Surface surface = sheet(6, false);
+  for (Vec2& at : surface.uv) at.x() *= 3;
+  const Trims trims(surface);
+  for (const Triangle& triangle : surface.triangles) {
+    for (int k = 0; k < 3; ++k) {
+      const std::array<double, 3> shares = {0.7, 0.2, 0.1};
+      Vec2 at = Vec2::Zero();
+      std::array<double, 2> distance{};
+      for (int c = 0; c < 3; ++c) {
+        const Index vertex = triangle[(k + c) % 3];
+        at += shares[c] * surface.uv[vertex];
+        for (int kind = 0; kind < 2; ++kind) distance[kind] += shares[c] * trims.at(vertex).distance[kind];
+      }
+      const double from_sides = std::min(at.x(), 3 - at.x()), from_ends = std::min(at.y(), 1 - at.y());
+      const double expected = std::min(from_sides, from_ends);
+      if (expected > 1.0 / 6) continue;
+      EXPECT_NEAR(std::min(distance[0], distance[1]), expected, 1e-6) << at.transpose();
+    }
+  }
+}
+
+// Two triangles of one panel that lie apart in it are sewn together by a dart.
+TEST(Trims, DartsAreSeams) {
+  frame::Surface surface = sheet(2, true);
+  surface.part_of_triangle.assign(surface.triangles.size(), 0);
+  for (const Triangle& t : surface.triangles)
+    surface.paint_uv.push_back({surface.uv[t[0]], surface.uv[t[1]], surface.uv[t[2]]});
+  EXPECT_EQ(Trims(surface).at(4).distance[Trim::seam], kNoTrim);
+  // Cells 0 and 1 of the lower row: the one to the right is turned away around the upper end of their edge.
+  for (std::size_t t : {2, 3})
+    for (std::size_t k = 0; k < 3; ++k)
+      if (surface.triangles[t][k] != 4) surface.paint_uv[t][k].x() += 0.1;
+  const Trims trims(surface);
+  EXPECT_NEAR(trims.at(1).distance[Trim::seam], 0, 1e-9);
+  EXPECT_NEAR(trims.at(4).distance[Trim::seam], 0, 1e-9);
+  EXPECT_NEAR(trims.at(0).distance[Trim::seam], 0.5, 1e-6);
+  EXPECT_NEAR(trims.at(7).distance[Trim::seam], 0.5, 1e-6);
 }
 
 TEST(Trims, AStripAlongTheBorderFacesOutwardAndIsAsThickAsTheCloth) {
