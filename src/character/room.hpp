@@ -25,6 +25,9 @@ struct Ground {
 /// Skin that goes into the ground, but for that of feet, is flattened above it.
 class Room {
  public:
+  /// How much of a vertex each limb holds.
+  using Shares = std::array<float, 11>;
+
   /// `touched`: for each vertex whether cloth can touch it. `room`: [m]; of it half above the ground.
   Room(const Rig& rig, const VertexMask& touched, double room, std::vector<Ground> grounds);
 
@@ -40,7 +43,8 @@ class Room {
   double room_;
   std::vector<Ground> grounds_;
   std::vector<mesh::Triangle> triangles_;  // that cloth can touch
-  std::vector<std::uint8_t> limb_, limb_of_triangle_;
+  std::vector<Shares> shares_, shares_of_triangle_;
+  VertexMask touched_, foot_;
   std::vector<double> missing_at_rest_;  // [m]
   std::vector<std::array<Index, 2>> edges_;
   Character bones_;  // its mesh: where the lines of the vertices begin, as bound
