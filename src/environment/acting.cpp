@@ -176,6 +176,9 @@ Body cast_body(const Cast& cast, const Source& source) {
     body.clip = travel(cast, source, {body.character, joints},
                        choose_clip(cast, source.clip, body.character.clips, body.source), 1, body.warnings);
   }
+  if (body.clip)
+    if (const auto doubt = doubt_of_skin(body.character, *body.clip))
+      body.warnings.push_back(fmt::format("{}: {} {}", cast.where, body.source, *doubt));
   if (body.clip && !source.loop && cast.settings.start > body.clip->duration)
     cast.fail("start", fmt::format("expected a time of clip \"{}\", at most {:g} s, got {:g}", body.clip->name,
                                    body.clip->duration, cast.settings.start));
