@@ -31,6 +31,9 @@ constexpr double kEnough = 0.02;
 /// Rounds of smoothing: dents end over so many edges.
 constexpr int kSmoothings = 3;
 
+/// Of the room, what is left between the body and the ground.
+constexpr double kAboveGround = 0.5;
+
 /// Least share of the way from bone to skin that is left of a limb.
 constexpr double kLeast = 0.15;
 
@@ -154,7 +157,7 @@ void Room::lift(std::span<const Vec3> from, std::span<Vec3> x) const {
   for (const Ground& ground : grounds_)
     for (std::size_t v = 0; v < touched_.size(); ++v) {
       if (touched_[v] == 0 || foot_[v] != 0) continue;
-      const double missing = ground.height + 0.5 * room_ - ground.up.dot(x[v]);
+      const double missing = ground.height + kAboveGround * room_ - ground.up.dot(x[v]);
       const double held = std::clamp((ground.up.dot(from[v]) - ground.height) / room_, 0.0, 1.0);
       if (missing > 0) x[v] += held * missing * ground.up;
     }

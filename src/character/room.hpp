@@ -28,7 +28,7 @@ class Room {
   /// How much of a vertex each limb holds.
   using Shares = std::array<float, 11>;
 
-  /// `touched`: for each vertex whether cloth can touch it. `room`: [m]; of it half above the ground.
+  /// `touched`: for each vertex whether cloth can touch it. `room`: [m]; half of it is left above the ground.
   Room(const Rig& rig, const VertexMask& touched, double room, std::vector<Ground> grounds);
 
   /// Moves the skin, given as skin() has it in a pose.
