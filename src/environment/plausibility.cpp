@@ -10,6 +10,8 @@ namespace {
 
 // Bodies of people and their toys are this tall [m]; a file in centimetres is a hundred times taller.
 constexpr double kLeastHeight = 0.3, kMostHeight = 3;
+// A clip that turns more nodes than these moves limbs: a head or a camera alone may be beside the body.
+constexpr int kNodesOfLimbs = 3;
 // Nothing with legs goes faster [m/s]; sprinters reach 12.
 constexpr double kMostSpeed = 20;
 
@@ -22,6 +24,26 @@ std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& 
   return fmt::format(
       "is {:.3g} m tall, where {:g} to {:g} m are expected; scale says how many metres a unit of the file has", height,
       kLeastHeight, kMostHeight);
+}
+
+std::optional<std::string> doubt_of_skin(const character::Character& body, const character::Clip& clip) {
+  if (body.influences.empty()) return std::nullopt;
+  const Index holder = body.bones[body.influences.front().bone].node;
+  for (const character::Influence& influence : body.influences)
+    if (influence.weight > 0 && body.bones[influence.bone].node != holder) return std::nullopt;
+  std::vector<Index> carrying;  // the node itself, and those that it hangs from
+  for (Index node = holder; node >= 0; node = body.nodes[node].parent) carrying.push_back(node);
+  int idle = 0;
+  for (const character::Channel& channel : clip.channels) {
+    const std::vector<Quat>& turns = channel.rotation.values;
+    const bool moves = std::ranges::any_of(turns, [&](const Quat& q) { return q.coeffs() != turns.front().coeffs(); });
+    idle += moves && std::ranges::find(carrying, channel.node) == carrying.end() ? 1 : 0;
+  }
+  if (idle <= kNodesOfLimbs) return std::nullopt;
+  return fmt::format(
+      "has no skin on its bones: node \"{}\" holds all of it, and {} nodes that the motion turns move nothing of it; "
+      "bind the mesh to the skeleton in the program that it is from",
+      body.nodes[holder].name, idle);
 }
 
 std::optional<std::string> doubt_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,

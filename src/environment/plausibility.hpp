@@ -5,12 +5,16 @@
 #include <span>
 #include <string>
 
+#include "character/character.hpp"
 #include "environment/key_frames.hpp"
 
 namespace weft::environment {
 
 /// What is wrong with a body that is as high along `up` as these places [m].
 std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& up);
+
+/// What is wrong with a body of which a clip moves limbs, where no limb has a skin.
+std::optional<std::string> doubt_of_skin(const character::Character& body, const character::Clip& clip);
 
 /// What is wrong with a body that moves so: `count` key frames of `vertices` places from `begin` [s] on, `rate` a
 /// second.

@@ -379,6 +379,7 @@ struct Character {
   double grow = 0;                        ///< [s] of the dressing in which it grows from its bones to its size
   double start = 0;                       ///< time of the clip that it gets going from [s]
   double speed = 1;                       ///< of the clip
+  std::optional<double> room;             ///< [m] between its limbs for cloth; absent: as cloths are thick
   std::optional<double> keys_per_second;  ///< absent: those of the clip
   Interpolation interpolation = Interpolation::cubic;
   double friction = 0.3;

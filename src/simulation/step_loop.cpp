@@ -33,6 +33,8 @@ constexpr double kUnfeltGain = 0.1, kCorrectionGain = 0.2;
 constexpr double kUnfeltStrain = 0.05;
 // Of its limit to stretch, beyond which the run tells of it.
 constexpr double kOverstretch = 1.1;
+// Times what was told of before, from which on it is told of again.
+constexpr double kToldAgain = 1.5;
 // By what steps grow again, each time, after one could not be solved: cloth that is wrung refused each step of 10 ms
 // for many frames (58 rejected steps for 15, 1,970 iterations for 1,649).
 constexpr double kRecovery = 1.1;
@@ -356,13 +358,17 @@ void StepLoop::accept(double h, FrameReport& report) {
   report.solver_error += solver_error_;
 }
 
-// Of the step that led from `next_` to now. What goes beyond the limit is told where it begins.
+// Of the step that led from `next_` to now. What goes beyond the limit is told where it begins, and again where it goes
+// half as far beyond once more: a tight waist would be told of with every breath.
 void StepLoop::measure_stretch(FrameReport& report) {
   report.max_strain = std::max(report.max_strain, cloth_.max_strain(progress_.now.particles()));
   const ClothSystem::Overstretch most = cloth_.overstretch(progress_.now.particles());
   const bool begins = report.stretch_share <= kOverstretch && most.share > kOverstretch;
   report.stretch_share = std::max(report.stretch_share, most.share);
   if (!begins || cloth_.overstretch(next_.particles()).share > kOverstretch) return;
+  double& told = told_shares_[most.cloth];
+  if (most.share < kToldAgain * told) return;
+  told = most.share;
   report.warnings.push_back(
       fmt::format("frame {}: '{}' is stretched by {:.0f} %, which its threads do not allow (max_stretch {:g}), near "
                   "({:.4g}, {:.4g}, {:.4g}) m",

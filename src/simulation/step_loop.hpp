@@ -1,6 +1,7 @@
 // From one frame to the next in steps: how long they are, what is done again, and what one step consists of.
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -116,6 +117,7 @@ class StepLoop {
   integrator::Stepper stepper_;
   Moment next_;                                // the end of the step at hand; once that is accepted, its start
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
+  std::map<std::size_t, double> told_shares_;  // of each cloth that was told of as stretched, of its limit
   std::vector<integrator::HeldParticle> held_;
   std::optional<CollisionStage> collisions_;
   std::optional<environment::Gusts> gusts_;

@@ -6,7 +6,10 @@
 #include <cmath>
 
 #include "character/mannequin.hpp"
+#include "character/room.hpp"
 #include "mesh/topology.hpp"
+#include "mesh/triangle_grid.hpp"
+#include "support/intersections.hpp"
 
 namespace weft::character {
 namespace {
@@ -92,6 +95,103 @@ TEST(Dressing, GrowsFromATenthToAllWithoutAJerk) {
   EXPECT_NEAR(grown(1, 2), 0.55, 1e-15);
   EXPECT_NEAR(grown(2, 2), 1, 1e-15);
   EXPECT_NEAR((grown(1e-4, 2) - grown(0, 2)) / 1e-4, 0, 1e-3);
+}
+
+constexpr double kRoom = 0.008;
+
+class RoomOfAMannequin : public ::testing::Test {
+ protected:
+  std::vector<Vec3> skinned(const Pose& pose) const {
+    std::vector<Vec3> x(body_.mesh.positions.size());
+    skin(body_, pose, x);
+    return x;
+  }
+  Room room(std::vector<Ground> grounds = {}) const {
+    return {{body_, joints_}, VertexMask(body_.mesh.positions.size(), 1), kRoom, std::move(grounds)};
+  }
+  std::size_t crossings(const std::vector<Vec3>& x) const {
+    const support::JudgedObject object{"skin", true, x, body_.mesh.topology.triangles};
+    return support::judge(std::span(&object, 1)).pairs.size();
+  }
+
+  const Character body_ = make_mannequin({.edge_length = 0.04});
+  const std::vector<Index> joints_ = find_joints(body_);
+};
+
+TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
+  const Pose pose = raise_arms({body_, joints_}, rest_pose(body_), 0, kUp);
+  const std::vector<Vec3> before = skinned(pose);
+  std::vector<Vec3> after = before;
+  room().make(pose, after);
+  EXPECT_GT(crossings(before), 100u);
+  EXPECT_EQ(crossings(after), 0u);
+  // Of the skin of each forearm the nearest of the trunk, by their corners.
+  double least = 1;
+  int moved = 0;
+  const std::vector<Limb> limbs = limbs_of(body_, joints_);
+  const Posture posture = Skeleton({body_, joints_}).at(pose);
+  for (std::size_t v = 0; v < after.size(); ++v) {
+    moved += after[v] != before[v] ? 1 : 0;
+    if (after[v].z() > 1.5) {
+      EXPECT_EQ(after[v], before[v]) << "head";
+    }
+    if (limbs[v] != Limb::left_arm || after[v].z() > posture.places[place_of(Joint::left_lower_arm)].z()) continue;
+    for (std::size_t w = 0; w < after.size(); ++w)
+      if (limbs[w] == Limb::trunk) least = std::min(least, (after[v] - after[w]).norm());
+  }
+  EXPECT_GT(moved, 100);
+  EXPECT_GT(least, 0.9 * kRoom);
+}
+
+TEST_F(RoomOfAMannequin, LeavesARestingBodyToTheBit) {
+  const std::vector<Vec3> before = skinned(rest_pose(body_));
+  std::vector<Vec3> after = before;
+  room().make(rest_pose(body_), after);
+  EXPECT_EQ(after, before);
+}
+
+TEST_F(RoomOfAMannequin, FlattensItAboveTheGroundButForItsFeet) {
+  const std::vector<Vec3> before = skinned(rest_pose(body_));
+  std::vector<Vec3> after = before;
+  // Against its back, 3 cm into it.
+  double back = 0;
+  for (const Vec3& x : before) back = std::max(back, x.z() > 0.3 ? x.y() : 0);
+  const Ground wall{Vec3(0, -1, 0), 0.03 - back};
+  room({wall}).make(rest_pose(body_), after);
+  double nearest = 1;
+  for (std::size_t v = 0; v < after.size(); ++v) {
+    if (before[v].z() < 0.07) {
+      EXPECT_EQ(after[v], before[v]) << "a foot";
+    } else if (before[v].z() > 0.3) {
+      nearest = std::min(nearest, wall.up.dot(after[v]) - wall.height);
+    }
+  }
+  EXPECT_NEAR(nearest, 0.5 * kRoom, 1e-9);
+}
+
+TEST(TriangleGrids, FindTheFirstFrontThatBruteForceFinds) {
+  const Character body = make_mannequin({.edge_length = 0.1});
+  const auto& triangles = body.mesh.topology.triangles;
+  const std::vector<Vec3>& x = body.mesh.positions;
+  const mesh::TriangleGrid grid(triangles, x, 0.05);
+  int hits = 0;
+  for (std::size_t v = 0; v + 7 < x.size(); v += 7) {
+    const Vec3 from = x[v] + Vec3(0.1, 0.02, 0.01), to = x[v + 7] - Vec3(0.1, 0.03, 0.02);
+    const mesh::Entry entry = grid.first_entry(from, to, [](Index t) { return t % 3 != 0; });
+    // Of each triangle where the way goes through its plane, by barycentric coordinates.
+    double first = 1;
+    for (std::size_t t = 0; t < triangles.size(); ++t) {
+      if (t % 3 == 0) continue;
+      Mat3 system;
+      system << x[triangles[t][1]] - x[triangles[t][0]], x[triangles[t][2]] - x[triangles[t][0]], from - to;
+      if (system.determinant() <= 0) continue;
+      const Vec3 at = system.inverse() * (from - x[triangles[t][0]]);
+      if (at.x() >= 0 && at.y() >= 0 && at.x() + at.y() <= 1 && at.z() >= 0) first = std::min(first, at.z());
+    }
+    EXPECT_NEAR(entry.t, first, 1e-9) << v;
+    hits += first < 1 ? 1 : 0;
+  }
+  EXPECT_GT(hits, 10);
 }
 
 }  // namespace

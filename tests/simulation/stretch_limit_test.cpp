@@ -81,6 +81,15 @@ TEST(StretchLimitInAScene, TellsOnceWhereItCannotBeKept) {
   ASSERT_EQ(said.size(), 1U);
   EXPECT_NE(said[0].find("'banner' is stretched by "), std::string::npos) << said[0];
   EXPECT_NE(said[0].find("max_stretch 0.1"), std::string::npos) << said[0];
+  // Pulled as far again after it was let go.
+  said.clear();
+  std::string pulled = kTornApart;
+  const std::string once = "{ time = 0.8, position = [0, 0, -0.2] }";
+  pulled.replace(pulled.find(once), once.size(),
+                 "{ time = 0.2, position = [0, 0, -0.06] }, { time = 0.4, position = [0, 0, 0.02] }, "
+                 "{ time = 0.6, position = [0, 0, -0.06] }");
+  EXPECT_GT(largest_share(support::scene_of_text(pulled.c_str()), said), 1.1);
+  EXPECT_EQ(said.size(), 1U);
 }
 
 TEST(StretchLimitInAScene, ChangesNothingBelowItsOnset) {
