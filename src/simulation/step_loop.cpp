@@ -100,7 +100,8 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
       problem_(cloth_),
       pins_(scene, environment, first_particles(cloth_), cloth_.masses()),
       progress_{start_of(environment, start), step_control_of(scene), std::numeric_limits<double>::infinity()},
-      stepper_(method_of(scene.time.integrator), newton_of(scene)) {
+      stepper_(method_of(scene.time.integrator), newton_of(scene)),
+      told_shares_(cloth_.cloths(), 0) {
   Moment& now = progress_.now;
   pins_.begin_step(start, 0, now.x);
   held_ = pins_.held();
@@ -122,6 +123,7 @@ void StepLoop::take_over(const StepLoop& before, std::span<const std::size_t> cl
     std::copy_n(before.progress_.now.x.begin() + there, count, progress_.now.x.begin() + here);
     std::copy_n(before.progress_.now.v.begin() + there, count, progress_.now.v.begin() + here);
     pins_.take_over(before.pins_, there, here, count);
+    told_shares_[cloths[c]] = before.told_shares_[c];
   }
   if (collisions_ && before.collisions_) collisions_->take_over(*before.collisions_, cloths);
   next_ = progress_.now;
@@ -390,6 +392,10 @@ void StepLoop::serialize(Archive& archive) {
   if constexpr (Archive::kReads) require(progress_.longest > 0, "a step length");
   cloth_.serialize(archive);
   pins_.serialize(archive);
+  for (double& share : told_shares_) {
+    archive.value(share);
+    if constexpr (Archive::kReads) require(share >= 0, "a share of a limit to stretch");
+  }
 }
 
 template void StepLoop::serialize(ByteWriter&);

@@ -1,7 +1,6 @@
 // From one frame to the next in steps: how long they are, what is done again, and what one step consists of.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -117,7 +116,7 @@ class StepLoop {
   integrator::Stepper stepper_;
   Moment next_;                                // the end of the step at hand; once that is accepted, its start
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
-  std::map<std::size_t, double> told_shares_;  // of each cloth that was told of as stretched, of its limit
+  std::vector<double> told_shares_;            // of its limit, that each cloth was last told of; 0: it was not
   std::vector<integrator::HeldParticle> held_;
   std::optional<CollisionStage> collisions_;
   std::optional<environment::Gusts> gusts_;
