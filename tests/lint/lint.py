@@ -55,6 +55,14 @@ class Source:
         return [{f"{outer and outer[1]}::{name}" for name in found} for found in (names, used | names)]
 
 
+def compiled(entry):
+    """The entries of what is compiled: where that is several sources at a time, one for each of them."""
+    path = pathlib.Path(entry["file"])
+    if "Unity" not in path.parts:
+        return [entry]
+    return [{**entry, "file": name} for name in re.findall(r'^#include "(.*\.cpp)"$', path.read_text(), re.M)]
+
+
 def precompile(build, flags):
     header = build / "lint.hpp"
     header.write_text("".join(f"#include <{name}>\n" for name in PRECOMPILED))
@@ -93,7 +101,8 @@ def tidy_commands(build, sources):
 
 def main():
     build, kind, patterns = pathlib.Path(sys.argv[1]).resolve(), sys.argv[2], sys.argv[3:]
-    entries = {entry["file"]: entry for entry in json.loads((build / "compile_commands.json").read_text())}
+    commands = json.loads((build / "compile_commands.json").read_text())
+    entries = {entry["file"]: entry for command in commands for entry in compiled(command)}
     root = TREE / ("tests" if kind == "syntax" else "src")
     sources = [Source(entry) for name, entry in sorted(entries.items())
                if name.endswith(".cpp") and pathlib.Path(name).is_relative_to(root)
