@@ -200,6 +200,13 @@ bool CollisionStage::turns_too_far(double t, double h, const Moment& now) const 
   return false;
 }
 
+bool CollisionStage::bodies_stay(double t0, double t1, Moment& now, Moment& next) const {
+  place_bodies(t0, now);
+  place_bodies(t1, next);
+  const auto first = static_cast<std::ptrdiff_t>(particles_);
+  return std::equal(now.x.begin() + first, now.x.end(), next.x.begin() + first);
+}
+
 bool CollisionStage::obstacles_creep(const Moment& now, const Moment& next) const {
   const double most = kCreep * engine_.reach();
   for (std::size_t v = particles_; v < now.x.size(); ++v)

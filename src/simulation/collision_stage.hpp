@@ -59,6 +59,9 @@ class CollisionStage {
   /// that the search takes it for.
   bool turns_too_far(double t, double h, const Moment& now) const;
 
+  /// Whether all bodies are at t1 where they are at t0 [s], the time of `now`.
+  bool bodies_stay(double t0, double t1, Moment& now, Moment& next) const;
+
   /// Whether no obstacle moves so far between these that a shorter step could find room for cloth.
   bool obstacles_creep(const Moment& now, const Moment& next) const;
 

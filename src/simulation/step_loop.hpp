@@ -88,6 +88,9 @@ class StepLoop {
   using Rejection = std::optional<std::string>;
 
   void advance_equally(double t_t0, double t_t1, FrameReport& report);
+  bool may_rest(double t, double h, int steps);
+  static bool is_slow(const Moment& moment);
+  bool rest(double t, double h, FrameReport& report);
   void advance_over(double t, double h, int retries, int halvings, FrameReport& report);
   void advance_controlled(double t_t0, double t_t1, FrameReport& report);
   bool turns_too_far(double t, double h) const {

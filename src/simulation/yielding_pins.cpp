@@ -78,6 +78,15 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   }
 }
 
+bool YieldingPins::stay(double t0, double t1) {
+  if (std::ranges::any_of(lagged_, [](std::uint8_t lags) { return lags != 0; })) return false;
+  pins_.held_at(t0, environment_, at_start_);
+  pins_.held_at(t1, environment_, targets_);
+  return std::ranges::equal(at_start_, targets_, [](const auto& start, const auto& target) {
+    return start.constraint.particle == target.constraint.particle && start.x_end == target.x_end;
+  });
+}
+
 // A damped spring; or for what lags a force that is its most at no speed and nothing at the speed that it is to have: a
 // load slows it down, but does not keep it from arriving.
 void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::span<const Vec3> x) {

@@ -28,6 +28,9 @@ class YieldingPins {
   const std::vector<integrator::HeldParticle>& held() const { return held_; }
   const std::vector<Pull>& pulls() const { return pulls_; }
 
+  /// Whether all pins hold at t1 what they hold at t0 [s], where it is then, and nothing lags.
+  bool stay(double t0, double t1);
+
   /// Before the step begins anew: this particle, which is held, lags in it. `obstruction`: what is in its way, and
   /// where.
   void let_go(Index particle, const std::string& obstruction);
