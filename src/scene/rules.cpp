@@ -37,8 +37,9 @@ const Table& time_rules() {
           .number("fps", &Time::fps, above(0, 1000), "Hz", "frames a second; frame k is the state at k / fps")
           .number("preroll", &Time::preroll, within(0, 3600), "s",
                   "simulated before frame 0 and not shown, as for dressing; what moves by keys stands before time 0")
-          .number("step", &Time::step, within(1e-7, 1), "s",
-                  "largest time step; a frame is cut into equal steps no longer than this")
+          .number(
+              "step", &Time::step, within(1e-7, 1), "s",
+              "largest time step; a frame is cut into equal steps no longer than this, or is one while all cloth rests")
           .excludes("tolerance")
           .written_if([](Time& time) { return !time.tolerance; })
           .number("tolerance", &Time::tolerance, within(1e-8, 1), "m",

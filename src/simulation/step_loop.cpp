@@ -156,17 +156,29 @@ void StepLoop::advance_equally(double t_t0, double t_t1, FrameReport& report) {
   for (int s = 0; s < steps; ++s) advance_over(t_t0 + s * h, h, 0, scene_.solver.halvings, report);
 }
 
-// Whether all cloth is slow, and at the ends of so many steps of length h all that the scene moves is where it is at t.
+// Whether all cloth is slow and stays so, by its last step, and at the ends of so many steps of length h all that the
+// scene moves is where it is at t. What begins to move is not tried in one step: what that leaves behind, contacts
+// which it alone would need, would be felt in those that follow.
 bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   if (scene_.time.integrator != scene::Integrator::implicit_euler || gusts_ || whole > kLongestRest ||
-      whole > progress_.longest || !is_slow(progress_.now))
+      whole > progress_.longest || !is_slow(progress_.now) || !has_settled())
     return false;
   for (int s = 1; s <= steps; ++s) {
     const double end = t + s * h;
     if (!pins_.stay(t, end) || (collisions_ && !collisions_->bodies_stay(t, end, progress_.now, next_))) return false;
   }
   return true;
+}
+
+// Whether velocities hardly changed in the last step.
+bool StepLoop::has_settled() const {
+  const integrator::Stepper::History& last = stepper_.history();
+  if (last.h == 0) return false;
+  double sum = 0;
+  for (std::size_t i = 0; i < last.before.v.size(); ++i) sum += (progress_.now.v[i] - last.before.v[i]).squaredNorm();
+  const double most = kRestAcceleration * last.h;
+  return sum <= most * most * static_cast<double>(last.before.v.size());
 }
 
 bool StepLoop::is_slow(const Moment& moment) {

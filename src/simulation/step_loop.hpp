@@ -89,6 +89,7 @@ class StepLoop {
 
   void advance_equally(double t_t0, double t_t1, FrameReport& report);
   bool may_rest(double t, double h, int steps);
+  bool has_settled() const;
   static bool is_slow(const Moment& moment);
   bool rest(double t, double h, FrameReport& report);
   void advance_over(double t, double h, int retries, int halvings, FrameReport& report);

@@ -4,6 +4,8 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <numbers>
+#include <vector>
 
 #include "simulation/scenes.hpp"
 
@@ -168,6 +170,83 @@ TEST(StepTolerance, RunThatIsStuckIsRefusedInsteadOfShorteningStepsForEver) {
   EXPECT_LT(h, integrator::StepControl::kShortestStep);
   // Lengths go down by a fifth at most at once.
   EXPECT_GE(h, 0.2 * integrator::StepControl::kShortestStep);
+}
+
+// A sheet laid on a block, over whose edges it hangs down, in two steps a frame.
+scene::Scene sheet_on_block() {
+  scene::Scene scene = testing::sheet_alone(0.3, 9, 0.103);
+  scene.time.duration = 4;
+  scene.contact.obstacles = true;
+  scene.obstacles.push_back(testing::obstacle("block", scene::BoxShape{{0.2, 0.2, 0.1}}, {0, 0, 0.05}));
+  return scene;
+}
+
+// Steps of each frame from the first on, of so many.
+std::vector<int> steps_of(Simulation& simulation, int frames) {
+  std::vector<int> steps;
+  for (int k = 0; k < frames; ++k) steps.push_back(simulation.advance().steps);
+  return steps;
+}
+
+TEST(Rest, TakesOneStepAFrameAndMovesNothing) {
+  scene::Scene scene = sheet_on_block();
+  Simulation resting(scene);
+  // Something else moves, far away: every step is taken.
+  scene.obstacles.push_back(testing::obstacle("far", scene::Sphere{0.1}));
+  scene.obstacles.back().motion.keys = {{0, {{5, 0, 0.2}, Quat::Identity()}}, {9, {{5, 0, 1}, Quat::Identity()}}};
+  Simulation stepping(scene);
+  const std::vector<int> steps = steps_of(resting, 50);
+  EXPECT_EQ(steps.front(), 2);
+  EXPECT_EQ(steps_of(stepping, 50), std::vector<int>(50, 2));
+  for (int k = 40; k < 50; ++k) EXPECT_EQ(steps[static_cast<std::size_t>(k)], 1) << "frame " << k + 1;
+  // 0.01 m/s² over the 40 ms of a frame are 8 µm: as if ten frames in a row had been as far off, all the same way.
+  const auto &x = testing::sheet_of(resting.snapshot()), &expected = testing::sheet_of(stepping.snapshot());
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((x[i] - expected[i]).norm(), 8e-5) << "particle " << i;
+}
+
+TEST(Rest, EndsWithTheFrameInWhichSomethingMovesOrIsLetGo) {
+  scene::Scene scene = sheet_on_block();
+  scene.obstacles[0].motion.keys = {{0, {{0, 0, 0.05}, Quat::Identity()}},
+                                    {2.03, {{0, 0, 0.05}, Quat::Identity()}},
+                                    {2.6, {{0, 0, 0.25}, Quat::Identity()}}};
+  scene.obstacles[0].motion.interpolation = scene::Interpolation::linear;
+  Simulation lifted(scene);
+  const std::vector<int> of_lifted = steps_of(lifted, 60);
+  EXPECT_EQ(of_lifted[49], 1);
+  for (int k = 50; k < 60; ++k) EXPECT_EQ(of_lifted[static_cast<std::size_t>(k)], 2) << "frame " << k + 1;
+
+  // A sheet that hangs flat, and falls from the step on that ends after its release.
+  scene = testing::sheet_alone(0.3, 5, 1);
+  scene.cloths[0].pose.rotation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
+  scene::Pin pin;
+  pin.low = {0, 1};
+  pin.release = 1.99;
+  scene.cloths[0].pins = {pin};
+  Simulation released(scene);
+  const std::vector<int> of_released = steps_of(released, 51);
+  EXPECT_EQ(of_released[48], 1);
+  EXPECT_EQ(of_released[49], 2);
+  EXPECT_EQ(of_released[50], 2);
+  // Euler over the one step of 20 ms, at rest before: h g.
+  EXPECT_LT(released.snapshot()->time, 2.041);
+}
+
+TEST(Rest, IsNotForMethodsThatKeepSmallMotionNorForGusts) {
+  for (const scene::Integrator integrator : {scene::Integrator::implicit_midpoint, scene::Integrator::bdf2}) {
+    scene::Scene scene = sheet_on_block();
+    scene.obstacles.clear();
+    scene.physics.gravity.setZero();
+    scene.time.integrator = integrator;
+    Simulation simulation(scene);
+    EXPECT_EQ(steps_of(simulation, 3), std::vector<int>(3, 2));
+    scene.time.integrator = scene::Integrator::implicit_euler;
+    Simulation euler(scene);
+    EXPECT_EQ(steps_of(euler, 3), (std::vector<int>{2, 1, 1}));  // at first it has not been seen to rest
+    scene.physics.air_density = 1.2;
+    scene.physics.gusts.speed = 0.001;
+    Simulation blown(scene);
+    EXPECT_EQ(steps_of(blown, 3), std::vector<int>(3, 2));
+  }
 }
 
 }  // namespace
