@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "collision/proximity/closest_points.hpp"
 #include "core/parallel_append.hpp"
@@ -270,7 +271,8 @@ void ProximityFinder::measure_folds(std::span<const Vec3> x) {
 }
 
 void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const Surface> deformable,
-                             std::span<const Vec3> x, double radius, double flattest) {
+                             std::span<const Vec3> x, double radius, double flattest,
+                             std::span<const std::uint8_t> open) {
   if (flattest > 0) measure_folds(x);
   // First look in float. Rounding moves a coordinate by 2^-24 of itself, so a gap of two by four times that at most.
   rounded_.resize(x.size());
@@ -292,10 +294,18 @@ void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const S
       Gathering(*this, x, radius, radius_rounded, flattest, found).look_at(pairs.subspan(begin, end - begin));
     });
   };
+  // Of cloth that is not creased sharply nothing is left of these, which were 13 % of the run of ball_through_cloth.
+  const auto look_at_connected = [&](std::span<const TrianglePair> pairs) {
+    if (open.empty()) return look_at(pairs);
+    creased_.clear();
+    std::ranges::copy_if(pairs, std::back_inserter(creased_),
+                         [&](const TrianglePair& pair) { return !open[pair.a] && !open[pair.b]; });
+    look_at(creased_);
+  };
   look_at(candidates.apart.view());
-  look_at(candidates.one_shared.view());
+  look_at_connected(candidates.one_shared.view());
   for (const Surface& surface : deformable)
-    look_at(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())));
+    look_at_connected(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())));
 }
 
 void ProximityFinder::find(std::span<const Vec3> x, double reach, std::vector<Proximity>& out) const {

@@ -119,6 +119,11 @@ float Fans::slack_of(std::size_t fan, std::span<const Vec3> x) const {
   return slack > 0 && turns_once(fan, axis, x) ? static_cast<float>(0.999 * slack) : -1;
 }
 
+void Fans::mark_open(double distance, std::span<std::uint8_t> vertices) const {
+  for (std::size_t fan = 0; fan < middle_.size(); ++fan)
+    if (2 * static_cast<double>(slack_[fan]) > distance) vertices[middle_[fan]] = 1;
+}
+
 bool Fans::keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const {
   const auto vertices = ring(fan);
   if (vertices.empty()) return false;

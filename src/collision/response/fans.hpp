@@ -34,6 +34,11 @@ class Fans {
   /// Measures every fan at x [m]: how far its vertices may move from there, in any way, before it has to be looked at.
   void set_reference(std::span<const Vec3> x);
 
+  /// Marks the middles of fans in which features without a common vertex were farther apart than `distance` [m] at the
+  /// reference: moved towards each other by half of what they are apart, they would meet, and while no vertex moves as
+  /// far as its fan allows none do.
+  void mark_open(double distance, std::span<std::uint8_t> vertices) const;
+
   /// Appends the edge-triangle pairs without certificate for the way from x_t0 to x_t1. `moved`: per vertex, a bound of
   /// its distance at either time from where it was at the reference [m]; `changed`: per vertex, whether x_t0 or x_t1 is
   /// another than in the last call.

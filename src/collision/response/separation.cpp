@@ -37,6 +37,14 @@ void Separation::watch(std::span<const Vec3> x) {
   fans_.set_reference(x);
 }
 
+std::vector<std::uint8_t> Separation::open_triangles(double distance) const {
+  std::vector<std::uint8_t> vertices(reference_.size(), 0), triangles(triangles_.size(), 0);
+  fans_.mark_open(distance, vertices);
+  for (std::size_t t = 0; t < triangles.size(); ++t)
+    triangles[t] = vertices[triangles_[t][0]] & vertices[triangles_[t][1]] & vertices[triangles_[t][2]];
+  return triangles;
+}
+
 std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                                      const PinchedPairs* pinched, const CarriedStarts* carried) {
   failing_.clear();

@@ -10,6 +10,7 @@
 #include "collision/hierarchy/test_meshes.hpp"
 #include "collision/hierarchy/traversal.hpp"
 #include "collision/proximity/closest_points.hpp"
+#include "collision/response/separation.hpp"
 
 namespace weft::collision {
 namespace {
@@ -252,6 +253,48 @@ TEST(Proximities, RepresentTheLeastDistanceOfEveryFeaturePair) {
       }
     }
   }
+}
+
+/// Whether the triangle has all of these vertices, or one of them.
+bool has_all(const Triangle& t, const std::vector<Index>& vertices) {
+  return std::ranges::all_of(vertices, [&](Index v) { return has_vertex(t, v); });
+}
+bool has_one(const Triangle& t, const Triangle& s) {
+  return std::ranges::any_of(s, [&](Index v) { return has_vertex(t, v); });
+}
+
+// Triangles that gather() need not look at with their neighbours, by the room that fans have.
+TEST(Proximities, OpenTrianglesAreFartherFromTheirNeighbours) {
+  int open_of_all = 0, creased_of_all = 0;
+  for (const double roughness : {0.005, 0.02, 0.04}) {
+    const TestMesh mesh = rough_layers(4, 12, roughness);
+    const Surface surface = mesh.surface();
+    const AllPairs all(mesh);
+    Separation separation(mesh.triangles, std::span(&surface, 1));
+    separation.watch({}, mesh.x);
+    for (const double distance : {0.005, 0.02, 0.03}) {
+      const std::vector<std::uint8_t> open = separation.open_triangles(distance);
+      const auto sides_of_open = [&](const Key& key) {
+        for (std::size_t t = 0; t < open.size(); ++t)
+          for (const auto& [one, other] : {std::pair(key.first, key.second), std::pair(key.second, key.first)})
+            if (open[t] && has_all(mesh.triangles[t], one) &&
+                std::ranges::any_of(mesh.triangles, [&](const Triangle& s) {
+                  return has_all(s, other) && has_one(s, mesh.triangles[t]);
+                }))
+              return true;
+        return false;
+      };
+      for (const auto* pairs : {&all.vertex_face, &all.edge_edge})
+        for (const auto& [key, points] : *pairs)
+          if (points.distance_sq < distance * distance) {
+            EXPECT_FALSE(sides_of_open(key)) << "roughness " << roughness << ", " << std::sqrt(points.distance_sq);
+          }
+      open_of_all += static_cast<int>(std::ranges::count(open, 1));
+      creased_of_all += static_cast<int>(std::ranges::count(open, 0));
+    }
+  }
+  EXPECT_GT(open_of_all, 300);
+  EXPECT_GT(creased_of_all, 300);
 }
 
 TEST(Proximities, OfAVertexOverASharedEdgeAndOverACornerAreListedOnce) {
