@@ -14,10 +14,10 @@ namespace weft::forces {
 namespace {
 
 using testing::kGrid;
+using testing::kStiffness;
 using testing::Positions;
 
-constexpr double kStiffness = 1000;  // [N/m]
-constexpr double kRate = 150;        // dv/dx of a scheme [1/s]
+constexpr double kRate = 150;  // dv/dx of a scheme [1/s]
 
 /// As kGrid, with spacings from 10 to 29 mm along weft and from 42 to 19 mm along warp.
 const mesh::Grid kGraded{5, 4, 0.02, 0.03, 3, 0.45};

@@ -12,12 +12,10 @@
 namespace weft::render {
 namespace {
 
-constexpr int kWidth = 160, kHeight = 100;
-
 image::Image drawn(const frame::FrameSnapshot& snapshot, Quality quality = Quality::final) {
   Settings settings;
-  settings.width = kWidth;
-  settings.height = kHeight;
+  settings.width = 160;
+  settings.height = 100;
   settings.quality = quality;
   return Renderer(settings).draw(snapshot);
 }

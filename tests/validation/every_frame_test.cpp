@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(Of, FirstFrames,
                                            SceneRun{"ball_through_cloth", 1, 36}, SceneRun{"ball_through_cloth", 4, 36},
                                            SceneRun{"sphere_drape", 1, 20}, SceneRun{"sphere_drape", 4, 20},
                                            SceneRun{"multi_sheet", 1, 64}, SceneRun{"multi_sheet", 4, 64}),
-                         testing::name_of);
+                         testing::name_of_run);
 
 }  // namespace
 }  // namespace weft::simulation
