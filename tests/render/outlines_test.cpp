@@ -24,7 +24,7 @@ View test_view() {
 }
 
 /// The world position that is drawn at a place of the picture [pixels], `distance` metres away.
-Vec3 at(double x, double y, double distance) {
+Vec3 seen_at(double x, double y, double distance) {
   return distance *
          Vec3(2 * x / kOutlinedWidth - 1, 1, (2 * y / kOutlinedHeight - 1) * kOutlinedHeight / kOutlinedWidth);
 }
@@ -65,7 +65,9 @@ struct Scene {
 const std::vector<Triangle> kQuad = {{0, 1, 2}, {0, 2, 3}};
 
 Thing quad(double x0, double y0, double x1, double y1, double distance, std::uint64_t color) {
-  return {{at(x0, y0, distance), at(x1, y0, distance), at(x1, y1, distance), at(x0, y1, distance)}, kQuad, color};
+  return {{seen_at(x0, y0, distance), seen_at(x1, y0, distance), seen_at(x1, y1, distance), seen_at(x0, y1, distance)},
+          kQuad,
+          color};
 }
 
 // Eight samples, no two in one eighth of the pixel's width: an edge at any place covers them to half a sample. Added
@@ -91,10 +93,10 @@ TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
             [](double, double) { return true; });
   // Its border rises one pixel in eight.
   const auto border = [](double x) { return 20 + x / 8; };
-  const Thing sheet{
-      {at(0, 0, 2), at(kOutlinedWidth, 0, 2), at(kOutlinedWidth, border(kOutlinedWidth), 2), at(0, border(0), 2)},
-      kQuad,
-      kWhite};
+  const Thing sheet{{seen_at(0, 0, 2), seen_at(kOutlinedWidth, 0, 2),
+                     seen_at(kOutlinedWidth, border(kOutlinedWidth), 2), seen_at(0, border(0), 2)},
+                    kQuad,
+                    kWhite};
   scene.add(sheet, 2, [&](double x, double y) { return y < border(x); });
   scene.smooth();
   // Each column is covered up to the border at its middle; a sample counts 1/8.
@@ -108,8 +110,10 @@ TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
 TEST(Outlines, TheBackOfASheetEndsAgainstItsFront) {
   // Folded along a line: the same surface, as far away, once from behind.
   Scene scene;
-  Thing folded{{at(10, 10, 2), at(40.5, 10, 2), at(40.5, 50, 2), at(10, 50, 2)}, {{0, 1, 2}, {0, 2, 3}}, kWhite};
-  folded.positions.insert(folded.positions.end(), {at(70, 10, 2), at(70, 50, 2)});
+  Thing folded{{seen_at(10, 10, 2), seen_at(40.5, 10, 2), seen_at(40.5, 50, 2), seen_at(10, 50, 2)},
+               {{0, 1, 2}, {0, 2, 3}},
+               kWhite};
+  folded.positions.insert(folded.positions.end(), {seen_at(70, 10, 2), seen_at(70, 50, 2)});
   folded.triangles.insert(folded.triangles.end(), {{4, 1, 2}, {4, 2, 5}});
   scene.add(folded, 2, [](double x, double y) { return x > 10 && x < 70 && y > 10 && y < 50; });
   for (int y = 10; y < 50; ++y) {
@@ -131,8 +135,8 @@ TEST(Outlines, SampleOnACutBetweenTrianglesBelongsToOneOfThem) {
   for (int i = 0; i < 300; ++i) {
     const double angle = 2 * std::numbers::pi * i / 300, across = 300 * std::cos(angle), along = 300 * std::sin(angle);
     Scene scene;
-    const Thing cut{{at(x - across, y - along, 2), at(x + along, y - across, 2), at(x + across, y + along, 2),
-                     at(x - along, y + across, 2)},
+    const Thing cut{{seen_at(x - across, y - along, 2), seen_at(x + along, y - across, 2),
+                     seen_at(x + across, y + along, 2), seen_at(x - along, y + across, 2)},
                     kQuad,
                     kWhite};
     scene.add(cut, 2, [](double, double) { return true; });
@@ -168,7 +172,8 @@ TEST(Outlines, NearerHidesFartherInEitherOrder) {
 // Two sides of a box that meet in an upright edge, white and grey, at x = 40.25: the same surface, as far away there.
 TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
   Scene scene;
-  const Thing box{{at(10, 10, 3), at(40.25, 10, 2), at(40.25, 50, 2), at(10, 50, 3), at(80, 10, 3), at(80, 50, 3)},
+  const Thing box{{seen_at(10, 10, 3), seen_at(40.25, 10, 2), seen_at(40.25, 50, 2), seen_at(10, 50, 3),
+                   seen_at(80, 10, 3), seen_at(80, 50, 3)},
                   {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}},
                   kWhite};
   scene.add(box, 2, [](double x, double y) { return x > 10 && x < 80 && y > 10 && y < 50; });
