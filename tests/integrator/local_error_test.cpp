@@ -10,6 +10,8 @@
 namespace weft::integrator {
 namespace {
 
+using testing::kMethods;
+
 // Above the rounding of x / h², and far below the errors looked at.
 constexpr NewtonParameters kAboveRounding{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
