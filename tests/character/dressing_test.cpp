@@ -9,12 +9,11 @@
 #include "character/room.hpp"
 #include "mesh/topology.hpp"
 #include "mesh/triangle_grid.hpp"
+#include "posed_mannequin.hpp"
 #include "support/intersections.hpp"
 
 namespace weft::character {
 namespace {
-
-const Vec3 kUp = Vec3::UnitZ();
 
 /// Hips at (0, 0, 1), and below them two legs of one bone and its end, 0.1 m to either side.
 Character two_legs() {

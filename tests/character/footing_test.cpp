@@ -5,10 +5,10 @@
 #include <cmath>
 #include <vector>
 
+#include "posed_mannequin.hpp"
+
 namespace weft::character {
 namespace {
-
-const Vec3 kUp = Vec3::UnitZ();
 
 /// A leg that faces -y, with thigh and shin of 0.4 m, bent by 2 · 0.2 radians, its ankle 8 cm over the sole.
 Leg leg_at(const Vec3& hip) {
@@ -24,7 +24,7 @@ Leg leg_at(const Vec3& hip) {
 
 const double kFloor = leg_at(Vec3::Zero()).heel.z();
 
-struct Walk {
+struct Glide {
   std::vector<double> times;
   std::vector<Legs> legs;
   Footsteps steps;
@@ -32,8 +32,8 @@ struct Walk {
 
 /// Hips that travel at 1 m/s over feet which go with them; `sunk`: below the floor [m]. The left foot is said to stand
 /// from 0.3 to 0.6 s.
-Walk gliding(double sunk) {
-  Walk walk;
+Glide gliding(double sunk) {
+  Glide walk;
   for (int k = 0; k <= 20; ++k) {
     walk.times.push_back(0.05 * k);
     const Vec3 at(0, -0.05 * k, -sunk);
@@ -45,7 +45,7 @@ Walk gliding(double sunk) {
 
 TEST(Footing, ABallThatStandsStaysOnTheFloorAndNothingSinksBelowIt) {
   for (const double sunk : {0.03, -0.02}) {
-    const Walk walk = gliding(sunk);
+    const Glide walk = gliding(sunk);
     const auto stances = plant_feet(walk.legs, walk.steps, walk.times, kFloor, kUp);
     const Vec3 ball = walk.legs[6][0].ball + stances[6].shift[0];
     for (std::size_t k = 0; k < stances.size(); ++k) {
@@ -64,7 +64,7 @@ TEST(Footing, ABallThatStandsStaysOnTheFloorAndNothingSinksBelowIt) {
 }
 
 TEST(Footing, HipsComeDownWhereALegDoesNotReach) {
-  Walk walk = gliding(0);
+  Glide walk = gliding(0);
   for (Legs& legs : walk.legs)
     for (Vec3* x : {&legs[0].hip, &legs[0].knee, &legs[0].ankle, &legs[0].heel, &legs[0].ball}) x->z() += 0.1;
   const auto stances = plant_feet(walk.legs, walk.steps, walk.times, kFloor, kUp);

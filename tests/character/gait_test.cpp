@@ -124,12 +124,12 @@ TEST(Gait, HasTheSpeedAskedForAndStepsOfConstantWalkRatio) {
 /// How far a point of a sole slides while it stands, the worst over all of them; lowest: the deepest point below the
 /// floor. Soles are the undersides of `Foot` and `Toes`, in contact below a millimetre. `period` of a stride that
 /// begins with a strike of the left foot; 0 where it is not known when feet stand, and what skims the floor counts too.
-struct Contact {
+struct FootAtRest {
   double slip = 0, lowest = 1;
 };
-Contact contact_of(const Clip& clip, double period) {
+FootAtRest contact_of(const Clip& clip, double period) {
   const Character& body = mannequin();
-  Contact worst;
+  FootAtRest worst;
   std::vector<Vec3> before;
   std::vector<double> slip(body.mesh.positions.size(), 0);
   for (std::size_t k = 0; k < keys(clip); ++k) {
@@ -155,7 +155,7 @@ Contact contact_of(const Clip& clip, double period) {
 TEST(Gait, FeetNeitherSlideNorSink) {
   for (const double speed : kSpeeds) {
     const Clip clip = make_stride(mannequin(), speed);
-    const Contact worst = contact_of(clip, clip.duration);
+    const FootAtRest worst = contact_of(clip, clip.duration);
     EXPECT_LT(worst.slip, 0.005) << speed;
     EXPECT_GT(worst.lowest, -0.003) << speed;
   }
@@ -168,7 +168,7 @@ TEST(Gait, FeetDoNotSlideFromStandingThroughATurnToStanding) {
     Walk walk = at_speed(speed);
     walk.distance = 2.5;
     walk.turn_back = true;
-    const Contact worst = contact_of(make_walk(mannequin(), walk), 0);
+    const FootAtRest worst = contact_of(make_walk(mannequin(), walk), 0);
     EXPECT_LT(worst.slip, 0.006) << speed;
     EXPECT_GT(worst.lowest, -0.003) << speed;
   }

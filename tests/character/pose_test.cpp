@@ -3,15 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 #include <random>
 
 #include "core/parallel.hpp"
 
 namespace weft::character {
 namespace {
-
-constexpr double kPi = std::numbers::pi;
 
 // A few roundings of numbers of size 1.
 constexpr double kRounding = 1e-14;
@@ -48,7 +45,7 @@ TEST(Skin, AtRestIsTheMeshAsBound) {
 TEST(Skin, FollowsItsBonesAndBlendsThem) {
   const Character body = arm();
   Pose pose = rest_pose(body);
-  pose.nodes[1].rotation = Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ());  // the forearm points along y
+  pose.nodes[1].rotation = Eigen::AngleAxisd(90 * kDegree, Vec3::UnitZ());  // the forearm points along y
   const auto x = vertices(body, pose);
   EXPECT_LT((x[0] - Vec3(0.5, 0, 0)).norm(), kRounding);
   EXPECT_LT((x[2] - Vec3(1, 1, 0)).norm(), kRounding);
@@ -61,7 +58,7 @@ TEST(Skin, AddsMorphTargetsByTheirWeightBeforeTheBones) {
   body.morphs.push_back({"thick", {Vec3(0, 0.2, 0), Vec3::Zero(), Vec3(0, 0.4, 0)}, 0.5});
   Pose pose = rest_pose(body);
   EXPECT_EQ(pose.morphs, std::vector<double>{0.5});
-  pose.nodes[1].rotation = Eigen::AngleAxisd(kPi / 2, Vec3::UnitZ());
+  pose.nodes[1].rotation = Eigen::AngleAxisd(90 * kDegree, Vec3::UnitZ());
   const auto x = vertices(body, pose);
   EXPECT_LT((x[0] - Vec3(0.5, 0.1, 0)).norm(), kRounding);
   EXPECT_LT((x[2] - Vec3(0.8, 1, 0)).norm(), kRounding);
@@ -110,7 +107,7 @@ Clip bending() {
   Clip clip{"bend", 4, {}, {}};
   Channel elbow;
   elbow.node = 1;
-  elbow.rotation = {{1, 3}, {Quat::Identity(), Quat(Eigen::AngleAxisd(170 * kPi / 180, Vec3::UnitZ()))}};
+  elbow.rotation = {{1, 3}, {Quat::Identity(), Quat(Eigen::AngleAxisd(170 * kDegree, Vec3::UnitZ()))}};
   elbow.scale = {{0, 4}, {Vec3::Ones(), 2 * Vec3::Ones()}};
   clip.channels.push_back(elbow);
   return clip;
@@ -122,7 +119,7 @@ TEST(PoseAt, TurnsEvenlyBetweenKeysAndStandsOutside) {
   for (const auto& [t, degrees] :
        {std::pair{0.0, 0.0}, {1.0, 0.0}, {1.5, 42.5}, {2.0, 85.0}, {3.0, 170.0}, {9.0, 170.0}}) {
     const Pose pose = pose_at(body, clip, t);
-    EXPECT_LT(pose.nodes[1].rotation.angularDistance(Quat(Eigen::AngleAxisd(degrees * kPi / 180, Vec3::UnitZ()))), 1e-7)
+    EXPECT_LT(pose.nodes[1].rotation.angularDistance(Quat(Eigen::AngleAxisd(degrees * kDegree, Vec3::UnitZ()))), 1e-7)
         << t;
     EXPECT_EQ(pose.nodes[1].position, Vec3(1, 0, 0)) << "no key: as at rest";
   }
@@ -134,7 +131,7 @@ TEST(PoseAt, TurnsTheShortestWayWhateverTheSignOfTheKeys) {
   Clip clip = bending();
   clip.channels[0].rotation.values[1].coeffs() *= -1;
   EXPECT_LT(
-      pose_at(body, clip, 2).nodes[1].rotation.angularDistance(Quat(Eigen::AngleAxisd(85 * kPi / 180, Vec3::UnitZ()))),
+      pose_at(body, clip, 2).nodes[1].rotation.angularDistance(Quat(Eigen::AngleAxisd(85 * kDegree, Vec3::UnitZ()))),
       1e-7);
 }
 
@@ -143,8 +140,7 @@ TEST(Blend, GoesFromOnePoseToTheOther) {
   const Pose rest = rest_pose(body), bent = pose_at(body, bending(), 3);
   EXPECT_LT(blend(rest, bent, 0).nodes[1].rotation.angularDistance(rest.nodes[1].rotation), 1e-7);
   EXPECT_LT(blend(rest, bent, 1).nodes[1].rotation.angularDistance(bent.nodes[1].rotation), 1e-7);
-  EXPECT_NEAR(blend(rest, bent, 0.25).nodes[1].rotation.angularDistance(rest.nodes[1].rotation), 42.5 * kPi / 180,
-              1e-7);
+  EXPECT_NEAR(blend(rest, bent, 0.25).nodes[1].rotation.angularDistance(rest.nodes[1].rotation), 42.5 * kDegree, 1e-7);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 
 namespace weft::character {
 
+inline const Vec3 kUp = Vec3::UnitZ();  ///< of all bodies here
+
 inline std::size_t index_of(Joint joint) {
   return static_cast<std::size_t>(joint);
 }

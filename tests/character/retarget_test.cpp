@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <array>
-#include <numbers>
 #include <string>
 
 #include "character/joints.hpp"
@@ -14,13 +13,11 @@
 namespace weft::character {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-
 // Rotations go through quaternions and back some ten times.
-constexpr double kRounding = 1e-12;
+constexpr double kRoundingOfTurns = 1e-12;
 
 Quat about(const Vec3& axis, double degrees) {
-  return Quat(Eigen::AngleAxisd(degrees * kPi / 180, axis));
+  return Quat(Eigen::AngleAxisd(degrees * kDegree, axis));
 }
 
 /// A body of sticks, z up, facing -y, so that its left is +x. Its joints have frames of their own: each node is turned
@@ -50,7 +47,7 @@ Character sticks(double size, double arm, double facing, const Quat& frame, bool
   const Quat turn = about(Vec3::UnitZ(), facing);
   const auto at = [&](double x, double y, double z) -> Vec3 { return size * (turn * Vec3(x, y, z)); };
   const auto name = [&](const char* plain, const char* other) { return std::string(biped ? other : plain); };
-  const Vec3 along = Vec3(std::cos(arm * kPi / 180), 0, -std::sin(arm * kPi / 180));
+  const Vec3 along = Vec3(std::cos(arm * kDegree), 0, -std::sin(arm * kDegree));
   const Vec3 shoulder(0.2, 0, 1.4), elbow = shoulder + 0.3 * along, hand = elbow + 0.3 * along;
   const Index hips = b.add(name("Hips", "Bip01 Pelvis"), -1, at(0, 0, 1));
   const Index spine = b.add(name("Spine", "Bip01 Spine"), hips, at(0, 0, 1.2));
@@ -121,7 +118,7 @@ TEST(Retarget, OntoTheSameSkeletonIsTheSameMotion) {
     for (std::size_t n = 0; n < body.nodes.size(); ++n) {
       const auto expected = global_transforms(body, pose_at(body, clip, t));
       const auto got = global_transforms(body, pose_at(body, result.clip, t));
-      EXPECT_LT((got[n].matrix() - expected[n].matrix()).norm(), kRounding) << body.nodes[n].name << t;
+      EXPECT_LT((got[n].matrix() - expected[n].matrix()).norm(), kRoundingOfTurns) << body.nodes[n].name << t;
     }
 }
 
@@ -129,22 +126,22 @@ TEST(Retarget, LaysAnArmInAPoseAlongTheMotionInTPose) {
   const Character motion = sticks(1, 0, 0, Quat::Identity());
   const Character body = sticks(1, 50, 0, kOwnFrame, true);
   const Result result = retargeted(body, motion, waving(motion, Vec3::Zero()));
-  EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 0) - Vec3::UnitX()).norm(), kRounding);
-  EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 0) - Vec3::UnitX()).norm(), kRounding);
-  EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 1) - Vec3::UnitX()).norm(), kRounding);
-  EXPECT_LT(((result.finger(0) - result.place("LeftHand", 0)).normalized() - Vec3::UnitX()).norm(), kRounding)
+  EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 0) - Vec3::UnitX()).norm(), kRoundingOfTurns);
+  EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 0) - Vec3::UnitX()).norm(), kRoundingOfTurns);
+  EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 1) - Vec3::UnitX()).norm(), kRoundingOfTurns);
+  EXPECT_LT(((result.finger(0) - result.place("LeftHand", 0)).normalized() - Vec3::UnitX()).norm(), kRoundingOfTurns)
       << "hands go with their arms";
-  EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 1) - Vec3::UnitZ()).norm(), kRounding);
+  EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 1) - Vec3::UnitZ()).norm(), kRoundingOfTurns);
 }
 
 TEST(Retarget, ScalesTheWayByTheLegsAndTurnsItToWhereTheBodyFaces) {
   const Character motion = sticks(17, 0, 0, Quat::Identity());  // in another unit
   const Character body = sticks(1.1, 20, 90, kOwnFrame, true);  // faces +x
   const Result result = retargeted(body, motion, waving(motion, {0, -17, 0}));
-  EXPECT_LT((result.place("Hips", 0) - Vec3(0, 0, 1.1)).norm(), kRounding) << "starts where the body stands";
-  EXPECT_LT((result.place("Hips", 1) - Vec3(1.1, 0, 1.1)).norm(), kRounding);
-  EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 1) - Vec3::UnitZ()).norm(), kRounding);
-  EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 1) - Vec3::UnitY()).norm(), kRounding);
+  EXPECT_LT((result.place("Hips", 0) - Vec3(0, 0, 1.1)).norm(), kRoundingOfTurns) << "starts where the body stands";
+  EXPECT_LT((result.place("Hips", 1) - Vec3(1.1, 0, 1.1)).norm(), kRoundingOfTurns);
+  EXPECT_LT((result.direction("LeftLowerArm", "LeftHand", 1) - Vec3::UnitZ()).norm(), kRoundingOfTurns);
+  EXPECT_LT((result.direction("LeftUpperArm", "LeftLowerArm", 1) - Vec3::UnitY()).norm(), kRoundingOfTurns);
 }
 
 TEST(Retarget, PutsTheLowestFootOfTheClipWhereTheFeetStandAtRest) {
@@ -154,8 +151,8 @@ TEST(Retarget, PutsTheLowestFootOfTheClipWhereTheFeetStandAtRest) {
   for (Vec3& x : clip.channels[1].position.values) x.z() -= 3;
   const Character body = sticks(2, 0, 0, Quat::Identity());
   const Result result = retargeted(body, motion, clip);
-  EXPECT_NEAR(result.place("LeftFoot", 0).z(), 0.2, kRounding);
-  EXPECT_NEAR(result.place("LeftFoot", 1).z(), 0.2 + 0.5, kRounding);
+  EXPECT_NEAR(result.place("LeftFoot", 0).z(), 0.2, kRoundingOfTurns);
+  EXPECT_NEAR(result.place("LeftFoot", 1).z(), 0.2 + 0.5, kRoundingOfTurns);
 }
 
 TEST(Joints, OfTheUsualRigsAreFoundByName) {

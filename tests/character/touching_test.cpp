@@ -9,7 +9,7 @@
 namespace weft::character {
 namespace {
 
-constexpr double kRounding = 1e-12;
+constexpr double kRoundingOfPlaces = 1e-12;
 
 /// Who faces -y, z up; arms of 0.3 and 0.25 m end at the given hands.
 Places standing(const Vec3& left_hand, const Vec3& right_hand) {
@@ -43,8 +43,8 @@ TEST(Touching, HandsThatAreTogetherComeTogetherInTheMiddleBetweenThem) {
   const Places ours = standing({0.15, -0.4, 1.2}, {-0.05, -0.45, 1.3});
   const auto pull = pull_hands(theirs, ours, all(), kLarger, {0, 0});
   const Vec3 left = ours[hand(false)] + pull[0], right = ours[hand(true)] + pull[1];
-  EXPECT_LT((left - right - 1.2 * (theirs[hand(false)] - theirs[hand(true)])).norm(), kRounding);
-  EXPECT_LT((pull[0] + pull[1]).norm(), kRounding);
+  EXPECT_LT((left - right - 1.2 * (theirs[hand(false)] - theirs[hand(true)])).norm(), kRoundingOfPlaces);
+  EXPECT_LT((pull[0] + pull[1]).norm(), kRoundingOfPlaces);
 }
 
 TEST(Touching, HandsThatAreFarFromAllStayWhereTheyAre) {
@@ -57,7 +57,7 @@ TEST(Touching, AHandOnTheHipStaysThereIfItRestsAndItsArmIsBent) {
   const Places theirs = standing(on_hip, away), ours = standing({0.3, 0, 0.9}, away);
   const Vec3 middle(0, 0, 0.9);
   const auto rests = pull_hands(theirs, ours, all(), kLarger, {1, 0});
-  EXPECT_LT((ours[hand(false)] + rests[0] - (middle + 1.1 * (on_hip - middle))).norm(), kRounding);
+  EXPECT_LT((ours[hand(false)] + rests[0] - (middle + 1.1 * (on_hip - middle))).norm(), kRoundingOfPlaces);
   EXPECT_EQ(pull_hands(theirs, ours, all(), kLarger, {0, 0})[0], Vec3(Vec3::Zero())) << "it passes";
   Places hanging = theirs;
   hanging[place_of(Joint::left_lower_arm)] = 0.5 * (hanging[place_of(Joint::left_upper_arm)] + on_hip);
@@ -74,7 +74,7 @@ TEST(Touching, ComesAndGoesWithoutAJump) {
     EXPECT_LT((pull[0] - last).norm(), 5e-3) << apart;  // 2 mm a millimetre where it grows fastest
     last = pull[0];
   }
-  EXPECT_LT((last - Vec3(-0.2, 0, 0)).norm(), kRounding);
+  EXPECT_LT((last - Vec3(-0.2, 0, 0)).norm(), kRoundingOfPlaces);
 }
 
 TEST(Touching, WithoutAnElbowAnArmDoesNotMove) {

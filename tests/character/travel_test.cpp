@@ -6,11 +6,10 @@
 #include "character/gait.hpp"
 #include "character/mannequin.hpp"
 #include "character/pose.hpp"
+#include "posed_mannequin.hpp"
 
 namespace weft::character {
 namespace {
-
-const Vec3 kUp = Vec3::UnitZ();
 
 /// The mannequin and its walk from standing to standing.
 class Travel : public testing::Test {

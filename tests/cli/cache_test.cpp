@@ -18,10 +18,6 @@ using Json = nlohmann::json;
 
 constexpr const char* kPictures = "{frame:05}.png";
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 // Statistics without what depends on the moment: times, memory, and where it was.
 Json lasting(const fs::path& file) {
   Json stats = Json::parse(support::read_bytes(file));

@@ -14,7 +14,7 @@ namespace {
 namespace fs = std::filesystem;
 
 // Contacts, friction and heat from about frame 6 on; the camera frames the scene by itself.
-constexpr const char* kScene = R"(
+constexpr const char* kFallOnBall = R"(
 [time]
 duration = 0.8
 fps = 25
@@ -46,7 +46,7 @@ position = [0, 0, -0.1]
 
 void CachedRun::SetUp() {
   support::TestFolder::SetUp();
-  support::write_bytes(folder_ / "s.toml", kScene);
+  support::write_bytes(folder_ / "s.toml", kFallOnBall);
 }
 
 Outcome CachedRun::weft(Arguments arguments) const {

@@ -13,11 +13,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kPictures = "p/{frame:05}.png";
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
+constexpr const char* kPicturesInP = "p/{frame:05}.png";
 
 TEST(FramesText, TellsFramesInARowAsARange) {
   EXPECT_EQ(frames_text({7}), "7");
@@ -70,18 +66,18 @@ TEST_F(Completeness, FramesThatAreMissingInTheMiddleOrBrokenAreNamedBeforeAnythi
   break_file("c/frame_00012.weft");
   const std::string said =
       "c: of frames 0:21 frame 4 is not there; frames 7, 12 cannot be used: c/frame_00007.weft: broken";
-  expect_not_whole({"render", "c", "-o", kPictures, "--meshes", "m", "--stats", "s.json"}, said);
+  expect_not_whole({"render", "c", "-o", kPicturesInP, "--meshes", "m", "--stats", "s.json"}, said);
   for (const char* output : {"p", "m", "s.json"}) EXPECT_FALSE(fs::exists(folder_ / output)) << output;
 }
 
 TEST_F(Completeness, RenderResumesToThePicturesAndMeshesOfOneThatWasNotStopped) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   expect_well({"render", "c", "-o", "whole/{frame:05}.png", "--meshes", "mw"});
-  expect_well({"render", "c", "-o", kPictures, "--meshes", "m", "--frames", "3:9"});
-  expect_well({"render", "c", "-o", kPictures, "--meshes", "m", "--frames", "12:15"});
+  expect_well({"render", "c", "-o", kPicturesInP, "--meshes", "m", "--frames", "3:9"});
+  expect_well({"render", "c", "-o", kPicturesInP, "--meshes", "m", "--frames", "12:15"});
   fs::remove(folder_ / "m/ball_00013.ply");
   const auto drawn = fs::last_write_time(folder_ / "p/00003.png");
-  const Arguments again{"render", "c", "-o", kPictures, "--meshes", "m", "--resume"};
+  const Arguments again{"render", "c", "-o", kPicturesInP, "--meshes", "m", "--resume"};
   const Outcome resumed = weft(again);
   EXPECT_EQ(resumed.exit_code, 0) << resumed.err;
   EXPECT_TRUE(contains(resumed.err, "{frame:05}.png is there in part: frames 3:9, 12, 14\n")) << resumed.err;
@@ -107,7 +103,7 @@ TEST_F(Completeness, LayersAreThoseOfOneRunAfterAResumeAndInParts) {
 
 TEST_F(Completeness, RenderDoesNotGoOnWithOtherPictures) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
-  const Arguments render{"render", "c", "-o", kPictures, "--frames", ":4", "--resume"};
+  const Arguments render{"render", "c", "-o", kPicturesInP, "--frames", ":4", "--resume"};
   expect_well(render);
   const std::string third = support::read_bytes(folder_ / "p/00002.png");
   // A picture of another frame under this name is not this one, and may be all that there is of it.

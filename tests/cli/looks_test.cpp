@@ -14,7 +14,7 @@
 namespace weft::cli {
 namespace {
 
-constexpr const char* kScene = R"(
+constexpr const char* kSceneWithLooks = R"(
 title = "before"
 time = { duration = 0.2, fps = 10, step = 0.05 }
 render = { heat = "strain", camera = "v" }
@@ -57,7 +57,7 @@ void each_change(const scene::Table& table, const std::string& path, bool simula
   if (const scene::Variant* variant = table.variant_of(start.get())) visit_rules(variant->rules);
 }
 
-/// Another value than that of kScene.
+/// Another value than that of kSceneWithLooks.
 std::string other_value(const std::string& path, const scene::Rule& rule) {
   if (path == "render.camera") return "w";
   if (path == "time.duration") return "0.4";
@@ -88,7 +88,7 @@ std::string other_value(const std::string& path, const scene::Rule& rule) {
 }
 
 scene::Scene scene_with(const std::vector<std::string>& overrides) {
-  scene::LoadResult loaded = scene::load_text(kScene, "s.toml", overrides);
+  scene::LoadResult loaded = scene::load_text(kSceneWithLooks, "s.toml", overrides);
   EXPECT_TRUE(loaded.ok()) << loaded.describe();
   return std::move(loaded.scene);
 }
@@ -124,7 +124,7 @@ TEST(Looks, AreAllThatTheRulesCallNotSimulatedAndNothingElse) {
       ++looks;
       return expect_not_simulated(change, before, *kept);
     }
-    const scene::LoadResult after = scene::load_text(kScene, "s.toml", {change});
+    const scene::LoadResult after = scene::load_text(kSceneWithLooks, "s.toml", {change});
     if (!after.ok() || after.scene.hash == before.hash) return;  // scene rules' own tests see to those
     ++others;
     EXPECT_NE(after.scene.simulation_hash, before.simulation_hash) << change;

@@ -8,10 +8,6 @@
 namespace weft::cli {
 namespace {
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 class UnevenCells : public support::TestFolder {};
 
 TEST_F(UnevenCells, AreNamedByCheckAndRunWhereObstaclesAreMet) {

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 using Arguments = std::vector<std::string>;
 
 // Two frames, nothing to hit, and a file that the scene names.
-constexpr const char* kScene = R"(
+constexpr const char* kSceneWithFile = R"(
 time = { duration = 0.1, fps = 10, step = 0.1 }
 cloth = [{ name = "cloth", size = 0.2, particles = 3 }]
 obstacle = [{ name = "o", shape = "mesh", file = "o.obj", collide = false }]
@@ -127,7 +127,7 @@ class Paths : public support::TestFolder {
  protected:
   void SetUp() override {
     support::TestFolder::SetUp();
-    support::write_bytes(folder_ / "s.toml", kScene);
+    support::write_bytes(folder_ / "s.toml", kSceneWithFile);
     support::write_bytes(folder_ / "o.obj", kMesh);
     for (const char* folder : {"ref", "out", "runs", "in", "i"}) fs::create_directories(folder_ / folder);
     image::Image image(16, 16);

@@ -24,7 +24,7 @@ using Json = nlohmann::json;
 using Arguments = std::vector<std::string>;
 
 // Five frames of a handkerchief that falls past a ball and a floor; they are there to be seen, not to be hit.
-constexpr const char* kScene = R"(
+constexpr const char* kFallPastBall = R"(
 [time]
 duration = 0.4
 fps = 10
@@ -59,7 +59,7 @@ class Program : public support::TestFolder {
  protected:
   void SetUp() override {
     support::TestFolder::SetUp();
-    support::write_bytes(folder_ / "s.toml", kScene);
+    support::write_bytes(folder_ / "s.toml", kFallPastBall);
   }
 
   // Small and quick, whatever else is asked for.
@@ -89,10 +89,6 @@ std::vector<Json> json_lines(const std::string& text) {
   std::istringstream in(text);
   for (std::string line; std::getline(in, line);) lines.push_back(Json::parse(line));
   return lines;
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 TEST_F(Program, TurnsASceneIntoAVideoOfAllItsFramesUnderTheDefaultName) {

@@ -22,10 +22,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
-}
-
 class Robustness : public CachedRun {
  protected:
   /// Expects every file under a final name to be whole, and returns how many there are.

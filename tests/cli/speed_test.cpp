@@ -16,6 +16,8 @@
 namespace weft::bench {
 namespace {
 
+using cli::contains;
+
 // Costs that follow powers of the particles: forces n, the linear solver n^1.5, in 4 frames.
 SpeedRun run_with(double size, int threads, double step) {
   SpeedRun run{.setting = {size, threads, step}};
@@ -66,10 +68,6 @@ std::vector<std::map<std::string, std::string>> records_of(const std::string& cs
     }
   }
   return records;
-}
-
-bool contains(const std::string& text, const std::string& part) {
-  return text.find(part) != std::string::npos;
 }
 
 TEST(SpeedSettings, AreAllSizesWithAllThreadsAndStepsAtTheSizeOfTheScene) {

@@ -37,6 +37,11 @@ class Subprocess {
   Outcome outcome_;
 };
 
+/// Whether what was said holds this part.
+inline bool contains(const std::string& text, const std::string& part) {
+  return text.find(part) != std::string::npos;
+}
+
 Outcome run_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder);
 
 }  // namespace weft::cli

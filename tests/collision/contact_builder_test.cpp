@@ -8,7 +8,7 @@
 namespace weft::collision {
 namespace {
 
-constexpr double kH = 0.01;
+constexpr double kBuilderStep = 0.01;  // [s]
 
 /// Two cloths of a triangle each, 1 mm apart, and an obstacle of one, 1 mm below.
 struct Scene {
@@ -29,12 +29,12 @@ struct Scene {
     pinched = PinchedPairs(6, bodies.body_of_vertices(), bodies.limb_of_vertices());
   }
 
-  StepMotion motion() const { return {x_t0, x_t0, x_t1, kH}; }
+  StepMotion motion() const { return {x_t0, x_t0, x_t1, kBuilderStep}; }
 
   std::vector<Contact> contacts_of(const std::vector<Proximity>& proximities, const ContactParameters& parameters) {
     ContactBuilder builder(bodies, parameters, masses);
     ContactResponse response(ResponseForm::springs, masses);
-    response.begin_step(kH);
+    response.begin_step(kBuilderStep);
     builder.begin_step();
     builder.add(proximities, pinched, motion(), response);
     return {response.springs().begin(), response.springs().end()};
@@ -143,12 +143,12 @@ TEST(ContactBuilder, TheShareScalesTheStiffnessAndNoneMakesNoContact) {
 // 100 m / h² with the mean mass of what is pushed, by weight; at least what the scene says.
 TEST(ContactBuilder, StiffnessFollowsTheMassOfWhatIsPushed) {
   Scene scene;
-  constexpr double kStep = 3 * kH;  // of the scene; the law does not hang on the step that is taken
+  constexpr double kSceneStep = 3 * kBuilderStep;  // of the scene; the law does not hang on the step that is taken
   const auto contacts =
-      scene.contacts_of({vertex_face(0, {3, 4, 5}), vertex_face(1, {6, 7, 8})}, {.stiffness = 10, .step = kStep});
+      scene.contacts_of({vertex_face(0, {3, 4, 5}), vertex_face(1, {6, 7, 8})}, {.stiffness = 10, .step = kSceneStep});
   const double mass = (1e-3 + 0.5 * 4e-3 + 0.3 * 5e-3 + 0.2 * 6e-3) / 2;
-  EXPECT_NEAR(contacts[0].stiffness, 100 * mass / (kStep * kStep), 1e-9);
-  EXPECT_NEAR(contacts[1].stiffness, 100 * 2e-3 / (kStep * kStep), 1e-9);  // the obstacle has none
+  EXPECT_NEAR(contacts[0].stiffness, 100 * mass / (kSceneStep * kSceneStep), 1e-9);
+  EXPECT_NEAR(contacts[1].stiffness, 100 * 2e-3 / (kSceneStep * kSceneStep), 1e-9);  // the obstacle has none
   EXPECT_EQ(scene.contacts_of({vertex_face(1, {6, 7, 8})}, {.stiffness = 1e6})[0].stiffness, 1e6);
 }
 
@@ -187,13 +187,13 @@ TEST(ContactBuilder, PinchedClothIsPushedBackSlowlyAndWithoutRoomSoftly) {
   const Scene scene;
   const ContactBuilder builder(scene.bodies, {.stiffness = 1e6}, scene.masses);
   ContactResponse response(ResponseForm::springs, scene.masses);
-  response.begin_step(kH);
+  response.begin_step(kBuilderStep);
   for (const bool has_room : {false, true})
     builder.add_pinched({{{0, 6, 7, 8}, {1, -0.5, -0.3, -0.2}, -Vec3::UnitZ(), -0.002}, has_room}, scene.motion(),
                         response);
   ASSERT_EQ(response.springs().size(), 2U);
   for (const auto& spring : response.springs()) {
-    EXPECT_DOUBLE_EQ(spring.range, -0.002 + 0.2 * kH);
+    EXPECT_DOUBLE_EQ(spring.range, -0.002 + 0.2 * kBuilderStep);
     EXPECT_EQ(spring.friction, 0);
     EXPECT_EQ(spring.static_friction, 0);
   }
@@ -205,7 +205,7 @@ TEST(ContactBuilder, WhatWouldMeetBecomesAContactOnceAtTheDistanceThatItHas) {
   Scene scene;
   ContactBuilder builder(scene.bodies, {}, scene.masses);
   ContactResponse response(ResponseForm::springs, scene.masses);
-  response.begin_step(kH);
+  response.begin_step(kBuilderStep);
   builder.begin_step();
   builder.add({}, scene.pinched, scene.motion(), response);
   const CornerPair pair{{3, 4, 5}, {0, 1, 2}};
@@ -222,7 +222,7 @@ TEST(ContactBuilder, WhatIsInContactAlreadyIsNoNewContact) {
   Scene scene;
   ContactBuilder builder(scene.bodies, {}, scene.masses);
   ContactResponse response(ResponseForm::springs, scene.masses);
-  response.begin_step(kH);
+  response.begin_step(kBuilderStep);
   builder.begin_step();
   // The closest features of both triangles are the vertex 3 and the face below, or a pair as near.
   const CornerPair pair{{3, 4, 5}, {0, 1, 2}};
@@ -241,7 +241,7 @@ TEST(ContactBuilder, EachCornerThatWouldMeetAnObstacleGetsAWall) {
   for (const CornerPair& pair : {CornerPair{{0, 1, 2}, {6, 7, 8}}, CornerPair{{6, 7, 8}, {0, 1, 2}}}) {
     ContactBuilder builder(scene.bodies, {}, scene.masses);
     ContactResponse response(ResponseForm::velocity_constraints, scene.masses);
-    response.begin_step(kH);
+    response.begin_step(kBuilderStep);
     builder.begin_step();
     EXPECT_TRUE(builder.add_failing(pair, scene.motion(), response));
     response.prepare(scene.x_t0, scene.x_t1);

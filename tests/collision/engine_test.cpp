@@ -11,7 +11,7 @@
 namespace weft::collision {
 namespace {
 
-constexpr double kH = 0.01;
+constexpr double kEngineStep = 0.01;  // [s]
 constexpr double kThickness = 0.002;  // of cloth: it touches a floor at half of that, and is near at 1.5 mm
 
 /// A sheet of n × n squares of 2 cm at `height` [m] over a floor, and perhaps a ceiling.
@@ -57,8 +57,8 @@ struct Sheet {
 TEST(Engine, EachParticleNearAFloorIsAProximityAndAContact) {
   Sheet near(3, 0.0029), far(3, 0.0031);
   Engine of_near = near.engine(), of_far = far.engine();
-  of_near.begin_step(near.x, near.x, kH);
-  of_far.begin_step(far.x, far.x, kH);
+  of_near.begin_step(near.x, near.x, kEngineStep);
+  of_far.begin_step(far.x, far.x, kEngineStep);
   EXPECT_EQ(of_near.proximities(), 16);
   EXPECT_NEAR(of_near.min_distance(), 0.0029, 1e-15);
   EXPECT_EQ(of_near.response().springs().size(), 16U);
@@ -70,10 +70,10 @@ TEST(Engine, EachParticleNearAFloorIsAProximityAndAContact) {
 TEST(Engine, WhatSinksWithinTheSkinIsFoundNear) {
   Sheet sheet(3, 0.0044);
   Engine engine = sheet.engine();
-  engine.begin_step(sheet.x, sheet.x, kH);
+  engine.begin_step(sheet.x, sheet.x, kEngineStep);
   EXPECT_EQ(engine.proximities(), 0);
   const std::vector<Vec3> lower = sheet.falling(0.00145);
-  engine.begin_step(lower, lower, kH);
+  engine.begin_step(lower, lower, kEngineStep);
   EXPECT_EQ(engine.proximities(), 16);
 }
 
@@ -84,21 +84,21 @@ TEST(Engine, KeptClosestPointsAreThoseOfTheSearch) {
   parameters.search.coherence = true;
   Engine engine = sheet.engine(parameters);
   for (int step = 0; step < 3; ++step) {
-    engine.begin_step(sheet.x, sheet.x, kH);
+    engine.begin_step(sheet.x, sheet.x, kEngineStep);
     EXPECT_EQ(engine.proximities(), 16);
     EXPECT_EQ(engine.response().springs().size(), 16U);
     EXPECT_TRUE(engine.apart(sheet.x, sheet.falling(0.0028)));
     EXPECT_FALSE(engine.apart(sheet.x, sheet.falling(0.0030)));
   }
   engine.forget();
-  engine.begin_step(sheet.x, sheet.x, kH);
+  engine.begin_step(sheet.x, sheet.x, kEngineStep);
   EXPECT_EQ(engine.proximities(), 16);
 }
 
 TEST(Engine, WhatWouldMeetIsFoundAtTheEndOfTheWay) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
-  engine.begin_step(sheet.x, sheet.x, kH);
+  engine.begin_step(sheet.x, sheet.x, kEngineStep);
   EXPECT_TRUE(engine.apart(sheet.x, sheet.falling(0.0499)));
   EXPECT_FALSE(engine.apart(sheet.x, sheet.falling(0.0501)));
   // Through the floor and out on the other side is no way either.
@@ -109,7 +109,7 @@ TEST(Engine, WhatWouldMeetBecomesContactsOnce) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
   const std::vector<Vec3> end = sheet.falling(0.06);
-  engine.begin_step(sheet.x, sheet.x, kH);
+  engine.begin_step(sheet.x, sheet.x, kEngineStep);
   EXPECT_TRUE(engine.response().springs().empty());
   ASSERT_FALSE(engine.apart(sheet.x, end));
   const int fresh = engine.adopt_failing(sheet.x, end);
@@ -136,7 +136,7 @@ struct CrossedEdges {
   // After a step that showed only once solved that the edges meet, and led to a height of z [m].
   Engine& after_a_late_contact(Engine& engine, double z) const {
     const std::vector<Vec3> from = at(0.03), through = at(-0.01);
-    engine.begin_step(from, from, kH);
+    engine.begin_step(from, from, kEngineStep);
     EXPECT_FALSE(engine.apart(from, through));
     EXPECT_EQ(engine.adopt_failing(from, through), 1);
     engine.accept(at(z));
@@ -144,7 +144,7 @@ struct CrossedEdges {
   }
   static std::size_t contacts(Engine& engine, double z) {
     const std::vector<Vec3> x = at(z);
-    engine.begin_step(x, x, kH);
+    engine.begin_step(x, x, kEngineStep);
     return engine.response().springs().size();
   }
 };
@@ -176,7 +176,7 @@ TEST(Engine, ASavedStateKnowsWhatASolveHadToShow) {
 TEST(Engine, AnExpectedEndThatMeetsGivesContactsAtOnce) {
   Sheet sheet(3, 0.05);
   Engine engine = sheet.engine();
-  engine.begin_step(sheet.x, sheet.falling(0.06), kH);
+  engine.begin_step(sheet.x, sheet.falling(0.06), kEngineStep);
   EXPECT_FALSE(engine.response().springs().empty());
 }
 
@@ -186,7 +186,7 @@ TEST(Engine, PushingApartLeavesAWayWithoutMeeting) {
   std::vector<Vec3> end = sheet.falling(0.06);
   std::vector<std::uint8_t> movable(sheet.x.size(), 0);
   std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
-  engine.begin_step(sheet.x, sheet.x, kH);
+  engine.begin_step(sheet.x, sheet.x, kEngineStep);
   ASSERT_FALSE(engine.apart(sheet.x, end));
   const SeparationReport report = engine.push_apart(sheet.x, end, movable);
   EXPECT_TRUE(report.separated);
@@ -203,7 +203,7 @@ TEST(Engine, AWayThatBendsGoesOnWithTheContactsOfTheBend) {
   std::vector<Vec3> bend = sheet.falling(0.06);
   std::vector<std::uint8_t> movable(sheet.x.size(), 0);
   std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
-  engine.begin_step(sheet.x, sheet.x, kH);
+  engine.begin_step(sheet.x, sheet.x, kEngineStep);
   ASSERT_FALSE(engine.apart(sheet.x, bend));
   ASSERT_TRUE(engine.push_apart(sheet.x, bend, movable).separated);
   engine.go_on_from(bend);
@@ -243,7 +243,7 @@ TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{1});
 
   Engine engine = sheet.engine();
-  engine.begin_step(sheet.x, end, kH);
+  engine.begin_step(sheet.x, end, kEngineStep);
   std::vector<Vec3> refused = end, pinched = end;
   EXPECT_FALSE(engine.push_apart(sheet.x, refused, movable, false).separated);
   EXPECT_EQ(engine.pinched_pairs(), 0);
@@ -282,9 +282,9 @@ TEST(Engine, ARestoredEngineGoesOnAsTheSavedOne) {
   sheet.x = shaken(sheet, 0.0008);
   Engine saved = sheet.engine(), restored = sheet.engine(), fresh = sheet.engine();
   const std::vector<Vec3> lower = shaken(sheet, 0.0008);
-  saved.begin_step(sheet.x, lower, kH);
+  saved.begin_step(sheet.x, lower, kEngineStep);
   ASSERT_TRUE(saved.apart(sheet.x, lower));
-  fresh.begin_step(sheet.x, sheet.x, kH);
+  fresh.begin_step(sheet.x, sheet.x, kEngineStep);
   ByteWriter writer;
   saved.serialize(writer, lower);
   ByteReader reader{writer.bytes};
@@ -294,7 +294,7 @@ TEST(Engine, ARestoredEngineGoesOnAsTheSavedOne) {
   fresh.serialize(of_fresh, lower);
   EXPECT_GT(writer.bytes.size(), of_fresh.bytes.size());  // planes that are others now
 
-  for (Engine* engine : {&saved, &restored}) engine->begin_step(lower, lower, kH);
+  for (Engine* engine : {&saved, &restored}) engine->begin_step(lower, lower, kEngineStep);
   ASSERT_EQ(saved.response().springs().size(), restored.response().springs().size());
   for (std::size_t c = 0; c < saved.response().springs().size(); ++c) {
     EXPECT_EQ(saved.response().springs()[c].particles, restored.response().springs()[c].particles);

@@ -7,10 +7,10 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <numbers>
 #include <string>
 
 #include "core/error.hpp"
+#include "environment/rotation.hpp"
 #include "mesh/geometry.hpp"
 #include "support/mesh_measures.hpp"
 #include "support/scene_runs.hpp"
@@ -20,14 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kPi = std::numbers::pi;
-
 // A few roundings of coordinates of some metres.
 constexpr double kRounding = 1e-13;
-
-Quat about(const Vec3& axis, double angle) {
-  return Quat(Eigen::AngleAxisd(angle, axis.normalized()));
-}
 
 scene::Scene scene_with(const scene::Shape& shape, scene::UpAxis up = scene::UpAxis::z) {
   scene::Scene scene;
@@ -77,7 +71,7 @@ TEST(Cloth, LiesInThePlaneOfItsPoseWithWeftAlongXAndWarpAlongY) {
   cloth.size = {2, 3};
   cloth.particles_weft = 5;
   cloth.particles_warp = 7;
-  cloth.pose = {{10, 20, 30}, about({1, 0, 0}, kPi / 2)};  // y turns up
+  cloth.pose = {{10, 20, 30}, about({1, 0, 0}, 90 * kDegree)};  // y turns up
   cloth.velocity = {1, 2, 3};
   // The pose says all; the up axis does not turn cloth.
   for (const auto up : {scene::UpAxis::z, scene::UpAxis::y}) {
@@ -163,7 +157,7 @@ TEST(Plane, FacesUpAndIsNoFloorToTheHorizonIfFinite) {
 
 TEST(Obstacle, AtRestStandsAtItsPoseForAllTimes) {
   scene::Scene scene = scene_with(scene::BoxShape{.size = {2, 4, 6}, .bevel = 0});
-  scene.obstacles[0].pose = {{1, 2, 3}, about({0, 0, 1}, kPi / 2)};
+  scene.obstacles[0].pose = {{1, 2, 3}, about({0, 0, 1}, 90 * kDegree)};
   scene.obstacles[0].collide = false;
   const Environment environment(scene);
   EXPECT_FALSE(environment.bodies[0].moving);

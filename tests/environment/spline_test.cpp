@@ -12,7 +12,7 @@ using Spline1 = Spline<1>;
 using Value = Spline1::Value;
 
 // A few roundings of numbers up to ten.
-constexpr double kRounding = 1e-13;
+constexpr double kRoundingOfNumbers = 1e-13;
 
 const std::vector<double> kTimes{-0.5, 0.1, 1.7, 2.0, 4.5};
 
@@ -28,7 +28,7 @@ TEST(Spline, PassesThroughItsKeys) {
   for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
     const Spline1 spline(interpolation, kTimes, kValues);
     for (std::size_t i = 0; i < kTimes.size(); ++i)
-      EXPECT_NEAR(spline.at(kTimes[i]).value[0], kValues[i][0], kRounding);
+      EXPECT_NEAR(spline.at(kTimes[i]).value[0], kValues[i][0], kRoundingOfNumbers);
   }
 }
 
@@ -63,17 +63,17 @@ TEST(LinearSpline, GoesStraightWithTheSlopeOfTheLaterSegmentAtAKey) {
 
 TEST(CubicSpline, OfTwoKeysIsALine) {
   const Spline1 spline(Interpolation::cubic, {1, 3}, values_of({0, 4}));
-  EXPECT_NEAR(spline.at(1.5).value[0], 1, kRounding);
-  EXPECT_NEAR(spline.at(1.5).first_derivative[0], 2, kRounding);
+  EXPECT_NEAR(spline.at(1.5).value[0], 1, kRoundingOfNumbers);
+  EXPECT_NEAR(spline.at(1.5).first_derivative[0], 2, kRoundingOfNumbers);
 }
 
 TEST(CubicSpline, OfThreeKeysIsTheKnownNaturalSpline) {
   // Natural spline through 0, 1, 0 at 0, 1, 2: on [0, 1] it is (3t - t³)/2.
   const Spline1 spline(Interpolation::cubic, {0, 1, 2}, values_of({0, 1, 0}));
   for (const double t : {0.0, 0.25, 0.5, 0.999}) {
-    EXPECT_NEAR(spline.at(t).value[0], (3 * t - t * t * t) / 2, kRounding);
-    EXPECT_NEAR(spline.at(t).first_derivative[0], (3 - 3 * t * t) / 2, kRounding);
-    EXPECT_NEAR(spline.at(t).second_derivative[0], -3 * t, kRounding);
+    EXPECT_NEAR(spline.at(t).value[0], (3 * t - t * t * t) / 2, kRoundingOfNumbers);
+    EXPECT_NEAR(spline.at(t).first_derivative[0], (3 - 3 * t * t) / 2, kRoundingOfNumbers);
+    EXPECT_NEAR(spline.at(t).second_derivative[0], -3 * t, kRoundingOfNumbers);
   }
 }
 
@@ -81,11 +81,12 @@ TEST(CubicSpline, HasContinuousFirstAndSecondDerivativesAndStraightEndsWhereNoth
   const Spline1 spline(Interpolation::cubic, kTimes, values_of({0, 0.7, 2.1, 2.4, 4.6}));
   for (std::size_t i = 1; i + 1 < kTimes.size(); ++i) {
     const double before = std::nextafter(kTimes[i], -1);
-    EXPECT_NEAR(spline.at(before).first_derivative[0], spline.at(kTimes[i]).first_derivative[0], kRounding);
-    EXPECT_NEAR(spline.at(before).second_derivative[0], spline.at(kTimes[i]).second_derivative[0], 10 * kRounding);
+    EXPECT_NEAR(spline.at(before).first_derivative[0], spline.at(kTimes[i]).first_derivative[0], kRoundingOfNumbers);
+    EXPECT_NEAR(spline.at(before).second_derivative[0], spline.at(kTimes[i]).second_derivative[0],
+                10 * kRoundingOfNumbers);
   }
-  EXPECT_NEAR(spline.at(-0.5).second_derivative[0], 0, 10 * kRounding);
-  EXPECT_NEAR(spline.at(std::nextafter(4.5, 0)).second_derivative[0], 0, 10 * kRounding);
+  EXPECT_NEAR(spline.at(-0.5).second_derivative[0], 0, 10 * kRoundingOfNumbers);
+  EXPECT_NEAR(spline.at(std::nextafter(4.5, 0)).second_derivative[0], 0, 10 * kRoundingOfNumbers);
 }
 
 TEST(CubicSpline, StandsBetweenEqualKeysAndStaysBetweenOthers) {
@@ -95,12 +96,13 @@ TEST(CubicSpline, StandsBetweenEqualKeysAndStaysBetweenOthers) {
   double slope_before = 0;
   for (std::size_t i = 0; i + 1 < times.size(); ++i) {
     const auto [low, high] = std::minmax(numbers[i], numbers[i + 1]);
-    EXPECT_NEAR(spline.at(times[i]).first_derivative[0], slope_before, 10 * kRounding) << "at key " << i;
+    EXPECT_NEAR(spline.at(times[i]).first_derivative[0], slope_before, 10 * kRoundingOfNumbers) << "at key " << i;
     for (double share = 0; share < 1; share += 0.01) {
       const Spline1::Sample at = spline.at(times[i] + share * (times[i + 1] - times[i]));
-      EXPECT_GE(at.value[0], low - kRounding) << "after key " << i;
-      EXPECT_LE(at.value[0], high + kRounding) << "after key " << i;
-      EXPECT_GE(at.first_derivative[0] * (numbers[i + 1] - numbers[i]), -10 * kRounding) << "turns back after " << i;
+      EXPECT_GE(at.value[0], low - kRoundingOfNumbers) << "after key " << i;
+      EXPECT_LE(at.value[0], high + kRoundingOfNumbers) << "after key " << i;
+      EXPECT_GE(at.first_derivative[0] * (numbers[i + 1] - numbers[i]), -10 * kRoundingOfNumbers)
+          << "turns back after " << i;
     }
     slope_before = spline.at(std::nextafter(times[i + 1], 0)).first_derivative[0];
   }
@@ -111,8 +113,8 @@ TEST(CubicSpline, ReproducesALineThroughUnevenKeysInEveryComponent) {
   for (const double t : kTimes) points.emplace_back(1 + 2 * t, -t, 3);
   const Spline<3> spline(Interpolation::cubic, kTimes, points);
   for (const double t : {-0.3, 0.9, 1.8, 3.3}) {
-    EXPECT_NEAR((spline.at(t).value - Vec3(1 + 2 * t, -t, 3)).norm(), 0, kRounding);
-    EXPECT_NEAR((spline.at(t).first_derivative - Vec3(2, -1, 0)).norm(), 0, kRounding);
+    EXPECT_NEAR((spline.at(t).value - Vec3(1 + 2 * t, -t, 3)).norm(), 0, kRoundingOfNumbers);
+    EXPECT_NEAR((spline.at(t).first_derivative - Vec3(2, -1, 0)).norm(), 0, kRoundingOfNumbers);
   }
 }
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <numbers>
 
+#include "environment/rotation.hpp"
 #include "scene/common_rules.hpp"
 
 namespace weft::environment {
@@ -12,14 +12,8 @@ namespace {
 
 using scene::Interpolation;
 
-constexpr double kPi = std::numbers::pi;
-
 // Products of a few unit quaternions.
-constexpr double kRounding = 1e-13;
-
-Quat about(const Vec3& axis, double angle) {
-  return Quat(Eigen::AngleAxisd(angle, axis.normalized()));
-}
+constexpr double kRoundingOfTurns = 1e-13;
 
 /// Angle between two rotations [rad], exact for small ones too.
 double between(const Quat& a, const Quat& b) {
@@ -52,7 +46,7 @@ TEST(Track, WithoutKeysHoldsTheRestPose) {
   for (const double t : {-1.0, 0.0, 100.0}) {
     const PoseSample pose = track.at(t);
     EXPECT_EQ(pose.position, rest.position);
-    EXPECT_LT(between(pose.rotation, rest.rotation), kRounding);
+    EXPECT_LT(between(pose.rotation, rest.rotation), kRoundingOfTurns);
     EXPECT_EQ(pose.velocity, Vec3(0, 0, 0));
     EXPECT_EQ(pose.angular_velocity, Vec3(0, 0, 0));
   }
@@ -63,7 +57,7 @@ TEST(Track, OfOneKeyHoldsItInsteadOfTheRestPose) {
   EXPECT_FALSE(track.moving());
   for (const double t : {0.0, 1.0, 2.0}) {
     EXPECT_EQ(track.at(t).position, Vec3(4, 5, 6));
-    EXPECT_LT(between(track.at(t).rotation, about({0, 0, 1}, 1)), kRounding);
+    EXPECT_LT(between(track.at(t).rotation, about({0, 0, 1}, 1)), kRoundingOfTurns);
   }
 }
 
@@ -75,9 +69,9 @@ TEST_P(Tracks, PassThroughTheirKeysFromBothSides) {
   for (const auto& key : keys.keys) {
     for (const double t : {key.time, key.time - 1e-14}) {
       const PoseSample pose = track.at(t);
-      EXPECT_LT((pose.position - key.pose.position).norm(), 10 * kRounding);
-      EXPECT_LT(between(pose.rotation, key.pose.rotation), 10 * kRounding);
-      EXPECT_NEAR(pose.rotation.norm(), 1, kRounding);
+      EXPECT_LT((pose.position - key.pose.position).norm(), 10 * kRoundingOfTurns);
+      EXPECT_LT(between(pose.rotation, key.pose.rotation), 10 * kRoundingOfTurns);
+      EXPECT_NEAR(pose.rotation.norm(), 1, kRoundingOfTurns);
     }
   }
 }
@@ -91,7 +85,7 @@ TEST_P(Tracks, RestBeforeTheFirstAndFromTheLastKeyOn) {
     const PoseSample pose = track.at(t);
     const scene::Pose& end = (t < 0 ? keys.keys.front() : keys.keys.back()).pose;
     EXPECT_EQ(pose.position, end.position);
-    EXPECT_LT(between(pose.rotation, end.rotation), kRounding);
+    EXPECT_LT(between(pose.rotation, end.rotation), kRoundingOfTurns);
     for (const Vec3& rate : {pose.velocity, pose.acceleration, pose.angular_velocity, pose.angular_acceleration})
       EXPECT_EQ(rate, Vec3(0, 0, 0));
   }
@@ -122,12 +116,12 @@ INSTANTIATE_TEST_SUITE_P(Interpolations, Tracks, testing::Values(Interpolation::
 
 TEST(LinearTrack, TurnsEvenlyTheShortestWay) {
   // From 170° to -170° it is 20° across, not 340° back; a negated quaternion is the same key.
-  scene::PoseTrack keys = spin(Interpolation::linear, {0, 0, 1}, {0, 2}, {170 * kPi / 180, -170 * kPi / 180});
+  scene::PoseTrack keys = spin(Interpolation::linear, {0, 0, 1}, {0, 2}, {170 * kDegree, -170 * kDegree});
   for (const bool negated : {false, true}) {
     if (negated) keys.keys[1].pose.rotation.coeffs() *= -1;
     const PoseSample pose = Track(keys).at(0.5);
-    EXPECT_LT(between(pose.rotation, about({0, 0, 1}, 175 * kPi / 180)), kRounding);
-    EXPECT_LT((pose.angular_velocity - Vec3(0, 0, 10 * kPi / 180)).norm(), kRounding);
+    EXPECT_LT(between(pose.rotation, about({0, 0, 1}, 175 * kDegree)), kRoundingOfTurns);
+    EXPECT_LT((pose.angular_velocity - Vec3(0, 0, 10 * kDegree)).norm(), kRoundingOfTurns);
     EXPECT_EQ(pose.angular_acceleration, Vec3(0, 0, 0));
   }
 }
@@ -146,7 +140,7 @@ TEST(Track, TurnsByAllOfTheChangeOfOneAngle) {
       const Track track({interpolation, {key(0, 0), key(0.5, 0.25), key(2, 1)}});
       for (const double t : {0.0, 0.2, 0.5, 0.8, 1.1, 1.7, 1.99}) {
         EXPECT_LT(between(track.at(t).rotation, key(t, t / 2).pose.rotation), 1e-11) << axis << ' ' << t;
-        EXPECT_NEAR(track.at(t).angular_velocity.norm(), std::abs(change[axis]) / 2 * kPi / 180, 1e-10) << axis;
+        EXPECT_NEAR(track.at(t).angular_velocity.norm(), std::abs(change[axis]) / 2 * kDegree, 1e-10) << axis;
       }
     }
   }
@@ -156,9 +150,9 @@ TEST(CubicTrack, ThroughEvenTurnsAboutOneAxisSpinsEvenly) {
   const Vec3 axis(1, -2, 0.5);
   const Track track(spin(Interpolation::cubic, axis, {0, 1, 1.5, 4}, {0, 1, 1.5, 4}));
   for (const double t : {0.0, 0.3, 1.0, 1.2, 2.5, 3.9}) {
-    EXPECT_LT(between(track.at(t).rotation, about(axis, t)), kRounding);
-    EXPECT_LT((track.at(t).angular_velocity - axis.normalized()).norm(), 10 * kRounding);
-    EXPECT_LT(track.at(t).angular_acceleration.norm(), 10 * kRounding);
+    EXPECT_LT(between(track.at(t).rotation, about(axis, t)), kRoundingOfTurns);
+    EXPECT_LT((track.at(t).angular_velocity - axis.normalized()).norm(), 10 * kRoundingOfTurns);
+    EXPECT_LT(track.at(t).angular_acceleration.norm(), 10 * kRoundingOfTurns);
   }
 }
 
@@ -169,9 +163,9 @@ TEST(CubicTrack, AboutOneAxisIsTheSplineOfTheAngle) {
   for (const double angle : angles) values.push_back(Spline<1>::Value(angle));
   const Spline<1> spline(Interpolation::cubic, times, values);
   for (double t = 0.01; t < 3.2; t += 0.07) {
-    EXPECT_LT(between(track.at(t).rotation, about({0, 1, 0}, spline.at(t).value[0])), 10 * kRounding) << t;
-    EXPECT_NEAR(track.at(t).angular_velocity.y(), spline.at(t).first_derivative[0], 100 * kRounding) << t;
-    EXPECT_NEAR(track.at(t).angular_acceleration.y(), spline.at(t).second_derivative[0], 1000 * kRounding) << t;
+    EXPECT_LT(between(track.at(t).rotation, about({0, 1, 0}, spline.at(t).value[0])), 10 * kRoundingOfTurns) << t;
+    EXPECT_NEAR(track.at(t).angular_velocity.y(), spline.at(t).first_derivative[0], 100 * kRoundingOfTurns) << t;
+    EXPECT_NEAR(track.at(t).angular_acceleration.y(), spline.at(t).second_derivative[0], 1000 * kRoundingOfTurns) << t;
   }
 }
 
@@ -179,15 +173,15 @@ TEST(CubicTrack, HasContinuousVelocityAndAngularVelocityAtItsKeys) {
   const Track track(tumbling(Interpolation::cubic));
   for (const double t : {0.7, 1.0, 2.4}) {
     const PoseSample before = track.at(std::nextafter(t, 0)), after = track.at(t);
-    EXPECT_LT((before.velocity - after.velocity).norm(), 100 * kRounding);
-    EXPECT_LT((before.angular_velocity - after.angular_velocity).norm(), 100 * kRounding);
+    EXPECT_LT((before.velocity - after.velocity).norm(), 100 * kRoundingOfTurns);
+    EXPECT_LT((before.angular_velocity - after.angular_velocity).norm(), 100 * kRoundingOfTurns);
   }
 }
 
 TEST(Track, GoesOnThroughHalfTurnsInTheSameDirection) {
   for (const auto interpolation : {Interpolation::linear, Interpolation::cubic}) {
     for (const double way : {1.0, -1.0}) {
-      const double quarter = way * kPi / 2;
+      const double quarter = way * 90 * kDegree;
       // Rounding may leave a little more than half a turn, whose shortest way is back.
       const double more = 3 * quarter + way * 1e-9;
       const Track track(spin(interpolation, {0, 0, 1}, {0, 1, 3, 5, 7}, {0, quarter, more, 5 * quarter, 7 * quarter}));

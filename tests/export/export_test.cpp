@@ -68,9 +68,6 @@ class Exported : public MadeFrames {
   std::filesystem::path file(const std::string& name) const { return request_.folder / name; }
 };
 
-// To the last bit of single precision at a metre.
-constexpr double kSingle = 1.2e-7;
-
 void expect_points(const std::vector<Vec3>& expected, const aiVector3D* came, bool turned) {
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const Vec3& x = expected[i];

@@ -10,6 +10,9 @@
 
 namespace weft::exporter {
 
+/// To the last bit of single precision at a metre.
+inline constexpr double kSingle = 1.2e-7;
+
 class MadeFrames : public support::TestFolder {
  protected:
   void SetUp() override {

@@ -16,9 +16,6 @@
 namespace weft::exporter {
 namespace {
 
-// To the last bit of single precision at a metre.
-constexpr double kSingle = 1.2e-7;
-
 // Two panels of one triangle each, sewn along their common edge, that flutter from frame 3 on; a bent sheet that stands
 // still; something that is not to be seen.
 class Staged : public MadeFrames {

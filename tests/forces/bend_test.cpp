@@ -11,10 +11,10 @@
 namespace weft::forces {
 namespace {
 
+using testing::kRigidity;
 using testing::Positions;
 
-constexpr double kRigidity = 3e-4;  // [N·m]
-constexpr double kRadius = 0.2;     // [m]
+constexpr double kRadius = 0.2;  // [m]
 
 /// A sheet of 0.2 m by 0.15 m bent on a cylinder whose axis is at `angle` from the warp.
 Positions cylinder(const mesh::Grid& grid, double angle) {

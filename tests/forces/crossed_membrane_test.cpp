@@ -9,9 +9,8 @@ namespace weft::forces {
 namespace {
 
 using testing::kGrid;
+using testing::kStiffness;
 using testing::Positions;
-
-constexpr double kStiffness = 1000;  // [N/m]
 
 mesh::Sheet crossed_sheet() {
   return mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::crossed));

@@ -14,10 +14,10 @@ namespace weft::forces {
 namespace {
 
 using testing::kGrid;
+using testing::kStiffness;
 using testing::Positions;
 
-constexpr double kStiffness = 1000;  // [N/m]
-constexpr double kRate = 150;        // dv/dx of a scheme [1/s]
+constexpr double kRate = 150;  // dv/dx of a scheme [1/s]
 
 /// As kGrid, with spacings from 10 to 29 mm along weft and from 42 to 19 mm along warp.
 const mesh::Grid kGraded{5, 4, 0.02, 0.03, 3, 0.45};
@@ -104,7 +104,7 @@ class Derivatives : public ::testing::TestWithParam<Case> {};
 
 // Differences at ε = 4e-7 m and half of it, put together so that the error of order ε² cancels: the direction of a
 // slight curvature κ turns by ε / (l² κ), and 1e-3 squared would be too much. What is left is below 1e-10.
-constexpr double kEpsilon = 4e-7;
+constexpr double kDifference = 4e-7;
 constexpr double kRelative = 5e-8;
 
 TEST_P(Derivatives, ForceIsMinusTheGradientOfTheEnergy) {
@@ -115,21 +115,21 @@ TEST_P(Derivatives, ForceIsMinusTheGradientOfTheEnergy) {
     for (std::size_t i = 0; i < x.size(); ++i)
       for (int axis = 0; axis < 3; ++axis) {
         const double place = x[i][axis];
-        x[i][axis] = place + kEpsilon;
+        x[i][axis] = place + kDifference;
         const double above = force->energy(x);
-        x[i][axis] = place - kEpsilon;
+        x[i][axis] = place - kDifference;
         const double below = force->energy(x);
         x[i][axis] = place;
         // The last term is the rounding of the energies.
-        EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kEpsilon),
-                    kRelative * testing::largest(f) + 1e-15 * above / kEpsilon);
+        EXPECT_NEAR(f[i][axis], -(above - below) / (2 * kDifference),
+                    kRelative * testing::largest(f) + 1e-15 * above / kDifference);
       }
   }
 }
 
 void expect_exact_jacobian(Force& force, const Positions& x, const Positions& v) {
   const Eigen::MatrixXd jacobian = testing::jacobian_of(force, x, v, kRate);
-  const Eigen::MatrixXd differences = testing::stiffness_by_differences(force, x, v, kRate, kEpsilon);
+  const Eigen::MatrixXd differences = testing::stiffness_by_differences(force, x, v, kRate, kDifference);
   EXPECT_LT((jacobian - differences).cwiseAbs().maxCoeff(), kRelative * jacobian.cwiseAbs().maxCoeff());
 }
 

@@ -9,11 +9,11 @@
 namespace weft::forces {
 namespace {
 
+using testing::kRigidity;
 using testing::Positions;
 
-constexpr double kRigidity = 3e-4;  // [N·m]
-constexpr double kCurvature = 4;    // [1/m]
-const Vec2 kSize(0.2, 0.1);
+constexpr double kCurvature = 4;  // [1/m]
+const Vec2 kHeldSize(0.2, 0.1);
 
 /// Particles up to here along weft.
 std::vector<char> held_up_to(const std::vector<Vec2>& uv, double clamp) {
@@ -51,7 +51,7 @@ TEST(HeldBend, QuadsBendWithTheirOwnCurvatureFromTheClampOn) {
 
 TEST(HeldBend, TrianglesBendWithTheirOwnCurvatureFromTheClampOn) {
   for (const std::size_t meshing : {0, 1, 3}) {  // those with straight columns
-    const mesh::Mesh mesh = testing::kMeshings[meshing].make(kSize, 8);
+    const mesh::Mesh mesh = testing::kMeshings[meshing].make(kHeldSize, 8);
     const mesh::Sheet sheet = mesh::make_sheet_of(mesh);
     const double clamp = mesh.uv[2].x();
     const std::vector<char> held = held_up_to(mesh.uv, clamp);
@@ -72,7 +72,7 @@ TEST(HeldBend, TrianglesBendWithTheirOwnCurvatureFromTheClampOn) {
 
 /// A crumpled Delaunay mesh, its first quarter held: what is held is a ragged clamp.
 struct RaggedClamp {
-  mesh::Mesh mesh = testing::delaunay_sheet(testing::grid_of_squares(kSize, 5), 0.35, 3);
+  mesh::Mesh mesh = testing::delaunay_sheet(testing::grid_of_squares(kHeldSize, 5), 0.35, 3);
   mesh::Sheet sheet = mesh::make_sheet_of(mesh);
   std::vector<char> held = held_up_to(mesh.uv, 0.05), none = std::vector<char>(mesh.uv.size());
   TriangleBend bend{sheet, 0, {kRigidity, 1e-5}, held};
@@ -126,7 +126,7 @@ TEST(HeldBend, WhatIsLetGoBendsAsIfItHadNeverBeenHeld) {
 
 TEST(HeldBend, OneRowOrOneCornerIsAHinge) {
   const mesh::Grid grid = testing::kGrid;
-  const mesh::Mesh crossed = testing::kMeshings[1].make(kSize, 8);
+  const mesh::Mesh crossed = testing::kMeshings[1].make(kHeldSize, 8);
   const Positions x = testing::crumpled(grid, 0.005, 4);
   for (const bool corner : {true, false}) {
     std::vector<char> held;
@@ -147,7 +147,7 @@ TEST(HeldBend, OneRowOrOneCornerIsAHinge) {
 }
 
 TEST(HeldBend, CurvedRestShapeHasNoForceWhereItIsClamped) {
-  mesh::Mesh mesh = testing::delaunay_sheet(testing::grid_of_squares(kSize, 5), 0.3, 5);
+  mesh::Mesh mesh = testing::delaunay_sheet(testing::grid_of_squares(kHeldSize, 5), 0.3, 5);
   for (std::size_t k = 0; k < mesh.uv.size(); ++k) {
     const double angle = kCurvature * mesh.uv[k].x();
     mesh.positions[k] = {std::sin(angle) / kCurvature, mesh.uv[k].y(), (1 - std::cos(angle)) / kCurvature};

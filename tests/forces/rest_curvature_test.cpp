@@ -9,9 +9,8 @@
 namespace weft::forces {
 namespace {
 
+using testing::kRigidity;
 using testing::Positions;
-
-constexpr double kRigidity = 3e-4;  // [N·m]
 
 /// A flat mesh rolled about the warp, isometrically: curvature positive toward the front.
 Positions rolled(const mesh::Mesh& flat, double curvature) {

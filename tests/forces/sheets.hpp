@@ -20,6 +20,10 @@ using Positions = std::vector<Vec3>;
 
 /// Five by four particles, 20 mm by 30 mm apart: nothing about it is the same along weft and warp.
 inline const mesh::Grid kGrid{5, 4, 0.02, 0.03};
+inline const double kWidth = (kGrid.nu - 1) * kGrid.lu, kHeight = (kGrid.nv - 1) * kGrid.lv;  ///< of it [m]
+
+inline constexpr double kStiffness = 1000;  ///< of stretch [N/m]
+inline constexpr double kRigidity = 3e-4;   ///< [N·m]
 
 /// Particles at surface(u, v), u and v from 0 to the size of the sheet [m].
 inline Positions shaped(const mesh::Grid& grid, const std::function<Vec3(double, double)>& surface) {

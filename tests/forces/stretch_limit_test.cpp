@@ -12,13 +12,14 @@ namespace weft::forces {
 namespace {
 
 using testing::kGrid;
+using testing::kHeight;
+using testing::kWidth;
 using testing::Positions;
 
 constexpr double kLimit = 0.1;
 const double kSine = std::sin(0.5);
 constexpr double kNone = std::numeric_limits<double>::infinity();
 constexpr StretchParameters kBelow{2000, 1000};
-const double kWidth = (kGrid.nu - 1) * kGrid.lu, kHeight = (kGrid.nv - 1) * kGrid.lv;
 
 // Threads along weft and warp of these lengths, the warp off square by an angle of this sine.
 Positions drawn(double weft, double warp, double sine = 0) {

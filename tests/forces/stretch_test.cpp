@@ -9,13 +9,13 @@ namespace weft::forces {
 namespace {
 
 using testing::kGrid;
+using testing::kHeight;
+using testing::kWidth;
 using testing::Positions;
 
 Positions stretched(double along_u, double along_v) {
   return testing::shaped(kGrid, [=](double u, double v) { return Vec3(along_u * u, along_v * v, 0); });
 }
-
-const double kWidth = (kGrid.nu - 1) * kGrid.lu, kHeight = (kGrid.nv - 1) * kGrid.lv;
 
 TEST(Stretch, UniformStrainHasTheEnergyOfTheContinuum) {
   const Stretch stretch(kGrid, 0, {1000, 700, 0});

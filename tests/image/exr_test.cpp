@@ -30,7 +30,7 @@ class ExrTest : public support::TestFolder {
 };
 
 // Values that 16 bits hold; no two alike.
-Layers patterned(int width, int height) {
+Layers patterned_layers(int width, int height) {
   Layers layers{width, height, {}};
   for (const char* name : {"R", "A", "depth.Z", "normal.X"}) {
     Layers::Channel channel{name, {}, name[1] == '\0'};
@@ -43,7 +43,7 @@ Layers patterned(int width, int height) {
 }
 
 TEST_F(ExrTest, EveryValueIsReadBackInItsPlace) {
-  const Layers layers = patterned(5, 3);
+  const Layers layers = patterned_layers(5, 3);
   const std::string file = (folder_ / "a.exr").string();
   write_exr(file, layers);
   std::istringstream lines(told("--dumpdata '" + file + "'"));
@@ -64,7 +64,7 @@ TEST_F(ExrTest, EveryValueIsReadBackInItsPlace) {
 
 TEST_F(ExrTest, HeaderHasNamesDepthsAndMetadata) {
   const std::string file = (folder_ / "a.exr").string();
-  write_exr(file, patterned(2, 2), {{"object.2", "sheet"}});
+  write_exr(file, patterned_layers(2, 2), {{"object.2", "sheet"}});
   const std::string header = told("--info -v '" + file + "'");
   EXPECT_NE(header.find("R (half), A (half), depth.Z (float), normal.X (float)"), std::string::npos) << header;
   EXPECT_NE(header.find("object.2: \"sheet\""), std::string::npos) << header;
@@ -73,7 +73,7 @@ TEST_F(ExrTest, HeaderHasNamesDepthsAndMetadata) {
 
 TEST_F(ExrTest, HeaderIsReadBackAndBrokenFilesAreRefused) {
   const std::filesystem::path file = folder_ / "a.exr";
-  write_exr(file, patterned(7, 3), {{"frame", "12"}});
+  write_exr(file, patterned_layers(7, 3), {{"frame", "12"}});
   const ExrHeader header = read_exr_header(file);
   EXPECT_EQ(header.width, 7);
   EXPECT_EQ(header.height, 3);
@@ -84,7 +84,7 @@ TEST_F(ExrTest, HeaderIsReadBackAndBrokenFilesAreRefused) {
 }
 
 TEST_F(ExrTest, NothingIsLeftOfWhatCannotBeWritten) {
-  Layers layers = patterned(4, 4);
+  Layers layers = patterned_layers(4, 4);
   layers.channels[1].values.pop_back();
   expect_error(ExitCode::output_failed, "a.exr: expected 4x4 values of A, got 15",
                [&] { write_exr(folder_ / "a.exr", layers); });

@@ -10,10 +10,10 @@
 namespace weft::integrator {
 namespace {
 
-// Above the rounding of x / h², and far below the errors looked at.
-constexpr NewtonParameters kTight{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
+using testing::kMethods;
 
-constexpr Method kMethods[] = {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2};
+// Above the rounding of x / h², and far below the errors looked at.
+constexpr NewtonParameters kAboveRounding{.tolerance = 1e-9, .max_iterations = 40, .linear_tolerance = 1e-12};
 
 // The motion of the hardening spring after a time t of either sign, by classical Runge-Kutta with an error below 1e-14.
 State moved(State now, double t) {
@@ -40,7 +40,7 @@ struct Errors {
 Errors errors_of_one_step(Method method, double h, double r) {
   testing::HardeningSpring spring;
   const State now{{Vec3(1, 0.2, -0.3)}, {Vec3(0.1, 0.8, 0.4)}};
-  Stepper stepper(method, kTight);
+  Stepper stepper(method, kAboveRounding);
   if (r > 0) stepper.accept(moved(now, -h / r), h / r);
   State next;
   const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, next);
@@ -86,7 +86,7 @@ TEST(LocalError, IsThatOfTheWorstPartAndMeasuredByMass) {
   const auto error_with = [&](std::vector<Index> held_particles) {
     std::vector<HeldParticle> held;
     for (Index p : held_particles) held.push_back({{p, Mat3::Zero()}, Vec3::Zero(), Vec3::Zero()});
-    Stepper stepper(Method::implicit_euler, kTight);
+    Stepper stepper(Method::implicit_euler, kAboveRounding);
     return stepper.step(nothing, now, h, g, held, next).local_error;
   };
   EXPECT_NEAR(error_with({}), ahead, 1e-12);
@@ -164,7 +164,7 @@ TEST(StepControl, DoesNotGrowAtOnceAfterAStepWasDoneAgain) {
 }
 
 TEST(Bdf2Ratio, LongestStepFollowsTheLastOne) {
-  Stepper bdf2(Method::bdf2, kTight), euler(Method::implicit_euler, kTight);
+  Stepper bdf2(Method::bdf2, kAboveRounding), euler(Method::implicit_euler, kAboveRounding);
   EXPECT_EQ(bdf2.longest_step(), std::numeric_limits<double>::infinity());
   for (Stepper* stepper : {&bdf2, &euler}) stepper->accept({{Vec3::Zero()}, {Vec3::Zero()}}, 0.01);
   EXPECT_DOUBLE_EQ(bdf2.longest_step(), 0.02);
@@ -219,7 +219,7 @@ TEST(Bdf2Ratio, StiffOscillatorDecaysWhateverTheStepsWithinTheBound) {
   // Steps that double seven times and then fall back at once, around y = ω h from 1 to 128.
   constexpr double kOmega = 1e3;
   testing::Spring spring(kOmega * kOmega);
-  Stepper stepper(Method::bdf2, kTight);
+  Stepper stepper(Method::bdf2, kAboveRounding);
   State now{{Vec3(1, 0, 0)}, {Vec3::Zero()}}, next;
   double size = 1;
   for (int s = 0; s < 160; ++s) {

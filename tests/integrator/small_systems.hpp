@@ -15,6 +15,8 @@ namespace weft::integrator::testing {
 inline const NewtonParameters kTight{
     .tolerance = 1e-12, .max_iterations = 40, .linear_tolerance = 1e-12, .max_linear_iterations = 1000};
 
+inline constexpr Method kMethods[] = {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2};
+
 /// Particles that do not know of each other.
 class Particles : public System {
  public:

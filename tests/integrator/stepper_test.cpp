@@ -8,10 +8,9 @@
 namespace weft::integrator {
 namespace {
 
+using testing::kMethods;
 using testing::kTight;
 using testing::Spring;
-
-constexpr Method kMethods[] = {Method::implicit_euler, Method::implicit_midpoint, Method::bdf2};
 
 TEST(Stepper, FreeFallFollowsTheLawOfEachMethod) {
   const Vec3 g(0.5, 0, -9.81), x0(1, 2, 3), v0(0.3, 0, 1);

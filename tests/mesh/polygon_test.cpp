@@ -12,7 +12,7 @@ namespace weft::mesh {
 namespace {
 
 // Sums of some ten rounded areas near one.
-constexpr double kRounding = 1e-14;
+constexpr double kRoundingOfAreas = 1e-14;
 
 std::vector<Triangle> cut(const std::vector<Vec3>& corners) {
   std::vector<Index> indices;
@@ -26,7 +26,7 @@ std::vector<Triangle> cut(const std::vector<Vec3>& corners) {
 void expect_covered(const std::vector<Vec3>& corners, double area, const Vec3& normal) {
   const std::vector<Triangle> triangles = cut(corners);
   EXPECT_EQ(triangles.size(), corners.size() - 2);
-  EXPECT_NEAR(surface_area(triangles, corners), area, kRounding);
+  EXPECT_NEAR(surface_area(triangles, corners), area, kRoundingOfAreas);
   for (const Triangle& t : triangles) EXPECT_GE(area_vector(t, corners).dot(normal), 0);
   EXPECT_TRUE(inspect(triangles, corners.size()).manifold());
 }

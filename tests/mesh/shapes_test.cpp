@@ -18,7 +18,7 @@ namespace {
 constexpr double kPi = std::numbers::pi;
 
 // Sums of a few thousand rounded terms.
-constexpr double kRounding = 1e-12;
+constexpr double kRoundingOfSums = 1e-12;
 
 double volume(const Mesh& mesh) {
   return support::enclosed_volume(mesh.topology.triangles, mesh.positions);
@@ -109,16 +109,17 @@ INSTANTIATE_TEST_SUITE_P(Shapes, ClosedShapes, testing::ValuesIn(closed_shapes()
 TEST(Sphere, HasItsVerticesOnTheSphereAndReachesItOnAllAxes) {
   for (const int segments : {3, 20, 48, 100}) {
     const Mesh sphere = make_sphere(0.3, segments);
-    for (const Vec3& x : sphere.positions) EXPECT_NEAR(x.norm(), 0.3, kRounding);
+    for (const Vec3& x : sphere.positions) EXPECT_NEAR(x.norm(), 0.3, kRoundingOfSums);
     const Box3 box = bounding_box(sphere.positions);
-    EXPECT_NEAR((box.max() - Vec3::Constant(0.3)).norm() + (box.min() + Vec3::Constant(0.3)).norm(), 0, kRounding);
+    EXPECT_NEAR((box.max() - Vec3::Constant(0.3)).norm() + (box.min() + Vec3::Constant(0.3)).norm(), 0,
+                kRoundingOfSums);
   }
 }
 
 TEST(Sphere, IsConvexAndMissesNoMoreVolumeThanOutsideTheBallItHolds) {
   for (const int segments : {3, 24, 48}) {
     const Mesh sphere = make_sphere(1, segments);
-    EXPECT_LT(bulge_over_faces(sphere), kRounding);
+    EXPECT_LT(bulge_over_faces(sphere), kRoundingOfSums);
     double depth = 1;  // distance of the nearest face: the convex polyhedron holds the ball of that radius
     for (const Triangle& t : sphere.topology.triangles) {
       depth = std::min(depth, area_vector(t, sphere.positions).normalized().dot(sphere.positions[t[0]]));
@@ -152,7 +153,7 @@ TEST(Sphere, HasAboutTheSegmentsAskedFor) {
 TEST(Box, HasItsSizesVolumeAndTwelveTriangles) {
   const Mesh box = make_box({1, 2, 3}, 0, 48);
   EXPECT_EQ(box.topology.triangles.size(), 12u);
-  EXPECT_NEAR(volume(box), 6, kRounding);
+  EXPECT_NEAR(volume(box), 6, kRoundingOfSums);
   const Box3 bounds = bounding_box(box.positions);
   EXPECT_EQ(Vec3(bounds.min()), Vec3(-0.5, -1, -1.5));
   EXPECT_EQ(Vec3(bounds.max()), Vec3(0.5, 1, 1.5));
@@ -163,8 +164,8 @@ TEST(Box, WithOneBevelFaceLosesPrismsAtEdgesAndTetrahedraAtCorners) {
   const Mesh box = make_box({1, 2, 3}, b, 8);
   // Between the corners each edge loses a prism over b²/2. Of a corner's cube b³ a tetrahedron b³/6 remains.
   const double edges = 4 * (1 + 2 + 3 - 3 * 2 * b) * b * b / 2;
-  EXPECT_NEAR(volume(box), 6 - edges - 8 * (b * b * b * 5 / 6), kRounding);
-  EXPECT_LT(bulge_over_faces(box), kRounding);
+  EXPECT_NEAR(volume(box), 6 - edges - 8 * (b * b * b * 5 / 6), kRoundingOfSums);
+  EXPECT_LT(bulge_over_faces(box), kRoundingOfSums);
 }
 
 TEST(Box, WithManyBevelFacesConvergesToTheRoundedBox) {
@@ -178,7 +179,7 @@ TEST(Box, WithManyBevelFacesConvergesToTheRoundedBox) {
   EXPECT_GT(deficit(128), 0);
   EXPECT_NEAR(deficit(64) / deficit(128), 4, 0.1);  // inscribed polyhedra: second order
   const Box3 bounds = bounding_box(make_box({1, 2, 3}, b, 48).positions);
-  EXPECT_NEAR((bounds.sizes() - Vec3(1, 2, 3)).norm(), 0, kRounding);
+  EXPECT_NEAR((bounds.sizes() - Vec3(1, 2, 3)).norm(), 0, kRoundingOfSums);
 }
 
 TEST(Box, RoundsItsEdgesInEqualSteps) {
@@ -186,10 +187,10 @@ TEST(Box, RoundsItsEdgesInEqualSteps) {
   int on_edge = 0;
   for (const Vec3& x : make_box({1, 2, 3}, b, 48).positions) {  // six steps of 15 degrees
     const double y = x.y() - (1 - b), z = x.z() - (1.5 - b);
-    if (std::abs(x.x() - (0.5 - b)) > kRounding || y < -kRounding || z < -kRounding) continue;
+    if (std::abs(x.x() - (0.5 - b)) > kRoundingOfSums || y < -kRoundingOfSums || z < -kRoundingOfSums) continue;
     const double steps = std::atan2(z, y) * 12 / kPi;
-    EXPECT_NEAR(steps, std::round(steps), kRounding);
-    EXPECT_NEAR(std::hypot(y, z), b, kRounding);
+    EXPECT_NEAR(steps, std::round(steps), kRoundingOfSums);
+    EXPECT_NEAR(std::hypot(y, z), b, kRoundingOfSums);
     ++on_edge;
   }
   EXPECT_EQ(on_edge, 7);
@@ -198,8 +199,8 @@ TEST(Box, RoundsItsEdgesInEqualSteps) {
 TEST(Cylinder, IsThePrismOverItsPolygon) {
   for (const int segments : {3, 13, 48}) {
     const Mesh cylinder = make_cylinder(0.5, 2, segments);
-    EXPECT_NEAR(volume(cylinder), polygon(segments) * 0.25 * 2, kRounding);
-    EXPECT_LT(bulge_over_faces(cylinder), kRounding);
+    EXPECT_NEAR(volume(cylinder), polygon(segments) * 0.25 * 2, kRoundingOfSums);
+    EXPECT_LT(bulge_over_faces(cylinder), kRoundingOfSums);
     const Box3 bounds = bounding_box(cylinder.positions);
     EXPECT_EQ(bounds.min().z(), -1);
     EXPECT_EQ(bounds.max().z(), 1);
@@ -214,8 +215,8 @@ TEST(Cylinder, AsAThinBarHasNoMoreRowsThanSegments) {
 TEST(Cone, IsThePyramidOverItsPolygonWithItsTipUp) {
   for (const int segments : {3, 13, 48}) {
     const Mesh cone = make_cone(0.5, 2, segments);
-    EXPECT_NEAR(volume(cone), polygon(segments) * 0.25 * 2 / 3, kRounding);
-    EXPECT_LT(bulge_over_faces(cone), kRounding);
+    EXPECT_NEAR(volume(cone), polygon(segments) * 0.25 * 2 / 3, kRoundingOfSums);
+    EXPECT_LT(bulge_over_faces(cone), kRoundingOfSums);
     EXPECT_EQ(std::count(cone.positions.begin(), cone.positions.end(), Vec3(0, 0, 1)), 1);
   }
 }
@@ -227,20 +228,20 @@ TEST(Torus, HasTheVolumeOfItsTurnedPolygon) {
   const int around_tube = 12;
   ASSERT_EQ(torus.positions.size(), 48u * around_tube);
   // Pappus: path of the centroid times area; 48 steps instead of a turn scale both radii's squares alike.
-  EXPECT_NEAR(volume(torus), 2 * polygon(48) * radius * polygon(around_tube) * tube * tube, kRounding);
+  EXPECT_NEAR(volume(torus), 2 * polygon(48) * radius * polygon(around_tube) * tube * tube, kRoundingOfSums);
   for (const Vec3& x : torus.positions)
-    EXPECT_NEAR(std::hypot(std::hypot(x.x(), x.y()) - radius, x.z()), tube, kRounding);
+    EXPECT_NEAR(std::hypot(std::hypot(x.x(), x.y()) - radius, x.z()), tube, kRoundingOfSums);
 }
 
 TEST(HalfPipe, IsAHalfRingOpenUpwardAlongX) {
   const Mesh pipe = make_half_pipe(1, 2, 0.25, 40);
-  EXPECT_NEAR(volume(pipe), 0.5 * polygon(40) * (1.25 * 1.25 - 1) * 2, kRounding);
+  EXPECT_NEAR(volume(pipe), 0.5 * polygon(40) * (1.25 * 1.25 - 1) * 2, kRoundingOfSums);
   const Box3 bounds = bounding_box(pipe.positions);
-  EXPECT_NEAR((bounds.min() - Vec3(-1, -1.25, -1.25)).norm(), 0, kRounding);
-  EXPECT_NEAR((bounds.max() - Vec3(1, 1.25, 0)).norm(), 0, kRounding);
+  EXPECT_NEAR((bounds.min() - Vec3(-1, -1.25, -1.25)).norm(), 0, kRoundingOfSums);
+  EXPECT_NEAR((bounds.max() - Vec3(1, 1.25, 0)).norm(), 0, kRoundingOfSums);
   for (const Vec3& x : pipe.positions) {
     const double r = std::hypot(x.y(), x.z());
-    EXPECT_LT(std::min(std::abs(r - 1), std::abs(r - 1.25)), kRounding);
+    EXPECT_LT(std::min(std::abs(r - 1), std::abs(r - 1.25)), kRoundingOfSums);
   }
 }
 

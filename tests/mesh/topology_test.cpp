@@ -17,7 +17,7 @@ using Pairs = std::vector<Pair>;
 const std::vector<Triangle> kSquare{{0, 1, 2}, {0, 2, 3}};
 
 // Counter-clockwise from outside.
-const std::vector<Triangle> kTetrahedron{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+const std::vector<Triangle> kFourSides{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
 
 TEST(Edges, AreListedOnceSortedWithTheTrianglesOnBothSides) {
   const EdgeSet set = collect_edges(kSquare);
@@ -32,11 +32,11 @@ TEST(Edges, AreListedOnceSortedWithTheTrianglesOnBothSides) {
 }
 
 TEST(Edges, OfATriangleFollowItsCorners) {
-  const EdgeSet set = collect_edges(kTetrahedron);
+  const EdgeSet set = collect_edges(kFourSides);
   ASSERT_EQ(set.edges.size(), 6u);
-  for (std::size_t t = 0; t < kTetrahedron.size(); ++t) {
+  for (std::size_t t = 0; t < kFourSides.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
-      Pair expected{kTetrahedron[t][k], kTetrahedron[t][(k + 1) % 3]};
+      Pair expected{kFourSides[t][k], kFourSides[t][(k + 1) % 3]};
       std::sort(expected.begin(), expected.end());
       EXPECT_EQ(set.edges[set.of_triangle[t][k]].vertices, expected);
     }
@@ -56,7 +56,7 @@ TEST(Components, AreNumberedInTheOrderOfTheirFirstVertices) {
 }
 
 TEST(Inspection, CallsATetrahedronWatertightAndASquareMerelyManifold) {
-  EXPECT_TRUE(support::watertight(inspect(kTetrahedron, 4)));
+  EXPECT_TRUE(support::watertight(inspect(kFourSides, 4)));
   const TopologyReport square = inspect(kSquare, 4);
   EXPECT_TRUE(square.manifold());
   EXPECT_FALSE(support::watertight(square));

@@ -16,7 +16,7 @@
 namespace weft::render {
 namespace {
 
-constexpr int kWidth = 192, kHeight = 108;
+constexpr int kPassWidth = 192, kPassHeight = 108;
 
 /// A sheet that turns over a sphere in front of a floor, warped by `phase` and moved by it.
 frame::FrameSnapshot moment(double phase, const frame::FrameSnapshot* same) {
@@ -106,14 +106,14 @@ struct Viewer {
       : axes(view_axes(camera.target - camera.position, Vec3::UnitZ())),
         eye(camera.position),
         tan_y(std::tan(radians(camera.field_of_view) / 2)),
-        tan_x(tan_y * kWidth / kHeight) {}
+        tan_x(tan_y * kPassWidth / kPassHeight) {}
   Vec3 along(const Vec2& pixel) const {
-    return axes.forward + (2 * pixel.x() / kWidth - 1) * tan_x * axes.right +
-           (2 * pixel.y() / kHeight - 1) * tan_y * axes.up;
+    return axes.forward + (2 * pixel.x() / kPassWidth - 1) * tan_x * axes.right +
+           (2 * pixel.y() / kPassHeight - 1) * tan_y * axes.up;
   }
   Vec2 pixel(const Vec3& p) const {
     const Vec3 to = (p - eye) / (p - eye).dot(axes.forward);
-    return {(1 + to.dot(axes.right) / tan_x) * kWidth / 2, (1 + to.dot(axes.up) / tan_y) * kHeight / 2};
+    return {(1 + to.dot(axes.right) / tan_x) * kPassWidth / 2, (1 + to.dot(axes.up) / tan_y) * kPassHeight / 2};
   }
 };
 
@@ -121,8 +121,8 @@ class DataPassesTest : public support::TestFolder {
  protected:
   static void SetUpTestSuite() {
     Settings settings;
-    settings.width = kWidth;
-    settings.height = kHeight;
+    settings.width = kPassWidth;
+    settings.height = kPassHeight;
     settings.layers = true;
     Renderer renderer(settings);
     first_ = moment(0, nullptr), second_ = moment(1, &first_);
@@ -133,7 +133,7 @@ class DataPassesTest : public support::TestFolder {
   }
   static float value(const image::Layers& layers, const std::string& name, int x, int y) {
     for (const image::Layers::Channel& channel : layers.channels)
-      if (channel.name == name) return channel.values[static_cast<std::size_t>(kHeight - 1 - y) * kWidth + x];
+      if (channel.name == name) return channel.values[static_cast<std::size_t>(kPassHeight - 1 - y) * kPassWidth + x];
     ADD_FAILURE() << "no channel " << name;
     return 0;
   }
@@ -151,7 +151,8 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
   std::mt19937 random(1);
   int counts[4] = {}, beside = 0;
   for (int k = 0; k < 1000; ++k) {
-    const int x = static_cast<int>(random() % kWidth), y = kHeight - 1 - top - static_cast<int>(random() % rows);
+    const int x = static_cast<int>(random() % kPassWidth),
+              y = kPassHeight - 1 - top - static_cast<int>(random() % rows);
     const Vec2 pixel(x + 0.5, y + 0.5);
     const Found found = search(second_, first_, viewer.eye, viewer.along(pixel));
     const auto at = [&](const char* name) { return value(layers, name, x, y); };
@@ -186,16 +187,16 @@ void DataPassesTest::expect_exact(const image::Layers& layers, int top, int rows
 }
 
 TEST_F(DataPassesTest, AreThoseOfASearchThroughAllTriangles) {
-  expect_exact(layers_, 0, kHeight);
+  expect_exact(layers_, 0, kPassHeight);
 }
 
 // Of some rows a file, as OpenImageIO prints it: names in their order, then a line for each pixel.
 TEST_F(DataPassesTest, AreReadBackByOpenImageIOAsThoseOfASearch) {
   constexpr int kTop = 44, kRows = 20;
-  image::Layers rows{kWidth, kRows, layers_.channels};
+  image::Layers rows{kPassWidth, kRows, layers_.channels};
   for (image::Layers::Channel& channel : rows.channels) {
-    channel.values.erase(channel.values.begin(), channel.values.begin() + kTop * kWidth);
-    channel.values.resize(kRows * kWidth);
+    channel.values.erase(channel.values.begin(), channel.values.begin() + kTop * kPassWidth);
+    channel.values.resize(kRows * kPassWidth);
   }
   const std::string file = (folder_ / "a.exr").string(), out = (folder_ / "out").string();
   image::write_exr(file, rows);
@@ -203,11 +204,11 @@ TEST_F(DataPassesTest, AreReadBackByOpenImageIOAsThoseOfASearch) {
   if (WEXITSTATUS(status) == 127) GTEST_SKIP() << "oiiotool is not here: apt-get install openimageio-tools";
   ASSERT_EQ(status, 0);
   const std::string told = support::read_bytes(out);
-  image::Layers read{kWidth, kHeight, {}};
+  image::Layers read{kPassWidth, kPassHeight, {}};
   constexpr std::string_view kList = "channel list: ";
   std::istringstream names(told.substr(told.find(kList) + kList.size()));
   for (std::string name, depth = ","; depth.back() == ',' && names >> name >> depth;)
-    read.channels.push_back({name, std::vector<float>(std::size_t{kWidth} * kHeight)});
+    read.channels.push_back({name, std::vector<float>(std::size_t{kPassWidth} * kPassHeight)});
   ASSERT_EQ(read.channels.size(), layers_.channels.size());
   std::istringstream lines(told);
   int pixels = 0;
@@ -217,17 +218,17 @@ TEST_F(DataPassesTest, AreReadBackByOpenImageIOAsThoseOfASearch) {
     const char* text = line.c_str() + at;
     for (image::Layers::Channel& channel : read.channels) {
       char* end = nullptr;
-      channel.values[static_cast<std::size_t>(kTop + y) * kWidth + x] = std::strtof(text, &end);
+      channel.values[static_cast<std::size_t>(kTop + y) * kPassWidth + x] = std::strtof(text, &end);
       text = end;
     }
     ++pixels;
   }
-  EXPECT_EQ(pixels, kWidth * kRows);
+  EXPECT_EQ(pixels, kPassWidth * kRows);
   expect_exact(read, kTop, kRows);
 }
 
 TEST_F(DataPassesTest, NothingMovesWithoutAFrameBefore) {
-  const std::vector<float> none(std::size_t{kWidth} * kHeight, 0.0f);
+  const std::vector<float> none(std::size_t{kPassWidth} * kPassHeight, 0.0f);
   int count = 0;
   for (const image::Layers::Channel& channel : still_.channels) {
     if (!channel.name.starts_with("motion")) continue;
@@ -239,8 +240,8 @@ TEST_F(DataPassesTest, NothingMovesWithoutAFrameBefore) {
 
 TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
   int whole = 0, same = 0, partly = 0;
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kPassHeight; ++y) {
+    for (int x = 0; x < kPassWidth; ++x) {
       const float alpha = value(layers_, "A", x, y), red = value(layers_, "R", x, y);
       EXPECT_GE(alpha, 0);
       EXPECT_LE(alpha, 1);
@@ -264,8 +265,8 @@ TEST_F(DataPassesTest, SurfacesAreThoseOfThePictureTimesTheirCoverage) {
 TEST_F(DataPassesTest, CaughtShadowsAreWhereNoSunGetsTo) {
   const Vec3 toward_sun = Vec3(0.3, -0.4, 1).normalized();
   int lit = 0, dark = 0, otherwise = 0;
-  for (int y = 0; y < kHeight; y += 2) {
-    for (int x = 0; x < kWidth; x += 2) {
+  for (int y = 0; y < kPassHeight; y += 2) {
+    for (int x = 0; x < kPassWidth; x += 2) {
       const auto at = [&](const char* name) { return value(layers_, name, x, y); };
       const float caught = at("caught.A"), covered = at("A");
       EXPECT_GE(caught, covered - 1e-3f);

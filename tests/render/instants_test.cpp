@@ -15,12 +15,12 @@ namespace weft::render {
 namespace {
 
 using Look = frame::Stage::Look;
-constexpr int kWidth = 200, kHeight = 100;
+constexpr int kInstantWidth = 200, kInstantHeight = 100;
 
 Settings small_settings() {
   Settings settings;
-  settings.width = kWidth;
-  settings.height = kHeight;
+  settings.width = kInstantWidth;
+  settings.height = kInstantHeight;
   return settings;
 }
 
@@ -39,14 +39,15 @@ frame::FrameSnapshot square_at(double x, double distance = 2) {
 }
 
 double linear_at(const image::Image16& image, int x) {
-  const double encoded = image.rgb[3 * (static_cast<std::size_t>(kHeight / 2) * kWidth + x) + 1] / 65535.0;
+  const double encoded =
+      image.rgb[3 * (static_cast<std::size_t>(kInstantHeight / 2) * kInstantWidth + x) + 1] / 65535.0;
   return std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
 // The shutter of 180 degrees closes at the frame: a square that moved by 40 pixels is seen over the last 20, and its
 // edges are ramps of light as long as that.
 TEST(Instants, ShutterShowsTheWayOfTheSecondHalf) {
-  const double pixel = 2 * 2 * std::tan(10 * std::numbers::pi / 180) / kHeight;
+  const double pixel = 2 * 2 * std::tan(10 * std::numbers::pi / 180) / kInstantHeight;
   const frame::FrameSnapshot now = square_at(20 * pixel), before = square_at(-20 * pixel);
   Settings settings = small_settings();
   settings.motion_blur = 180;
@@ -77,14 +78,14 @@ TEST(Instants, NothingIsBlurredUnasked) {
 TEST(Instants, LensBlursWhatIsOutOfFocus) {
   frame::FrameSnapshot snapshot = square_at(0, 4);
   snapshot.cameras[0].aperture = 0.5;  // 12 mm / tan 10 / 0.5 = 136 mm wide
-  const double width = 0.136 / 2 / (2 * 2 * std::tan(10 * std::numbers::pi / 180) / kHeight);  // 9.6 pixels
+  const double width = 0.136 / 2 / (2 * 2 * std::tan(10 * std::numbers::pi / 180) / kInstantHeight);  // 9.6 pixels
   Renderer renderer(small_settings());
   const auto middle_of_edge = [&] {
     renderer.draw(snapshot);
     const image::Image16 image = renderer.deep();
     int shaded = 0;
-    for (int x = kWidth / 2; x < kWidth; ++x)
-      shaded += linear_at(image, x) > 0.03 && linear_at(image, x) < 0.97 * linear_at(image, kWidth / 2);
+    for (int x = kInstantWidth / 2; x < kInstantWidth; ++x)
+      shaded += linear_at(image, x) > 0.03 && linear_at(image, x) < 0.97 * linear_at(image, kInstantWidth / 2);
     return shaded;
   };
   EXPECT_NEAR(middle_of_edge(), width, 2.5);

@@ -8,7 +8,7 @@
 namespace weft::render {
 namespace {
 
-constexpr int kWidth = 96, kHeight = 64;
+constexpr int kOutlinedWidth = 96, kOutlinedHeight = 64;
 constexpr std::uint64_t kWhite = 0xFFFFFFFFFFFF, kBlack = 0;
 
 /// A view along +y from the origin with a half width of one at one metre: a pixel is a 48th of the distance.
@@ -16,7 +16,7 @@ View test_view() {
   View view;
   view.axes = view_axes(Vec3::UnitY(), Vec3::UnitZ());
   view.tan_half_width = 1;
-  view.tan_half_height = static_cast<double>(kHeight) / kWidth;
+  view.tan_half_height = static_cast<double>(kOutlinedHeight) / kOutlinedWidth;
   view.near = 0.1;
   view.view_from_world = look_along(view.eye, view.axes);
   view.clip_from_world = perspective(1, view.tan_half_height, view.near, view.far) * view.view_from_world;
@@ -24,8 +24,9 @@ View test_view() {
 }
 
 /// The world position that is drawn at a place of the picture [pixels], `distance` metres away.
-Vec3 at(double x, double y, double distance) {
-  return distance * Vec3(2 * x / kWidth - 1, 1, (2 * y / kHeight - 1) * kHeight / kWidth);
+Vec3 seen_at(double x, double y, double distance) {
+  return distance *
+         Vec3(2 * x / kOutlinedWidth - 1, 1, (2 * y / kOutlinedHeight - 1) * kOutlinedHeight / kOutlinedWidth);
 }
 
 /// A mesh with what the geometry buffer would show of it, and its flat colour.
@@ -37,33 +38,36 @@ struct Thing {
 
 struct Scene {
   std::vector<Thing> things;
-  std::vector<Seen> seen = std::vector<Seen>(kWidth * kHeight, Seen{100, kNothing});
-  std::vector<std::uint64_t> picture = std::vector<std::uint64_t>(kWidth * kHeight, kBlack);
+  std::vector<Seen> seen = std::vector<Seen>(kOutlinedWidth * kOutlinedHeight, Seen{100, kNothing});
+  std::vector<std::uint64_t> picture = std::vector<std::uint64_t>(kOutlinedWidth * kOutlinedHeight, kBlack);
 
   /// Adds a thing that covers the pixels for which `covers(x, y)` of their centre is true.
   template <class Covers>
   void add(const Thing& thing, float distance, const Covers& covers, float back = 0) {
     things.push_back(thing);
-    for (int y = 0; y < kHeight; ++y) {
-      for (int x = 0; x < kWidth; ++x) {
+    for (int y = 0; y < kOutlinedHeight; ++y) {
+      for (int x = 0; x < kOutlinedWidth; ++x) {
         if (!covers(x + 0.5, y + 0.5)) continue;
-        seen[y * kWidth + x] = {distance, static_cast<float>(kFirstSurface + things.size() - 1) + back};
-        picture[y * kWidth + x] = thing.color;
+        seen[y * kOutlinedWidth + x] = {distance, static_cast<float>(kFirstSurface + things.size() - 1) + back};
+        picture[y * kOutlinedWidth + x] = thing.color;
       }
     }
   }
   void smooth(const std::optional<Floor>& floor = std::nullopt) {
     std::vector<DrawnMesh> meshes;
     for (const Thing& thing : things) meshes.push_back({thing.positions, thing.triangles});
-    Outlines(kWidth, kHeight).smooth(seen, meshes, floor, test_view(), {0, 0, kWidth, kHeight}, picture);
+    Outlines(kOutlinedWidth, kOutlinedHeight)
+        .smooth(seen, meshes, floor, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight}, picture);
   }
-  int red(int x, int y) const { return static_cast<int>((picture[y * kWidth + x] & 0xFFFF) / 257); }
+  int red(int x, int y) const { return static_cast<int>((picture[y * kOutlinedWidth + x] & 0xFFFF) / 257); }
 };
 
 const std::vector<Triangle> kQuad = {{0, 1, 2}, {0, 2, 3}};
 
 Thing quad(double x0, double y0, double x1, double y1, double distance, std::uint64_t color) {
-  return {{at(x0, y0, distance), at(x1, y0, distance), at(x1, y1, distance), at(x0, y1, distance)}, kQuad, color};
+  return {{seen_at(x0, y0, distance), seen_at(x1, y0, distance), seen_at(x1, y1, distance), seen_at(x0, y1, distance)},
+          kQuad,
+          color};
 }
 
 // Eight samples, no two in one eighth of the pixel's width: an edge at any place covers them to half a sample. Added
@@ -75,7 +79,7 @@ TEST(Outlines, EdgePixelsShowTheirCoveredShareToHalfASample) {
               [&](double x, double y) { return x > 10 && x < edge && y > 10 && y < 50; });
     scene.smooth();
     double sum = 0;
-    for (int x = 0; x < kWidth; ++x) sum += scene.red(x, 30) / 255.0;
+    for (int x = 0; x < kOutlinedWidth; ++x) sum += scene.red(x, 30) / 255.0;
     EXPECT_NEAR(sum, edge - 10, 1.0 / 16 + 0.01) << edge;
     EXPECT_EQ(scene.red(15, 30), 255);
     EXPECT_EQ(scene.red(30, 30), 0);
@@ -85,16 +89,20 @@ TEST(Outlines, EdgePixelsShowTheirCoveredShareToHalfASample) {
 // Two sheets half a millimetre apart at 2 m: 1 / distance has no step that counts, but their numbers differ.
 TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
   Scene scene;
-  scene.add(quad(0, 0, kWidth, kHeight, 2.0005, 0x404040404040), 2.0005f, [](double, double) { return true; });
+  scene.add(quad(0, 0, kOutlinedWidth, kOutlinedHeight, 2.0005, 0x404040404040), 2.0005f,
+            [](double, double) { return true; });
   // Its border rises one pixel in eight.
   const auto border = [](double x) { return 20 + x / 8; };
-  const Thing sheet{{at(0, 0, 2), at(kWidth, 0, 2), at(kWidth, border(kWidth), 2), at(0, border(0), 2)}, kQuad, kWhite};
+  const Thing sheet{{seen_at(0, 0, 2), seen_at(kOutlinedWidth, 0, 2),
+                     seen_at(kOutlinedWidth, border(kOutlinedWidth), 2), seen_at(0, border(0), 2)},
+                    kQuad,
+                    kWhite};
   scene.add(sheet, 2, [&](double x, double y) { return y < border(x); });
   scene.smooth();
   // Each column is covered up to the border at its middle; a sample counts 1/8.
   for (int x = 8; x < 88; ++x) {
     double covered = 0;
-    for (int y = 0; y < kHeight; ++y) covered += (scene.red(x, y) - 64) / 191.0;
+    for (int y = 0; y < kOutlinedHeight; ++y) covered += (scene.red(x, y) - 64) / 191.0;
     EXPECT_NEAR(covered, border(x + 0.5), 0.13) << x;
   }
 }
@@ -102,14 +110,16 @@ TEST(Outlines, BorderOfASheetOnAnotherIsSmoothed) {
 TEST(Outlines, TheBackOfASheetEndsAgainstItsFront) {
   // Folded along a line: the same surface, as far away, once from behind.
   Scene scene;
-  Thing folded{{at(10, 10, 2), at(40.5, 10, 2), at(40.5, 50, 2), at(10, 50, 2)}, {{0, 1, 2}, {0, 2, 3}}, kWhite};
-  folded.positions.insert(folded.positions.end(), {at(70, 10, 2), at(70, 50, 2)});
+  Thing folded{{seen_at(10, 10, 2), seen_at(40.5, 10, 2), seen_at(40.5, 50, 2), seen_at(10, 50, 2)},
+               {{0, 1, 2}, {0, 2, 3}},
+               kWhite};
+  folded.positions.insert(folded.positions.end(), {seen_at(70, 10, 2), seen_at(70, 50, 2)});
   folded.triangles.insert(folded.triangles.end(), {{4, 1, 2}, {4, 2, 5}});
   scene.add(folded, 2, [](double x, double y) { return x > 10 && x < 70 && y > 10 && y < 50; });
   for (int y = 10; y < 50; ++y) {
     for (int x = 41; x < 70; ++x) {
-      scene.seen[y * kWidth + x].surface += 0.5f;
-      scene.picture[y * kWidth + x] = kBlack;
+      scene.seen[y * kOutlinedWidth + x].surface += 0.5f;
+      scene.picture[y * kOutlinedWidth + x] = kBlack;
     }
   }
   scene.smooth();
@@ -125,14 +135,14 @@ TEST(Outlines, SampleOnACutBetweenTrianglesBelongsToOneOfThem) {
   for (int i = 0; i < 300; ++i) {
     const double angle = 2 * std::numbers::pi * i / 300, across = 300 * std::cos(angle), along = 300 * std::sin(angle);
     Scene scene;
-    const Thing cut{{at(x - across, y - along, 2), at(x + along, y - across, 2), at(x + across, y + along, 2),
-                     at(x - along, y + across, 2)},
+    const Thing cut{{seen_at(x - across, y - along, 2), seen_at(x + along, y - across, 2),
+                     seen_at(x + across, y + along, 2), seen_at(x - along, y + across, 2)},
                     kQuad,
                     kWhite};
     scene.add(cut, 2, [](double, double) { return true; });
     // Something seen at another distance makes outlines in the middle, and something black to take colour from.
-    scene.seen[32 * kWidth + 49] = {100, kNothing};
-    scene.picture[32 * kWidth + 49] = kBlack;
+    scene.seen[32 * kOutlinedWidth + 49] = {100, kNothing};
+    scene.picture[32 * kOutlinedWidth + 49] = kBlack;
     scene.smooth();
     EXPECT_EQ(scene.red(48, 32), 255) << i;
   }
@@ -146,7 +156,7 @@ TEST(Outlines, NearerHidesFartherInEitherOrder) {
                 [](double x, double y) { return x > 10 && x < 40.25 && y > 10 && y < 50; });
     };
     const auto far = [&] {
-      scene.add(quad(0, 0, kWidth, kHeight, 2, 0x404040404040), 2,
+      scene.add(quad(0, 0, kOutlinedWidth, kOutlinedHeight, 2, 0x404040404040), 2,
                 [&](double x, double y) { return !near_first || x < 10 || x > 40.25 || y < 10 || y > 50; });
     };
     if (near_first) near();
@@ -162,7 +172,8 @@ TEST(Outlines, NearerHidesFartherInEitherOrder) {
 // Two sides of a box that meet in an upright edge, white and grey, at x = 40.25: the same surface, as far away there.
 TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
   Scene scene;
-  const Thing box{{at(10, 10, 3), at(40.25, 10, 2), at(40.25, 50, 2), at(10, 50, 3), at(80, 10, 3), at(80, 50, 3)},
+  const Thing box{{seen_at(10, 10, 3), seen_at(40.25, 10, 2), seen_at(40.25, 50, 2), seen_at(10, 50, 3),
+                   seen_at(80, 10, 3), seen_at(80, 50, 3)},
                   {{0, 1, 2}, {0, 2, 3}, {1, 4, 5}, {1, 5, 2}},
                   kWhite};
   scene.add(box, 2, [](double x, double y) { return x > 10 && x < 80 && y > 10 && y < 50; });
@@ -170,8 +181,8 @@ TEST(Outlines, SidesOfAnEdgeKeepTheirColors) {
     for (int x = 10; x < 80; ++x) {
       const double center = x + 0.5, share = center < 40.25 ? (center - 10) / 30.25 : (80 - center) / 39.75;
       // 1 / distance is linear over the picture of each side.
-      scene.seen[y * kWidth + x].distance = static_cast<float>(1 / (1 / 3.0 + share * (1 / 2.0 - 1 / 3.0)));
-      if (center > 40.25) scene.picture[y * kWidth + x] = 0x404040404040;
+      scene.seen[y * kOutlinedWidth + x].distance = static_cast<float>(1 / (1 / 3.0 + share * (1 / 2.0 - 1 / 3.0)));
+      if (center > 40.25) scene.picture[y * kOutlinedWidth + x] = 0x404040404040;
     }
   }
   scene.smooth();
@@ -187,14 +198,14 @@ TEST(Outlines, WhatReachesBehindTheViewerIsCutOff) {
   // One metre down at 3.2 m: 15 pixels below the middle.
   for (int y = 0; y < 17; ++y) {
     const float distance = static_cast<float>(1 / ((32 - y - 0.5) / 48));
-    for (int x = 0; x < kWidth; ++x) {
-      scene.seen[y * kWidth + x] = {distance, kFirstSurface};
-      scene.picture[y * kWidth + x] = kWhite;
+    for (int x = 0; x < kOutlinedWidth; ++x) {
+      scene.seen[y * kOutlinedWidth + x] = {distance, kFirstSurface};
+      scene.picture[y * kOutlinedWidth + x] = kWhite;
     }
   }
   scene.things.push_back(strip);
   scene.smooth();
-  for (int x = 0; x < kWidth; ++x) {
+  for (int x = 0; x < kOutlinedWidth; ++x) {
     EXPECT_EQ(scene.red(x, 16), 255);
     EXPECT_EQ(scene.red(x, 17), 0);
   }
@@ -203,11 +214,11 @@ TEST(Outlines, WhatReachesBehindTheViewerIsCutOff) {
 TEST(Outlines, FloorFillsWhatLiesBehind) {
   Scene scene;
   const Floor floor{Vec3(0, 0, -1), Vec3::UnitZ(), {}};
-  for (int y = 0; y < kHeight; ++y) {
-    for (int x = 0; x < kWidth; ++x) {
+  for (int y = 0; y < kOutlinedHeight; ++y) {
+    for (int x = 0; x < kOutlinedWidth; ++x) {
       const double nearness = (32 - y - 0.5) / 48;
-      if (nearness > 0) scene.seen[y * kWidth + x] = {static_cast<float>(1 / nearness), kFloor};
-      scene.picture[y * kWidth + x] = nearness > 0 ? 0x606060606060 : kBlack;
+      if (nearness > 0) scene.seen[y * kOutlinedWidth + x] = {static_cast<float>(1 / nearness), kFloor};
+      scene.picture[y * kOutlinedWidth + x] = nearness > 0 ? 0x606060606060 : kBlack;
     }
   }
   scene.add(quad(10, 4, 40.75, 20, 1, kWhite), 1,
@@ -218,10 +229,12 @@ TEST(Outlines, FloorFillsWhatLiesBehind) {
 
 TEST(Outlines, APictureOfOneFlatThingIsLeftAlone) {
   Scene scene;
-  scene.add(quad(-10, -10, kWidth + 10, kHeight + 10, 2, 0x121234345656), 2, [](double, double) { return true; });
-  Outlines outlines(kWidth, kHeight);
+  scene.add(quad(-10, -10, kOutlinedWidth + 10, kOutlinedHeight + 10, 2, 0x121234345656), 2,
+            [](double, double) { return true; });
+  Outlines outlines(kOutlinedWidth, kOutlinedHeight);
   const std::vector<DrawnMesh> meshes = {{scene.things[0].positions, scene.things[0].triangles}};
-  outlines.smooth(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kWidth, kHeight}, scene.picture);
+  outlines.smooth(scene.seen, meshes, std::nullopt, test_view(), {0, 0, kOutlinedWidth, kOutlinedHeight},
+                  scene.picture);
   EXPECT_EQ(outlines.count(), 0u);
 }
 

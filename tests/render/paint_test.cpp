@@ -16,12 +16,12 @@ namespace weft::render {
 namespace {
 
 using Alpha = frame::Paint::Alpha;
-constexpr int kWidth = 160, kHeight = 160;
+constexpr int kPaintedSide = 160;  // of a picture [pixels]
 
-Settings settings(Quality quality = Quality::final) {
+Settings painted_settings(Quality quality = Quality::final) {
   Settings result;
-  result.width = kWidth;
-  result.height = kHeight;
+  result.width = kPaintedSide;
+  result.height = kPaintedSide;
   result.quality = quality;
   return result;
 }
@@ -39,11 +39,12 @@ std::shared_ptr<const frame::Texture> texture(int columns, int rows,
   return std::make_shared<const frame::Texture>(std::move(made));
 }
 
-constexpr std::array<std::uint8_t, 4> kRed{180, 20, 20, 255}, kGreen{20, 180, 20, 255}, kBlue{20, 20, 180, 255},
-    kWhite{180, 180, 180, 255}, kHole{180, 20, 20, 0};
+constexpr std::array<std::uint8_t, 4> kRedPixel{180, 20, 20, 255}, kGreenPixel{20, 180, 20, 255},
+    kBluePixel{20, 20, 180, 255}, kWhitePixel{180, 180, 180, 255}, kHolePixel{180, 20, 20, 0};
 
 /// A square of 0.5 m seen and lit straight on, which fills 0.687 of the picture; u runs right and v up, in metres.
-frame::FrameSnapshot facing_square(frame::ObjectKind kind, std::shared_ptr<const frame::Texture> picture, Alpha alpha) {
+frame::FrameSnapshot painted_square(frame::ObjectKind kind, std::shared_ptr<const frame::Texture> picture,
+                                    Alpha alpha) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
   frame::Surface& surface = add_square(snapshot, kind, Vec3::Zero(), -Vec3::UnitY(), Vec3::UnitX(), 0.25);
@@ -60,7 +61,7 @@ frame::FrameSnapshot facing_square(frame::ObjectKind kind, std::shared_ptr<const
 /// Whether a pixel, at shares of the picture from the left and the top, has about this colour.
 testing::AssertionResult shows(const image::Image& image, double x, double y, const std::array<std::uint8_t, 4>& color,
                                double tolerance = 6) {
-  const std::uint8_t* pixel = image.pixel(static_cast<int>(x * kWidth), static_cast<int>(y * kHeight));
+  const std::uint8_t* pixel = image.pixel(static_cast<int>(x * kPaintedSide), static_cast<int>(y * kPaintedSide));
   for (int channel = 0; channel < 3; ++channel)
     if (std::abs(pixel[channel] - color[channel]) > tolerance)
       return testing::AssertionFailure() << int(pixel[0]) << " " << int(pixel[1]) << " " << int(pixel[2]);
@@ -70,40 +71,41 @@ testing::AssertionResult shows(const image::Image& image, double x, double y, co
 // Light of full strength, straight on: a surface comes out in its own colour (Picture.LitSurfaceHasItsOwnColor).
 TEST(Paint, LiesWithItsTopUpwardAndItsLeftToTheLeft) {
   for (const auto kind : {frame::ObjectKind::cloth, frame::ObjectKind::character}) {
-    const auto snapshot = facing_square(kind, texture(2, 2, {kRed, kGreen, kBlue, kWhite}), Alpha::ignored);
-    const image::Image image = Renderer(settings()).draw(snapshot);
-    EXPECT_TRUE(shows(image, 0.33, 0.33, kRed));
-    EXPECT_TRUE(shows(image, 0.67, 0.33, kGreen));
-    EXPECT_TRUE(shows(image, 0.33, 0.67, kBlue));
-    EXPECT_TRUE(shows(image, 0.67, 0.67, kWhite));
+    const auto snapshot =
+        painted_square(kind, texture(2, 2, {kRedPixel, kGreenPixel, kBluePixel, kWhitePixel}), Alpha::ignored);
+    const image::Image image = Renderer(painted_settings()).draw(snapshot);
+    EXPECT_TRUE(shows(image, 0.33, 0.33, kRedPixel));
+    EXPECT_TRUE(shows(image, 0.67, 0.33, kGreenPixel));
+    EXPECT_TRUE(shows(image, 0.33, 0.67, kBluePixel));
+    EXPECT_TRUE(shows(image, 0.67, 0.67, kWhitePixel));
   }
 }
 
 TEST(Paint, RepeatsInMetresOrLiesOnceOnItsColor) {
-  auto snapshot = facing_square(frame::ObjectKind::cloth, texture(1, 2, {kRed, kGreen}), Alpha::over_color);
+  auto snapshot = painted_square(frame::ObjectKind::cloth, texture(1, 2, {kRedPixel, kGreenPixel}), Alpha::over_color);
   auto& paint = const_cast<frame::Surface&>(*snapshot.surfaces[0]).appearance.paint;
   paint.texture_from_uv << 4, 0, 0, 0, 4, 0;  // tiles of 0.25 m: stripes of half of that
-  const image::Image tiled = Renderer(settings()).draw(snapshot);
+  const image::Image tiled = Renderer(painted_settings()).draw(snapshot);
   const auto height = [](double v) { return 0.5 - 0.687 * (v - 0.5); };  // of a share of the square
-  EXPECT_TRUE(shows(tiled, 0.5, height(0.125), kGreen));
-  EXPECT_TRUE(shows(tiled, 0.5, height(0.375), kRed));
-  EXPECT_TRUE(shows(tiled, 0.5, height(0.625), kGreen));
-  EXPECT_TRUE(shows(tiled, 0.5, height(0.875), kRed));
+  EXPECT_TRUE(shows(tiled, 0.5, height(0.125), kGreenPixel));
+  EXPECT_TRUE(shows(tiled, 0.5, height(0.375), kRedPixel));
+  EXPECT_TRUE(shows(tiled, 0.5, height(0.625), kGreenPixel));
+  EXPECT_TRUE(shows(tiled, 0.5, height(0.875), kRedPixel));
   paint.wrap_u = paint.wrap_v = frame::Paint::Wrap::once;
-  const image::Image once = Renderer(settings()).draw(snapshot);
-  EXPECT_TRUE(shows(once, 0.32, height(0.375), kRed));
+  const image::Image once = Renderer(painted_settings()).draw(snapshot);
+  EXPECT_TRUE(shows(once, 0.32, height(0.375), kRedPixel));
   EXPECT_TRUE(shows(once, 0.5, height(0.875), {26, 26, 153, 255}));
 }
 
 TEST(Paint, HolesShowWhatIsBehindThemInDrawingAndInShadow) {
   for (const Quality quality : {Quality::draft, Quality::final}) {
-    auto snapshot = facing_square(frame::ObjectKind::cloth, texture(2, 1, {kHole, kRed}), Alpha::cutout);
+    auto snapshot = painted_square(frame::ObjectKind::cloth, texture(2, 1, {kHolePixel, kRedPixel}), Alpha::cutout);
     // A white wall behind, in the light that comes through.
     add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 0.5, 0), -Vec3::UnitY(), Vec3::UnitX(), 2)
         .appearance.color = Vec3(0.7, 0.7, 0.7);
-    const image::Image image = Renderer(settings(quality)).draw(snapshot);
-    EXPECT_TRUE(shows(image, 0.67, 0.5, kRed));
-    EXPECT_TRUE(shows(image, 0.3, 0.5, kWhite)) << "the wall, lit through the hole";
+    const image::Image image = Renderer(painted_settings(quality)).draw(snapshot);
+    EXPECT_TRUE(shows(image, 0.67, 0.5, kRedPixel));
+    EXPECT_TRUE(shows(image, 0.3, 0.5, kWhitePixel)) << "the wall, lit through the hole";
     // From the other side: the shadow of its right half alone lies on the wall. A metre is 0.82 of the picture there.
     snapshot.cameras = {camera_at(Vec3(1.2, -1, 0), Vec3(0, 0.5, 0), 40)};
     const frame::Camera& camera = snapshot.cameras[0];
@@ -112,18 +114,19 @@ TEST(Paint, HolesShowWhatIsBehindThemInDrawingAndInShadow) {
       const Vec3 to = Vec3(x, 0.5, 0) - camera.position;
       return 0.5 + 0.5 * right.dot(to) / (forward.dot(to) * std::tan(20 * 3.14159265 / 180));
     };
-    const image::Image aside = Renderer(settings(quality)).draw(snapshot);
-    EXPECT_TRUE(shows(aside, across(0.4), 0.5, kWhite, 40)) << "beside the square";
-    EXPECT_LT(aside.pixel(static_cast<int>(across(0.12) * kWidth), kHeight / 2)[1], 90) << "behind its threads";
+    const image::Image aside = Renderer(painted_settings(quality)).draw(snapshot);
+    EXPECT_TRUE(shows(aside, across(0.4), 0.5, kWhitePixel, 40)) << "beside the square";
+    EXPECT_LT(aside.pixel(static_cast<int>(across(0.12) * kPaintedSide), kPaintedSide / 2)[1], 90)
+        << "behind its threads";
   }
 }
 
 TEST(Paint, HalfTransparentClothIsHalfSeenFromAfar) {
   const std::array<std::uint8_t, 4> veil{180, 20, 20, 128};
-  auto snapshot = facing_square(frame::ObjectKind::cloth, texture(1, 1, {veil}), Alpha::cutout);
+  auto snapshot = painted_square(frame::ObjectKind::cloth, texture(1, 1, {veil}), Alpha::cutout);
   add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 3, 0), -Vec3::UnitY(), Vec3::UnitX(), 4).appearance.color =
       Vec3(0.7, 0.7, 0.7);
-  const image::Image image = Renderer(settings()).draw(snapshot);
+  const image::Image image = Renderer(painted_settings()).draw(snapshot);
   double red = 0, green = 0;
   int count = 0;
   for (int y = 60; y < 100; ++y) {

@@ -15,12 +15,12 @@
 namespace weft::render {
 namespace {
 
-constexpr int kWidth = 320, kHeight = 200;
+constexpr int kPictureWidth = 320, kPictureHeight = 200;
 
 Settings settings(Quality quality = Quality::final) {
   Settings result;
-  result.width = kWidth;
-  result.height = kHeight;
+  result.width = kPictureWidth;
+  result.height = kPictureHeight;
   result.quality = quality;
   return result;
 }
@@ -56,17 +56,17 @@ frame::FrameSnapshot facing_square(frame::ObjectKind kind, double half, const Ve
 // A side of 2 h at distance d is h / (d tan(fov / 2)) of the picture's height: 200 * 0.3 / (2 tan 20) = 82.4 pixels.
 // Half a pixel along each of the four sides may fall either way.
 TEST(Picture, SquareCoversThePixelsThatPerspectiveGives) {
-  const double side = kHeight * 0.3 / (2 * std::tan(20 * std::numbers::pi / 180));
+  const double side = kPictureHeight * 0.3 / (2 * std::tan(20 * std::numbers::pi / 180));
   for (const Quality quality : {Quality::draft, Quality::preview, Quality::final}) {
     Renderer renderer(settings(quality));
     const image::Image image = renderer.draw(facing_square(frame::ObjectKind::obstacle, 0.3, kRed));
     EXPECT_NEAR(count(image, reddish), side * side, 2 * side) << static_cast<int>(quality);
     // Centred: the middle of the sides, one pixel in and one out.
     const int reach = static_cast<int>(side / 2);
-    EXPECT_TRUE(reddish(image.pixel(kWidth / 2 - reach + 1, kHeight / 2)));
-    EXPECT_FALSE(reddish(image.pixel(kWidth / 2 - reach - 3, kHeight / 2)));
-    EXPECT_TRUE(reddish(image.pixel(kWidth / 2, kHeight / 2 + reach - 2)));
-    EXPECT_FALSE(reddish(image.pixel(kWidth / 2, kHeight / 2 + reach + 2)));
+    EXPECT_TRUE(reddish(image.pixel(kPictureWidth / 2 - reach + 1, kPictureHeight / 2)));
+    EXPECT_FALSE(reddish(image.pixel(kPictureWidth / 2 - reach - 3, kPictureHeight / 2)));
+    EXPECT_TRUE(reddish(image.pixel(kPictureWidth / 2, kPictureHeight / 2 + reach - 2)));
+    EXPECT_FALSE(reddish(image.pixel(kPictureWidth / 2, kPictureHeight / 2 + reach + 2)));
   }
 }
 
@@ -408,7 +408,7 @@ TEST(Picture, SameBytesWithOneAndTwoThreads) {
 TEST(Picture, OddSnapshotsAreDrawn) {
   Renderer renderer(settings());
   frame::FrameSnapshot nothing;
-  EXPECT_EQ(renderer.draw(nothing).rgb.size(), 3u * kWidth * kHeight);
+  EXPECT_EQ(renderer.draw(nothing).rgb.size(), 3u * kPictureWidth * kPictureHeight);
   frame::FrameSnapshot odd;
   add_surface(odd, frame::ObjectKind::cloth, {}, {});
   add_surface(odd, frame::ObjectKind::obstacle, {Vec3::Zero()}, {{0, 0, 0}});
@@ -419,7 +419,7 @@ TEST(Picture, OddSnapshotsAreDrawn) {
   odd.lights[1].target = odd.lights[1].position;
   odd.lights[2].direction = Vec3::Zero();
   odd.cameras = {camera_at(Vec3::Zero(), Vec3::Zero(), 40)};
-  EXPECT_EQ(renderer.draw(odd).rgb.size(), 3u * kWidth * kHeight);
+  EXPECT_EQ(renderer.draw(odd).rgb.size(), 3u * kPictureWidth * kPictureHeight);
   frame::FrameSnapshot broken = busy_scene();
   broken.states.pop_back();
   EXPECT_THROW(renderer.draw(broken), Error);

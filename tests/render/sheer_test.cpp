@@ -7,20 +7,11 @@
 
 #include "render/mirror.hpp"
 #include "render/renderer.hpp"
+#include "render/scaled_pictures.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
 namespace {
-
-constexpr int kWidth = 160, kHeight = 100;
-
-image::Image drawn(const frame::FrameSnapshot& snapshot, Quality quality = Quality::final) {
-  Settings settings;
-  settings.width = kWidth;
-  settings.height = kHeight;
-  settings.quality = quality;
-  return Renderer(settings).draw(snapshot);
-}
 
 /// A red wall, seen from the front.
 frame::FrameSnapshot wall() {
@@ -49,7 +40,7 @@ TEST(Sheer, CloseWeavesHideWhatIsBehindAndOpenOnesHalf) {
   frame::FrameSnapshot bare = wall(), dense = wall(), veiled = wall();
   hang(dense, -1, 0.5);
   hang(veiled, -1, 0.9);
-  const image::Image red = drawn(bare), blue = drawn(dense), both = drawn(veiled);
+  const image::Image red = drawn(bare, 1), blue = drawn(dense, 1), both = drawn(veiled, 1);
   // Of the dense one hardly any red is left; through chiffon half of that of the wall, which its shadow darkens.
   EXPECT_LT(blue.pixel(80, 50)[0], 90);
   const double through = linear(both.pixel(80, 50)[0]) / linear(red.pixel(80, 50)[0]);
@@ -66,13 +57,13 @@ TEST(Sheer, TheOrderOfVeilsInTheSceneDoesNotMatter) {
   hang(front_first, -0.5, 0.8);
   hang(back_first, -0.5, 0.8);
   hang(back_first, -1, 0.9);
-  const image::Image a = drawn(front_first), b = drawn(back_first);
+  const image::Image a = drawn(front_first, 1), b = drawn(back_first, 1);
   for (int x = 20; x < 140; x += 5)
     for (int k = 0; k < 3; ++k) EXPECT_EQ(a.pixel(x, 50)[k], b.pixel(x, 50)[k]) << x;
   // Two hide more than one.
   frame::FrameSnapshot one = wall();
   hang(one, -1, 0.9);
-  EXPECT_LT(a.pixel(80, 50)[0], drawn(one).pixel(80, 50)[0] - 10);
+  EXPECT_LT(a.pixel(80, 50)[0], drawn(one, 1).pixel(80, 50)[0] - 10);
 }
 
 TEST(Sheer, ItsShadowIsPaler) {
@@ -85,7 +76,7 @@ TEST(Sheer, ItsShadowIsPaler) {
     veil.appearance.finish = {0, 0.5, 0, sheer};
     snapshot.cameras = {camera_at(Vec3(0, -3, 0.7), Vec3(0, 0, 0.4), 40)};
     snapshot.lights = {sun(-Vec3::UnitZ())};
-    return linear(drawn(snapshot).pixel(80, 68)[1]);
+    return linear(drawn(snapshot, 1).pixel(80, 68)[1]);
   };
   const double open = [&] {
     frame::FrameSnapshot snapshot;
@@ -93,7 +84,7 @@ TEST(Sheer, ItsShadowIsPaler) {
     add_floor(snapshot);
     snapshot.cameras = {camera_at(Vec3(0, -3, 0.7), Vec3(0, 0, 0.4), 40)};
     snapshot.lights = {sun(-Vec3::UnitZ())};
-    return linear(drawn(snapshot).pixel(80, 68)[1]);
+    return linear(drawn(snapshot, 1).pixel(80, 68)[1]);
   }();
   EXPECT_LT(shadow(0.3), 0.05 * open);
   EXPECT_NEAR(shadow(0.9) / open, 0.5, 0.12);
@@ -115,13 +106,13 @@ int redness(const image::Image& image, int x, int y) {
 }
 
 TEST(Mirror, FloorsThatAreSmoothShowWhatStandsOnThem) {
-  const image::Image smooth = drawn(ball_on_floor(0.1)), rough = drawn(ball_on_floor(0.6));
+  const image::Image smooth = drawn(ball_on_floor(0.1), 1), rough = drawn(ball_on_floor(0.6), 1);
   // The ball's middle is 0.5 m above the floor, its picture as much below: both in the middle column.
   const int mirrored_row = 50 + static_cast<int>(std::lround(0.7 / 4 / std::tan(15 * std::acos(-1.0) / 180) * 50));
   EXPECT_GT(redness(smooth, 80, mirrored_row), redness(rough, 80, mirrored_row) + 5);
   EXPECT_LE(std::abs(redness(smooth, 10, mirrored_row) - redness(rough, 10, mirrored_row)), 3);
   // Only of final quality.
-  EXPECT_LE(redness(drawn(ball_on_floor(0.1), Quality::preview), 80, mirrored_row),
+  EXPECT_LE(redness(drawn(ball_on_floor(0.1), 1, Quality::preview), 80, mirrored_row),
             redness(rough, 80, mirrored_row) + 3);
 }
 

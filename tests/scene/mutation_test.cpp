@@ -7,17 +7,12 @@
 #include <random>
 #include <string>
 
+#include "scene/folder.hpp"
 #include "scene/loader.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::scene {
 namespace {
-
-const std::string kFolder = WEFT_SOURCE_DIR "/tests/scene/";
-
-std::string read_text(const std::string& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// Damages a text in a few places, as bad typing, bad merges and bad disks do.
 std::string damaged(std::string text, std::mt19937& random) {
@@ -77,7 +72,7 @@ void expect_buildable(const Scene& scene) {
 }
 
 TEST(DamagedScenes, LoadOrAreRefusedAtAPlaceThatExists) {
-  const std::string good = read_text(kFolder + "every_key.toml");
+  const std::string good = support::read_bytes(kFolder + "every_key.toml");
   ASSERT_FALSE(good.empty());
   std::mt19937 random(20010901);  // fixed: a failure can be repeated
   int loaded = 0, misread = 0;
@@ -115,7 +110,7 @@ TEST(DamagedScenes, LoadOrAreRefusedAtAPlaceThatExists) {
 }
 
 TEST(DamagedScenes, WithDamagedOverridesDoNotCrash) {
-  const std::string good = read_text(kFolder + "every_key.toml");
+  const std::string good = support::read_bytes(kFolder + "every_key.toml");
   std::mt19937 random(20010902);
   for (int i = 0; i < 1000; ++i) {
     const std::string text = damaged("cloth.sheet.material.stretch=[1e3, 2.5]", random);
@@ -126,7 +121,7 @@ TEST(DamagedScenes, WithDamagedOverridesDoNotCrash) {
 }
 
 TEST(DamagedScenes, CutOffAnywhereDoNotCrash) {
-  const std::string good = read_text(kFolder + "every_key.toml");
+  const std::string good = support::read_bytes(kFolder + "every_key.toml");
   for (std::size_t size = 0; size < good.size(); size += 3) {
     const LoadResult result = load_text(std::string_view(good).substr(0, size), kFolder + "s.toml");
     EXPECT_EQ(result.ok(), result.describe().empty());

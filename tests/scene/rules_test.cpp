@@ -9,21 +9,16 @@
 #include <set>
 #include <string>
 
+#include "scene/folder.hpp"
 #include "scene/json_schema_check.hpp"
 #include "scene/loader.hpp"
 #include "scene/rule.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::scene {
 namespace {
 
 using nlohmann::json;
-
-const std::string kFolder = WEFT_SOURCE_DIR "/tests/scene/";
-
-std::string read_text(const std::string& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// One entry of each kind, as small as may be.
 const std::string kOneOfEach = R"(
@@ -282,7 +277,7 @@ TEST(Schema, StatesTypeRangeDefaultAndChoices) {
 
 TEST(Schema, AcceptsWhatTheLoaderAccepts) {
   const json schema = json::parse(json_schema());
-  EXPECT_EQ(schema_violation(schema, json_of_toml(read_text(kFolder + "every_key.toml"))), "");
+  EXPECT_EQ(schema_violation(schema, json_of_toml(support::read_bytes(kFolder + "every_key.toml"))), "");
   EXPECT_EQ(schema_violation(schema, json_of_toml(kOneOfEach)), "");
   EXPECT_EQ(schema_violation(schema, json_of_toml(effective_scene(load(kFolder + "every_key.toml").scene))), "");
 }

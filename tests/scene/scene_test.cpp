@@ -5,12 +5,11 @@
 #include <string>
 
 #include "scene/fabrics.hpp"
+#include "scene/folder.hpp"
 #include "scene/loader.hpp"
 
 namespace weft::scene {
 namespace {
-
-const std::string kFolder = WEFT_SOURCE_DIR "/tests/scene/";
 
 Scene load_good(const std::string& text) {
   const LoadResult result = load_text(text, kFolder + "text.toml");

@@ -15,7 +15,7 @@ namespace weft::simulation {
 namespace {
 
 constexpr int kFiles = 9;
-constexpr double kRate = 20;  // files a second
+constexpr double kFileRate = 20;  // files a second
 
 /// Where a point of the body is at a time [s].
 using Deformation = std::function<Vec3(const Vec3&, double)>;
@@ -28,7 +28,7 @@ class PinsOnACharacter : public support::TestFolder {
     for (int k = 0; k < kFiles; ++k) {
       std::string text;
       for (const Vec3& x : box.positions) {
-        const Vec3 y = moved(x, k / kRate);
+        const Vec3 y = moved(x, k / kFileRate);
         text += fmt::format("v {} {} {}\n", y.x(), y.y(), y.z());
       }
       for (const auto& [a, b, c] : box.topology.triangles) text += fmt::format("f {} {} {}\n", a + 1, b + 1, c + 1);
@@ -73,10 +73,10 @@ TEST_F(PinsOnACharacter, MoveAsOneWithABodyThatDoes) {
   const Pinned pinned(scene_of(kRigid));
   ASSERT_EQ(pinned.at(0).size(), 9u);
   for (int k = 0; k < kFiles - 1; ++k)
-    for (const auto& held : pinned.at(k / kRate)) {
+    for (const auto& held : pinned.at(k / kFileRate)) {
       const Vec3 in_body = pinned.start(held) - kRigid(Vec3::Zero(), 0);  // it is not turned at time 0
       // Files are read in single precision: 1e-7 m, on levers of about a side.
-      EXPECT_LT((held.x_end - kRigid(in_body, k / kRate)).norm(), 1e-6) << k;
+      EXPECT_LT((held.x_end - kRigid(in_body, k / kFileRate)).norm(), 1e-6) << k;
     }
 }
 
@@ -97,11 +97,11 @@ TEST_F(PinsOnACharacter, HaveTheVelocityOfTheirPlaces) {
 TEST_F(PinsOnACharacter, KeepTheirDistanceFromTheSkin) {
   const Pinned pinned(scene_of(kBent));
   for (int k = 0; k < kFiles - 1; ++k)
-    for (const auto& held : pinned.at(k / kRate)) {
+    for (const auto& held : pinned.at(k / kFileRate)) {
       double least = 1;  // off the 10 mm, of all faces
       for (const auto& t : pinned.environment.bodies[0].mesh.topology.triangles) {
         const auto at = [&](std::size_t c) {
-          return pinned.environment.vertex(0, static_cast<std::size_t>(t[c]), k / kRate).position;
+          return pinned.environment.vertex(0, static_cast<std::size_t>(t[c]), k / kFileRate).position;
         };
         const Vec3 n = (at(1) - at(0)).cross(at(2) - at(0)).normalized();
         least = std::min(least, std::abs(n.dot(held.x_end - at(0)) - 0.01));

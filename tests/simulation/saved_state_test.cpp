@@ -70,7 +70,7 @@ position = [0.3, 0, 0.1]
 
 // Two jaws close on a hanging sheet until they overlap, and part. They are thin: what is in one may be nearer to
 // its back than to its front.
-constexpr const char* kJaws = R"(
+constexpr const char* kThinJaws = R"(
 [time]
 duration = 1
 [[cloth]]
@@ -165,7 +165,7 @@ INSTANTIATE_TEST_SUITE_P(
     [](const auto& kind) { return std::string(kind.param.name); });
 
 TEST(SavedStates, OfPinchedClothKnowWhereItCameFromAndWhatWasSaid) {
-  const Continued pinched = continue_runs(support::scene_of_text(kJaws), {14, {4, 6, 8, 11}});
+  const Continued pinched = continue_runs(support::scene_of_text(kThinJaws), {14, {4, 6, 8, 11}});
   EXPECT_EQ(pinched.difference, "");
   EXPECT_GT(pinched.pinched_pairs, 0);
 }
@@ -195,7 +195,7 @@ TEST(SavedStates, OfAPinThatLagsKnowThatItDoes) {
 }
 
 TEST(SavedStates, OfAPrerollKeepWhatItsFramesHaveSaid) {
-  scene::Scene scene = support::scene_of_text(kJaws, {"time.preroll=0.6"});
+  scene::Scene scene = support::scene_of_text(kThinJaws, {"time.preroll=0.6"});
   for (scene::Obstacle& jaw : scene.obstacles)
     for (scene::PoseKey& key : jaw.motion.keys) key.time -= 0.6;
   const Continued pinched = continue_runs(scene, {16, {4, 8, 14, 15}});
@@ -309,7 +309,7 @@ void try_bytes(const scene::Scene& scene, const std::string& bytes) {
 }
 
 TEST(SavedStates, ThatAreCutShortOrTooLongOrForeignAreRefused) {
-  const scene::Scene scene = support::scene_of_text(kJaws);
+  const scene::Scene scene = support::scene_of_text(kThinJaws);
   Simulation simulation(scene);
   for (int k = 0; k < 6; ++k) simulation.advance();
   std::string bytes;
@@ -324,7 +324,7 @@ TEST(SavedStates, ThatAreCutShortOrTooLongOrForeignAreRefused) {
 }
 
 TEST(SavedStates, WithAnyByteChangedDoNoHarm) {
-  const scene::Scene scene = support::scene_of_text(kJaws, {"contact.response=velocity_constraints"});
+  const scene::Scene scene = support::scene_of_text(kThinJaws, {"contact.response=velocity_constraints"});
   Simulation simulation(scene);
   for (int k = 0; k < 8; ++k) simulation.advance();
   std::string bytes;

@@ -8,7 +8,6 @@
 namespace weft::solver {
 namespace {
 
-constexpr Index kRows = 7;
 const BlockMatrix::Couplings kFull{{0, 1}, {4, 1}, {1, 2}, {6, 0}, {3, 5}}, kIsotropic{{0, 2}, {5, 1}, {4, 6}, {2, 6}};
 
 Mat3 random_block(testing::Random& random) {
@@ -18,6 +17,7 @@ Mat3 random_block(testing::Random& random) {
 }
 
 TEST(Assembly, WritesTheMatrixWhoseRowsAddUpToWhatTheyHaveOfTheirOwn) {
+  constexpr Index kRows = 7;
   testing::Random random(3);
   BlockMatrix matrix(kRows, kFull, kIsotropic);
   Assembly assembly(matrix);

@@ -266,18 +266,18 @@ TEST(ConjugateGradient, ErrorsCountAsFarAsTheyShowInTheMetric) {
   EXPECT_GT(report.errors[0], 0.99 * testing::flat(x).norm());
 }
 
-// A sheet of kSide × kSide with springs of this stiffness to its neighbours, against a metric of 1, and bending beside:
-// rows sum up to the metric.
-constexpr Index kSide = 12;
+// A sheet of kSheetSide × kSheetSide with springs of this stiffness to its neighbours, against a metric of 1, and
+// bending beside: rows sum up to the metric.
+constexpr Index kSheetSide = 12;
 LinearSystem sheet(double stiffness, Random& random) {
   BlockMatrix::Couplings links, bends;
-  for (Index i = 0; i < kSide * kSide; ++i) {
-    if (i % kSide > 0) links.emplace_back(i - 1, i);
-    if (i >= kSide) links.emplace_back(i - kSide, i);
-    if (i % kSide > 1) bends.emplace_back(i - 2, i);
+  for (Index i = 0; i < kSheetSide * kSheetSide; ++i) {
+    if (i % kSheetSide > 0) links.emplace_back(i - 1, i);
+    if (i >= kSheetSide) links.emplace_back(i - kSheetSide, i);
+    if (i % kSheetSide > 1) bends.emplace_back(i - 2, i);
   }
   LinearSystem system;
-  system.matrix = BlockMatrix(kSide * kSide, links, bends);
+  system.matrix = BlockMatrix(kSheetSide * kSheetSide, links, bends);
   BlockMatrix& matrix = system.matrix;
   for (Index i = 0; i < matrix.rows(); ++i) matrix.add_scalar(matrix.diagonal(i), 1);
   for (const auto& [i, j] : links) {
@@ -294,7 +294,7 @@ LinearSystem sheet(double stiffness, Random& random) {
   }
   system.metric.assign(static_cast<std::size_t>(matrix.rows()), 1);
   const Vec3 n = random.vector().normalized();
-  system.constraints = {{0, Mat3::Zero()}, {kSide - 1, Mat3::Identity() - n * n.transpose()}};
+  system.constraints = {{0, Mat3::Zero()}, {kSheetSide - 1, Mat3::Identity() - n * n.transpose()}};
   system.diagonal_terms = {{30, stiffness * n * n.transpose()}};
   system.terms = {{{50, 75, 76, 87}, {-1, 0.4, 0.3, 0.3}, stiffness * n * n.transpose()}};
   cut_groups(system, {36, 9});
@@ -325,8 +325,8 @@ TEST(ConjugateGradient, InSinglePrecisionIsAsExactAsItSaysAndAsFastAsInDouble) {
       EXPECT_LT(energy(testing::flat(x) - expected), energy(testing::flat(y) - expected) + share * energy(expected))
           << stiffness << " to " << share;
       EXPECT_EQ(x[0], Vec3::Zero());
-      const Vec3 entry = system.constraints[1].free * x[kSide - 1];
-      EXPECT_LT((entry - x[kSide - 1]).norm(), 1e-14 * entry.norm());
+      const Vec3 entry = system.constraints[1].free * x[kSheetSide - 1];
+      EXPECT_LT((entry - x[kSheetSide - 1]).norm(), 1e-14 * entry.norm());
     }
   }
 }

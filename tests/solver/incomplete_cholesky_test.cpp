@@ -12,6 +12,7 @@
 namespace weft::solver {
 namespace {
 
+using testing::projection;
 using testing::Random;
 
 // What the factor adds to z for each unit of r that obeys the constraints, as a matrix: S (L Lᵀ)⁻¹ S.
@@ -28,13 +29,6 @@ Eigen::MatrixXd dense_inverse(IncompleteCholesky& factor, const LinearSystem& sy
     EXPECT_NEAR(sum, testing::flat(r).dot(testing::flat(z)), 1e-12 * (1 + std::abs(sum)));
   }
   return inverse;
-}
-
-Eigen::MatrixXd projection(const LinearSystem& system) {
-  const Eigen::Index size = 3 * system.matrix.rows();
-  Eigen::MatrixXd s = Eigen::MatrixXd::Identity(size, size);
-  for (const ParticleConstraint& c : system.constraints) s.block<3, 3>(3 * c.particle, 3 * c.particle) = c.free;
-  return s;
 }
 
 // A chain: nothing fills in, so the factor leaves nothing out.

@@ -12,7 +12,7 @@ namespace {
 
 using testing::Random;
 
-constexpr Index kRows = 40;
+constexpr Index kSystemRows = 40;
 
 // Restriction to a level: sums over the groups of the particles of each.
 Eigen::MatrixXd restriction(const std::vector<Index>& group_of, Index groups) {
@@ -109,9 +109,9 @@ Eigen::MatrixXd dense_preconditioner(const LinearSystem& system, bool stiff) {
 // Contacts of one to four particles as stiff as the springs, within groups and across them, and constraints: with one
 // particle a group, some are held.
 LinearSystem system_with_contacts(Random& random) {
-  LinearSystem system = testing::random_system(kRows, 30, random);
-  for (Index i = 0; i < kRows; ++i) system.metric.push_back(random.number(0.01, 0.1));
-  for (Index i = 2; i < kRows; i += 5) system.diagonal_terms.push_back({i, random.definite(20)});
+  LinearSystem system = testing::random_system(kSystemRows, 30, random);
+  for (Index i = 0; i < kSystemRows; ++i) system.metric.push_back(random.number(0.01, 0.1));
+  for (Index i = 2; i < kSystemRows; i += 5) system.diagonal_terms.push_back({i, random.definite(20)});
   return system;
 }
 
@@ -141,7 +141,7 @@ TEST(Preconditioner, IsTheSumOverLevelsWithContactsInAll) {
       if (stiff)
         for (double& weight : system.metric) weight *= 1e-6;
       const Eigen::MatrixXd expected = dense_preconditioner(system, stiff);
-      std::vector<Vec3> r = random.vectors(kRows);
+      std::vector<Vec3> r = random.vectors(kSystemRows);
       for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
       const Eigen::VectorXd wanted = expected * testing::flat(r);
       // The shift of 1e-13 of the trace, times the condition of the blocks, about 1e2.
@@ -157,7 +157,7 @@ TEST(Preconditioner, InterpolatesWhereASingleParticleIsLight) {
   testing::cut_groups(system, {20, 6});
   // A finer mesh has lighter particles: no reason for groups to move as wholes.
   system.metric[7] *= 1e-6;
-  std::vector<Vec3> r = random.vectors(kRows);
+  std::vector<Vec3> r = random.vectors(kSystemRows);
   for (const ParticleConstraint& c : system.constraints) r[c.particle] = c.free * r[c.particle];
   const Eigen::VectorXd wanted = dense_preconditioner(system, false) * testing::flat(r);
   // As above.

@@ -52,8 +52,8 @@ bool meet(const MovingSimplex& a, const MovingSimplex& b) {
 }
 
 // A right triangle in the plane z = 0, and one that hangs above with its lowest corner at height z.
-const Corners kFloor = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
-Corners hanging(double z) {
+const Corners kGround = {Vec3(0, 0, 0), Vec3(4, 0, 0), Vec3(0, 4, 0)};
+Corners hanging_corners(double z) {
   return {Vec3(1, 1, z), Vec3(1, 1, z + 1), Vec3(2, 1, z + 1)};
 }
 
@@ -66,10 +66,10 @@ void expect_first_contact(const Corners& a, const Corners& b, const Vec3& direct
 }
 
 TEST(ExactMotion, FindsTheFirstContactOfVertexAndFace) {
-  expect_first_contact(kFloor, hanging(2), {0, 0, -1}, 2);
+  expect_first_contact(kGround, hanging_corners(2), {0, 0, -1}, 2);
   // On an edge and at a corner of the floor.
-  expect_first_contact(kFloor, {Vec3(1, 0, 1), Vec3(1, 0, 2), Vec3(2, 0, 2)}, {0, 0, -1}, 1);
-  expect_first_contact(kFloor, {Vec3(0, 4, 1), Vec3(1, 4, 2), Vec3(1, 4, 3)}, {0, 0, -1}, 1);
+  expect_first_contact(kGround, {Vec3(1, 0, 1), Vec3(1, 0, 2), Vec3(2, 0, 2)}, {0, 0, -1}, 1);
+  expect_first_contact(kGround, {Vec3(0, 4, 1), Vec3(1, 4, 2), Vec3(1, 4, 3)}, {0, 0, -1}, 1);
 }
 
 TEST(ExactMotion, FindsTheFirstContactOfTwoEdges) {
@@ -80,15 +80,15 @@ TEST(ExactMotion, FindsTheFirstContactOfTwoEdges) {
 
 TEST(ExactMotion, FindsContactInOnePlaneAndInOneLine) {
   const Corners beside{Vec3(-1, 1, 0), Vec3(-2, 1, 0), Vec3(-2, 2, 0)};  // a corner points at an edge
-  expect_first_contact(kFloor, beside, {1, 0, 0}, 1);
+  expect_first_contact(kGround, beside, {1, 0, 0}, 1);
   const Corners facing{Vec3(-1, 1, 0), Vec3(-1, 2, 0), Vec3(-2, 2, 0)};  // parallel edges
-  expect_first_contact(kFloor, facing, {1, 0, 0}, 1);
+  expect_first_contact(kGround, facing, {1, 0, 0}, 1);
   const Corners needle_a{Vec3(0, 0, 0), Vec3(1, 1, 1), Vec3(2, 2, 2)};  // both without area, in one line
   const Corners needle_b{Vec3(3, 3, 3), Vec3(5, 5, 5), Vec3(4, 4, 4)};
   EXPECT_TRUE(meet(still(needle_a), moved(needle_b, {-1, -1, -1})));
   EXPECT_FALSE(meet(still(needle_a), moved(needle_b, {-0.5, -0.5, -0.5})));
   const Corners point{Vec3(1, 1, 1), Vec3(1, 1, 1), Vec3(1, 1, 1)};
-  expect_first_contact(kFloor, point, {0, 0, -1}, 1);
+  expect_first_contact(kGround, point, {0, 0, -1}, 1);
   const Corners bar{Vec3(0, 1, 0), Vec3(2, 1, 0), Vec3(1, 1, 0)};  // a point lands on it between its corners
   expect_first_contact(bar, {Vec3(1.5, 1, 1), Vec3(1.5, 1, 1), Vec3(1.5, 1, 1)}, {0, 0, -1}, 1);
   EXPECT_TRUE(meet(moved(point, {2, 0, 0}), moved({Vec3(3, 1, 1), Vec3(3, 1, 1), Vec3(3, 1, 1)}, {-2, 0, 0})));
@@ -97,18 +97,18 @@ TEST(ExactMotion, FindsContactInOnePlaneAndInOneLine) {
 
 TEST(ExactMotion, SlidingAlongInOnePlaneIsContactOnlyWhereTheyOverlap) {
   const Corners above{Vec3(8, 1, 0), Vec3(9, 1, 0), Vec3(9, 2, 0)};
-  EXPECT_FALSE(meet(still(kFloor), moved(above, {-4, 0, 0})));
-  EXPECT_TRUE(meet(still(kFloor), moved(above, {-5, 0, 0})));
-  EXPECT_FALSE(meet(still(kFloor), moved(above, {0, 8, 0})));
+  EXPECT_FALSE(meet(still(kGround), moved(above, {-4, 0, 0})));
+  EXPECT_TRUE(meet(still(kGround), moved(above, {-5, 0, 0})));
+  EXPECT_FALSE(meet(still(kGround), moved(above, {0, 8, 0})));
 }
 
 TEST(ExactMotion, TheWholeWayThroughCounts) {
   // Apart at both ends, and at the start of contact as at its end.
-  EXPECT_TRUE(meet(still(kFloor), moved(hanging(2), {0, 0, -7})));
-  EXPECT_TRUE(meet(still(kFloor), moved(hanging(0), {0, 0, 5})));
-  EXPECT_TRUE(meet(still(kFloor), moved(hanging(-1), {0, 0, -5})));
-  EXPECT_TRUE(meet(still(kFloor), still(hanging(-0.5))));
-  EXPECT_FALSE(meet(still(kFloor), moved(hanging(0x1p-40), {0, 0, 5})));
+  EXPECT_TRUE(meet(still(kGround), moved(hanging_corners(2), {0, 0, -7})));
+  EXPECT_TRUE(meet(still(kGround), moved(hanging_corners(0), {0, 0, 5})));
+  EXPECT_TRUE(meet(still(kGround), moved(hanging_corners(-1), {0, 0, -5})));
+  EXPECT_TRUE(meet(still(kGround), still(hanging_corners(-0.5))));
+  EXPECT_FALSE(meet(still(kGround), moved(hanging_corners(0x1p-40), {0, 0, 5})));
 }
 
 TEST(ExactMotion, GrazingIsContactAndPassingByIsNot) {
@@ -133,7 +133,7 @@ TEST(ExactMotion, GrazingIsContactAndPassingByIsNot) {
 }
 
 TEST(ExactMotion, AnEdgeIsHeldAgainstATriangle) {
-  const MovingSimplex face = still(kFloor);
+  const MovingSimplex face = still(kGround);
   EXPECT_TRUE(meet(edge({1, 1, 1}, {1, 2, 3}, {1, 1, 0}, {1, 2, 3}), face));
   EXPECT_FALSE(meet(edge({1, 1, 1}, {1, 2, 3}, {1, 1, 0x1p-40}, {1, 2, 3}), face));
   EXPECT_TRUE(meet(edge({1, 1, 1}, {1, 1, -1}, {1, 1, 1}, {1, 1, -1}), face));   // crosses from the start on
@@ -146,9 +146,9 @@ TEST(ExactMotion, FacesAboutOneVertexMeetBesideIt) {
   const Corners flap{Vec3(0, 0, 0), Vec3(1, 2, 1), Vec3(2, 1, 1)};
   const auto fold = [&](double z) {
     const MovingSimplex b{3, flap, {flap[0], Vec3(1, 2, z), Vec3(2, 1, z)}};
-    EXPECT_EQ(find_contact_beside_shared(b, 0, still(kFloor), 0).found,
-              find_contact_beside_shared(still(kFloor), 0, b, 0).found);
-    return find_contact_beside_shared(still(kFloor), 0, b, 0).found;
+    EXPECT_EQ(find_contact_beside_shared(b, 0, still(kGround), 0).found,
+              find_contact_beside_shared(still(kGround), 0, b, 0).found);
+    return find_contact_beside_shared(still(kGround), 0, b, 0).found;
   };
   EXPECT_TRUE(fold(-1));
   EXPECT_TRUE(fold(0));

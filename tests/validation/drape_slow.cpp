@@ -10,7 +10,7 @@
 namespace weft::simulation {
 namespace {
 
-struct Drape {
+struct SphereDrape {
   double height = 0;      // mean over all particles in the last frame [m]
   double hem_height = 0;  // mean over the border
   double stretch = 1;     // largest in any frame
@@ -23,12 +23,12 @@ bool on_border(std::size_t particle, std::size_t n) {
   return i == 0 || j == 0 || i + 1 == n || j + 1 == n;
 }
 
-Drape drape_with(double step_factor, double start_noise = 0) {
+SphereDrape drape_with(double step_factor, double start_noise = 0) {
   scene::Scene scene = testing::scene_of({"sphere_drape", 1, -1});
   scene.time.step *= step_factor;
   scene.cloths[0].start_noise = start_noise;
   const auto frames = support::run_scene(scene, {.judged = false});
-  Drape drape;
+  SphereDrape drape;
   for (const support::MeasuredFrame& frame : frames) {
     drape.stretch = std::max(drape.stretch, frame.max_stretch);
     drape.cpu_s += frame.report.simulate.cpu_s;
@@ -59,7 +59,7 @@ double mean_height(double step_factor, const std::vector<double>& start_noises) 
   return sum / static_cast<double>(start_noises.size());
 }
 
-TEST(Drape, LiesAsHighAsWithAnEighthOfTheStep) {
+TEST(SphereDrape, LiesAsHighAsWithAnEighthOfTheStep) {
   const double fine = mean_height(1.0 / 8, {1e-6, 2e-6}), shipped = mean_height(1, {1e-6, 2e-6, 4e-6, 8e-6});
   std::printf("mean height %.6f m, with an eighth of the step %.6f m\n", shipped, fine);
   // Spread of single runs 0.5 %, so of the difference of these means 0.4 %.
@@ -67,8 +67,8 @@ TEST(Drape, LiesAsHighAsWithAnEighthOfTheStep) {
   for (double factor : {2.0, 4.0}) drape_with(factor);  // for their figures
 }
 
-TEST(Drape, ComesToRestWithItsThreadsHardlyStretched) {
-  const Drape drape = drape_with(1);
+TEST(SphereDrape, ComesToRestWithItsThreadsHardlyStretched) {
+  const SphereDrape drape = drape_with(1);
   EXPECT_LT(drape.stretch, 1.05);
   EXPECT_LT(drape.rms_speed, 1e-3);
 }

@@ -23,7 +23,7 @@ inline std::ostream& operator<<(std::ostream& out, const SceneRun& run) {
   return out << run.scene << ".toml with " << run.factor << " times its step";
 }
 
-inline std::string name_of(const ::testing::TestParamInfo<SceneRun>& run) {
+inline std::string name_of_run(const ::testing::TestParamInfo<SceneRun>& run) {
   return run.param.scene + ("_x" + std::to_string(run.param.factor));
 }
 

@@ -19,7 +19,7 @@ INSTANTIATE_TEST_SUITE_P(Of, EveryFrame,
                                            SceneRun{"sphere_drape", 1, -1}, SceneRun{"sphere_drape", 2, -1},
                                            SceneRun{"sphere_drape", 4, -1}, SceneRun{"multi_sheet", 1, -1},
                                            SceneRun{"multi_sheet", 2, -1}, SceneRun{"multi_sheet", 4, -1}),
-                         testing::name_of);
+                         testing::name_of_run);
 
 }  // namespace
 }  // namespace weft::simulation

@@ -13,13 +13,13 @@ TEST_P(FirstFrames, HaveNoIntersection) {
 }
 
 // Until the band has folded, the ball is through, the sheet lies, five of the eight sheets have landed; at twice the
-// step whole runs show it.
+// step, and of the eight sheets at their own too, whole runs show it.
 INSTANTIATE_TEST_SUITE_P(Of, FirstFrames,
                          ::testing::Values(SceneRun{"falling_band", 1, 36}, SceneRun{"falling_band", 4, 36},
                                            SceneRun{"ball_through_cloth", 1, 36}, SceneRun{"ball_through_cloth", 4, 36},
                                            SceneRun{"sphere_drape", 1, 20}, SceneRun{"sphere_drape", 4, 20},
-                                           SceneRun{"multi_sheet", 1, 64}, SceneRun{"multi_sheet", 4, 64}),
-                         testing::name_of);
+                                           SceneRun{"multi_sheet", 4, 64}),
+                         testing::name_of_run);
 
 }  // namespace
 }  // namespace weft::simulation

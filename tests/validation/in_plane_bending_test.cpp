@@ -12,8 +12,8 @@ namespace {
 
 using scene::ClothShape;
 
-constexpr double kLength = 0.1, kWidth = 0.01;    // from the held column to the tip [m]
-constexpr double kStretch = 1000, kShear = 1000;  // [N/m]
+constexpr double kBeamLength = 0.1, kBeamWidth = 0.01;  // from the held column to the tip [m]
+constexpr double kStretch = 1000, kShear = 1000;        // [N/m]
 
 /// How far the tip of a strip sags in its plane under gravity across, over what a beam does: ν = 0, EI = k w³ / 12, and
 /// a shear stiffness of 5/6 · (μ / 2) w (Timoshenko). The particles of the first column are held, and nothing bends out
@@ -23,7 +23,7 @@ double sag_over_beam(ClothShape shape, int across) {
   scene.physics.gravity = {0, -9.81e-3, 0};  // small displacements
   scene::Cloth& cloth = scene.cloths[0];
   cloth.shape = shape;
-  cloth.size = {kLength, kWidth};
+  cloth.size = {kBeamLength, kBeamWidth};
   cloth.particles_weft = 10 * across + 1;
   cloth.particles_warp = across + 1;
   cloth.material.stretch_weft = cloth.material.stretch_warp = kStretch;
@@ -36,9 +36,9 @@ double sag_over_beam(ClothShape shape, int across) {
   model.find_rest(model.free_along({0, 1}));
   const auto tip = static_cast<std::size_t>((10 * across + 1) * (across / 2 + 1) - 1);
   const double sag = -(model.x[tip].y() - model.cloth().mesh.positions[tip].y());
-  const double q = cloth.material.density * 9.81e-3 * kWidth;
-  const double beam = q * std::pow(kLength, 4) / (8 * kStretch * std::pow(kWidth, 3) / 12) +
-                      q * kLength * kLength / (2 * (5.0 / 6) * 0.5 * kShear * kWidth);
+  const double q = cloth.material.density * 9.81e-3 * kBeamWidth;
+  const double beam = q * std::pow(kBeamLength, 4) / (8 * kStretch * std::pow(kBeamWidth, 3) / 12) +
+                      q * kBeamLength * kBeamLength / (2 * (5.0 / 6) * 0.5 * kShear * kBeamWidth);
   return sag / beam;
 }
 

@@ -18,15 +18,15 @@ using scene::ClothShape;
 // zero, 2.14229, of the Bessel function J_(-1/6)) with q = ρ g w, EI = B w and, of a plate, GJ = 2 B w.
 constexpr double kOnset = 18.18;
 
-constexpr double kLength = 0.1;     // [m]
-constexpr double kRigidity = 1e-4;  // [N·m]
+constexpr double kStripLength = 0.1;  // [m]
+constexpr double kRigidity = 1e-4;    // [N·m]
 
 struct Strip {
   int along, across;  // cells from the last held column to the tip, and over the width
 };
 
 double spacing(const Strip& cells) {
-  return kLength / cells.along;
+  return kStripLength / cells.along;
 }
 
 scene::Scene upright_strip(ClothShape shape, const Strip& cells, double gamma) {
@@ -38,7 +38,7 @@ scene::Scene upright_strip(ClothShape shape, const Strip& cells, double gamma) {
   cloth.particles_weft = cells.along + 2;
   cloth.particles_warp = cells.across + 1;
   cloth.pose.rotation = Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX());  // warp upward
-  cloth.material.density = gamma * kRigidity / (9.81 * std::pow(kLength, 3));
+  cloth.material.density = gamma * kRigidity / (9.81 * std::pow(kStripLength, 3));
   // Of the narrowest strip, 2.5 mm, k w² / 12 is 500 times B: it hardly sags.
   cloth.material.stretch_weft = cloth.material.stretch_warp = cloth.material.shear = 1e5;
   cloth.material.bend = kRigidity;
@@ -76,7 +76,7 @@ TEST(LateralBuckling, BeginsAtTheWeightOfTheory) {
     Vec2 before = Vec2::Zero(), last = Vec2::Zero();
     for (int along : {20, 40, 80, 160}) {
       before = last;
-      last = {4 * spacing({along, 4}) / kLength, onset(shape, {along, 4})};
+      last = {4 * spacing({along, 4}) / kStripLength, onset(shape, {along, 4})};
       std::printf("  %.4f  %.3f  %5.2f %%\n", last.x(), last.y(), 100 * (last.y() / kOnset - 1));
     }
     EXPECT_NEAR(last.y(), kOnset, 0.03 * kOnset);

@@ -20,8 +20,8 @@ struct Point {
 constexpr Point kElastica[] = {
     {0.01, 0.044854}, {0.05, 0.103545}, {0.15, 0.195916}, {0.25, 0.280705}, {0.33, 0.356079}};
 
-constexpr double kLength = 0.5;  // from the tip to the clamp [m]
-constexpr int kCells = 20;       // thresholds come out 0.5 to 0.9 % low; 1.4 to 2.1 % with half of them
+constexpr double kFreeLength = 0.5;  // from the tip to the clamp [m]
+constexpr int kStripCells = 20;      // thresholds come out 0.5 to 0.9 % low; 1.4 to 2.1 % with half of them
 constexpr double kFps = 25;
 constexpr int kLowered = 25;   // frame at which the clamp has come down
 constexpr int kReleased = 35;  // frame at which the tip, held till then, is left to friction
@@ -39,11 +39,11 @@ scene::Scene pressed_strip(double depth, double friction) {
   scene.obstacles.push_back(testing::obstacle("floor", scene::Plane{}));
   scene.obstacles[0].friction = friction;
 
-  const double spacing = kLength / kCells, height = (kCells + 1) * spacing;
+  const double spacing = kFreeLength / kStripCells, height = (kStripCells + 1) * spacing;
   scene::Cloth& strip = scene.cloths[0];
   strip.size = {2 * spacing, height};
   strip.particles_weft = 3;
-  strip.particles_warp = kCells + 2;
+  strip.particles_warp = kStripCells + 2;
   // The load of 22 B / L² shortens it by 2e-5 of its length, the least depth being 1e-2.
   strip.material.stretch_weft = strip.material.stretch_warp = 5000;
   strip.material.bend = 1e-3;
@@ -57,8 +57,8 @@ scene::Scene pressed_strip(double depth, double friction) {
   strip.velocity = {0, 0.02, 0};  // tells it to which side to buckle
 
   scene::Pin clamp, tip;
-  clamp.low = {0, (kCells - 0.1) / (kCells + 1)};
-  clamp.motion.keys = {{0, {}}, {kLowered / kFps, {{0, 0, -depth * kLength}, Quat::Identity()}}};
+  clamp.low = {0, (kStripCells - 0.1) / (kStripCells + 1)};
+  clamp.motion.keys = {{0, {}}, {kLowered / kFps, {{0, 0, -depth * kFreeLength}, Quat::Identity()}}};
   tip.high = {1, 0};
   tip.release = kReleased / kFps;
   strip.pins = {clamp, tip};

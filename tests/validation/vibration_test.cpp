@@ -14,7 +14,7 @@ namespace {
 using scene::ClothShape;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kDensity = 0.2;  // [kg/m²]
+constexpr double kClothDensity = 0.2;  // [kg/m²]
 
 class Vibration : public ::testing::TestWithParam<ClothShape> {
  protected:
@@ -61,7 +61,7 @@ scene::Scene rectangle(ClothShape shape) {
   cloth.size = {0.4, 0.3};
   cloth.particles_weft = 33;
   cloth.particles_warp = 25;
-  cloth.material.density = kDensity;
+  cloth.material.density = kClothDensity;
   hold_border(cloth);
   return scene;
 }
@@ -75,7 +75,7 @@ TEST_P(Vibration, OfATautMembrane) {
   std::vector<double> exact;
   // Threads stretched by λ pull with k (λ - 1): in the coordinates of the rest shape ω² = k (1 - 1/λ) λ(m, n) / ρ.
   for (double square : wave_numbers_sq(cloth.size))
-    exact.push_back(std::sqrt(cloth.material.stretch_weft * (1 - 1 / 1.02) * square / kDensity));
+    exact.push_back(std::sqrt(cloth.material.stretch_weft * (1 - 1 / 1.02) * square / kClothDensity));
   expect("membrane", model.modes(model.free_along({2}), 3), exact);
 }
 
@@ -84,7 +84,8 @@ TEST_P(Vibration, OfASupportedPlate) {
   const scene::Cloth& cloth = scene.cloths[0];
   testing::ClothModel model(scene);
   std::vector<double> exact;
-  for (double square : wave_numbers_sq(cloth.size)) exact.push_back(square * std::sqrt(cloth.material.bend / kDensity));
+  for (double square : wave_numbers_sq(cloth.size))
+    exact.push_back(square * std::sqrt(cloth.material.bend / kClothDensity));
   expect("plate", model.modes(model.free_along({2}), 3), exact);
 }
 
@@ -96,7 +97,7 @@ scene::Scene chain(ClothShape shape) {
   cloth.size = {0.01, 0.5};
   cloth.particles_warp = 51;
   cloth.pose.rotation = Eigen::AngleAxisd(0.5 * kPi, Vec3::UnitX());  // warp upward
-  cloth.material.density = kDensity;
+  cloth.material.density = kClothDensity;
   cloth.material.stretch_weft = cloth.material.stretch_warp = 5000;  // 1 N/m at the top: 0.01 % on average
   cloth.material.bend = 1e-7;                                        // ends of √(B / T) = 0.3 mm
   cloth.material.bend_viscosity = cloth.material.bend_friction = 0;

@@ -7,27 +7,20 @@
 
 #include "collision/hierarchy/kdop.hpp"
 #include "collision/hierarchy/test_motions.hpp"
-#include "collision/proximity/features.hpp"
 #include "core/error.hpp"
 
 namespace weft::collision {
 namespace {
 
 using testing::FoldingSlidingFlying;
+using testing::kMargin;
 using testing::MovingScene;
 using Pairs = std::set<TrianglePair>;
 
-constexpr double kMargin = 0.01;
 constexpr int kSteps = 40;
 
 /// Pairs without and with one common vertex.
 using BothLists = std::array<Pairs, 2>;
-
-/// Common vertices; one that a triangle names twice counts once.
-int shared_count(const Triangle& a, const Triangle& b) {
-  const std::set<Index> of_a(a.begin(), a.end());
-  return static_cast<int>(std::count_if(of_a.begin(), of_a.end(), [&](Index v) { return has_vertex(b, v); }));
-}
 
 /// Every pair of triangles, of one surface or of two, whose k-DOPs overlap, without any hierarchy.
 template <int K>
@@ -47,7 +40,7 @@ BothLists brute_force(const MovingScene& scene, std::span<const Vec3> x_t0, std:
   for (std::size_t a = 0; a < bounds.size(); ++a)
     for (std::size_t b = a + 1; b < bounds.size(); ++b)
       if (bounds[a].overlaps(bounds[b]))
-        if (const int shared = shared_count(scene.triangles[a], scene.triangles[b]); shared < 2)
+        if (const std::size_t shared = testing::shared_count(scene.triangles[a], scene.triangles[b]); shared < 2)
           found[shared].insert({static_cast<Index>(a), static_cast<Index>(b)});
   return found;
 }

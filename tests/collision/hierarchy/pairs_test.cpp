@@ -71,11 +71,6 @@ class BruteForce {
   double margin_;
 };
 
-std::size_t shared_count(const Triangle& a, const Triangle& b) {
-  const std::set<Index> of_a(a.begin(), a.end()), of_b(b.begin(), b.end());
-  return static_cast<std::size_t>(std::count_if(of_a.begin(), of_a.end(), [&](Index v) { return of_b.contains(v); }));
-}
-
 /// The list as a set; every pair must be there once.
 Pairs as_set(const PairList& list) {
   const Pairs set(list.begin(), list.end());
@@ -97,7 +92,7 @@ void expect_self_pairs(const TestMesh& mesh, const typename S::TreeType& tree, s
   std::array<Pairs, 2> least, most;
   for (std::size_t a = 0; a < mesh.triangles.size(); ++a) {
     for (std::size_t b = a + 1; b < mesh.triangles.size(); ++b) {
-      const std::size_t shared = shared_count(mesh.triangles[a], mesh.triangles[b]);
+      const std::size_t shared = testing::shared_count(mesh.triangles[a], mesh.triangles[b]);
       if (shared > 1) continue;
       const double gap = brute.gap(mesh.triangles[a], brute, mesh.triangles[b]);
       const TrianglePair pair{static_cast<Index>(a), static_cast<Index>(b)};

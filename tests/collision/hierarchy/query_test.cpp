@@ -13,10 +13,10 @@ namespace weft::collision {
 namespace {
 
 using testing::FoldingSlidingFlying;
+using testing::kMargin;
 using testing::random_vec;
 
 constexpr double kNone = std::numeric_limits<double>::infinity();
-constexpr double kMargin = 0.01;
 
 double distance_sq(const Vec3& p, const Triangle& t, std::span<const Vec3> x) {
   return closest_vertex_face(p, x[t[0]], x[t[1]], x[t[2]]).distance_sq;

@@ -1,7 +1,9 @@
 // Small surfaces for the tests of the hierarchy and of the proximities.
 #pragma once
 
+#include <algorithm>
 #include <random>
+#include <set>
 #include <vector>
 
 #include "collision/hierarchy/surface.hpp"
@@ -14,6 +16,12 @@ struct TestMesh {
 
   Surface surface() const { return {triangles, 0, 0, static_cast<Index>(x.size())}; }
 };
+
+/// Common vertices; one that a triangle names twice counts once.
+inline std::size_t shared_count(const Triangle& a, const Triangle& b) {
+  const std::set<Index> of_a(a.begin(), a.end()), of_b(b.begin(), b.end());
+  return static_cast<std::size_t>(std::count_if(of_a.begin(), of_a.end(), [&](Index v) { return of_b.contains(v); }));
+}
 
 inline Vec3 random_vec(std::mt19937& generator) {
   std::uniform_real_distribution<double> unit(-1, 1);

@@ -7,6 +7,8 @@
 
 namespace weft::collision::testing {
 
+inline constexpr double kMargin = 0.01;  ///< that bounds are wider by [m]
+
 /// Several meshes in one numbering.
 struct MovingScene {
   std::vector<Triangle> triangles;

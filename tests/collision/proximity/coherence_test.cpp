@@ -17,7 +17,7 @@ using testing::MovingScene;
 using testing::TestMesh;
 using Pairs = std::set<TrianglePair>;
 
-constexpr double kReach = 0.02, kBudget = 0.01;
+constexpr double kWidestReach = 0.02, kBudget = 0.01;
 constexpr int kSheet = 15;
 
 /// A folded sheet and one above it fall fast together and flutter a little; a third comes up from below.
@@ -74,7 +74,7 @@ class CoherentDetectionTest : public ::testing::Test {
             ProximityFinder(motion_.scene().triangles, static_cast<Index>(motion_.at(0).size()))};
   }
   CoherentDetection make_detection(const std::vector<SurfacePair>& wanted) const {
-    return {surfaces_, wanted, motion_.at(0), {.reach = kReach, .budget = kBudget}};
+    return {surfaces_, wanted, motion_.at(0), {.reach = kWidestReach, .budget = kBudget}};
   }
   int update(CoherentDetection& detection, const std::vector<Vec3>& x_t0, const std::vector<Vec3>& x_t1) {
     return detection.update(kept_.broad_phase, kept_.finder, x_t0, x_t1);
@@ -85,7 +85,7 @@ class CoherentDetectionTest : public ::testing::Test {
             CandidatePairs& candidates, std::vector<Proximity>& out) {
     candidates.clear();
     std::vector<Surface> with_themselves;
-    for (std::size_t s = 0; s < surfaces_.size(); ++s) fresh_.broad_phase.refit(s, x_t0, x_t1, kReach / 2);
+    for (std::size_t s = 0; s < surfaces_.size(); ++s) fresh_.broad_phase.refit(s, x_t0, x_t1, kWidestReach / 2);
     for (const auto& [a, b] : wanted) {
       if (a == b) {
         fresh_.broad_phase.self_pairs(a, candidates);
@@ -94,7 +94,7 @@ class CoherentDetectionTest : public ::testing::Test {
         fresh_.broad_phase.pairs(a, b, candidates);
       }
     }
-    fresh_.finder.find(candidates, with_themselves, x_t0, kReach, out);
+    fresh_.finder.find(candidates, with_themselves, x_t0, kWidestReach, out);
   }
 
   Falling motion_;
@@ -201,8 +201,8 @@ TEST(CoherentDetectionOfAFold, LooksUpTrianglesWithACommonEdgeOfWhatMayMeetItsel
   const Surface surface = fold.surface();
   BroadPhase broad_phase(std::span(&surface, 1), fold.x);
   ProximityFinder finder(fold.triangles, 4);
-  CoherentDetection with(std::span(&surface, 1), {{0, 0}}, fold.x, {.reach = kReach, .budget = kBudget}),
-      without(std::span(&surface, 1), {}, fold.x, {.reach = kReach, .budget = kBudget});
+  CoherentDetection with(std::span(&surface, 1), {{0, 0}}, fold.x, {.reach = kWidestReach, .budget = kBudget}),
+      without(std::span(&surface, 1), {}, fold.x, {.reach = kWidestReach, .budget = kBudget});
   with.update(broad_phase, finder, fold.x, fold.x);
   without.update(broad_phase, finder, fold.x, fold.x);
   ASSERT_EQ(with.proximities().size(), 1U);

@@ -40,7 +40,7 @@ double triangle_distance(const std::array<Vec3, 3>& a, const std::array<Vec3, 3>
 }
 
 /// Distance of two plane polygons: the least of their fans of triangles.
-double brute_force(const Polygon& a, const Polygon& b) {
+double distance_of_fans(const Polygon& a, const Polygon& b) {
   double least = 1e300;
   for (std::size_t i = 1; i + 1 < a.size(); ++i)
     for (std::size_t j = 1; j + 1 < b.size(); ++j)
@@ -68,7 +68,7 @@ Polygon random_polygon(std::mt19937& generator, int kind) {
 /// Distance as a part of the size, the gap of the bounds, and the points by weights, against brute force.
 void expect_right(const Polygon& a, const Polygon& b, double tolerance) {
   const ConvexClosest found = closest_convex(a, b);
-  const double expected = brute_force(a, b), size = size_of(a, b);
+  const double expected = distance_of_fans(a, b), size = size_of(a, b);
   EXPECT_NEAR(found.distance, expected, tolerance * size);
   EXPECT_LE(found.lower_bound, expected + tolerance * size);
   EXPECT_LE(found.lower_bound, found.distance);
@@ -148,7 +148,7 @@ TEST(Gjk, FarFromTheOriginLosesOnlyTheDigitsOfTheCoordinates) {
     for (Vec3& p : b) p = 1e-3 * p + away;
     // Corners are what they are after rounding; differences of near numbers are exact. Planarity of the quad is lost at
     // 1e-13 m, which is what the two may differ by.
-    EXPECT_NEAR(closest_convex(a, b).distance, brute_force(a, b), 3e-13) << i;
+    EXPECT_NEAR(closest_convex(a, b).distance, distance_of_fans(a, b), 3e-13) << i;
   }
 }
 

@@ -6,7 +6,7 @@
 namespace weft::collision {
 namespace {
 
-constexpr double kH = 0.01;
+constexpr double kResponseStep = 0.01;  // [s]
 
 /// Particle 1 over a still obstacle at `height` [m].
 Contact over_floor(double height, double side = 1) {
@@ -29,7 +29,7 @@ struct Response {
   Response(ResponseForm form, double height) : response(form, {0.001, 0.001}), x_t0(2, Vec3(0, 0, height)) {
     x_t1 = x_t0;
     x_t1[1].z() -= 0.1;
-    response.begin_step(kH);
+    response.begin_step(kResponseStep);
   }
 };
 
@@ -90,7 +90,7 @@ TEST(ContactResponse, AStepBeginsWithoutContacts) {
   for (ResponseForm form : {ResponseForm::springs, ResponseForm::velocity_constraints}) {
     Response of(form, 0.002);
     of.response.add(over_floor(0.002), of.x_t0);
-    of.response.begin_step(kH);
+    of.response.begin_step(kResponseStep);
     of.response.prepare(of.x_t0, of.x_t1);
     EXPECT_TRUE(of.response.springs().empty() && of.response.prescribed().empty());
   }

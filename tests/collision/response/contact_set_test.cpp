@@ -9,7 +9,7 @@
 namespace weft::collision {
 namespace {
 
-constexpr double kStep = 0.02;  // [s]
+constexpr double kSlidingStep = 0.02;  // [s]
 constexpr double kRange = 0.002;
 
 std::mt19937& engine() {
@@ -53,7 +53,7 @@ struct VertexOnFace {
 
   ContactSet set() const {
     ContactSet contacts;
-    contacts.set_step(kStep);
+    contacts.set_step(kSlidingStep);
     contacts.add(contact);
     return contacts;
   }
@@ -147,7 +147,7 @@ TEST(ContactSet, FrictionOpposesTheSlipAndIsBoundedByTheLoad) {
   const Vec3 n = pair.contact.normal;
   // At the start, which friction goes by before the first solve.
   const double load = load_at(0.6);
-  const double stick = ContactSet::kStickSpeed * kStep;
+  const double stick = ContactSet::kStickSpeed * kSlidingStep;
   const Vec3 direction = n.unitOrthogonal();
   double last = 0;
   for (double share : {0.0, 0.1, 0.5, 0.9, 1.0, 1.1, 10.0, 1000.0}) {
@@ -168,7 +168,7 @@ TEST(ContactSet, StaticFrictionHoldsMoreThanThatOfSliding) {
   pair.contact.static_friction = 0.7;
   const ContactSet contacts = pair.set(), frictionless = smooth.set();
   const double load = load_at(0.6);
-  const double stick = ContactSet::kStickSpeed * kStep;
+  const double stick = ContactSet::kStickSpeed * kSlidingStep;
   const auto coefficient = [&](double slip) {
     std::vector<Vec3> x = pair.x;
     x[0] += slip * stick * pair.contact.normal.unitOrthogonal();
@@ -319,7 +319,7 @@ struct Slipping : VertexOnFace {
 
   std::vector<Vec3> slipped(double slip, double sideways = 0) const {
     std::vector<Vec3> at = x;
-    at[0] += ContactSet::kStickSpeed * kStep * (slip * along + sideways * across);
+    at[0] += ContactSet::kStickSpeed * kSlidingStep * (slip * along + sideways * across);
     return at;
   }
   /// As where an iteration has led to.
@@ -366,7 +366,7 @@ TEST(ContactSet, FrictionThatSticksFollowsItsTangentToTheLaw) {
   for (int k = 0; k < 6; ++k) pair.update(0.6);
   EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -law(0.6), 1e-12);
   EXPECT_NEAR(pair.along.dot(pair.stiffness(0.6) * pair.along),
-              pair.lag.loads[0] * 0.4 * (2 - 2 * 0.6) / (ContactSet::kStickSpeed * kStep),
+              pair.lag.loads[0] * 0.4 * (2 - 2 * 0.6) / (ContactSet::kStickSpeed * kSlidingStep),
               1e-9 * pair.lag.loads[0] * 1e6);
 }
 
@@ -437,7 +437,7 @@ TEST(ContactSet, WhatIsFoundLaterSlidesUntilItIsSeenToHold) {
 
 TEST(ContactSet, ParticleOnAnObstacleGoesIntoTheDiagonal) {
   ContactSet contacts;
-  contacts.set_step(kStep);
+  contacts.set_step(kSlidingStep);
   Contact contact;
   contact.particles = {2, 0, 0, 0};
   contact.weights = {1, 0, 0, 0};

@@ -11,12 +11,12 @@ namespace weft::collision {
 namespace {
 
 /// Pairs of random triangles, 1 m from pair to pair.
-struct Pairs {
+struct RandomPairs {
   std::vector<Triangle> triangles;
   std::vector<TrianglePair> pairs;
   std::vector<Vec3> x;
 
-  explicit Pairs(int count) {
+  explicit RandomPairs(int count) {
     for (Index p = 0; p < count; ++p) {
       const Vec3 apart = vector(0.08);
       for (int k = 0; k < 6; ++k) x.push_back(Vec3(p, 0, 0) + vector(0.05) + (k < 3 ? Vec3(Vec3::Zero()) : apart));
@@ -40,7 +40,7 @@ struct Pairs {
   std::mt19937 generator{7};
 };
 
-std::vector<CornerPair> failing(Planes& planes, const Pairs& of, std::span<const Vec3> x_t0,
+std::vector<CornerPair> failing(Planes& planes, const RandomPairs& of, std::span<const Vec3> x_t0,
                                 std::span<const Vec3> x_t1) {
   const std::vector<float> moved(of.x.size(), 1e9F);  // nothing is certified by its gap alone
   const std::vector<std::uint8_t> changed(of.x.size(), 1);
@@ -49,14 +49,14 @@ std::vector<CornerPair> failing(Planes& planes, const Pairs& of, std::span<const
   return found;
 }
 
-std::string saved(Planes& planes, const Pairs& of) {
+std::string saved(Planes& planes, const RandomPairs& of) {
   ByteWriter writer;
   planes.serialize(writer, of.x);
   return writer.bytes;
 }
 
 TEST(Planes, APlaneFoundForOneStepIsTriedInTheNext) {
-  Pairs pairs(3000);
+  RandomPairs pairs(3000);
   Planes remembers(pairs.triangles), fresh(pairs.triangles);
   for (Planes* planes : {&remembers, &fresh}) planes->watch(pairs.pairs, pairs.x);
   const std::vector<Vec3> first = pairs.moved(0.03), second = pairs.moved(0.03);
@@ -66,7 +66,7 @@ TEST(Planes, APlaneFoundForOneStepIsTriedInTheNext) {
 }
 
 TEST(Planes, PairsThatStayWhereTheyWereNeedNoLook) {
-  Pairs pairs(1000);
+  RandomPairs pairs(1000);
   Planes all(pairs.triangles), changed_only(pairs.triangles);
   for (Planes* planes : {&all, &changed_only}) planes->watch(pairs.pairs, pairs.x);
   const std::vector<float> moved(pairs.x.size(), 1e9F);
@@ -87,7 +87,7 @@ TEST(Planes, PairsThatStayWhereTheyWereNeedNoLook) {
 }
 
 TEST(Planes, SavingKeepsEveryPlaneThatDiffersFromThoseOfWatching) {
-  Pairs pairs(3000);
+  RandomPairs pairs(3000);
   Planes original(pairs.triangles), restored(pairs.triangles), fresh(pairs.triangles);
   for (Planes* planes : {&original, &restored, &fresh}) planes->watch(pairs.pairs, pairs.x);
   const std::string of_fresh = saved(original, pairs);
@@ -107,7 +107,7 @@ TEST(Planes, SavingKeepsEveryPlaneThatDiffersFromThoseOfWatching) {
 }
 
 TEST(Planes, APlaneOfAPairThatIsNotWatchedIsRefused) {
-  Pairs pairs(10);
+  RandomPairs pairs(10);
   Planes planes(pairs.triangles);
   planes.watch(pairs.pairs, pairs.x);
   ByteWriter writer;
@@ -120,7 +120,7 @@ TEST(Planes, APlaneOfAPairThatIsNotWatchedIsRefused) {
 
 // By the gap alone: a pair whose triangles have moved less than that stays apart without a look at it.
 TEST(Planes, TheGapOfAPlaneIsNoMoreThanTheDistance) {
-  Pairs pairs(500);
+  RandomPairs pairs(500);
   Planes planes(pairs.triangles);
   planes.watch(pairs.pairs, pairs.x);
   for (double radius : {0.005, 0.02, 0.05}) {

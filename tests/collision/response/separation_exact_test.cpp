@@ -4,7 +4,7 @@ namespace weft::collision {
 namespace {
 
 TEST(SeparationExact, NoCertificateForPairsThatMeet) {
-  expect_nothing_missed(10'000, 1);
+  expect_nothing_missed(4'000, 1);
 }
 
 TEST(SeparationExact, NoCertificateForPairsThatMeetBesideTheirCommonVertex) {
@@ -12,7 +12,7 @@ TEST(SeparationExact, NoCertificateForPairsThatMeetBesideTheirCommonVertex) {
 }
 
 TEST(SeparationExact, NothingMeetsAfterEnforcement) {
-  expect_nothing_meets_after_enforcement(2'000, 3);
+  expect_nothing_meets_after_enforcement(1'000, 3);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ namespace weft::collision {
 namespace {
 
 /// Pairs of triangles, each pair far from all others.
-struct Pairs {
+struct LonePairs {
   std::vector<Triangle> triangles;  // pair p has triangles 2p and 2p + 1
   std::vector<TrianglePair> pairs;
   std::vector<Vec3> x_t0, x_t1;
@@ -31,14 +31,14 @@ struct Pairs {
 };
 
 /// Random triangles of up to 0.1 m, closer than that and apart by 1e-4 m at least, that move by up to `motion` [m].
-Pairs random_pairs(int count, double motion, unsigned seed) {
+LonePairs random_pairs(int count, double motion, unsigned seed) {
   std::mt19937 engine(seed);
   std::uniform_real_distribution<double> number(-1, 1);
   const auto vector = [&](double size) {
     const double x = number(engine), y = number(engine), z = number(engine);
     return Vec3(size * x, size * y, size * z);
   };
-  Pairs made;
+  LonePairs made;
   while (static_cast<int>(made.pairs.size()) < count) {
     const auto p = static_cast<Index>(made.pairs.size());
     const Vec3 place(p % 10, p / 10, 0);
@@ -66,7 +66,7 @@ Pairs random_pairs(int count, double motion, unsigned seed) {
 }
 
 // Pairs, by number, that intersect at one of 65 moments of the way.
-std::set<Index> meeting(const Pairs& pairs) {
+std::set<Index> meeting(const LonePairs& pairs) {
   std::vector<Triangle> sides[2];
   for (std::size_t t = 0; t < pairs.triangles.size(); ++t) sides[t % 2].push_back(pairs.triangles[t]);
   std::set<Index> found;
@@ -79,7 +79,7 @@ std::set<Index> meeting(const Pairs& pairs) {
   return found;
 }
 
-std::set<Index> failing(const Pairs& pairs) {
+std::set<Index> failing(const LonePairs& pairs) {
   Separation separation = pairs.separation();
   std::set<Index> found;
   for (const CornerPair& pair : separation.find_failing(pairs.x_t0, pairs.x_t1)) found.insert(pair.a[0] / 6);
@@ -88,7 +88,7 @@ std::set<Index> failing(const Pairs& pairs) {
 
 TEST(Separation, CertifiedPairsDoNotMeetOnTheirWay) {
   for (double motion : {0.01, 0.05, 0.2}) {
-    const Pairs pairs = random_pairs(200, motion, 1);
+    const LonePairs pairs = random_pairs(200, motion, 1);
     const std::set<Index> met = meeting(pairs), uncertified = failing(pairs);
     for (Index p : met) EXPECT_TRUE(uncertified.contains(p)) << "pair " << p << " at motions of " << motion;
     EXPECT_LT(uncertified.size(), 200u);
@@ -100,7 +100,7 @@ TEST(Separation, CertifiedPairsDoNotMeetOnTheirWay) {
 
 TEST(Separation, PairsInSlowMotionAreNearlyAllCertified) {
   // At a tenth of their size a few per cent meet; certificates must not be refused to many more.
-  const Pairs pairs = random_pairs(200, 0.005, 2);
+  const LonePairs pairs = random_pairs(200, 0.005, 2);
   EXPECT_LT(failing(pairs).size(), 2 * meeting(pairs).size() + 20);
 }
 
@@ -142,7 +142,7 @@ TEST(Separation, WhatIsRememberedOfALookIsWhatANewOneFinds) {
 
 TEST(Separation, PairsThatWouldMeetArePushedApart) {
   for (double motion : {0.01, 0.05, 0.2}) {
-    Pairs pairs = random_pairs(200, motion, 3);
+    LonePairs pairs = random_pairs(200, motion, 3);
     const std::set<Index> before = failing(pairs);
     ASSERT_FALSE(before.empty());
     const std::vector<Vec3> wanted = pairs.x_t1;
@@ -167,7 +167,7 @@ TEST(Separation, PairsThatWouldMeetArePushedApart) {
 
 TEST(Separation, WhatCannotMoveIsNotMoved) {
   // One side of each pair is an obstacle, which gives way to nothing.
-  Pairs pairs = random_pairs(200, 0.05, 4);
+  LonePairs pairs = random_pairs(200, 0.05, 4);
   for (std::size_t i = 0; i < pairs.movable.size(); ++i) pairs.movable[i] = i % 6 < 3;
   const std::vector<Vec3> wanted = pairs.x_t1;
   Separation separation = pairs.separation();
@@ -181,7 +181,7 @@ TEST(Separation, WhatCannotMoveIsNotMoved) {
 }
 
 TEST(Separation, PairsThatKeepTheirDistanceAreLeftAlone) {
-  Pairs pairs = random_pairs(50, 0, 5);
+  LonePairs pairs = random_pairs(50, 0, 5);
   for (Vec3& x : pairs.x_t1) x += Vec3(0.3, 0.1, -0.2);  // all together
   const std::vector<Vec3> wanted = pairs.x_t1;
   Separation separation = pairs.separation();
@@ -224,7 +224,7 @@ TEST(Separation, SaysWhichPairIsStuckWhereThereIsNoRoom) {
 }
 
 TEST(ClosestFeatures, AreThoseOfADenseSearch) {
-  const Pairs pairs = random_pairs(20, 0, 6);
+  const LonePairs pairs = random_pairs(20, 0, 6);
   for (const TrianglePair& pair : pairs.pairs) {
     const Triangle &a = pairs.triangles[pair.a], &b = pairs.triangles[pair.b];
     const ClosestFeatures found = closest_features({a, b}, pairs.x_t0);
