@@ -130,9 +130,8 @@ LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, con
       static_cast<float>(1 / (inner - outer));
   // Half a texel for the slope that the filter cannot see, and 0.2 mm for what rasterising rounds.
   const double bias = (0.25 * shadow.texel_metres + 2e-4) * shadow.depth_per_metre;
-  // Faces lie behind the curved surface that is meant by up to a millimetre, and texels show them in steps.
-  const double raise = 1e-3 + shadow.texel_metres;
-  packed.shadow << shadow.penumbra_uv.cast<float>(), static_cast<float>(bias), static_cast<float>(raise);
+  // By a texel: more would leave light under a layer of cloth two millimetres above another.
+  packed.shadow << shadow.penumbra_uv.cast<float>(), static_cast<float>(bias), static_cast<float>(shadow.texel_metres);
   return packed;
 }
 
