@@ -19,7 +19,7 @@ float tiles(vec2 at) {
 
 vec3 shaded_light(int i, Softness soft, vec3 position_world, vec3 n) {
   vec3 light = light_on_floor(i, position_world, n);
-  return light * share_of_light(i, soft, position_world, n, light.g > 0.0);
+  return light * share_of_light(i, soft, position_world, n, n, light.g > 0.0);
 }
 
 void main() {

@@ -9,8 +9,10 @@ layout(location = 1) out vec2 rest_uv;
 layout(location = 2) out vec2 distance_surface;  // frame.glsl
 #ifdef PAINTED
 // Of a picture with anything painted: 1 in w where it is, and the square root of linear colour, which bytes hold well.
+#ifdef PICTURED
 in vec2 place;
 layout(binding = 10) uniform sampler2D picture;  // linear, times alpha
+#endif
 uniform int laid;         // 0 not painted, 1 plain, 2 the picture times color, 3 over color, 4 the same with holes
 uniform vec3 color;       // linear
 uniform vec4 back_color;  // where w is below 0; else the front, paler by w
@@ -29,7 +31,8 @@ void main() {
 #endif
 #ifdef PAINTED
   vec3 front = color;
-  vec4 texel = laid >= 2 ? texture(picture, place) : vec4(1.0);
+#ifdef PICTURED
+  vec4 texel = texture(picture, place);
 #ifdef HOLES
   // The 4x4 thresholds of opacity.hpp, others for the back, so that two layers do not hide each other's holes.
   const float kOrder[16] = float[](0., 8., 2., 10., 12., 4., 14., 6., 3., 11., 1., 9., 15., 7., 13., 5.);
@@ -38,9 +41,10 @@ void main() {
 #endif
   if (laid == 3) {
     front = color * (1.0 - texel.a) + texel.rgb;
-  } else if (laid >= 2) {
+  } else {
     front = color * texel.rgb / max(texel.a, 1e-3);
   }
+#endif
   vec3 root = sqrt(front);
   if (!gl_FrontFacing) root = back_color.w < 0.0 ? sqrt(back_color.rgb) : mix(root, vec3(1.0), back_color.w);
   paint = laid == 0 ? vec4(0.0) : vec4(root, 1.0);

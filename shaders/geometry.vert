@@ -4,7 +4,7 @@ layout(location = 0) in vec3 position_world;
 layout(location = 1) in vec3 normal_world;
 layout(location = 2) in vec2 vertex_uv;
 layout(location = 3) in float heat;
-#ifdef PAINTED
+#ifdef PICTURED
 layout(location = 4) in vec2 vertex_place;
 uniform vec3 picture_u, picture_v;  // rows of the map to the picture
 out vec2 place;
@@ -24,7 +24,7 @@ void main() {
   surface_normal_world = normal_world;
   surface_uv = vertex_uv;
   surface_heat = heat;
-#ifdef PAINTED
+#ifdef PICTURED
   place = vec2(dot(picture_u, vec3(vertex_place, 1.0)), dot(picture_v, vec3(vertex_place, 1.0)));
 #endif
 #ifdef TRIMMED

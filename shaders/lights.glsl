@@ -5,7 +5,7 @@ struct Light {
   vec4 toward_light_world;        // w: 1 for a spot
   vec4 position_world;            // w: cosine of half the cone
   vec4 color;                     // linear; w: 1 / width of the soft edge of the cone
-  vec4 shadow;                    // penumbra width for each unit of depth, depth bias, texel size
+  vec4 shadow;                    // penumbra width for each unit of depth, depth bias, raise of curved surfaces [m]
 };
 // LIGHTS of them are there, one at least. Index them by constants: llvmpipe reads a member at a variable index once for
 // each pixel.

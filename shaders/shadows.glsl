@@ -12,7 +12,7 @@ float visibility(int i, vec3 position_world, vec3 normal_world, bool wanted) {
 
   // The tangent plane as depth over texture coordinates, so that wide filters do not shade a slope by itself.
   vec4 plane = lights[i].shadow_planes_from_world * vec4(normal_world, -dot(normal_world, position_world));
-  float texel = lights[i].shadow.w, bias = lights[i].shadow.z;
+  float texel = 1.0 / SHADOW_TEXELS, bias = lights[i].shadow.z;
   vec2 slope = -plane.xy / (sign(plane.z) * max(abs(plane.z), 1e-6));
   // Nearly edge-on slopes would reach out of the map; there the light is faint anyway.
   slope *= min(1.0, MAX_SLOPE_TEXELS * bias / (texel * max(length(slope), 1e-9)));
@@ -52,4 +52,11 @@ float visibility(int i, vec3 position_world, vec3 normal_world, bool wanted) {
   }
   if (all_dark && !all_lit) return 0.0;
   return taps == 0 ? 1.0 : lit / float(FILTER_TAPS);
+}
+
+// The same of a surface that may be curved. Its faces lie behind the smooth surface that its normals are of, and where light
+// grazes it shade each other, as a sawtooth: there it is asked for a point a little outside.
+float visibility_of_curved(int i, vec3 position_world, vec3 normal_world, vec3 toward_light_world, bool wanted) {
+  float grazing = 1.0 - max(dot(normal_world, toward_light_world), 0.0);
+  return visibility(i, position_world + lights[i].shadow.w * grazing * normal_world, normal_world, wanted);
 }

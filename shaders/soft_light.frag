@@ -77,7 +77,10 @@ float sky_openness(vec3 p_world, vec3 n_world, float turn, bool wanted) {
 float share(int i, vec3 p_world, vec3 n_world, float surface) {
   float cone;
   vec3 l = toward_light(i, p_world, cone);
-  return visibility(i, p_world, dot(n_world, l) < 0.0 ? -n_world : n_world, surface != kNothing && cone > 0.0);
+  bool wanted = surface != kNothing && cone > 0.0;
+  vec3 n_toward = dot(n_world, l) < 0.0 ? -n_world : n_world;
+  // Floor is flat, and shadows shall begin at what stands on it.
+  return visibility_of_curved(i, p_world, n_toward, surface == kFloor ? n_toward : l, wanted);
 }
 
 void main() {

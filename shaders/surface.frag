@@ -64,7 +64,7 @@ void add_light(inout LightSums sums, int i, Point at, Softness soft) {
 #else
   bool wanted = cone > 0.0 && side > 0.0;
 #endif
-  float lit = share_of_light(i, soft, at.position_world, side < 0.0 ? -at.n_smooth : at.n_smooth, wanted);
+  float lit = share_of_light(i, soft, at.position_world, side < 0.0 ? -at.n_smooth : at.n_smooth, l, wanted);
   vec3 strength = lights[i].color.rgb * (cone * lit);
   sums.diffuse += strength * (max(dot(at.n, l), 0.0) * smoothstep(0.0, 0.06, side));
 #ifdef CLOTH

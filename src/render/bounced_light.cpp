@@ -4,8 +4,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "core/parallel.hpp"
 #include "image/color.hpp"
+#include "render/drawing_time.hpp"
 
 namespace weft::render {
 namespace {
@@ -100,7 +100,7 @@ Lanes reach(const LitPatch& patch, const std::array<Lanes, 3>& at, std::array<La
 /// Without a sign of `full`, what is missing of the light that they would have alone.
 void light_from_around(std::span<LitPatch> patches, std::span<const LitPatch> before, std::span<const LitPatch> floor,
                        const Irradiance& around, bool full) {
-  parallel_for(patches.size(), std::size_t{kLanes}, [&](std::size_t begin, std::size_t end) {
+  drawing_for(patches.size(), std::size_t{kLanes}, [&](std::size_t begin, std::size_t end) {
     std::array<Lanes, 3> at, n, w;
     for (int lane = 0; lane < kLanes; ++lane) {
       const LitPatch& patch = patches[std::min(begin + static_cast<std::size_t>(lane), end - 1)];
@@ -214,7 +214,7 @@ std::vector<Eigen::Vector4f> gather(const BounceGrid& grid, std::span<const LitP
                                     const std::function<float(const LitPatch&, const Vector3f&)>& passes) {
   const Eigen::Array3i blocks = grid.counts / 2;
   std::vector<Eigen::Vector4f> light(6 * grid.size(), Eigen::Vector4f::Zero());
-  parallel_for(static_cast<std::size_t>(blocks.prod()), 8, [&](std::size_t begin, std::size_t end) {
+  drawing_for(static_cast<std::size_t>(blocks.prod()), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t block = begin; block < end; ++block) {
       const auto number = static_cast<int>(block);
       const Eigen::Array3i corner(2 * (number % blocks.x()), 2 * (number / blocks.x() % blocks.y()),

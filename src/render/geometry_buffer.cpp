@@ -34,6 +34,7 @@ float nearer(const SurfaceBuffers& surface) {
 GeometryBuffer::GeometryProgram::GeometryProgram(const Gl& gl, const Way& way) {
   std::vector<std::string> defines;
   if (way.painted) defines.emplace_back("PAINTED");
+  if (way.pictured) defines.emplace_back("PICTURED");
   if (way.holes) defines.emplace_back("HOLES");
   if (way.trimmed) defines.emplace_back("TRIMMED");
   if (way.peeled) defines.emplace_back("PEELED");
@@ -178,21 +179,21 @@ void GeometryBuffer::attach(bool painted, bool trimmed) {
 
 /// All surfaces of a picture in which something is painted say of each pixel whether they are.
 void GeometryBuffer::draw(const SurfaceBuffers& surface, float number, bool peeled) {
-  const auto use_for = [&](bool holes, int laid) -> const GeometryProgram& {
-    const GeometryProgram& program = use({painted_, holes, trimmed_, peeled});
+  const auto use_for = [&](int laid) -> const GeometryProgram& {
+    const GeometryProgram& program = use({painted_, laid >= 2, laid == 4, trimmed_, peeled});
     gl_->Uniform1f(program.surface, number);
     gl_->Uniform1f(program.nearer, nearer(surface));
     gl_->Uniform1i(program.laid, laid);
     return program;
   };
   if (surface.painted() == nullptr) {
-    use_for(false, 0);
+    use_for(0);
     return surface.draw();
   }
   for (const PaintedRange& range : surface.painted()->ranges) {
     const frame::Appearance& look = *range.look;
     const int how = laid(look);
-    const GeometryProgram& program = use_for(how == 4, how);
+    const GeometryProgram& program = use_for(how);
     const Eigen::Vector3f color = image::linear_from_srgb(look.color).cast<float>();
     const Eigen::Vector3f back = image::linear_from_srgb(look.back_color).cast<float>();
     const bool is_cloth = surface.surface().kind == frame::ObjectKind::cloth;

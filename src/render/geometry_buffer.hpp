@@ -49,7 +49,7 @@ class GeometryBuffer {
  private:
   /// What is drawn how: all of a picture with paint, or hems, writes whether it has them.
   struct Way {
-    bool painted = false, holes = false, trimmed = false, peeled = false;
+    bool painted = false, pictured = false, holes = false, trimmed = false, peeled = false;
     auto operator<=>(const Way&) const = default;
   };
   struct GeometryProgram {

@@ -117,7 +117,7 @@ SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach) {
   return {orthographic(fitted) * view, fitted.sizes().z()};
 }
 
-LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, const Vec3& scale, int map_size) {
+LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, const Vec3& scale) {
   const bool spot = light.kind == frame::Light::Kind::spot;
   const Mat4 shadow_from_world = texture_from_clip() * shadow.clip_from_world;
   LightUniform packed;
@@ -130,7 +130,8 @@ LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, con
       static_cast<float>(1 / (inner - outer));
   // Half a texel for the slope that the filter cannot see, and 0.2 mm for what rasterising rounds.
   const double bias = (0.25 * shadow.texel_metres + 2e-4) * shadow.depth_per_metre;
-  packed.shadow << shadow.penumbra_uv.cast<float>(), static_cast<float>(bias), 1.0f / static_cast<float>(map_size);
+  // By a texel: more would leave light under a layer of cloth two millimetres above another.
+  packed.shadow << shadow.penumbra_uv.cast<float>(), static_cast<float>(bias), static_cast<float>(shadow.texel_metres);
   return packed;
 }
 

@@ -54,14 +54,17 @@ struct LightUniform {
   Eigen::Matrix4f shadow_planes_from_world;  ///< inverse transpose of the above: carries planes instead of points
   Eigen::Vector4f toward_light;              ///< unit; w: 1 for a spot
   Eigen::Vector4f position;                  ///< [m]; w: cosine of half the cone
-  Eigen::Vector4f color;   ///< linear, times intensity; w: 1 / (cosine inside which all is lit - position.w)
-  Eigen::Vector4f shadow;  ///< penumbra_uv; depth bias; texel size in texture coordinates
+  Eigen::Vector4f color;  ///< linear, times intensity; w: 1 / (cosine inside which all is lit - position.w)
+  Eigen::Vector4f
+      shadow;  ///< penumbra_uv; depth bias; by how much curved surfaces are raised where light grazes them [m]
 };
+static_assert(sizeof(LightUniform) == 2 * 64 + 4 * 16,
+              "as packed in lights.glsl: five vectors would be padded to six here");
 struct LightsUniform {
   std::array<LightUniform, kMaxLights> lights;
 };
 
 /// Packs a light. `scale` is of its strength, for each channel.
-LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, const Vec3& scale, int map_size);
+LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, const Vec3& scale);
 
 }  // namespace weft::render

@@ -21,7 +21,8 @@ const std::vector<float>& linear_table() {
 }
 
 float channel(std::uint64_t rgba, int which) {
-  return static_cast<float>(rgba >> (16 * which) & 0xFFFF);
+  // From 64 bits the compiler would go one by one.
+  return static_cast<float>(static_cast<int>(static_cast<std::uint32_t>(rgba >> (16 * which)) & 0xFFFF));
 }
 
 /// Interleaved gradient noise in [0, 1), as pixel_noise() of shaders/frame.glsl.
@@ -54,7 +55,8 @@ image::Image to_image(std::span<const std::uint64_t> rgba, int width, int height
     for (int x = 0; x < width; ++x) row_noise[x] = noise(x, y);
     for (int x = 0; x < width; ++x) {
       for (int k = 0; k < 3; ++k)
-        to[3 * x + k] = static_cast<std::uint8_t>(std::min(channel(from[x], k) * (1 / 257.0f) + row_noise[x], 255.0f));
+        to[3 * x + k] = static_cast<std::uint8_t>(
+            static_cast<int>(std::min(channel(from[x], k) * (1 / 257.0f) + row_noise[x], 255.0f)));
     }
   }
   return image;

@@ -17,6 +17,7 @@ struct QualitySettings {
   bool refines;        ///< cloth of few triangles is drawn with finer ones
   bool trims;          ///< hems, seams and edges of cloth, and cloth that is seen through
   bool mirrors;        ///< floors that shine show the subjects
+  bool spots_on_grid;  ///< the pools of light of spots on open floor are lit at the corners of a grid, as that of suns
   bool crisp_shadows;  ///< search at full size along the edges of the first light's shadows on the subjects
 };
 

@@ -6,9 +6,9 @@
 #include <utility>
 
 #include "core/error.hpp"
-#include "core/timer.hpp"
 #include "render/bounced_light.hpp"
 #include "render/data_passes.hpp"
+#include "render/drawing_time.hpp"
 #include "render/edges.hpp"
 #include "render/framing.hpp"
 #include "render/instants.hpp"
@@ -448,12 +448,12 @@ void Renderer::look_through(CameraPath path) {
 image::Image Renderer::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
   check(snapshot);
   const WallTimer wall;
-  const double cpu_start = process_cpu_seconds();
+  const double cpu_start = drawing_cpu_seconds();
   const CurrentContext current(*impl_->context);
   impl_->draw(snapshot, before);
   image::Image image = to_image(impl_->rgba, impl_->settings.width, impl_->settings.height);
   check_errors(impl_->gl, "drawing");
-  impl_->times = {wall.seconds(), process_cpu_seconds() - cpu_start};
+  impl_->times = {wall.seconds(), drawing_cpu_seconds() - cpu_start};
   return image;
 }
 

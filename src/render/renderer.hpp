@@ -29,7 +29,7 @@ struct Settings {
   double aspect() const { return static_cast<double>(width) / height; }
 };
 
-/// Time one picture took.
+/// Time one picture took, without what else the process does meanwhile.
 struct DrawTimes {
   double wall_seconds = 0, cpu_seconds = 0;
 };

@@ -129,7 +129,7 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
 // how it fades out, changes so slowly over the picture that it may be interpolated; the edge of a spot or a checker
 // not.
 Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const Features& features)
-    : floor_on_grid(!features.lights.spots && !features.checker && !features.reflecting) {
+    : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.reflecting) {
   const LightSet& lights = features.lights;
   const bool many = lights.count > kSoftLights, crisp = quality.crisp_shadows || many;
   const std::vector<const char*> paint(features.painted ? 1 : 0, "PAINTED");

@@ -52,6 +52,7 @@ std::vector<std::string> ShadowMaps::defines(const QualitySettings& quality, con
   std::vector<std::string> defines = {"LIGHTS " + std::to_string(lights.count),
                                       "BLOCKER_TAPS " + std::to_string(quality.blocker_taps),
                                       "FILTER_TAPS " + std::to_string(quality.filter_taps),
+                                      "SHADOW_TEXELS " + std::to_string(quality.shadow_size) + ".0",
                                       "FILTER_FLOOR_TEXELS 1.2",
                                       "FILTER_LIMIT_TEXELS " + std::to_string(filter_limit(quality.shadow_size)) + ".0",
                                       "MAX_SLOPE_TEXELS 40.0"};
@@ -90,7 +91,7 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
   depths_.resize(lights.size());
   for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
     const ShadowView view = fit_shadow(lights[i], caster_positions, up, size);
-    block.lights[i] = lights_[i] = pack_light(lights[i], view, scale, size);
+    block.lights[i] = lights_[i] = pack_light(lights[i], view, scale);
     draw_depths(casters, view.clip_from_world, depths_[i]);
     find_ranges(depths_[i]);
     gl_->TextureSubImage3D(depth_.name(), 0, 0, 0, i, size, size, 1, GL_DEPTH_COMPONENT, GL_FLOAT, depths_[i].data());

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/parallel.hpp"
 #include "render/depth_raster.hpp"
+#include "render/drawing_time.hpp"
 #include "render/framing.hpp"
 
 namespace weft::render {
@@ -139,7 +139,7 @@ void Smear::add(std::span<const SurfaceBuffers> surfaces, const View& view, cons
   find_ways(surfaces, view, from, from_view, to, to_view);
   find_longest();
   const int columns = (width_ + kTile - 1) / kTile;
-  parallel_for(static_cast<std::size_t>(height_), kTile, [&](std::size_t begin, std::size_t end) {
+  drawing_for(static_cast<std::size_t>(height_), kTile, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       for (int x = 0; x < width_; ++x) {
         const int y = static_cast<int>(row);

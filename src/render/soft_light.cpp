@@ -7,8 +7,8 @@
 namespace weft::render {
 namespace {
 
-constexpr int kTile = 8;    // texels of the small picture
-constexpr int kMargin = 2;  // texels that shading may look beyond a pixel's own; shaders/shading.glsl
+constexpr int kSoftTile = 4;  // texels of the small picture
+constexpr int kMargin = 2;    // texels that shading may look beyond a pixel's own; shaders/shading.glsl
 
 // Openness from which floor counts as open: what is left out is half a level of 255, less than the dither.
 constexpr float kOpen = 0.998f;
@@ -40,7 +40,8 @@ SoftLight::SoftLight(const Gl& gl, const QualitySettings& quality, int width, in
       height_((height + quality.soft_divisor - 1) / quality.soft_divisor),
       distances_program_(gl, "fullscreen.vert", "soft_distances.frag",
                          {"REDUCTION " + std::to_string(quality.soft_divisor)}),
-      blur_(gl, "fullscreen.vert", "soft_light_blur.frag"),
+      first_blur_(gl, "fullscreen.vert", "soft_light_blur.frag", {"SHARES_TOO"}),
+      second_blur_(gl, "fullscreen.vert", "soft_light_blur.frag"),
       sky_(make_texture(gl, GL_RG32F, kSkySize, kSkySize, GL_NEAREST)),
       distances_(make_texture(gl, GL_R32F, width_, height_, GL_NEAREST)),
       light_(make_texture(gl, GL_RGBA32F, width_, height_, GL_NEAREST)),
@@ -80,13 +81,13 @@ void SoftLight::draw(std::span<const DrawnMesh> meshes, const SkyView& above, Li
 
   // Across, then down, ending where it began. A second time, for where an outline cuts the window within which taps
   // make up for each other: right under a ball the first leaves streaks.
-  blur_.use();
   for (int pass = 0; pass < 4; ++pass) {
     const bool across = pass % 2 == 0;
-    gl_->Uniform1f(blur_.uniform("share_of_lit"), pass < 2 ? 0.5f : 0.0f);
+    const Program& blur = pass < 2 ? first_blur_ : second_blur_;
+    blur.use();
     gl_->BindFramebuffer(GL_FRAMEBUFFER, (across ? smoothed_target_ : light_target_).name());
     gl_->BindTextureUnit(3, (across ? light_ : smoothed_).name());
-    gl_->Uniform2i(blur_.uniform("axis"), across, !across);
+    gl_->Uniform2i(blur.uniform("axis"), across, !across);
     gl_->DrawArrays(GL_TRIANGLES, 0, 3);
   }
   gl_->BindTextureUnit(3, light_.name());
@@ -97,7 +98,7 @@ std::vector<PixelArea> SoftLight::shaded_floor() {
   gl_->GetTextureImage(light_.name(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels_.size() * sizeof(SoftTexel)),
                        texels_.data());
   // Texel x counts for the tiles of x - kMargin and x + kMargin; flags begin at x = -kMargin.
-  const auto tiles = [](int texels_along) { return (texels_along + 2 * kMargin + kTile - 1) / kTile; };
+  const auto tiles = [](int texels_along) { return (texels_along + 2 * kMargin + kSoftTile - 1) / kSoftTile; };
   const int columns = tiles(width_), rows = tiles(height_);
   std::vector<std::uint8_t> flags(static_cast<std::size_t>(columns) * rows), row_flags(columns);
   for (int y = 0; y < height_; ++y) {
@@ -105,16 +106,16 @@ std::vector<PixelArea> SoftLight::shaded_floor() {
     const SoftTexel* row = texels_.data() + static_cast<std::size_t>(y) * width_;
     for (int x = 0; x < width_; ++x) {
       const bool flag = shades(row[x]);
-      row_flags[x / kTile] |= flag;
-      row_flags[(x + 2 * kMargin) / kTile] |= flag;
+      row_flags[x / kSoftTile] |= flag;
+      row_flags[(x + 2 * kMargin) / kSoftTile] |= flag;
     }
-    for (const int tile_row : {y / kTile, (y + 2 * kMargin) / kTile}) {
+    for (const int tile_row : {y / kSoftTile, (y + 2 * kMargin) / kSoftTile}) {
       for (int i = 0; i < columns; ++i) flags[static_cast<std::size_t>(tile_row) * columns + i] |= row_flags[i];
     }
   }
   // Runs of tiles become areas.
   const auto pixel = [&](int tile, int size) {
-    return std::clamp((tile * kTile - kMargin) * quality_.soft_divisor, 0, size);
+    return std::clamp((tile * kSoftTile - kMargin) * quality_.soft_divisor, 0, size);
   };
   std::vector<PixelArea> areas;
   for (int row = 0; row < rows; ++row) {

@@ -38,7 +38,7 @@ class SoftLight {
   QualitySettings quality_;
   int picture_width_, picture_height_, width_, height_;
   std::map<LightSet, Program> soft_light_;  // made when first needed
-  Program distances_program_, blur_;
+  Program distances_program_, first_blur_, second_blur_;
   Texture sky_, distances_, light_, smoothed_;
   Framebuffer distances_target_, light_target_, smoothed_target_;
   VertexArray no_vertices_;

@@ -150,7 +150,6 @@ Trims::Trims(const frame::Surface& surface) {
 }
 
 Trims::Place Trims::place(const Lines& lines, std::int32_t segment, const Vec2& at) const {
-  if (segment < 0) return {};
   const Segment& line = lines.segments[segment];
   const Vec2 from = places_[line.a], way = places_[line.b] - from;
   const double length = way.norm();
@@ -162,7 +161,8 @@ Trims::Place Trims::place(const Lines& lines, std::int32_t segment, const Vec2& 
 /// Hands what is nearest on from vertex to vertex, so that a line counts along the cloth: panels that are laid
 /// together may come to lie over each other.
 Trims::Lines Trims::lines(std::vector<Segment> segments, std::span<const std::vector<Index>> neighbors) const {
-  Lines result{std::move(segments), std::vector<std::int32_t>(places_.size(), -1)};
+  Lines result{std::move(segments), std::vector<std::int32_t>(places_.size(), -1), {}};
+  result.at.resize(places_.size());
   std::vector<double> distance(places_.size(), kNoTrim);
   std::deque<Index> changed;
   const auto offer = [&](Index vertex, std::int32_t segment) {
@@ -174,6 +174,7 @@ Trims::Lines Trims::lines(std::vector<Segment> segments, std::span<const std::ve
   };
   for (std::size_t i = 0; i < result.segments.size(); ++i) {
     for (const Index end : {result.segments[i].a, result.segments[i].b}) {
+      result.at[end].push_back(static_cast<std::int32_t>(i));
       offer(end, static_cast<std::int32_t>(i));
       for (const Index next : neighbors[end]) offer(next, static_cast<std::int32_t>(i));
     }
@@ -186,10 +187,20 @@ Trims::Lines Trims::lines(std::vector<Segment> segments, std::span<const std::ve
 Trim Trims::trim(const Vec2& at, std::span<const Index> near) const {
   Trim result;
   for (int kind = 0; kind < Trim::kKinds; ++kind) {
+    const Lines& lines = lines_[kind];
     Place best;
-    for (const Index vertex : near)
-      if (const Place here = place(lines_[kind], lines_[kind].nearest[vertex], at); here.distance < best.distance)
-        best = here;
+    const auto try_segment = [&](std::int32_t segment) {
+      if (const Place here = place(lines, segment, at); here.distance < best.distance) best = here;
+    };
+    for (const Index vertex : near) {
+      const std::int32_t nearest = lines.nearest[vertex];
+      if (nearest < 0) continue;
+      try_segment(nearest);
+      // At a vertex of a line two of its segments are as near, of which one is kept: what lies beside the vertex may
+      // belong to the other.
+      for (const Index end : {lines.segments[nearest].a, lines.segments[nearest].b})
+        std::ranges::for_each(lines.at[end], try_segment);
+    }
     result.distance[kind] = static_cast<float>(best.distance);
     result.along[kind] = static_cast<float>(best.along);
   }

@@ -51,7 +51,8 @@ class Trims {
   /// What one kind of lines is to all places.
   struct Lines {
     std::vector<Segment> segments;
-    std::vector<std::int32_t> nearest;  // by place, -1 where there is none
+    std::vector<std::int32_t> nearest;          // by place, -1 where there is none
+    std::vector<std::vector<std::int32_t>> at;  // by place: those that begin or end there
   };
   struct Place {
     double distance = kNoTrim, along = 0;

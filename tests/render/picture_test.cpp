@@ -2,12 +2,15 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <cstdio>
 #include <cstdlib>
 #include <memory>
 #include <numbers>
+#include <thread>
 
 #include "core/error.hpp"
+#include "core/timer.hpp"
 #include "image/color.hpp"
 #include "render/renderer.hpp"
 #include "render/snapshots.hpp"
@@ -423,6 +426,25 @@ TEST(Picture, OddSnapshotsAreDrawn) {
   frame::FrameSnapshot broken = busy_scene();
   broken.states.pop_back();
   EXPECT_THROW(renderer.draw(broken), Error);
+}
+
+// Whatever runs beside it: the process less what another thread burns, of which threads of TBB that look for work in
+// vain take a few percent.
+TEST(Picture, TimesAreThoseOfDrawingAlone) {
+  Renderer renderer(settings());
+  renderer.draw(busy_scene());  // makes the shaders
+  std::atomic<bool> stop = false;
+  std::atomic<double> burnt = 0;
+  std::thread beside([&] {
+    while (!stop) burnt = thread_cpu_seconds();
+  });
+  while (burnt == 0) std::this_thread::yield();
+  const double whole_before = process_cpu_seconds(), burnt_before = burnt;
+  renderer.draw(busy_scene());
+  const double whole = process_cpu_seconds() - whole_before, others = burnt - burnt_before;
+  stop = true;
+  beside.join();
+  EXPECT_NEAR(renderer.last_times().cpu_seconds, whole - others, 0.2 * (whole - others) + 2e-3) << others;
 }
 
 TEST(Picture, OneByOnePixelIsAPicture) {

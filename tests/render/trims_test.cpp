@@ -84,6 +84,31 @@ TEST(Trims, LinesTurnSharplyAtCorners) {
   }
 }
 
+// Of edges and their middles, in whatever order the triangles come: at a vertex of a line two of its edges are as near.
+TEST(Trims, LinesGoOnThroughTheMiddlesOfTheirEdges) {
+  frame::Surface surface = sheet(8, true);
+  for (const std::size_t stride : {5U, 11U, 37U}) {
+    std::vector<Triangle> shuffled;
+    std::vector<std::int32_t> parts;
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      shuffled.push_back(surface.triangles[t * stride % surface.triangles.size()]);
+      parts.push_back(surface.part_of_triangle[t * stride % surface.triangles.size()]);
+    }
+    surface.triangles = shuffled;
+    surface.part_of_triangle = parts;
+    const Trims trims(surface);
+    for (const Triangle& triangle : surface.triangles) {
+      for (int k = 0; k < 3; ++k) {
+        const Index a = triangle[k], b = triangle[(k + 1) % 3];
+        const Vec2 at = 0.5 * (surface.uv[a] + surface.uv[b]);
+        const Trim trim = trims.middle(a, b);
+        EXPECT_NEAR(trim.from_border(), std::min({at.x(), at.y(), 1 - at.x(), 1 - at.y()}), 1e-6) << at.transpose();
+        EXPECT_NEAR(trim.distance[Trim::seam], std::abs(at.x() - 0.5), 1e-6) << at.transpose();
+      }
+    }
+  }
+}
+
 // Two triangles of one panel that lie apart in it are sewn together by a dart.
 TEST(Trims, DartsAreSeams) {
   frame::Surface surface = sheet(2, true);

@@ -1,6 +1,8 @@
 #include "render/gl/context.hpp"
 
 #include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <string_view>
 
 #include "core/error.hpp"
@@ -31,6 +33,21 @@ void Context::load_functions(Loader loader, const std::string& backend) {
   }
   description_ = fmt::format("{}; {}; {}; OpenGL {}", backend, text(gl_, GL_VENDOR), text(gl_, GL_RENDERER),
                              text(gl_, GL_VERSION));
+}
+
+double rasteriser_cpu_seconds() {
+  double seconds = 0;
+  std::error_code error;
+  for (std::filesystem::directory_iterator task("/proc/self/task", error), end; !error && task != end;
+       task.increment(error)) {
+    std::string name;
+    std::ifstream(task->path() / "comm") >> name;
+    if (!name.starts_with("llvmpipe")) continue;
+    double nanoseconds = 0;
+    std::ifstream(task->path() / "schedstat") >> nanoseconds;
+    seconds += 1e-9 * nanoseconds;
+  }
+  return seconds;
 }
 
 std::unique_ptr<Context> make_context(Backend backend, int threads) {

@@ -42,6 +42,9 @@ class Context {
 /// the first context decides. Throws Error(internal) naming each library tried and what it said.
 std::unique_ptr<Context> make_context(Backend backend, int threads);
 
+/// CPU seconds that the threads of llvmpipe have taken so far, in all contexts; 0 of a driver that draws elsewhere.
+double rasteriser_cpu_seconds();
+
 std::unique_ptr<Context> make_osmesa_context();
 std::unique_ptr<Context> make_egl_context();
 
