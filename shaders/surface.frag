@@ -13,7 +13,7 @@ layout(binding = 5) uniform sampler2D rest_uvs;
 layout(binding = 8) uniform sampler2D distances_surfaces;
 layout(binding = 7) uniform sampler2D materials;  // a row for each surface: front colour, roughness; back colour, thread
                                                   // spacing; heat scale, hem [m], thickness [m], stitches beside seams [m]; cloth: gloss, share of the warp,
-                                                  // fuzz, sheer; opacity
+                                                  // fuzz, sheer; opacity, threads
 layout(binding = 6) uniform sampler2D heat_colors;
 #ifdef PAINTED
 layout(binding = 10) uniform sampler2D paints;  // geometry.frag
@@ -87,9 +87,7 @@ void main() {
   int row = int(surface - kFirstSurface);
   vec4 front_roughness = texelFetch(materials, ivec2(0, row), 0);
   vec4 back_spacing = texelFetch(materials, ivec2(1, row), 0);
-#ifdef SHEER
-  float opacity = texelFetch(materials, ivec2(4, row), 0).x;
-#endif
+  vec4 opacity_threads = texelFetch(materials, ivec2(4, row), 0);
   vec4 heat_trim = texelFetch(materials, ivec2(2, row), 0);
   float heat_scale = heat_trim.x;
 
@@ -124,8 +122,10 @@ void main() {
   at.finish.x *= at.finish.x * at.finish.x;  // between cotton and satin lie two orders
   // Beside cloth, where derivatives look too, there is what an earlier picture left.
   vec2 rest_uv = row < 0 ? vec2(0.0) : texelFetch(rest_uvs, pixel, 0).xy;
-  Weave woven = weave(rest_uv, row < 0 ? 0.0 : back_spacing.w, at.n, at.position_world);
+  int threads = int(opacity_threads.y);
+  Weave woven = weave(rest_uv, row < 0 ? 0.0 : back_spacing.w, threads, at.finish.z, at.n, at.position_world);
   at.n = woven.normal_world;
+  if (threads == kDenim) albedo = denim_color(albedo, front ? woven.weft : 1.0 - woven.weft);
   albedo *= woven.tone;
   at.shine = woven.shine;
 #ifdef TRIMMED
@@ -184,7 +184,7 @@ void main() {
 #ifdef TRIMMED
   layers *= trimmed.layers;
 #endif
-  alpha = 1.0 - pow(1.0 - opacity, layers);
+  alpha = 1.0 - pow(1.0 - opacity_threads.x, layers);
 #endif
   color = vec4(encode(linear), alpha);
 }

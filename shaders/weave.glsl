@@ -1,5 +1,7 @@
-// A plain weave drawn in rest coordinates: threads alternate over and under, each a little different in tone. Every
-// feature fades to its mean before it gets smaller than two pixels, so that nothing shimmers.
+// Threads drawn in rest coordinates: of a plain weave, a twill of three over and one under, the right side of a jersey,
+// or fibres alone; each a little different in tone. Every feature fades to its mean before it gets smaller than two
+// pixels, so that nothing shimmers.
+const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
 const float kUneven = 0.04;  // share of its tone by which a yarn differs at most, at each size
 
 float thread_noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
@@ -24,13 +26,71 @@ struct Weave {
   vec3 normal_world;
   float tone;   // factor on the colour
   float shine;  // factor on the highlight
+  float weft;   // share of it that shows, where it has a colour of its own
   vec3 weft_world, warp_world;  // directions of the threads
 };
 
 // 1 while a feature of `size` is well above the pixel's footprint, 0 once it is below two pixels.
 float visible_feature(float footprint, float size) { return 1.0 - smoothstep(0.22, 0.5, footprint / size); }
 
-Weave weave(vec2 rest_uv, float spacing, vec3 n_world, vec3 p_world) {
+// What lies on top at one place.
+struct Top {
+  float height;  // less its mean
+  vec2 tilt;     // of the normal along weft and warp
+  float yarn;    // another one for each thread
+  bool weft;
+};
+
+// Round yarns: height falls off across the thread and where it dives under the next one.
+Top plain_top(vec2 thread) {
+  vec2 cell = floor(thread), local = fract(thread) - 0.5;
+  bool weft_over = mod(cell.x + cell.y, 2.0) < 1.0;
+  vec2 at = weft_over ? local : local.yx, bend = vec2(0.9 * at.x, 1.5 * at.y);
+  float height = 1.0 - 1.6 * at.y * at.y - 1.1 * at.x * at.x;
+  return Top(height - 0.775, weft_over ? bend : bend.yx, weft_over ? cell.y + 0.5 : cell.x + 37.0, weft_over);
+}
+
+// Each warp thread lies over three of the weft and under one, its neighbour one later.
+Top twill_top(vec2 thread) {
+  vec2 cell = floor(thread), local = fract(thread) - 0.5;
+  float place = mod(cell.y - cell.x, 4.0);
+  bool weft_over = place < 0.5;
+  vec2 at = weft_over ? local : vec2((place - 2.0 + local.y) / 3.0, local.x);
+  float height = 1.0 - 1.6 * at.y * at.y - 1.1 * at.x * at.x;
+  vec2 bend = vec2(0.9 * at.x, 1.5 * at.y);
+  return Top(height - 0.775, weft_over ? bend : bend.yx, weft_over ? cell.y + 0.5 : cell.x + 37.0, weft_over);
+}
+
+// Stitches: two legs that part upward, in columns.
+Top knit_top(vec2 thread) {
+  float column = fract(thread.x) - 0.5, side = column < 0.0 ? -1.0 : 1.0, off = abs(column) - 0.25;
+  float course = fract(1.25 * thread.y - 1.4 * abs(column)) - 0.5;
+  float height = 1.0 - 8.0 * off * off - 1.4 * course * course;
+  vec2 tilt = vec2(side * (4.0 * off - 0.9 * course), 0.8 * course);
+  return Top(height - 0.717, tilt, floor(thread.x) + 37.0, false);
+}
+
+// Yarns are uneven along their way, some threads wide and eight times as long, at three sizes, of which those show that
+// the picture can; the warp of denim is dyed unevenly, and fibres that stand out are of many tones.
+float uneven_tone(vec2 thread, float footprint, int threads, float fuzz) {
+  vec2 share = threads == kDenim ? vec2(0.5, 3.0) : threads == kKnit ? vec2(0.3, 1.5) : vec2(1.0);
+  float length_share = threads == kNone ? 0.7 : 0.125, fibres = smoothstep(0.6, 1.0, fuzz), tone = 1.0;
+  for (float size = 2.5; size < 64.0; size *= 4.0) {
+    float seen = visible_feature(footprint, size);
+    if (seen == 0.0) continue;
+    vec2 at = thread / size;
+    tone *= 1.0 + kUneven * (1.0 + 2.0 * fibres) * seen *
+                      (share.x * unevenness(at * vec2(length_share, 1.0)) +
+                       share.y * unevenness(at.yx * vec2(length_share, 1.0) + 71.0));
+  }
+  float seen = visible_feature(footprint, 1.0) * fibres;
+  // Pressed fibres lie in all directions, spun ones along their yarns.
+  mat2 lie = threads == kNone ? mat2(0.9, 0.5, -0.5, 0.9) : mat2(1.3, 0.0, 0.0, 0.4);
+  if (seen > 0.0) tone *= 1.0 + 0.5 * seen * (unevenness(lie * thread) + unevenness(lie * thread.yx + 31.0));
+  return tone;
+}
+
+Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, vec3 p_world) {
   // Pixels of other surfaces take part in the derivatives, with no spacing at all; cloth without threads has a grain.
   vec2 thread = rest_uv / max(spacing, 1e-6);
   vec2 across = dFdx(thread), down = dFdy(thread);
@@ -41,32 +101,31 @@ Weave weave(vec2 rest_uv, float spacing, vec3 n_world, vec3 p_world) {
   float area = across.x * down.y - across.y * down.x;
   weft *= sign(area) * inversesqrt(max(dot(weft, weft), 1e-20));
   warp *= sign(area) * inversesqrt(max(dot(warp, warp), 1e-20));
-  Weave result = Weave(n_world, 1.0, 1.0, weft, warp);
+  Weave result = Weave(n_world, 1.0, 1.0, 0.25, weft, warp);
   if (spacing <= 0.0) footprint = 1e6;
+  result.tone = uneven_tone(thread, footprint, threads, fuzz);
 
-  // Yarns are uneven along their way, some threads wide and eight times as long: weft and warp, at three sizes, of
-  // which those show that the picture can.
-  for (float size = 2.5; size < 64.0; size *= 4.0) {
-    float seen = visible_feature(footprint, size);
-    if (seen == 0.0) continue;
-    vec2 at = thread / size;
-    result.tone *= 1.0 + kUneven * seen * (unevenness(at * vec2(0.125, 1.0)) + unevenness(at.yx * vec2(0.125, 1.0) + 71.0));
+  // The lines of a twill are farther apart than its threads.
+  if (threads == kTwill || threads == kDenim) {
+    float line = visible_feature(footprint, 2.8) * cos(1.5707963 * (thread.y - thread.x));
+    result.weft *= 1.0 + line;
+    if (threads == kTwill) result.tone *= 1.0 - 0.08 * line;
   }
-
   float fine = visible_feature(footprint, 1.0);
-  if (fine > 0.0) {
-    vec2 cell = floor(thread), local = fract(thread) - 0.5;
-    bool weft_over = mod(cell.x + cell.y, 2.0) < 1.0;
-    // Round yarns: height falls off across the thread and where it dives under the next one.
-    vec2 along_across = weft_over ? local : local.yx;
-    vec2 bend = vec2(0.9 * along_across.x, 1.5 * along_across.y);
-    float height = 1.0 - 1.6 * along_across.y * along_across.y - 1.1 * along_across.x * along_across.x;
-    vec2 tilt = weft_over ? bend : bend.yx;
-    result.normal_world = normalize(n_world + 0.75 * fine * (tilt.x * weft + tilt.y * warp));
-    float yarn = weft_over ? thread_noise(cell.y + 0.5) : thread_noise(cell.x + 37.0);
-    // 0.78 is the mean of the height over a cell: the tone stays when the threads fade.
-    result.tone *= 1.0 + fine * (0.85 * (height - 0.775) + 0.10 * (yarn - 0.5));
-    result.shine = 1.0 + fine * (height - 0.775);
+  if (fine > 0.0 && threads != kNone) {
+    Top top = threads == kPlain ? plain_top(thread) : threads == kKnit ? knit_top(thread) : twill_top(thread);
+    result.normal_world = normalize(n_world + 0.75 * fine * (top.tilt.x * weft + top.tilt.y * warp));
+    // Less the mean of the height: the tone stays when the threads fade.
+    result.tone *= 1.0 + fine * (0.85 * top.height + 0.10 * (thread_noise(top.yarn) - 0.5));
+    result.shine = 1.0 + fine * top.height;
+    result.weft = mix(result.weft, top.weft ? 1.0 : 0.0, fine);
   }
   return result;
+}
+
+// Colour of denim with `weft` of its undyed weft on top; that of the cloth is the mean, at a quarter.
+vec3 denim_color(vec3 cloth, float weft) {
+  const float kPaler = 2.2, kDye = 0.35;
+  vec3 undyed = kPaler * mix(vec3(dot(cloth, vec3(0.2126, 0.7152, 0.0722))), cloth, kDye);
+  return mix(max((cloth - 0.25 * undyed) / 0.75, vec3(0.0)), undyed, weft);
 }

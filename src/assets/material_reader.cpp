@@ -83,6 +83,13 @@ std::optional<fs::path> find_file(const std::string& named, const fs::path& file
   return std::nullopt;
 }
 
+/// Where FBX says that there is a picture and neither which nor what it shows, assimp names the folder.
+bool is_nameless(const std::string& named) {
+  return named.empty() || named == "." || named == "./" || named == ".\\";
+}
+
+constexpr const char* kNameless = "neither named nor held by the file";
+
 /// Bytes of a picture; empty, with the reason, where it cannot be had.
 std::string read_picture(const aiScene& scene, const aiString& named, const fs::path& file, std::string& reason) {
   std::string bytes;
@@ -92,11 +99,14 @@ std::string read_picture(const aiScene& scene, const aiString& named, const fs::
       return {};
     }
     bytes.assign(reinterpret_cast<const char*>(inside->pcData), inside->mWidth);
+  } else if (is_nameless(named.C_Str())) {
+    reason = kNameless;
+    return {};
   } else {
     const std::optional<fs::path> found = find_file(named.C_Str(), file);
     std::error_code error;
     if (!found) {
-      reason = "it is not there";
+      reason = "not there";
       return {};
     }
     if (fs::file_size(*found, error) > kMaxPictureBytes) {
@@ -107,7 +117,7 @@ std::string read_picture(const aiScene& scene, const aiString& named, const fs::
     bytes.assign(std::istreambuf_iterator<char>(in), {});
   }
   if (is_picture(bytes)) return bytes;
-  reason = "it is neither PNG, JPEG nor TGA";
+  reason = "neither PNG, JPEG nor TGA";
   return {};
 }
 
@@ -127,6 +137,28 @@ bool is_cutout(const aiMaterial& material) {
   return material.GetTextureCount(aiTextureType_OPACITY) > 0;
 }
 
+/// Pictures that cannot be had for one reason.
+struct LeftOut {
+  std::string reason;
+  std::vector<std::string> materials, pictures;  // of which pictures may be nameless
+};
+
+/// The first three, quoted, and how many more there are.
+std::string some_of(const std::vector<std::string>& names) {
+  constexpr std::size_t kNamed = 3;
+  std::string text;
+  for (std::size_t i = 0; i < std::min(names.size(), kNamed); ++i)
+    text += fmt::format("{}\"{}\"", i > 0 ? ", " : "", names[i]);
+  return names.size() > kNamed ? fmt::format("{} and {} more", text, names.size() - kNamed) : text;
+}
+
+std::string told(const LeftOut& left_out) {
+  const auto& [reason, materials, pictures] = left_out;
+  const bool several = materials.size() > 1;
+  return fmt::format("material{0} {1}: picture{0}{2} {3} left out: {4}", several ? "s" : "", some_of(materials),
+                     reason == kNameless ? "" : " " + some_of(pictures), several ? "are" : "is", reason);
+}
+
 }  // namespace
 
 unsigned uv_channel(const aiMaterial& material) {
@@ -137,6 +169,7 @@ unsigned uv_channel(const aiMaterial& material) {
 
 std::vector<Material> read_materials(const aiScene& scene, const fs::path& file, std::vector<std::string>& warnings) {
   std::vector<Material> materials;
+  std::vector<LeftOut> left_out;
   for (const aiMaterial* from : std::span(scene.mMaterials, scene.mNumMaterials)) {
     Material& material = materials.emplace_back();
     material.name = from->GetName().C_Str();
@@ -153,13 +186,17 @@ std::vector<Material> read_materials(const aiScene& scene, const fs::path& file,
     std::string reason;
     material.picture = read_picture(scene, named, file, reason);
     material.cutout = !material.picture.empty() && is_cutout(*from);
-    if (material.picture.empty())
-      warnings.push_back(
-          fmt::format("material \"{}\": picture \"{}\" is left out: {}", material.name, named.C_Str(), reason));
-    // Files often leave a dark or black colour behind a picture that stands for it.
-    else if (*type == aiTextureType_DIFFUSE)
+    if (material.picture.empty()) {
+      auto same = std::ranges::find(left_out, reason, &LeftOut::reason);
+      if (same == left_out.end()) same = left_out.insert(same, {reason, {}, {}});
+      same->materials.push_back(material.name);
+      same->pictures.emplace_back(named.C_Str());
+    } else if (*type == aiTextureType_DIFFUSE) {
+      // Files often leave a dark or black colour behind a picture that stands for it.
       material.color = Vec3::Ones();
+    }
   }
+  for (const LeftOut& each : left_out) warnings.push_back(told(each));
   return materials;
 }
 

@@ -32,16 +32,16 @@ const std::vector<Part> kSides = {
     {"UpperArm", {"upperarm", "arm", "shldr", "shldrbend", "uparm", "upperarm01", "humerus", "shoulder"}},
     {"LowerArm", {"lowerarm", "forearm", "forearmbend", "lowarm", "lowerarm01", "radius", "elbow"}},
     {"Hand", {"wrist", "hand"}},
-    {"UpperLeg", {"upperleg", "upleg", "thigh", "thighbend", "upperleg01", "femur", "hip"}},
-    {"LowerLeg", {"lowerleg", "lowleg", "leg", "calf", "shin", "lowerleg01", "tibia", "knee"}},
+    {"UpperLeg", {"upperleg", "upleg", "thigh", "thighbend", "upperleg01", "femur", "hip", "leg"}},
+    {"LowerLeg", {"lowerleg", "lowleg", "calf", "shin", "lowerleg01", "tibia", "knee", "leg"}},
     {"Foot", {"ankle", "foot"}},
     {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
 };
 
-/// What stands in names of nodes beside side and part: of Biped, Rigify, Source, VRM, Character Creator.
+/// What stands in names of nodes beside side and part: of Biped, Rigify, Source, VRM, Character Creator, Meebits.
 bool says_nothing(const std::string& word) {
   static const std::vector<std::string> kWords = {"b", "bn",  "c",     "cc",    "base", "def",
-                                                  "j", "bip", "biped", "valve", "m"};
+                                                  "j", "bip", "biped", "valve", "m",    "bone"};
   return word.starts_with("bip0") || std::ranges::find(kWords, word) != kWords.end();
 }
 
@@ -212,8 +212,9 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes) {
   for (const char* side : {"Left", "Right"}) {
     const std::size_t shoulder = joints.size();
     for (const Part& part : kSides) joints.push_back(find(side, part));
-    // What some call the shoulder is the upper arm where there is no other, and what some call the foot the toes where
-    // there is an ankle.
+    // What some call the shoulder is the upper arm where there is no other, what some call the foot the toes where
+    // there is an ankle, and a leg without a knee below it is the lower one.
+    if (joints[shoulder + 4] == joints[shoulder + 5]) joints[shoulder + 4] = -1;
     if (joints[shoulder] == joints[shoulder + 1]) joints[shoulder] = -1;
     if (joints.back() == joints[joints.size() - 2]) joints.back() = -1;
   }

@@ -104,6 +104,9 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
         "the waist, {:.2f} around the hips, and is {:.2f} m tall",
         fit.x(), fit.y(), *own.chest, *own.waist, *own.hip, *own.height);
     factors = factors.cwiseProduct(fit);
+    if (const std::string doubt = garment::doubt_that_hips_hold(pattern, factors, body);
+        !doubt.empty() && cloth.pins.empty())
+      object.warnings.push_back(fmt::format("{}: {}", where, doubt));
   }
   pattern.scale_by(factors);
   garment::Garment garment = garment::sew(pattern, cloth.edge_length, where, wearer);

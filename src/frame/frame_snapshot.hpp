@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "core/threads.hpp"
 #include "core/types.hpp"
 
 namespace weft::frame {
@@ -38,6 +39,7 @@ struct Finish {
   double warp_share = 0.5;  ///< of the threads that lie on top: 0.5 of a plain weave, more of a satin
   double fuzz = 0.4;        ///< fibres that stand out and catch light at grazing angles
   double sheer = 0.25;      ///< light that comes through from the other side
+  Threads threads = Threads::plain;
 };
 
 /// How a surface looks. Colours are sRGB, 0 to 1.

@@ -1,5 +1,7 @@
 #include "garment/fit.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
 #include "core/error.hpp"
@@ -14,6 +16,8 @@ constexpr double kHips = 0.52;
 constexpr double kLowestHip = -0.1, kLowestWaist = 0.2, kHighestWaist = 0.55, kArmpits = 0.75;
 // Apart of sections that are measured [m].
 constexpr double kSpacing = 0.01;
+// Least girth of the hips, in waists of a garment, over which it stays up: one of 1.05 fell, 1.16 and more held.
+constexpr double kHolds = 1.1;
 
 }  // namespace
 
@@ -48,6 +52,17 @@ Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string
     if (drawn.*girth) across = std::max(across, *(own.*girth) / *(drawn.*girth));
   if (drawn.height) up = *own.height / *drawn.height;
   return {across > 0 ? across : up, up};
+}
+
+std::string doubt_that_hips_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer) {
+  const Measures& drawn = pattern.measures;
+  if (!drawn.waist || drawn.chest) return {};
+  const double waist = *drawn.waist * factors.x(), hips = *measure(wearer).hip;
+  if (hips >= kHolds * waist) return {};
+  return fmt::format(
+      "its waist is {:.2f} m around and the hips of its wearer {:.2f} m, which do not hold it up: pin its waist, as in "
+      "pin = [{{ edge = \"{}\", follow = \"WEARER.torso\" }}]",
+      waist, hips, pattern.panels.empty() ? "PANEL.EDGE" : pattern.panels.front().name + ".EDGE");
 }
 
 }  // namespace weft::garment

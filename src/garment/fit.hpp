@@ -18,4 +18,8 @@ Measures measure(const Wearer& wearer);
 /// measures.
 Vec2 fit_factors(const Pattern& pattern, const Wearer& wearer, const std::string& where);
 
+/// What is to be told of a garment that hangs from the waist alone, of a wearer whose hips are hardly wider than it is
+/// there with `factors` on its drawing; empty: they hold it.
+std::string doubt_that_hips_hold(const Pattern& pattern, const Vec2& factors, const Wearer& wearer);
+
 }  // namespace weft::garment

@@ -160,7 +160,7 @@ class Sewing {
         pattern_.panels, [](const Panel& panel) { return panel.reinforcement != mesh::Reinforcement{}; });
     for (std::size_t p = 0; p < meshes_.size(); ++p) {
       const Panel& panel = pattern_.panels[p];
-      const bool back = panel.side == Side::back;
+      const bool inside = panel.from_inside();
       for (const mesh::Triangle& t : meshes_[p].triangles) {
         mesh::Triangle joined{};
         std::array<Vec2, 3> material;
@@ -168,8 +168,8 @@ class Sewing {
           joined[k] = number_[at(first_[p] + t[k])];
           material[k] = along_grain(panel, meshes_[p].points[at(t[k])]);
         }
-        // Seen from behind, where the front of a back panel is, left and right change places.
-        if (back) {
+        // Seen from where the front of such a panel is, left and right change places.
+        if (inside) {
           std::swap(joined[1], joined[2]);
           std::swap(material[1], material[2]);
           for (Vec2& m : material) m.x() = -m.x();
@@ -210,7 +210,7 @@ class Sewing {
       while (at(garment_.panel_of[t]) != p) first = t, ++p;
       auto& of = corners.emplace_back();
       mesh::Triangle own = meshes_[p].triangles[t - first];
-      if (pattern_.panels[p].side == Side::back) std::swap(own[1], own[2]);
+      if (pattern_.panels[p].from_inside()) std::swap(own[1], own[2]);
       for (std::size_t k = 0; k < 3; ++k) of[k] = bent[p][at(own[k])];
     }
     std::vector<Vec3>& x = garment_.sheet.rest;

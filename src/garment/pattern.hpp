@@ -40,10 +40,14 @@ struct Panel {
   std::optional<Vec2> position;  ///< where the panel's origin starts: across and up the wearer [m]
   double rotation = 0;           ///< at the start, counter-clockwise seen from before [degrees]
   Vec2 scale{1, 1};              ///< at the start, across and up, before the rotation
+  bool turned = false;           ///< its right side goes on from the wrong side of what it is sewn to, as a lapel's
 
   mesh::Reinforcement reinforcement;  ///< fusing, or a heavier fabric
 
   std::vector<PanelEdge> edges;  ///< around the outline, counter-clockwise
+
+  /// Whether it is drawn as seen from the inside of the garment.
+  bool from_inside() const { return (side == Side::back) != turned; }
 };
 
 /// Sews two edges together, named "panel.edge". Both get the same points, at the same shares of their lengths: the

@@ -8,10 +8,11 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <set>
 
-#include "garment/triangulation.hpp"
+#include "garment/specification_panels.hpp"
 
 namespace weft::garment {
 namespace {
@@ -30,59 +31,6 @@ constexpr double kChest = 0.998, kWaist = 0.843, kHip = 1.035, kHeight = 1.72;
 constexpr double kBelowFloor = -0.2;
 // Least height above the floor that they start at [m].
 constexpr double kClear = 0.02;
-constexpr int kPointsOfCurve = 8;
-
-/// One side of a panel; coordinates are those of the panel [m].
-struct SpecEdge {
-  Vec2 start, end;
-  std::vector<Vec2> control;          // of a Bézier curve, if any
-  double radius = 0;                  // of an arc, if not 0
-  bool large = false, right = false;  // as in SVG, y upward
-  bool has_length() const { return (end - start).norm() > 1e-9; }
-};
-
-/// A stitch from one edge to another.
-struct SpecStitch {
-  std::array<std::size_t, 2> panel, edge;
-};
-
-struct SpecPanel {
-  std::string name, words;  // words: label and name, in small letters
-  std::vector<SpecEdge> edges;
-  Mat3 rotation = Mat3::Identity();
-  Vec3 translation{0, 0, 0};  // [m]
-  // What follows from these.
-  std::vector<std::vector<Vec2>> points;  // along each edge
-  bool mirrored = false;                  // drawn as seen from within
-  Vec3 outward{0, 0, 1};
-  Vec3 middle{0, 0, 0};  // in space
-  Around around = Around::torso;
-  int steps = -1;  // of a limb: stitches to the trunk
-
-  Vec3 in_space(const Vec2& p) const { return rotation * Vec3(p.x(), p.y(), 0) + translation; }
-  bool limb() const { return around >= Around::left_arm; }
-};
-
-/// SVG path data of a panel whose points are moved by `map`.
-std::string path_of(const SpecPanel& panel, const Eigen::Affine2d& map) {
-  std::string path;
-  const bool flips = map.linear().determinant() < 0;
-  const auto text = [&](const Vec2& p) {
-    const Vec2 q = map * p;
-    return fmt::format(" {} {}", q.x(), q.y());
-  };
-  for (const SpecEdge& edge : panel.edges) {
-    if (!edge.has_length()) continue;
-    if (path.empty()) path = "M" + text(edge.start);
-    if (edge.radius > 0)
-      path += fmt::format(" A {0} {0} 0 {1:d} {2:d}", edge.radius, edge.large, edge.right != flips);
-    else
-      path += edge.control.empty() ? " L" : edge.control.size() == 1 ? " Q" : " C";
-    for (const Vec2& p : edge.control) path += text(p);
-    path += text(edge.end);
-  }
-  return path + " Z";
-}
 
 class Reader {
  public:
@@ -106,8 +54,14 @@ class Reader {
     read_stitches(root["pattern"]);
     if (wrong_) return false;
     for (SpecPanel& panel : panels_) look_at(panel);
+    if (const auto ring = turn_over(panels_, stitches_)) {
+      mistake(fmt::format("pattern.stitches.{}", *ring),
+              "expected stitches that leave each panel one side outside, got a ring of them that turns it over");
+      return false;
+    }
     find_parts();
     write(pattern);
+    lay_over(pattern);
     return true;
   }
 
@@ -244,11 +198,8 @@ class Reader {
         mistake(key, "expected two edges, got " + value.dump().substr(0, 40));
         continue;
       }
-      if (value.size() > 2 && value[2] == "right_wrong") {
-        mistake(key, "expected right sides together, got right_wrong, which turns a panel over");
-        continue;
-      }
       SpecStitch stitch;
+      stitch.right_wrong = value.size() > 2 && value[2] == "right_wrong";
       bool found = true;
       for (const std::size_t k : {0, 1}) found &= find_edge(value[k], key, stitch.panel[k], stitch.edge[k]);
       if (found) stitches_.push_back(stitch);
@@ -267,28 +218,6 @@ class Reader {
     if (panel < panels_.size() && edge < panels_[panel].edges.size()) return true;
     if (!wrong_) mistake(key, fmt::format("expected an edge of a panel, got {} of \"{}\"", edge, name));
     return false;
-  }
-
-  /// Points, front and middle of a panel. Around its front edges run counter-clockwise.
-  static void look_at(SpecPanel& panel) {
-    std::vector<Vec2> around;
-    for (const SpecEdge& edge : panel.edges) {
-      auto& points = panel.points.emplace_back();
-      SpecPanel alone;
-      alone.edges = {edge, {edge.end, edge.start, {}, 0, false, false}};
-      const ParsedPath path =
-          edge.has_length() ? parse_path(path_of(alone, Eigen::Affine2d::Identity())) : ParsedPath{};
-      for (std::size_t c = 0; c + 1 < path.outline.size(); ++c)  // without the way back
-        for (int k = 0; k < kPointsOfCurve; ++k) points.push_back(path.outline[c].at(double(k) / kPointsOfCurve));
-      if (points.empty()) points.push_back(edge.start);
-      around.insert(around.end(), points.begin(), points.end());
-    }
-    panel.mirrored = polygon_area(around) < 0;
-    // −0 would be an angle of −180° behind.
-    panel.outward = panel.rotation.col(2) * (panel.mirrored ? -1 : 1) + Vec3::Zero();
-    Vec2 low = around[0], high = around[0];
-    for (const Vec2& p : around) low = low.cwiseMin(p), high = high.cwiseMax(p);
-    panel.middle = panel.in_space(0.5 * (low + high));
   }
 
   bool says(const SpecPanel& panel, std::initializer_list<const char*> words) const {
@@ -380,7 +309,7 @@ class Reader {
     return map;
   }
 
-  void write(Pattern& pattern) const {
+  void write(Pattern& pattern) {
     pattern.measures.chest = kChest;
     pattern.measures.waist = kWaist;
     pattern.measures.hip = kHip;
@@ -392,7 +321,7 @@ class Reader {
     // Trousers that end below the floor hang lower there than they are worn.
     const double floor = old_ || lowest < kBelowFloor ? -kOldOrigin : std::min(0.0, lowest - kClear);
     for (std::size_t p = 0; p < panels_.size(); ++p) {
-      const SpecPanel& of = panels_[p];
+      SpecPanel& of = panels_[p];
       findings_.add_entry("panel", "pattern.panels." + of.name);
       Panel panel;
       panel.name = of.name;
@@ -422,18 +351,56 @@ class Reader {
       // Along arms and at the neck bodies differ more than patterns say.
       if (arm || of.around == Around::neck) panel.position.reset();
       panel.path = path_of(of, map);
+      panel.turned = of.turned;
+      of.worn = map;
       for (std::size_t e = 0; e < of.edges.size(); ++e)
         if (of.edges[e].has_length()) panel.edge_names += fmt::format("{} ", e);
       pattern.panels.push_back(std::move(panel));
     }
     for (std::size_t s = 0; s < stitches_.size(); ++s) {
-      const auto& [p, e] = stitches_[s];
+      const auto& p = stitches_[s].panel;
+      const auto& e = stitches_[s].edge;
       if (!panels_[p[0]].edges[e[0]].has_length() || !panels_[p[1]].edges[e[1]].has_length()) continue;
       findings_.add_entry("seam", fmt::format("pattern.stitches.{}", s));
       Seam& seam = pattern.seams.emplace_back();
       seam.a = fmt::format("{}.{}", panels_[p[0]].name, e[0]);
       seam.b = fmt::format("{}.{}", panels_[p[1]].name, e[1]);
     }
+  }
+
+  /// Turned panels begin folded over what they are sewn to, a layer above it: both run along the seam in one sense.
+  void lay_over(Pattern& pattern) const {
+    for (std::size_t p = 0; p < panels_.size(); ++p) {
+      Panel& panel = pattern.panels[p];
+      std::vector<Vec2> own, other;
+      for (const SpecStitch& stitch : stitches_)
+        for (const std::size_t k : {0, 1}) {
+          const std::size_t q = stitch.panel[1 - k];
+          const Panel& under = pattern.panels[q];
+          if (stitch.panel[k] != p || !stitch.right_wrong || !panels_[p].turned || !under.position) continue;
+          panel.around = under.around, panel.angle = under.angle, panel.layer = under.layer + 1;
+          for (const Vec2& x : ends_as_worn(p, stitch.edge[k])) own.push_back(x);
+          for (const Vec2& x : ends_as_worn(q, stitch.edge[1 - k])) other.push_back(*under.position + x);
+        }
+      if (own.empty()) continue;
+      // Least squares (Kabsch) in the plane.
+      const auto count = static_cast<double>(own.size());
+      const Vec2 from = std::accumulate(own.begin(), own.end(), Vec2(0, 0)) / count;
+      const Vec2 to = std::accumulate(other.begin(), other.end(), Vec2(0, 0)) / count;
+      double along = 0, across = 0;
+      for (std::size_t i = 0; i < own.size(); ++i) {
+        const Vec2 a = own[i] - from, b = other[i] - to;
+        along += a.dot(b), across += a.x() * b.y() - a.y() * b.x();
+      }
+      panel.rotation = std::atan2(across, along) / kDegree;
+      panel.position = to - Eigen::Rotation2Dd(panel.rotation * kDegree) * from;
+    }
+  }
+  /// Ends and middle of an edge.
+  std::array<Vec2, 3> ends_as_worn(std::size_t p, std::size_t e) const {
+    const auto& points = panels_[p].points;
+    const Eigen::Affine2d& worn = panels_[p].worn;
+    return {worn * points[e][0], worn * points[e][points[e].size() / 2], worn * points[(e + 1) % points.size()][0]};
   }
 
   const std::string& text_;

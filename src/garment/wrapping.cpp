@@ -253,7 +253,7 @@ class NearSkin {
 }  // namespace
 
 bool seen_alike(const Panel& a, const Panel& b) {
-  return (a.side == Side::back) == (b.side == Side::back);
+  return a.from_inside() == b.from_inside();
 }
 
 std::vector<std::vector<Vec3>> bend_around(const Pattern& pattern, std::span<const FlatMesh> meshes,

@@ -166,7 +166,7 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
             .cast<float>());
     const frame::Finish& finish = look.finish;
     texels.push_back(Eigen::Vector4d(finish.gloss, finish.warp_share, finish.fuzz, finish.sheer).cast<float>());
-    texels.emplace_back(static_cast<float>(opacity), 0.0f, 0.0f, 0.0f);
+    texels.emplace_back(static_cast<float>(opacity), static_cast<float>(finish.threads), 0.0f, 0.0f);
   }
   const int rows = static_cast<int>(materials.size());
   if (rows > material_rows_) {

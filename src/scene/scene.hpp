@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "core/threads.hpp"
 #include "core/types.hpp"
 
 namespace weft::scene {
@@ -131,6 +132,7 @@ struct PanelPaint : Paint {
 /// What cloth does with light beside showing its colour, each from 0 to 1; see frame::Finish.
 struct Finish {
   double gloss, warp_share, fuzz, sheer;
+  Threads threads = Threads::plain;
 };
 
 struct Look : Paint {
@@ -139,6 +141,7 @@ struct Look : Paint {
   double roughness = 0.6;
   std::optional<double> gloss, fuzz, sheer;  ///< cloth only; those of the fabric where absent
   double warp_share = 0.5;                   ///< of the gloss; of the fabric
+  Threads threads = Threads::plain;          ///< of the fabric
   double cloth_thickness = 0;                ///< of the fabric itself [m]
   double thread_spacing = 0.0006;            ///< of the drawn weave [m]; cloth only; 0 draws none
   std::optional<double> hem;                 ///< width of its hems [m]; cloth only; 0: cut edges

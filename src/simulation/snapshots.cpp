@@ -31,7 +31,8 @@ constexpr double kBackPaleness = 0.35;
 frame::Appearance appearance(const scene::Look& look) {
   frame::Appearance result;
   result.roughness = look.roughness;
-  result.finish = {look.gloss.value_or(0), look.warp_share, look.fuzz.value_or(0), look.sheer.value_or(0)};
+  result.finish = {look.gloss.value_or(0), look.warp_share, look.fuzz.value_or(0), look.sheer.value_or(0),
+                   look.threads};
   result.thread_spacing = look.thread_spacing;
   result.thickness = look.cloth_thickness;
   result.hem = look.hem.value_or(0);
@@ -53,6 +54,7 @@ scene::Look look_of(const scene::Cloth& cloth) {
   look.fuzz = look.fuzz.value_or(finish.fuzz);
   look.sheer = look.sheer.value_or(finish.sheer);
   look.warp_share = finish.warp_share;
+  look.threads = finish.threads;
   look.cloth_thickness = fabric ? fabric->measured.thickness.value : kThicknessByWeight * cloth.material.density;
   const double hem = cloth.shape == scene::ClothShape::pattern ? kGarmentHem : kHem;
   look.hem = look.hem.value_or(!fabric || fabric->frays ? hem : 0);

@@ -333,8 +333,24 @@ TEST_F(Scenes, PicturesThatCannotBeHadAreLeftOutWithAWarning) {
   scene_.mNumMaterials = 1;
   const ReadCharacter got = to_character(scene_, "/nowhere/body.fbx");
   ASSERT_EQ(got.warnings.size(), 1u);
-  EXPECT_EQ(got.warnings[0], "material \"\": picture \"C:\\paint\\skin.tga\" is left out: it is not there");
+  EXPECT_EQ(got.warnings[0], "material \"\": picture \"C:\\paint\\skin.tga\" is left out: not there");
   EXPECT_EQ(got.character.coloring.material_of_triangle.size(), 4u);
+}
+
+// FBX of avatars whose pictures were not embedded: one line for what was eight.
+TEST_F(Scenes, PicturesThatAreNeitherNamedNorHeldAreToldOfOnce) {
+  scene_.mNumMaterials = 5;
+  scene_.mMaterials = new aiMaterial*[5];
+  for (unsigned i = 0; i < 5; ++i) {
+    const aiString name("M" + std::to_string(i)), nowhere(".");
+    auto* material = scene_.mMaterials[i] = new aiMaterial;
+    material->AddProperty(&name, AI_MATKEY_NAME);
+    material->AddProperty(&nowhere, AI_MATKEY_TEXTURE(aiTextureType_DIFFUSE, 0));
+  }
+  const ReadCharacter got = to_character(scene_, "/nowhere/body.fbx");
+  ASSERT_EQ(got.warnings.size(), 1u);
+  EXPECT_EQ(got.warnings[0],
+            "materials \"M0\", \"M1\", \"M2\" and 2 more: pictures are left out: neither named nor held by the file");
 }
 
 TEST_F(Scenes, CutShortBetweenProcessesAreRefused) {

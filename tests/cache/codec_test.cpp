@@ -67,6 +67,7 @@ TEST(Codec, SurfacesComeBackAsTheyWere) {
     EXPECT_EQ(a.appearance.back_color, b.appearance.back_color);
     EXPECT_EQ(a.appearance.roughness, b.appearance.roughness);
     EXPECT_EQ(a.appearance.thread_spacing, b.appearance.thread_spacing);
+    EXPECT_EQ(a.appearance.finish.threads, b.appearance.finish.threads);
     EXPECT_EQ(a.appearance.checker, b.appearance.checker);
     expect_same_paint(a.appearance, b.appearance);
     ASSERT_EQ(a.parts.size(), b.parts.size());

@@ -37,6 +37,7 @@ struct Sample {
     cloth.appearance.back_color = {0.9, 0.7, 0.5};
     cloth.appearance.roughness = 0.25;
     cloth.appearance.thread_spacing = 1e-3;
+    cloth.appearance.finish.threads = Threads::knit;
     const auto picture = std::make_shared<const frame::Texture>(frame::Texture{2, 1, {1, 2, 3, 4, 5, 6, 7, 8}});
     cloth.appearance.paint = {
         picture, {}, frame::Paint::Wrap::once, frame::Paint::Wrap::mirror, frame::Paint::Alpha::over_color};

@@ -70,5 +70,18 @@ TEST(Fit, TakesTheLargestRatioOfTheGirthsAndThatOfTheHeights) {
                         [&] { fit_factors(pattern, wearer, "cloth.c"); });
 }
 
+// As a skirt for the waist of a hoodie, which fell to the feet. What hangs from the shoulders too does not fall.
+TEST(Fit, TellsOfHipsThatHoldNothingUp) {
+  const Wearer wearer = round_wearer();
+  const double hip = *measure(wearer).hip;
+  Pattern pattern;
+  pattern.measures.waist = hip / 1.15;
+  EXPECT_EQ(doubt_that_hips_hold(pattern, Vec2(1, 1), wearer), "");
+  EXPECT_EQ(doubt_that_hips_hold(pattern, Vec2(1.1, 2), wearer).substr(0, 50),
+            "its waist is 0.96 m around and the hips of its wea");
+  pattern.measures.chest = 1;
+  EXPECT_EQ(doubt_that_hips_hold(pattern, Vec2(1.1, 2), wearer), "");
+}
+
 }  // namespace
 }  // namespace weft::garment

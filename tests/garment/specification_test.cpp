@@ -170,6 +170,58 @@ TEST_F(Specification, IsSewnAroundTheWearer) {
   EXPECT_NEAR(spans().max().z(), 1.2 * box.max().z(), 0.03);
 }
 
+// A flap 15 cm wide, drawn lying on its side, whose right side goes on from the wrong side of the front's top.
+TEST_F(Specification, RightToWrongSideFoldsAPanelOver) {
+  std::string folded = changed(kSpecification, R"("left_sleeve_f": {)", R"("flap": { "translation": [0, 150, 60],
+        "vertices": [[0, 60], [0, 0], [15, 0], [15, 60]],
+        "edges": [ { "endpoints": [0, 1] }, { "endpoints": [1, 2] }, { "endpoints": [2, 3] },
+          { "endpoints": [3, 0] } ] },
+      "left_sleeve_f": {)");
+  folded = changed(folded, R"([ { "panel": "left_sleeve_f", "edge": 1 }, { "panel": "skirt_front", "edge": 2 } ])",
+                   R"([ { "panel": "flap", "edge": 0 }, { "panel": "skirt_front", "edge": 2 }, "right_wrong" ])");
+  folded = changed(folded, R"(, "curvature": { "type": "circle", "params": [60, 0, 0] })", "");
+  const std::size_t sleeve = folded.find(",\n      \"left_sleeve_f\""), end = folded.find("\n    },\n    \"stitches\"");
+  folded.erase(sleeve, end - sleeve);
+  const ReadPattern read = this->read(folded);
+  ASSERT_TRUE(read.mistakes.empty()) << read.mistakes[0];
+  const Panel& flap = read.pattern.panels[0];
+  ASSERT_EQ(flap.name, "flap");
+  EXPECT_TRUE(flap.turned);
+  EXPECT_EQ(flap.layer, 1);
+  for (const std::size_t other : {1, 2}) EXPECT_FALSE(read.pattern.panels[other].turned);
+  // The front's top goes from (0.3, 0.9) to (-0.3, 0.9); the flap hangs down before it from there.
+  const std::vector<Vec2> corners{{0.3, 0.9}, {-0.3, 0.9}, {-0.3, 0.75}, {0.3, 0.75}};
+  for (std::size_t e = 0; e < 4; ++e) {
+    const Vec2 start = flap.edges[read.pattern.find("flap." + std::to_string(e)).second].curves[0].start();
+    const Vec2 worn = *flap.position + Eigen::Rotation2Dd(flap.rotation * std::numbers::pi / 180) * start;
+    EXPECT_LT((worn - corners[e]).norm(), 1e-9) << e;
+  }
+  // It is sewn as one surface, lies before the front, and shows its back there.
+  const environment::Environment made(support::scene_of_text(
+      "[[character]]\nname = 'model'\nsource = 'mannequin'\nstance = 'rest'\nblend = 1\nedge_length = 0.05\n"
+      "[[cloth]]\nname = 'skirt'\nshape = 'pattern'\nfile = '" +
+      (folder_ / "a_specification.json").string() + "'\nedge_length = 0.04\n"));
+  const environment::ClothObject& cloth = made.cloths[0];
+  const std::vector<mesh::Triangle>& triangles = cloth.mesh.topology.triangles;
+  double flap_last = -1, front_first = 1;
+  Vec3 flap_faces(0, 0, 0), front_faces(0, 0, 0);
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    std::array<Vec3, 3> x;
+    for (std::size_t k = 0; k < 3; ++k) x[k] = cloth.start[static_cast<std::size_t>(triangles[t][k])];
+    const Vec3 middle = (x[0] + x[1] + x[2]) / 3;
+    if (std::abs(middle.x()) > 0.1 || middle.z() < 0.77 || middle.z() > 0.85 || middle.y() > 0) continue;
+    const std::string& panel = cloth.panels[static_cast<std::size_t>(cloth.panel_of[t])];
+    (panel == "flap" ? flap_faces : front_faces) += (x[1] - x[0]).cross(x[2] - x[0]);
+    if (panel == "flap")
+      flap_last = std::max(flap_last, middle.y());
+    else
+      front_first = std::min(front_first, middle.y());
+  }
+  EXPECT_LT(flap_last, front_first);
+  EXPECT_GT(flap_faces.y(), 0.5 * flap_faces.norm());
+  EXPECT_LT(front_faces.y(), -0.5 * front_faces.norm());
+}
+
 // Slivers beside an edge of 2 mm would be as stiff as they are short.
 TEST_F(Specification, EdgesShorterThanTheMeshBecomePoints) {
   const std::string with_corner = changed(
@@ -213,7 +265,8 @@ TEST_F(Specification, MistakesNameWhatTheyAreAbout) {
             "\"spline\"");
   EXPECT_EQ(
       first(changed(kSpecification, R"("skirt_back", "edge": 2 } ])", R"("skirt_back", "edge": 2 }, "right_wrong" ])")),
-      "1:1: pattern.stitches.0: expected right sides together, got right_wrong, which turns a panel over");
+      "1:1: pattern.stitches.1: expected stitches that leave each panel one side outside, got a ring of them that "
+      "turns it over");
   EXPECT_EQ(first(changed(kSpecification, R"("skirt_back", "edge": 2)", R"("skirt_back", "edge": 4)")),
             "1:1: pattern.stitches.0: expected an edge of a panel, got 4 of \"skirt_back\"");
   EXPECT_EQ(first(changed(kSpecification, R"("skirt_back", "edge": 2)", R"("skirt_back", "edge": 0)")),
