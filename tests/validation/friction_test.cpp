@@ -107,8 +107,8 @@ TEST_P(Incline, IsSlidDownAsABlockDoes) {
     }
 }
 
-// What slides holds its neighbours as they land one after the other. A block loses nothing by its fall: whatever the wall
-// gives it up to rest, friction takes the share mu of, and while it falls it gains mu times that height.
+// What slides holds its neighbours as they land one after the other. A block loses nothing by its fall: whatever the
+// wall gives it up to rest, friction takes the share mu of, and while it falls it gains mu times that height.
 TEST_P(Incline, IsSlidDownAfterAFallToo) {
   const double mu = 0.3, angle = std::atan(mu) + kDegree;
   scene::Scene scene = incline(angle, mu, 21);
