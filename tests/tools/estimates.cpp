@@ -31,9 +31,10 @@ struct Case {
   const char *name, *cloth, *rest;
 };
 constexpr const char* kFree = "[contact]\nself = false\nobstacles = false\n";
+// Of no fabric, as the map of bench/stability.cpp.
 constexpr const char* kSoft =
-    "material = { stretch = 200, shear = 60, bend = 1e-3, stretch_viscosity = 0.2, shear_viscosity = 0.1, "
-    "bend_friction = 0 }\n";
+    "material = { density = 0.2, stretch = 200, max_stretch = 0, shear = 60, bend = 1e-3, bend_viscosity = 5e-6, "
+    "stretch_viscosity = 0.2, shear_viscosity = 0.1, bend_friction = 0 }\n";
 constexpr const char* kBall = "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nradius = 0.15\n";
 const Case kCases[] = {
     {"swing from two corners",

@@ -32,7 +32,11 @@ constexpr double kLoadChange = 0.2;
 // Steps on end that a particle has to be slow in before it sticks. What begins to slide is held by neighbours that do
 // so a step later, and if it stuck for that they would hold each other for ever: a sheet that fell by 1 mm onto a slope
 // stood still one degree above the angle of friction.
-constexpr std::uint8_t kSlowSteps = 2;
+constexpr std::int8_t kSlowSteps = 2;
+// And what was let go because it was held too weakly, and has not been fast since: it hands its load on to those that
+// stick around it, and they let go a step later. With kSlowSteps for these too sheets that fell onto slopes 0.5 degrees
+// above the angle of friction stood still (friction 0.6, and 0.3 in some meshes).
+constexpr std::int8_t kSlowStepsOfReleased = 20;
 // Walls that are looked at for one particle, the most violated ones.
 constexpr std::size_t kMostWalls = 8;
 
@@ -252,6 +256,7 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
     if (!(slips || passes) || particle.flips++ >= kFlips) return false;
     if (slips) {
       memory.state = State::sliding;
+      memory.slow = kSlowSteps - kSlowStepsOfReleased;
       particle.friction_load = memory.load;
     }
     hold(particle, held_at, next);
@@ -261,8 +266,9 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   const bool other_walls = !next.same_walls(particle.held);
   const double change = wall.friction * std::abs(memory.load - particle.friction_load);
   const bool other_load = change > negligible && change > kLoadChange * limit;
-  particle.slow =
-      limit > 0 && !other_load && !other_walls && slip(particle, x_end).norm() < ContactSet::kStickSpeed * step_;
+  const bool fast = slip(particle, x_end).norm() >= ContactSet::kStickSpeed * step_;
+  particle.slow = limit > 0 && !other_load && !other_walls && !fast;
+  if (fast) memory.slow = 0;
   hold(particle, held_at, next);
   particle.friction_load = memory.load;
   const bool matters = other_load || (other_walls && (passed.load() >= kPassed || left.norm() > negligible));
@@ -276,7 +282,7 @@ void VelocityConstraints::accept() {
     if (particle.memory.state == State::away) continue;
     Memory& memory = memory_[particle.particle] = particle.memory;
     const bool slow = particle.slow && memory.state == State::sliding;
-    memory.slow = slow ? static_cast<std::uint8_t>(memory.slow + 1) : 0;
+    memory.slow = slow ? static_cast<std::int8_t>(memory.slow + 1) : std::min<std::int8_t>(memory.slow, 0);
     if (memory.slow == kSlowSteps) memory.state = State::sticking, memory.slow = 0;
     remembered_.push_back(particle.particle);
   }
@@ -366,7 +372,9 @@ void VelocityConstraints::serialize(Archive& archive) {
     Memory& memory = memory_[particle];
     serialize_values(archive, memory.state, memory.push, memory.load, memory.slow);
     if constexpr (Archive::kReads)
-      require(memory.state <= State::sliding && memory.slow < kSlowSteps, "a particle that sticks or slides");
+      require(memory.state <= State::sliding && memory.slow < kSlowSteps &&
+                  memory.slow >= kSlowSteps - kSlowStepsOfReleased,
+              "a particle that sticks or slides");
   });
 }
 

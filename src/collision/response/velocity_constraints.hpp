@@ -35,8 +35,9 @@ struct PrescribedParticle {
 /// residual says that it would pull. Walls of one particle act together: up to three hold it at once. What is held is
 /// held in the tangent plane too, moving with the obstacle, while the force that this takes lies in the friction cone.
 /// Else it slides, with friction μ · load against the slip, smooth below kStickSpeed as that of ContactSet; sliding
-/// that slow in two steps on end sticks from then on. (As an explicit force, friction threw neighbours that began to
-/// slide together back past where they came from, and cloth at rest went to and fro between sticking and sliding.)
+/// that slow in two steps on end, or in twenty where it was let go just now, sticks from then on. (As an explicit
+/// force, friction threw neighbours that began to slide together back past where they came from, and cloth at rest went
+/// to and fro between sticking and sliding.)
 ///
 /// All this is decided anew between solves of a step (revise) and remembered for the next step (accept).
 class VelocityConstraints {
@@ -109,7 +110,8 @@ class VelocityConstraints {
     State state = State::away;
     Vec3 push = Vec3::Zero();  // force of the walls, normal part [N]
     double load = 0;           // its size, by walls [N]
-    std::uint8_t slow = 0;     // steps on end that it has slid so slowly that it might stick
+    // Steps on end that it has slid so slowly that it might stick; below zero where it was let go just before.
+    std::int8_t slow = 0;
   };
   struct Touched {
     Index particle;
