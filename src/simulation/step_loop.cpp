@@ -161,7 +161,9 @@ void StepLoop::advance_equally(double t_t0, double t_t1, FrameReport& report) {
 // which it alone would need, would be felt in those that follow.
 bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
-  if (scene_.time.integrator != scene::Integrator::implicit_euler || gusts_ || whole > kLongestRest ||
+  // Velocity constraints let go and stick again step by step.
+  const bool by_steps = scene_.contact.response == scene::Response::velocity_constraints;
+  if (scene_.time.integrator != scene::Integrator::implicit_euler || by_steps || gusts_ || whole > kLongestRest ||
       whole > progress_.longest || !is_slow(progress_.now) || !has_settled())
     return false;
   for (int s = 1; s <= steps; ++s) {

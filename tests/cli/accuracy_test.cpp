@@ -113,7 +113,8 @@ TEST(Trajectories, MedianIsThatOfEachNumber) {
 TEST(Trajectories, HoldTheNumbersOfAFlatSheetAtTheEnd) {
   // Held all over, 2 m high, half of it turned away from the sight from above.
   const scene::Scene scene = support::scene_of_text(
-      "[time]\nduration = 0.08\n[contact]\nself = false\n[[cloth]]\nname = \"a\"\nsize = [0.6, 0.5]\n"
+      "[time]\nduration = 0.08\nintegrator = \"bdf2\"\n[contact]\nself = false\n[[cloth]]\nname = \"a\"\nsize = [0.6, "
+      "0.5]\n"
       "particles = [4, 3]\nposition = [1, 0, 2]\nrotation = [60, 0, 0]\nmaterial = { density = 0.5 }\npin = [{}]\n");
   const Trajectory trajectory = follow(scene);
   EXPECT_EQ(trajectory.frames.size(), 2u);
