@@ -187,7 +187,7 @@ bool StepLoop::is_slow(const Moment& moment) {
   return std::ranges::all_of(moment.v, [](const Vec3& v) { return v.squaredNorm() <= kRestSpeed * kRestSpeed; });
 }
 
-// One step in place of several; false where something wakes up, and the state is what it was.
+// One step in place of several; false where something wakes up, and then no more is left of it than of a rejected step.
 bool StepLoop::rest(double t, double h, FrameReport& report) {
   if (attempt(t, h, 0, false, report)) return false;
   if (!is_slow(next_) || local_error_ > 0.5 * h * h * kRestAcceleration) return false;
