@@ -17,6 +17,10 @@ constexpr double kCollapsed = 1e-12;
 // its neighbours and clamps do not: at 1e4, 1e5, 1e6 N/m a cantilever of 16 cells then is off by −0.7, −3.5, −8.1 %,
 // with a quarter by 0.1, −0.5, −2.8, with a tenth by 0.2, 0.1, −0.8 %. With less, tension holds middles up less.
 constexpr double kBulge = 0.1;
+// Share of its size below which a cell is folded up so far that the normal of its diagonals tells less and less where
+// its middle belongs: it turns by 1 / size. A corner of leather that a pin tears took steps down to a microsecond for a
+// cell that was at a tenth.
+constexpr double kFoldedUp = 0.5;
 
 // Which of a cell's five particles are the corners of its triangle k.
 std::array<std::size_t, 3> corners_of(std::size_t k) {
@@ -52,6 +56,7 @@ CrossedMembrane::CrossedMembrane(const mesh::Sheet& sheet, Index first, const St
       const Vec2& of_middle = triangles[t + k].gradients[2];
       cell.bulge_u += kBulge * 0.25 * of_middle.x() * of_middle.x();
       cell.bulge_v += kBulge * 0.25 * of_middle.y() * of_middle.y();
+      cell.least_size += 2 * kFoldedUp * triangles[t + k].area;
     }
     cell.particles[4] = triangles[t].particles[2];
     cells_.push_back(cell);
@@ -86,30 +91,38 @@ CrossedMembrane::Five CrossedMembrane::vectors_of(const Cell& cell, std::span<co
   return vectors;
 }
 
-CrossedMembrane::State CrossedMembrane::state_of(const Five& positions) {
+CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, const Five& positions) {
   State state;
   state.flat = positions;
   const auto& [a, b, c, d, middle] = state.flat;
   state.diagonals = {c - a, d - b};
   // By differences, so that only they are rounded.
   state.lean = (middle - a) - 0.25 * ((b - a) + (c - a) + (d - a));
-  const Vec3 normal = state.diagonals[0].cross(state.diagonals[1]);
-  state.size = normal.norm();
-  state.normal = state.size > 0 ? Vec3(normal / state.size) : Vec3::Zero();
+  const Vec3 product = state.diagonals[0].cross(state.diagonals[1]);
+  const double size = product.norm(), least = cell.least_size;
+  const bool folded_up = size < least;
+  state.size = folded_up ? 0.5 * (size * size / least + least) : size;
+  state.normal = product / state.size;
+  if (size > 0) state.direction = product / size;
+  state.kept = folded_up ? 1 - size * size / (least * state.size) : 0;
   state.height = state.normal.dot(state.lean);
   state.flat[4] -= state.height * state.normal;
   return state;
 }
 
+// δn = (I − (1 − κ) e eᵀ) δ(D₁ × D₂) / S, which is its own transpose.
+Vec3 CrossedMembrane::turned(const State& state, const Vec3& product) {
+  return (product - (1 - state.kept) * state.direction.dot(product) * state.direction) / state.size;
+}
+
 // From forces on the flat cell and along its height to those on the particles:
 //
-//     δm' = δm − n δw − w δn,   δw = n·δd + d·δn,   δn = (I − n nᵀ) (δD₁ × D₂ + D₁ × δD₂) / ‖D₁ × D₂‖.
+//     δm' = δm − n δw − w δn,   δw = n·δd + d·δn,   δ(D₁ × D₂) = δD₁ × D₂ + D₁ × δD₂.
 void CrossedMembrane::pull_back(const State& state, Five& force, double along_height) {
   const auto& [d1, d2] = state.diagonals;
   const Vec3& n = state.normal;
   const double along = along_height - force[4].dot(n);
-  Vec3 turn = along * state.lean - state.height * force[4];
-  turn = state.size > 0 ? Vec3((turn - n.dot(turn) * n) / state.size) : Vec3::Zero();
+  const Vec3 turn = turned(state, along * state.lean - state.height * force[4]);
   const Vec3 on_d1 = d2.cross(turn), on_d2 = turn.cross(d1), share = 0.25 * along * n;
   force[0] -= on_d1 + share;
   force[1] -= on_d2 + share;
@@ -123,8 +136,7 @@ void CrossedMembrane::push_forward(const State& state, Five& flat, double& heigh
   const Vec3 lean = flat[4] - 0.25 * (flat[0] + flat[1] + flat[2] + flat[3]);
   const auto& [d1, d2] = state.diagonals;
   const Vec3& n = state.normal;
-  Vec3 turn = (flat[2] - flat[0]).cross(d2) + d1.cross(flat[3] - flat[1]);
-  turn = state.size > 0 ? Vec3((turn - n.dot(turn) * n) / state.size) : Vec3::Zero();
+  const Vec3 turn = turned(state, (flat[2] - flat[0]).cross(d2) + d1.cross(flat[3] - flat[1]));
   height = n.dot(lean) + turn.dot(state.lean);
   flat[4] -= height * n + state.height * turn;
 }
@@ -139,7 +151,7 @@ void CrossedMembrane::add(const Evaluation& at) const {
   const bool viscous = stretch_.viscosity > 0 || shear_.viscosity > 0;
   ranges_.for_each(at.range, cells_.size(), [&](std::size_t c) {
     const Cell& cell = cells_[c];
-    const State state = state_of(vectors_of(cell, at.x));
+    const State state = state_of(cell, vectors_of(cell, at.x));
     const double w = state.height, bulge_u = w * w * cell.bulge_u, bulge_v = w * w * cell.bulge_v;
     Five rate, force;
     double w_rate = 0, along_height = 0;
@@ -179,7 +191,7 @@ void CrossedMembrane::add_jacobian(std::span<const Vec3> x, std::span<const Vec3
                                    solver::BlockMatrix& jacobian) const {
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const auto& particles = cells_[c].particles;
-    const Blocks blocks = blocks_of(c, state_of(vectors_of(cells_[c], x)), rate, exact_lateral, false);
+    const Blocks blocks = blocks_of(c, state_of(cells_[c], vectors_of(cells_[c], x)), rate, exact_lateral, false);
     for (std::size_t a = 0; a < 5; ++a)
       for (std::size_t b = 0; b < 5; ++b) jacobian.add(jacobian.slot(particles[a], particles[b]), blocks[5 * a + b]);
   }
@@ -197,7 +209,7 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
                                                    bool definite) const {
   const Cell& cell = cells_[c];
   const Vec3& n = state.normal;
-  const double w = state.height;
+  const double w = state.height, flattened = n.squaredNorm();
   Blocks sum;
   sum.fill(packed_scalar(0));
   std::array<double, 25> across{}, along{};
@@ -227,7 +239,8 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
       flat[p] = g;
       if (i < 2) level[p] += g;
     }
-    for (std::size_t i = 0; i < 4; ++i) level[i] += 0.25 * element.gradients[2];
+    for (std::size_t i = 0; i < 4; ++i) level[i] += 0.25 * flattened * element.gradients[2];
+    level[4] = (1 - flattened) * element.gradients[2];
     const double viscous = rate * stretch_.viscosity;
     add_outer(element.area * (stretch_.weft * (1 - lateral_u) + viscous), of_u, w * cell.bulge_u / u);
     add_outer(element.area * (stretch_.warp * (1 - lateral_v) + viscous), of_v, w * cell.bulge_v / v);
@@ -256,7 +269,7 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
 
 double CrossedMembrane::strain(std::size_t triangle, std::span<const Vec3> x) const {
   const Cell& cell = cells_[triangle / 4];
-  const State state = state_of(vectors_of(cell, x));
+  const State state = state_of(cell, vectors_of(cell, x));
   const Gradient s = gradient_of(elements()[triangle], state.flat, triangle % 4);
   const double w_sq = state.height * state.height;
   return std::max(std::abs(length_of(s.u, w_sq * cell.bulge_u) - 1), std::abs(length_of(s.v, w_sq * cell.bulge_v) - 1));
@@ -265,7 +278,7 @@ double CrossedMembrane::strain(std::size_t triangle, std::span<const Vec3> x) co
 double CrossedMembrane::energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (std::size_t c = 0; c < cells_.size(); ++c) {
-    const State state = state_of(vectors_of(cells_[c], x));
+    const State state = state_of(cells_[c], vectors_of(cells_[c], x));
     const double w_sq = state.height * state.height;
     for (std::size_t k = 0; k < 4; ++k) {
       const Element& element = elements()[4 * c + k];

@@ -13,8 +13,9 @@ namespace weft::forces {
 ///     ‖s_u‖² + θ w² ⟨g_u²⟩ in place of ‖s_u‖²,   likewise along v,
 ///
 /// g the gradient of the middle's weight, averaged over the cell, and θ a tenth: tension still draws middles flat. In
-/// the plane nothing changes. (Averages against locking: Chen et al., "Locking-free Simulation of Isometric Thin
-/// Plates", 2019, of strains around vertices.)
+/// the plane nothing changes. n = D₁ × D₂ / S with the diagonals D and S = ‖D₁ × D₂‖, of cells that are folded up to
+/// less than S₀ (S₀ + ‖D₁ × D₂‖² / S₀) / 2: their triangles are more and more by themselves. (Averages against locking:
+/// Chen et al., "Locking-free Simulation of Isometric Thin Plates", 2019, of strains around vertices.)
 class CrossedMembrane final : public TriangleMembrane {
  public:
   /// The sheet's triangles are cells, four by four: (a, b, m), (b, c, m), (c, d, m), (d, a, m).
@@ -35,6 +36,7 @@ class CrossedMembrane final : public TriangleMembrane {
   struct Cell {
     std::array<Index, 5> particles;
     double bulge_u = 0, bulge_v = 0;  // θ ⟨g_u²⟩, θ ⟨g_v²⟩ [1/m²]
+    double least_size = 0;            // S₀ [m²]
   };
   using Five = std::array<Vec3, 5>;
   /// A cell as it lies, or as it moves.
@@ -43,10 +45,13 @@ class CrossedMembrane final : public TriangleMembrane {
     double height = 0;  // w
     Vec3 normal, lean;  // n, and the middle less the mean of the corners
     std::array<Vec3, 2> diagonals;
-    double size = 0;  // of their cross product
+    double size = 0;                // S [m²]
+    Vec3 direction = Vec3::Zero();  // e, of the cross product of the diagonals
+    double kept = 0;                // κ, of a change of that product along e what n keeps
   };
   double strain(std::size_t triangle, std::span<const Vec3> x) const override;
-  static State state_of(const Five& positions);
+  static State state_of(const Cell& cell, const Five& positions);
+  static Vec3 turned(const State& state, const Vec3& product);
   static Five vectors_of(const Cell& cell, std::span<const Vec3> of);
   static Five vectors_of(const Cell& cell, std::span<const solver::Quad<double>> of);
   /// What tension does across a thread, k times this, by its length.
