@@ -87,7 +87,7 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
   std::copy_n(now.x.begin(), n, x_hat_.begin());
   v_hat_ = now.v;
   if (method_ == Method::implicit_midpoint) return {0.5 * h, 2};
-  if (method_ == Method::implicit_euler || history_.h == 0) return {h, 1};
+  if (is_first_order(h)) return {h, 1};
 
   // BDF2 with variable steps; those who choose them keep to longest_step().
   const double r = h / history_.h;
@@ -393,7 +393,7 @@ Vec3 Stepper::v_end(const State& now, const Stage& stage, std::size_t i) const {
 
 // Of the step as it is at the current iterate; the formulas stand at the class.
 void Stepper::estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h) {
-  const bool first_order = method_ == Method::implicit_euler || history_.h == 0;
+  const bool first_order = is_first_order(h);
   const double r = first_order ? 1 : h / history_.h;
   const bool bdf2 = method_ == Method::bdf2;
   const double of_gain = bdf2 ? 0.75 * h : 0.5 * h;
@@ -418,6 +418,12 @@ void Stepper::estimate_local_errors(std::span<const double> masses, const State&
 Vec3 Stepper::constraint_force(Index particle, double mass) const {
   const auto i = static_cast<std::size_t>(particle);
   return mass / beta_ * (v_[i] - v_hat_[i]) - force_[i] - constant_force_[i];
+}
+
+// Whether a step over h is one of Euler's, or known no better.
+bool Stepper::is_first_order(double h) const {
+  return method_ == Method::implicit_euler || history_.h == 0 ||
+         (method_ == Method::bdf2 && h > (1 + 1e-9) * kLargestRatio * history_.h);
 }
 
 double Stepper::longest_step() const {

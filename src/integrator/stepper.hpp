@@ -80,6 +80,10 @@ class Stepper {
 
   Stepper(Method method, const NewtonParameters& parameters) : method_(method), parameters_(parameters) {}
 
+  /// For the steps from here on. Who takes BDF2 for single steps does not keep to longest_step(): where one is too long
+  /// to follow the last one it is Euler's.
+  void use(Method method) { method_ = method; }
+
   /// Where the search for the end of a step starts: at unchanged velocity, or at what `next` holds, for a step that is
   /// solved once more with other contacts.
   enum class Start { unchanged_velocity, next };
@@ -136,6 +140,7 @@ class Stepper {
     double left = 0;            // velocity that is left [m/s]
   };
 
+  bool is_first_order(double h) const;
   Stage begin(const State& now, double h);
   void prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity);
   void hold(const State& now, const Stage& stage, std::span<const HeldParticle> held,

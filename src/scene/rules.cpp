@@ -49,7 +49,8 @@ const Table& time_rules() {
           .excludes("step")
           .choice(
               "integrator", &Time::integrator, kIntegratorNames,
-              "method of time integration; the midpoint rule damps nothing and is no choice for scenes with contact")
+              "method of time integration; the midpoint rule damps nothing, so that steps in which something is near are "
+              "those of bdf2")
           .build();
   return kTable;
 }

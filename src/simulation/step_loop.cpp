@@ -267,7 +267,7 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last
 
 // The air at the stage of a step, and where unchanged velocities would take particles until then.
 void StepLoop::blow(double t, double h) {
-  const double later = scene_.time.integrator == scene::Integrator::implicit_midpoint ? 0.5 * h : h;
+  const double later = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
   const Moment& now = progress_.now;
   std::vector<solver::Quad<double>> air(now.v.size());
   parallel_for(air.size(), kBlownAtOnce, [&](std::size_t begin, std::size_t end) {
@@ -288,13 +288,13 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   using Start = integrator::Stepper::Start;
   const Moment& now = progress_.now;
   held_ = pins_.held();
-  if (gusts_) blow(t, h);
   problem_.begin_step(t + h - start_, now.particles(), held_, pins_.pulls());
-  if (!collisions_) return reason_of(solve(h, Start::unchanged_velocity, false, report));
-  {
+  if (collisions_) {
     const Stopwatch watch(report.collide);
     collisions_->begin_step(t, h, held_, progress_.now, next_);
   }
+  if (gusts_) blow(t, h);
+  if (!collisions_) return reason_of(solve(h, Start::unchanged_velocity, false, report));
   collision::ContactResponse& response = collisions_->response();
   const auto force_on = [&](Index particle) { return stepper_.constraint_force(particle, cloth_.masses()[particle]); };
   const std::size_t pinned = held_.size();
@@ -372,8 +372,17 @@ double StepLoop::added_share(double before, double h) const {
   return (energy(next_) - before) / (motion + cloth_.elastic_energy(progress_.now.particles()));
 }
 
+// The midpoint rule damps nothing, and contacts that come and go would shake cloth apart: where any is near a step is
+// one of BDF2.
+integrator::Method StepLoop::method() const {
+  const integrator::Method chosen = method_of(scene_.time.integrator);
+  const bool damps = chosen == integrator::Method::implicit_midpoint && collisions_ && !collisions_->response().empty();
+  return damps ? integrator::Method::bdf2 : chosen;
+}
+
 // Into `next_`. `look`: where this takes long it ends unfinished, see kLookAfter.
 integrator::StepReport StepLoop::solve(double h, integrator::Stepper::Start start, bool look, FrameReport& report) {
+  stepper_.use(method());
   const integrator::StepReport step = stepper_.step(problem_, progress_.now, h, scene_.physics.gravity, held_, next_,
                                                     start, look ? kLookAfter : std::numeric_limits<int>::max());
   report.newton_iterations += step.newton_iterations;

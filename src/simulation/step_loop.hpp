@@ -104,6 +104,7 @@ class StepLoop {
   Rejection correct(double h, int retries, bool last_try, bool may_give_way);
   double energy(const Moment& moment) const;
   double added_share(double before, double h) const;
+  integrator::Method method() const;
   integrator::StepReport solve(double h, integrator::Stepper::Start start, bool look, FrameReport& report);
   static Rejection reason_of(const integrator::StepReport& step);
   void accept(double h, FrameReport& report);

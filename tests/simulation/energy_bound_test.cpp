@@ -67,8 +67,9 @@ TEST(EnergyBound, PinsThatMoveMayBringEnergy) {
   EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // far from rest: 3 m in a second
 }
 
-TEST(EnergyBound, ContactThatTheMidpointRulePumpsIsRefusedAndThatOfOtherMethodsIsNot) {
-  // On a ball, at a step with which contacts shake the sheet: 12 J came of the 0.35 J of its fall.
+// On a ball, at a step with which contacts shook the sheet of the midpoint rule: 12 J came of the 0.35 J of its fall. A
+// tenth of what is in play is what a run may gain without a warning.
+TEST(EnergyBound, ContactBringsNone) {
   for (scene::Integrator integrator : testing::kIntegrators) {
     scene::Scene scene = testing::sheet_alone(0.6, 13, 0.45);
     scene.time.step = 0.01;
@@ -77,14 +78,12 @@ TEST(EnergyBound, ContactThatTheMidpointRulePumpsIsRefusedAndThatOfOtherMethodsI
     scene.obstacles.push_back(testing::obstacle("ball", scene::Sphere{0.2}, {0, 0, 0.2}));
     scene.cloths[0].pose.position += Vec3(0.003, 0.002, 0);
     Simulation simulation(scene);
-    std::string words;
-    try {
-      for (int k = 0; k < 25; ++k) simulation.advance();
-    } catch (const Error& error) {
-      words = error.what();
+    const double start = simulation.initial_report().potential_energy;
+    for (int k = 0; k < 25; ++k) {
+      const FrameReport& now = simulation.advance();
+      const double all = now.kinetic_energy + now.elastic_energy + now.potential_energy;
+      EXPECT_LT(all - start, 0.1 * (start - now.potential_energy)) << name_of(integrator) << ", frame " << now.frame;
     }
-    const bool refused = words.find("more than at the start") != std::string::npos;
-    EXPECT_EQ(refused, integrator == scene::Integrator::implicit_midpoint) << name_of(integrator) << ": " << words;
   }
 }
 

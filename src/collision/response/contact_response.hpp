@@ -55,6 +55,8 @@ class ContactResponse {
   int active(std::span<const Vec3> x_end) const { return springs_.active(x_end); }
 
   std::span<const Contact> springs() const { return springs_.contacts(); }
+  /// Whether no contact is known, of either form.
+  bool empty() const { return springs_.contacts().empty() && (!walls_ || walls_->empty()); }
 
   /// What accept() has remembered. Throws std::runtime_error where these particles cannot have it.
   template <class Archive>

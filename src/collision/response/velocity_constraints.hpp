@@ -74,6 +74,8 @@ class VelocityConstraints {
   void accept();
 
   std::span<const PrescribedParticle> prescribed() const { return prescribed_; }
+  /// Whether no wall is known.
+  bool empty() const { return walls_.empty(); }
 
   /// force += friction of the sliding particles at x_end [N].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
