@@ -38,6 +38,12 @@ constexpr double kRoundings = 32;
 // An acceleration that nobody sees, times the tolerance: at 0.3 it moves cloth by a tenth of a millimetre in a swing
 // [m/s²].
 constexpr double kUnseen = 0.01;
+// Iterations of a solve after which a velocity that nobody sees may be left too [m/s], which moves cloth by a hundredth
+// of a millimetre in a frame. Friction of bending flips with less in cells of some millimetres: with a step in halves as
+// much is left, and less may be. Of three scenes of 150 with BDF2 that ended there two are solved, one by 60 iterations
+// a step.
+constexpr int kPatience = 20;
+constexpr double kUnseenSpeed = 3e-4;
 // Weight of the method's error of velocity. That is known from two changes of velocity, so what was left in the last
 // step counts as error of this one. Against 0.2, in six scenes of eight: 19 to 32 % fewer iterations of Newton's method
 // and 21 to 39 % fewer linear ones. In the ring 3 and 26 % fewer; for the ball 13 % more, with 12 % fewer linear ones,
@@ -192,8 +198,10 @@ void Stepper::estimate_left(const solver::LinearReport& solved, double fraction,
       parts_[p].left = std::hypot(parts_[p].left, solved.errors[p] / std::sqrt(parts_[p].mass));
 }
 
-bool Stepper::is_solved() const {
-  return std::ranges::all_of(parts_, [](const PartState& part) { return part.left <= part.allowed; });
+bool Stepper::is_solved(int iterations, double h) const {
+  double most = iterations < kPatience ? 0 : kUnseenSpeed;
+  if (parameters_.position_tolerance > 0) most = std::min(most, parameters_.position_tolerance / carried_on(h));
+  return std::ranges::all_of(parts_, [&](const PartState& part) { return part.left <= std::max(part.allowed, most); });
 }
 
 // Parts that the next linear solve is for.
@@ -291,6 +299,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   const int done = start == Start::next ? std::exchange(unfinished_, 0) : 0;
   StepReport report;
   times_ = {};
+  bool solved_all = false;
   do {
     linearise(system, now, stage, done + report.newton_iterations);
     // Groups stand for long waves, whose stiffness hardly changes within a step.
@@ -321,13 +330,14 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     estimate_left(solved, fraction, masses);
     select_unsolved(report.newton_iterations);
     report_worst(h, report);
-    if (!is_solved() && !solved.definite)
+    solved_all = is_solved(done + report.newton_iterations, h);
+    if (!solved_all && !solved.definite)
       report.verdict = Verdict::indefinite;
-    else if (!is_solved() && report.newton_iterations >= parameters_.max_iterations)
+    else if (!solved_all && report.newton_iterations >= parameters_.max_iterations)
       report.verdict = Verdict::newton_stalled;
-    else if (!is_solved() && report.newton_iterations >= look_after)
+    else if (!solved_all && report.newton_iterations >= look_after)
       report.verdict = Verdict::unfinished;
-  } while (!is_solved() && report.verdict == Verdict::solved);
+  } while (!solved_all && report.verdict == Verdict::solved);
   report.times = times_;
   unfinished_ = report.verdict == Verdict::unfinished ? report.newton_iterations : 0;
   if (report.verdict == Verdict::solved || report.verdict == Verdict::unfinished) finish(now, stage, held, next);

@@ -162,7 +162,7 @@ class Stepper {
   void measure(std::span<const Vec3> displacements, std::span<const double> masses, std::vector<double>& speeds) const;
   void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);
   void select_unsolved(int iterations);
-  bool is_solved() const;
+  bool is_solved(int iterations, double h) const;
   void report_worst(double h, StepReport& report) const;
   void finish(const State& now, const Stage& stage, std::span<const HeldParticle> held, State& next) const;
   Vec3 v_end(const State& now, const Stage& stage, std::size_t i) const;
