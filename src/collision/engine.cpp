@@ -180,10 +180,6 @@ void Engine::count_failures() {
         if (static_cast<std::size_t>(v) < fails.size()) fails[v] = 1;
   for (std::size_t i = 0; i < fails.size(); ++i) failures_[i] += fails[i];
   pushed_.insert(pushed_.end(), failing_.begin(), failing_.end());
-  // Each once: with a plane for each time that it failed, a bend of the way cost more than the one before.
-  std::ranges::sort(pushed_);
-  const auto repeated = std::ranges::unique(pushed_);
-  pushed_.erase(repeated.begin(), repeated.end());
 }
 
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,

@@ -38,12 +38,12 @@ constexpr double kRoundings = 32;
 // An acceleration that nobody sees, times the tolerance: at 0.3 it moves cloth by a tenth of a millimetre in a swing
 // [m/s²].
 constexpr double kUnseen = 0.01;
-// Iterations of a solve after which a velocity that nobody sees may be left too [m/s], which moves cloth by a hundredth
-// of a millimetre in a frame. Friction of bending flips with less in cells of some millimetres: with a step in halves as
-// much is left, and less may be. Of three scenes of 150 with BDF2 that ended there two are solved, one by 60 iterations
-// a step.
+// Iterations of a solve after which a velocity that nobody sees may be left too, times the tolerance [m/s]: at 0.3 it
+// moves cloth by a hundredth of a millimetre in a frame. Friction of bending flips with less in cells of some
+// millimetres: with a step in halves as much is left, and less may be. Of three scenes of 150 with BDF2 that ended
+// there two are solved, one by 60 iterations a step.
 constexpr int kPatience = 20;
-constexpr double kUnseenSpeed = 3e-4;
+constexpr double kUnseenSpeed = 1e-3;
 // Weight of the method's error of velocity. That is known from two changes of velocity, so what was left in the last
 // step counts as error of this one. Against 0.2, in six scenes of eight: 19 to 32 % fewer iterations of Newton's method
 // and 21 to 39 % fewer linear ones. In the ring 3 and 26 % fewer; for the ball 13 % more, with 12 % fewer linear ones,
@@ -199,7 +199,7 @@ void Stepper::estimate_left(const solver::LinearReport& solved, double fraction,
 }
 
 bool Stepper::is_solved(int iterations, double h) const {
-  double most = iterations < kPatience ? 0 : kUnseenSpeed;
+  double most = iterations < kPatience ? 0 : parameters_.tolerance * kUnseenSpeed;
   if (parameters_.position_tolerance > 0) most = std::min(most, parameters_.position_tolerance / carried_on(h));
   return std::ranges::all_of(parts_, [&](const PartState& part) { return part.left <= std::max(part.allowed, most); });
 }
