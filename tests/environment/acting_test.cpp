@@ -331,6 +331,20 @@ TEST_F(Acting, TakesOverTheMotionOfAnotherFileByTheNamesThatTheSceneGives) {
   EXPECT_NE(make().warnings[0].find("nothing that moves Spine"), std::string::npos);
 }
 
+TEST_F(Acting, PutsABodyWhoseOriginIsInItsMiddleOnTheFloor) {
+  std::string file = rod_file();
+  const std::string root = "1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0";
+  file.replace(file.find(root) + root.size() - 11, 3, "-1.0");
+  support::write_bytes(file_.path, file);
+  support::write_bytes(folder_ / "walk.bvh", bvh());
+  file_.motion = folder_ / "walk.bvh";
+  file_.joints = {{"Spine", std::nullopt, "Back"}};
+  const Actor actor = make();
+  ASSERT_EQ(actor.warnings.size(), 1u);
+  EXPECT_NE(actor.warnings[0].find("its soles 1 m below its origin"), std::string::npos) << actor.warnings[0];
+  EXPECT_LT((at(actor, 0)[4] - Vec3(0.1, 0, 2)).norm(), kSingle);
+}
+
 TEST_F(Acting, LeavesAMotionInPlaceOrGivesItASpeed) {
   file_.motion = folder_ / "walk.bvh";
   support::write_bytes(*file_.motion, bvh());
