@@ -164,7 +164,7 @@ character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& b
 /// The body as its file has it.
 Body make_body(const Cast& cast, const scene::CharacterFile& source) {
   assets::LoadedCharacter loaded = assets::load_character(source.path, cast.axes(), cast.where);
-  return {source.path.string(), std::move(loaded.character), {}, std::move(loaded.warnings)};
+  return {source.path.string(), std::move(loaded.character), {}, std::move(loaded.warnings), loaded.scale};
 }
 
 /// The mannequin with its walk.
@@ -278,10 +278,9 @@ KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
 
 /// Warns of a body whose file must have meant another unit.
 void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body) {
-  if (cast.settings.scale) return;
   std::vector<Vec3> x(body.character.mesh.positions.size());
   character::skin(body.character, character::rest_pose(body.character), x);
-  if (const auto doubt = doubt_of_height(x, cast.up()))
+  if (const auto doubt = doubt_of_height(x, cast.up(), body.scale, cast.settings.scale.has_value()))
     body.warnings.push_back(fmt::format("{}: {} {}", cast.where, source.path.string(), *doubt));
 }
 

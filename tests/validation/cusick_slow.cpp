@@ -72,11 +72,9 @@ TEST_F(Cusick, FabricsDrapeAsMeasured) {
     if (!fabric.measured.drape) continue;
     const auto [low, high] = *fabric.measured.drape;
     const double mean = mean_coefficient(fabric.material.fabric.c_str(), fabric.material);
-    // Two that are known to miss what was measured of them: their shear is not known, and one B is given for both
-    // directions.
-    const double allowed = fabric.material.fabric == "polyester" ? 0.35
-                           : fabric.material.fabric == "faille"  ? 0.2
-                                                                 : 0.1;
+    // One that is known to miss what was measured of it (tests/bench/README.md#fabrics); of the others the most is 9.6
+    // %.
+    const double allowed = fabric.material.fabric == "polyester" ? 0.5 : 0.12;
     EXPECT_GT(mean, (1 - allowed) * low) << fabric.material.fabric;
     EXPECT_LT(mean, (1 + allowed) * high) << fabric.material.fabric;
   }
@@ -84,14 +82,16 @@ TEST_F(Cusick, FabricsDrapeAsMeasured) {
 
 TEST_F(Cusick, CoefficientIsThatOfAFinerMesh) {
   std::vector<double> found;
-  for (int free : {7, 10, 14})
-    for (int seed : {1, 2, 3, 4}) {
+  for (int free : {7, 10, 14}) {
+    found.push_back(0);
+    for (int seed : {1, 2}) {
       const Specimen disc = rings(free, seed);
-      found.push_back(drape(scene_of(disc, scene::find_fabric("leather")->material), disc.triangles).coefficient);
-      std::printf("leather, %d rings, %zu particles: %.1f %%\n", free, disc.positions.size(), 100 * found.back());
+      const Drape d = drape(scene_of(disc, scene::find_fabric("leather")->material), disc.triangles);
+      std::printf("leather, %d rings, %zu particles: %.1f %%\n", free, disc.positions.size(), 100 * d.coefficient);
+      found.back() += 0.5 * d.coefficient;
     }
-  // Measured: 53, 60 and 60 %.
-  EXPECT_NEAR(found[1], found[2], 0.04);
+  }
+  EXPECT_NEAR(found[1], found[2], 0.03);
 }
 
 /// A square specimen of the same area, which can be cut of quads as well. Quads and aligned triangles share all of
