@@ -24,10 +24,10 @@ ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh) {
 
 /// Warnings of a file get its name; it is turned to the scene's axes and scaled to metres.
 LoadedCharacter finish(const Source& source, ReadCharacter read, const FileAxes& axes) {
-  LoadedCharacter loaded{std::move(read.character), {}};
+  LoadedCharacter loaded{std::move(read.character), {}, axes.scale.value_or(read.metres_per_unit.value_or(1))};
   for (const std::string& warning : read.warnings) loaded.warnings.push_back(source.describe(warning));
   const int up = axes.up == scene::FileUp::as_file ? read.up.value_or(kUsualUp) : static_cast<int>(axes.up) - 1;
-  transform(loaded.character, axes.scale.value_or(read.metres_per_unit.value_or(1)), turn_up(up, axes.scene_up));
+  transform(loaded.character, loaded.scale, turn_up(up, axes.scene_up));
   return loaded;
 }
 

@@ -21,6 +21,7 @@ struct FileAxes {
 struct LoadedCharacter {
   character::Character character;     ///< in metres and the axes of the scene
   std::vector<std::string> warnings;  ///< with `where`, file and part
+  double scale = 1;                   ///< metres per unit of the file that were taken
 };
 
 /// Reads hierarchy, skin, morph targets and clips of glTF, FBX, Collada, X, B3D, BVH and what else assimp knows, in a

@@ -38,8 +38,12 @@ struct Drape {
   double cpu_s = 0;
 };
 
+/// Friction of bending holds cloth where it first comes to rest, so that what a step leaves decides too: `exactly`,
+/// with a tenth of which it drapes as before, or as scenes do that say nothing.
+enum class Solved { exactly, as_scenes_do };
+
 /// Lets the specimen fall from level for 1.5 s, and comes to rest in that. Throws Error(simulation_failed).
-Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles);
+Drape drape(scene::Scene scene, const std::vector<mesh::Triangle>& triangles, Solved solved = Solved::exactly);
 
 }  // namespace cusick
 

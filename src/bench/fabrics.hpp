@@ -16,12 +16,13 @@ inline constexpr std::array kLoads{4.9, 19.6, 98.07, scene::kExtensionLoad};
 
 struct FabricRun {
   scene::Fabric fabric;
-  std::array<double, 2> drape{};                     ///< of two specimens [1]
+  std::array<double, 2> drape{}, drape_in_scenes{};  ///< of two specimens, solved exactly and as in scenes [1]
   Cantilever elastic = {}, as_it_is = {};            ///< without its friction of bending, and with
   std::array<double, kLoads.size()> weft{}, warp{};  ///< extensions [1]
   double cpu_s = 0;
 
   double mean_drape() const { return 0.5 * (drape[0] + drape[1]); }
+  double mean_drape_in_scenes() const { return 0.5 * (drape_in_scenes[0] + drape_in_scenes[1]); }
 };
 
 /// `folder`: where the specimens may be written meanwhile. Throws Error(simulation_failed).

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <map>
+#include <set>
 
 #include "character/nameless.hpp"
 
@@ -38,11 +39,12 @@ const std::vector<Part> kSides = {
     {"Toes", {"toes", "toe", "toebase", "toe0", "ball", "forefoot", "foot"}},
 };
 
-/// What stands in names of nodes beside side and part: of Biped, Rigify, Source, VRM, Character Creator, Meebits.
+/// What stands in names of nodes beside side and part: of Biped, Rigify, Source, VRM, Character Creator, Meebits, and
+/// of Mixamo where a program has left out the colon.
 bool says_nothing(const std::string& word) {
   static const std::vector<std::string> kWords = {"b", "bn",  "c",     "cc",    "base", "def",
                                                   "j", "bip", "biped", "valve", "m",    "bone"};
-  return word.starts_with("bip0") || std::ranges::find(kWords, word) != kWords.end();
+  return word.starts_with("bip0") || word.starts_with("mixamorig") || std::ranges::find(kWords, word) != kWords.end();
 }
 
 /// The words of a name in lower case: "Bip01 L UpperArm" and "upper_arm.L" have "upper", "arm" and "l". Digits stay
@@ -225,18 +227,42 @@ std::vector<Index> find_named_joints(std::span<const Node> nodes) {
 
 namespace {
 
+/// Nodes without the number that Sketchfab puts behind the name of each bone ("CC_Base_L_Calf_05", "l knee_048"): where
+/// as many as a rig has end so, hardly two of them alike, while spines and fingers count from one.
+std::vector<Node> without_numbers(std::vector<Node> nodes) {
+  const auto number_of = [](const std::string& name) {
+    const std::size_t mark = name.rfind('_');
+    const bool ends_so = mark != std::string::npos && mark > 0 && mark + 1 < name.size() &&
+                         std::all_of(name.begin() + static_cast<std::ptrdiff_t>(mark) + 1, name.end(),
+                                     [](unsigned char c) { return std::isdigit(c) != 0; });
+    return ends_so ? name.substr(mark) : std::string();
+  };
+  std::set<std::string> numbers;
+  std::size_t count = 0;
+  for (const Node& node : nodes)
+    if (std::string number = number_of(node.name); !number.empty()) {
+      ++count;
+      numbers.insert(std::move(number));
+    }
+  if (numbers.size() < kRig || 10 * numbers.size() < 9 * count) return nodes;
+  for (Node& node : nodes) node.name.resize(node.name.size() - number_of(node.name).size());
+  return nodes;
+}
+
 /// Joints by name; where these do not say all, by what follows the name of a rig ("UnityChan_LeftArm",
 /// "rig_DEF-thigh_L"), of several rigs that of which most joints hold skin or move.
 std::vector<Index> find_prefixed_joints(const Character& character) {
   std::vector<Index> best = find_named_joints(character.nodes);
   if (is_whole(best)) return best;
+  const std::vector<Node> plain = without_numbers(character.nodes);
+  if (std::vector<Index> joints = find_named_joints(plain); is_whole(joints)) return joints;
   std::vector<bool> acts(character.nodes.size(), false);
   for (const Bone& bone : character.bones) acts[bone.node] = true;
   for (const Clip& clip : character.clips)
     for (const Channel& channel : clip.channels) acts[channel.node] = true;
   std::size_t most = 0;
-  for (const std::string& beginning : shared_beginnings(character.nodes)) {
-    std::vector<Node> nodes = character.nodes;
+  for (const std::string& beginning : shared_beginnings(plain)) {
+    std::vector<Node> nodes = plain;
     for (Node& node : nodes)
       node.name = node.name.starts_with(beginning) ? node.name.substr(beginning.size()) : std::string();
     std::vector<Index> joints = find_named_joints(nodes);

@@ -47,6 +47,9 @@ constexpr double kFeetMiss = 0.07;
 /// A trunk that points up, in the mean over a motion, by more than this stands [1].
 constexpr double kStands = 0.7;
 
+/// A body whose soles at rest are further from the origin of its file has that elsewhere, such as in its middle [m].
+constexpr double kOffFloor = 0.05;
+
 /// The clip that the scene names, or the first.
 const character::Clip& choose_clip(const Cast& cast, const std::optional<std::string>& name,
                                    const std::vector<character::Clip>& clips, const std::string& source) {
@@ -118,6 +121,20 @@ character::Clip travel(const Cast& cast, const scene::Acting& acting, const char
   return std::move(traveled.clip);
 }
 
+/// Puts the soles of a body at the origin of its file, so that a motion of another walks on the floor.
+void put_on_floor(const Cast& cast, Body& body) {
+  const Vec3 up = cast.up();
+  std::vector<Vec3> x(body.character.mesh.positions.size());
+  character::skin(body.character, character::rest_pose(body.character), x);
+  const double soles = up.dot(std::ranges::min(x, {}, [&](const Vec3& v) { return up.dot(v); }));
+  if (std::abs(soles) < kOffFloor) return;
+  for (character::Node& node : body.character.nodes)
+    if (node.parent < 0) node.local.pretranslate(-soles * up);
+  body.warnings.push_back(
+      fmt::format("{}: {} has its soles {:.3g} m {} its origin; they are put at the height of position", cast.where,
+                  body.source, std::abs(soles), soles < 0 ? "below" : "above"));
+}
+
 /// The clip of another skeleton, on this one.
 character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& body) {
   const std::string file = acting.motion->string();
@@ -133,6 +150,7 @@ character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& b
   if (!still.empty())
     body.warnings.push_back(
         fmt::format("{}: motion file {}: nothing that moves {}", cast.where, file, fmt::join(still, ", ")));
+  put_on_floor(cast, body);
   const character::Rig from{motion.character, theirs}, to{body.character, ours};
   const double their_leg = leg_length(from), size = their_leg > 0 ? leg_length(to) / their_leg : 1;
   const character::Clip clip =
@@ -146,7 +164,7 @@ character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& b
 /// The body as its file has it.
 Body make_body(const Cast& cast, const scene::CharacterFile& source) {
   assets::LoadedCharacter loaded = assets::load_character(source.path, cast.axes(), cast.where);
-  return {source.path.string(), std::move(loaded.character), {}, std::move(loaded.warnings)};
+  return {source.path.string(), std::move(loaded.character), {}, std::move(loaded.warnings), loaded.scale};
 }
 
 /// The mannequin with its walk.
@@ -260,10 +278,9 @@ KeyFrames sample(const Cast& cast, const KeyTimes& times, std::size_t vertices,
 
 /// Warns of a body whose file must have meant another unit.
 void check_size(const Cast& cast, const scene::CharacterFile& source, Body& body) {
-  if (cast.settings.scale) return;
   std::vector<Vec3> x(body.character.mesh.positions.size());
   character::skin(body.character, character::rest_pose(body.character), x);
-  if (const auto doubt = doubt_of_height(x, cast.up()))
+  if (const auto doubt = doubt_of_height(x, cast.up(), body.scale, cast.settings.scale.has_value()))
     body.warnings.push_back(fmt::format("{}: {} {}", cast.where, source.path.string(), *doubt));
 }
 

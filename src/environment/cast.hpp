@@ -18,6 +18,7 @@ struct Body {
   character::Character character;
   std::optional<character::Clip> clip;
   std::vector<std::string> warnings;
+  double scale = 1;  ///< metres per unit of the file, as it or the scene says
 };
 
 /// A character of the scene, and how messages name it.

@@ -9,7 +9,7 @@ namespace weft::environment {
 namespace {
 
 // Bodies of people and their toys are this tall [m]; a file in centimetres is a hundred times taller.
-constexpr double kLeastHeight = 0.3, kMostHeight = 3;
+constexpr double kLeastHeight = 0.3, kMostHeight = 3, kUsualHeight = 1.7;
 // A clip that turns more nodes than these moves limbs: a head or a camera alone may be beside the body.
 constexpr int kNodesOfLimbs = 3;
 // Nothing with legs goes faster [m/s]; sprinters reach 12.
@@ -17,13 +17,15 @@ constexpr double kMostSpeed = 20;
 
 }  // namespace
 
-std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& up) {
+std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said) {
   const auto [low, high] = std::ranges::minmax(x, {}, [&](const Vec3& v) { return up.dot(v); });
   const double height = up.dot(high - low);
-  if (height >= kLeastHeight && height <= kMostHeight) return std::nullopt;
+  const double more = said ? 10 : 1;
+  if (height >= kLeastHeight / more && height <= kMostHeight * more) return std::nullopt;
   return fmt::format(
-      "is {:.3g} m tall, where {:g} to {:g} m are expected; scale says how many metres a unit of the file has", height,
-      kLeastHeight, kMostHeight);
+      "is {:.3g} m tall, where {:g} to {:g} m are expected; scale says how many metres a unit of the file has: with "
+      "scale = {:.2g} it is {:g} m",
+      height, kLeastHeight, kMostHeight, scale * kUsualHeight / height, kUsualHeight);
 }
 
 std::optional<std::string> doubt_of_skin(const character::Character& body, const character::Clip& clip) {

@@ -10,8 +10,9 @@
 
 namespace weft::environment {
 
-/// What is wrong with a body that is as high along `up` as these places [m].
-std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& up);
+/// What is wrong with a body that is as high along `up` as these places [m]. `scale`: metres per unit of its file;
+/// `said`: by the scene, which may want giants, but none of ten times that.
+std::optional<std::string> doubt_of_height(std::span<const Vec3> x, const Vec3& up, double scale, bool said);
 
 /// What is wrong with a body of which a clip moves limbs, where no limb has a skin.
 std::optional<std::string> doubt_of_skin(const character::Character& body, const character::Clip& clip);

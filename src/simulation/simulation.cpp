@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
 #include <optional>
 #include <string>
 #include <utility>
+#include <variant>
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
@@ -36,16 +38,28 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
+// Arms that hang are in the way of most skirts.
+bool meets_arms(const scene::Scene& scene, const std::vector<MeetingPlace>& places) {
+  return std::ranges::any_of(scene.characters, [&](const scene::Character& character) {
+    const auto* file = std::get_if<scene::CharacterFile>(&character.source);
+    return file != nullptr && !file->stance_arms && character.dressing > 0 &&
+           std::ranges::any_of(places, [&](const MeetingPlace& place) {
+             return place.a == character.name || place.b == character.name;
+           });
+  });
+}
+
 // Throws Error(scene_invalid) where a run cannot begin so.
 void check_start(const scene::Scene& scene, StepLoop& steps) {
   const std::vector<MeetingPlace> places = steps.find_meetings();
   if (places.empty()) return;
-  throw Error(ExitCode::scene_invalid, "{}: expected surfaces that are apart at the start{}, got {}; {}",
+  throw Error(ExitCode::scene_invalid, "{}: expected surfaces that are apart at the start{}, got {}; {}{}",
               scene.file.string(), untangles(scene) ? ", or can be untangled" : "", describe(places),
               untangles(scene)
                   ? "'weft thumbnail --start' draws it as it was; move one of them"
                   : "'weft thumbnail --start' draws it; move one of them, leave it out of contact, or give "
-                    "a cloth start = \"untangle\"");
+                    "a cloth start = \"untangle\"",
+              meets_arms(scene, places) ? "; where arms are in the way, stance_arms = 45 holds them off the body" : "");
 }
 
 // What is simulated of a scene while other cloths are not put on.

@@ -312,6 +312,43 @@ TEST(Joints, OfRigsWhoseNameStandsBeforeAllNodesAreFound) {
   }
 }
 
+TEST(Joints, AreFoundWithTheNumbersThatSketchfabPutsBehindNamesAndWithoutColons) {
+  // Bones of characters as they are to be had, without what the tree could tell.
+  const std::vector<std::vector<std::string>> rigs = {
+      {"CC_Base_Hip_02", "CC_Base_L_Upperarm_050", "CC_Base_L_Forearm_051", "CC_Base_R_Upperarm_078",
+       "CC_Base_R_Forearm_079", "CC_Base_L_Thigh_04", "CC_Base_L_Calf_05", "CC_Base_R_Thigh_019", "CC_Base_R_Calf_020",
+       "CC_Base_L_Foot_06", "CC_Base_L_ToeBase_08", "CC_Base_R_Foot_022", "CC_Base_R_ToeBase_023", "CC_Base_L_Hand_055",
+       "CC_Base_L_Index1_065", "CC_Base_L_Index2_066", "CC_Base_L_Index3_067"},
+      {"hips_00", "l arm_028", "l forearm_029", "r arm_09", "r forearm_010", "l leg_047", "l knee_048", "r leg_051",
+       "r knee_052", "l foot_049", "l toes_050", "r foot_053", "r toes_054", "l hand_030", "l index1_043",
+       "l index2_044", "l index3_045"},
+      {"mixamorigHips", "mixamorigLeftArm", "mixamorigLeftForeArm", "mixamorigRightArm", "mixamorigRightForeArm",
+       "mixamorigLeftUpLeg", "mixamorigLeftLeg", "mixamorigRightUpLeg", "mixamorigRightLeg", "mixamorigLeftFoot",
+       "mixamorigLeftToeBase", "mixamorigRightFoot", "mixamorigRightToeBase", "mixamorigLeftHand"}};
+  const std::vector<Joint> joints = {Joint::hips,
+                                     Joint::left_upper_arm,
+                                     Joint::left_lower_arm,
+                                     Joint::right_upper_arm,
+                                     Joint::right_lower_arm,
+                                     Joint::left_upper_leg,
+                                     Joint::left_lower_leg,
+                                     Joint::right_upper_leg,
+                                     Joint::right_lower_leg,
+                                     Joint::left_foot,
+                                     Joint::left_toes,
+                                     Joint::right_foot,
+                                     Joint::right_toes,
+                                     Joint::left_hand};
+  for (const auto& names : rigs) {
+    Character body;
+    body.nodes.push_back({"Armature", -1, Affine::Identity()});
+    for (const std::string& name : names) body.nodes.push_back({name, 0, Affine::Identity()});
+    const std::vector<Index> found = find_joints(body);
+    for (std::size_t k = 1; k < joints.size(); ++k)
+      EXPECT_EQ(found[place_of(joints[k])], static_cast<Index>(k + 1)) << names[k];
+  }
+}
+
 /// Local rotations that point upper and lower arms of a mannequin at rest in such directions.
 Clip arms_along(const Character& body, const std::array<std::array<Vec3, 2>, 2>& directions) {
   Clip clip{"arms", 1, {}, {}};

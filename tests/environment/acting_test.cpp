@@ -331,6 +331,18 @@ TEST_F(Acting, TakesOverTheMotionOfAnotherFileByTheNamesThatTheSceneGives) {
   EXPECT_NE(make().warnings[0].find("nothing that moves Spine"), std::string::npos);
 }
 
+TEST_F(Acting, PutsABodyWhoseOriginIsInItsMiddleOnTheFloor) {
+  std::string file = rod_file();
+  file.replace(file.find("0.0,0.0,0.0,1.0;; }") + 4, 3, "-1.0");
+  support::write_bytes(file_.path, file);
+  support::write_bytes(folder_ / "walk.bvh", bvh());
+  file_.motion = folder_ / "walk.bvh";
+  file_.joints = {{"Spine", std::nullopt, "Back"}};
+  const Actor actor = make();
+  EXPECT_NE(actor.warnings.at(0).find("its soles 1 m below its origin"), std::string::npos) << actor.warnings[0];
+  EXPECT_LT((at(actor, 0)[4] - Vec3(0.1, 0, 2)).norm(), kSingle);
+}
+
 TEST_F(Acting, LeavesAMotionInPlaceOrGivesItASpeed) {
   file_.motion = folder_ / "walk.bvh";
   support::write_bytes(*file_.motion, bvh());
@@ -377,11 +389,13 @@ TEST_F(Acting, WarnsOfSizesAndSpeedsThatNobodyHas) {
   file_ = {};
   file_.path = folder_ / "tall.obj";
   support::write_bytes(file_.path, "v 0 0 0\nv 1 0 0\nv 0 170 0\nf 1 2 3\n");
-  const Actor tall = make();
-  ASSERT_EQ(tall.warnings.size(), 1u);
-  EXPECT_NE(tall.warnings[0].find("tall.obj is 170 m tall, where 0.3 to 3 m are expected"), std::string::npos);
-  character_.scale = 0.01;
+  const std::string tall = make().warnings.at(0);
+  EXPECT_NE(tall.find("tall.obj is 170 m tall, where 0.3 to 3 m are expected"), std::string::npos) << tall;
+  EXPECT_NE(tall.find("with scale = 0.01 it is 1.7 m"), std::string::npos) << tall;
+  character_.scale = 0.05;
   EXPECT_TRUE(make().warnings.empty());
+  character_.scale = 0.5;
+  EXPECT_EQ(make().warnings.size(), 1u);
 }
 
 std::string triangle(double height, const std::string& face = "1 2 3") {

@@ -38,6 +38,7 @@ struct Follows {
   double arm = 0;                    // likewise of arms alone
   double trunk = 0, trunk_when = 0;  // likewise from the hips to between the shoulders
   double slip = 0;                   // largest way of the joint of the toes during a contact, level [m]
+  double theirs = 0;                 // likewise of the motion itself, by the ratio of the legs [m]
   double toes = 0;                   // likewise of the middle of the skin of the toes, or of the foot without toes [m]
   double below = 0, above = 0;       // of the lowest vertex under and over the floor, with a foot on it [m]
   std::size_t steps = 0, keys = 0;
@@ -96,8 +97,14 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
   const Quat face(Eigen::AngleAxisd(std::atan2(l0.cross(l1).dot(kUp), l0.dot(l1)), kUp));
   const Footsteps steps = find_footsteps(b, from, times, kUp);
   std::vector<bool> standing(times.size(), false);
+  const double ratio = a.leg_length(at.front()) / b.leg_length(from.front());
+  const auto level_way = [](const std::vector<Posture>& postures, Joint joint, std::size_t k0, std::size_t k1) {
+    const Vec3 way = postures[k1].places[place_of(joint)] - postures[k0].places[place_of(joint)];
+    return (way - way.dot(kUp) * kUp).norm();
+  };
   for (const bool right : {false, true}) {
     const Joint toes = on_side(a.has(Joint::left_toes) ? Joint::left_toes : Joint::left_foot, right);
+    const Joint their_toes = on_side(b.has(Joint::left_toes) ? Joint::left_toes : Joint::left_foot, right);
     for (const Contact& contact : steps.contacts[right]) {
       ++result.steps;
       Vec3 first = Vec3::Zero();
@@ -108,9 +115,8 @@ Follows measure(const Rig& body, const Rig& motion, const Clip& theirs, const Cl
           if (k == contact.first) first = here;
           result.toes = std::max(result.toes, (here - first).norm());
         }
-        Vec3 way = at[k].places[place_of(toes)] - at[contact.first].places[place_of(toes)];
-        way -= way.dot(kUp) * kUp;
-        result.slip = std::max(result.slip, way.norm());
+        result.slip = std::max(result.slip, level_way(at, toes, contact.first, k));
+        result.theirs = std::max(result.theirs, ratio * level_way(from, their_toes, contact.first, k));
       }
     }
   }
@@ -272,12 +278,13 @@ void report(const Character& body, const std::string& file, bool nameless) {
   measure_hands({body, ours}, {motion.character, theirs}, clip, result.clip, f);
   const std::string short_name = file.substr(file.rfind('/') + 1);
   std::printf(
-      "| %s | %zu | %zu | %.1f (%.2f s) to %.1f | %.1f, %.1f | %.1f %s | %.2g | %.1f (%.2f s) | %.0f (%zu), %.0f (%zu) "
+      "| %s | %zu | %zu | %.1f (%.2f s) to %.1f | %.1f, %.1f, %.1f | %.1f %s | %.2g | %.1f (%.2f s) | %.0f (%zu), %.0f "
+      "(%zu) "
       "| %.2f "
       "|%s\n",
-      short_name.c_str(), f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, 1e3 * f.toes, f.angle,
-      f.bone.c_str(), f.arm, f.trunk, f.trunk_when, 1e3 * f.hands, f.hands_keys, 1e3 * f.hips, f.hips_keys, seconds,
-      missing.empty() ? "" : (" without" + missing).c_str());
+      short_name.c_str(), f.keys, f.steps, 1e3 * f.below, f.when, 1e3 * f.above, 1e3 * f.slip, 1e3 * f.toes,
+      1e3 * f.theirs, f.angle, f.bone.c_str(), f.arm, f.trunk, f.trunk_when, 1e3 * f.hands, f.hands_keys, 1e3 * f.hips,
+      f.hips_keys, seconds, missing.empty() ? "" : (" without" + missing).c_str());
   for (const std::string& doubt : result.doubts) std::printf("    %s\n", doubt.c_str());
   report_ranges({body, ours}, {motion.character, theirs}, clip, result.clip);
   if (nameless) report_without_names(body, motion.character, result.clip);
@@ -297,7 +304,8 @@ int main(int argc, char** argv) {
   const Character body =
       body_file.empty() ? make_mannequin({}) : assets::load_character(body_file, {}, body_file).character;
   std::printf(
-      "| Motion | keys | steps | feet over the floor [mm] | slip of joint, of skin [mm] | limb off by [°] | arm [°] | "
+      "| Motion | keys | steps | feet over the floor [mm] | slip of joint, of skin, of the motion's "
+      "own joint [mm] | limb off by [°] | arm [°] | "
       "trunk [°] | hands off against each other, hips [mm] (keys) | CPU [s] |\n");
   if (nameless) compare_without_names(body);
   for (const std::string& file : files) {
