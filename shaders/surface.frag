@@ -70,10 +70,12 @@ void add_light(inout LightSums sums, int i, Point at, Softness soft) {
 #ifdef CLOTH
   // Light on the far side shines through between the threads.
   sums.through += strength * max(-side, 0.0);
-  float threads = mix(thread_highlight(at.n, at.weft, at.warp, at.v, l), thread_highlight(at.n, at.warp, at.weft, at.v, l),
-                      at.finish.y);
-  sums.gloss += strength * (at.shine * step(0.0, side) *
-                            (highlight(at.n, at.v, l, max(at.alpha, 0.2), at.f0) + kThreadShine * at.finish.x * threads));
+  float shine = highlight(at.n, at.v, l, max(at.alpha, 0.2), at.f0);
+#ifdef GLOSSY
+  shine += kThreadShine * at.finish.x * mix(thread_highlight(at.n, at.weft, at.warp, at.v, l),
+                                            thread_highlight(at.n, at.warp, at.weft, at.v, l), at.finish.y);
+#endif
+  sums.gloss += strength * (at.shine * step(0.0, side) * shine);
 #else
   sums.gloss += strength * (highlight(at.n, at.v, l, at.alpha, at.f0) * smoothstep(0.0, 0.06, side));
 #endif
@@ -137,6 +139,7 @@ void main() {
   at.weft = normalize(woven.weft_world - dot(woven.weft_world, at.n) * at.n + 1e-6);
   at.warp = normalize(woven.warp_world - dot(woven.warp_world, at.n) * at.n + 1e-6);
 #endif
+#ifdef HEAT
   if (heat_scale > 0.0) {
     float hot = clamp(normal_heat.w * heat_scale, 0.0, 1.0);
     albedo = textureLod(heat_colors, vec2((hot * 255.0 + 0.5) / 256.0, 0.5), 0.0).rgb;
@@ -144,6 +147,7 @@ void main() {
     behind = albedo;
 #endif
   }
+#endif
 
   Softness soft = look_up_softness(distance_view, surface);
   vec4 bounced_here = bounced_light(at.position_world, at.n_smooth);
@@ -168,8 +172,11 @@ void main() {
   vec3 pale = mix(albedo, vec3(0.6), 0.35);
   vec3 sheen = pale * light.diffuse * (at.finish.z * edge * edge * edge);
   vec3 through = irradiance(-at.n_smooth) * soft.open + light.through;
+  vec3 around = vec3(0.0);
+#ifdef GLOSSY
   // What the threads show of the surroundings.
-  vec3 around = surroundings(reflect(-at.v, at.n), 0.4) * (at.finish.x * soft.open * (0.04 + 0.3 * rim));
+  around = surroundings(reflect(-at.v, at.n), 0.4) * (at.finish.x * soft.open * (0.04 + 0.3 * rim));
+#endif
   vec3 linear = albedo * (light.diffuse * (1.0 - 0.4 * max(at.finish.w - 0.3, 0.0)) + at.finish.w * behind * through) + sheen +
                 light.gloss + around;
 #else

@@ -223,6 +223,7 @@ void Renderer::Impl::upload_frame(const Plan& plan) {
 Shading::Features Renderer::Impl::features(const Plan& plan) const {
   return {.lights = light_set(plan.lights),
           .checker = plan.floor && plan.floor->look.checker,
+          .level = plan.floor && plan.floor->normal.cwiseAbs().maxCoeff() > 1 - 1e-9,
           .painted = passes->geometry.painted() && !plan.lighting.style.plain,
           .trimmed = passes->geometry.trimmed(),
           .reflecting = reflects(plan)};

@@ -21,6 +21,9 @@ std::vector<std::string> shading_defines(const QualitySettings& quality, const L
 // Seams of cloth that is thicker are sewn down on both sides, at this distance [m].
 constexpr double kSewnTwice = 0.7e-3, kBesideSeam = 4e-3;
 
+// Gloss of cotton: up to here threads shine by less than half a level of 255.
+constexpr double kMatte = 0.1;
+
 Texture make_heat_colors(const Gl& gl) {
   std::vector<float> texels;
   for (const Vec3& color : image::heat_table()) {
@@ -134,6 +137,8 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
   const bool many = lights.count > kSoftLights, crisp = quality.crisp_shadows || many;
   const std::vector<const char*> paint(features.painted ? 1 : 0, "PAINTED");
   std::vector<const char*> of_cloth = paint;
+  if (features.glossy) of_cloth.push_back("GLOSSY");
+  if (features.heat) of_cloth.push_back("HEAT");
   of_cloth.push_back("CLOTH");
   if (features.trimmed) of_cloth.push_back("TRIMMED");
   if (features.sheer) of_cloth.push_back("SHEER");
@@ -141,6 +146,7 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
   if (features.sheer) return;
   solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, paint));
   std::vector<const char*> floor{features.checker ? "CHECKER" : "PLAIN"};
+  if (features.level) floor.push_back("LEVEL");
   if (features.reflecting) floor.push_back("REFLECTING");
   shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, crisp, floor));
   floor.push_back("OPEN");
@@ -149,7 +155,9 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
                    : Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, false, floor));
 }
 
-const Shading::Programs& Shading::programs(const Features& features) {
+const Shading::Programs& Shading::programs(Features features) {
+  features.glossy = glossy_;
+  features.heat = heat_;
   const auto known = programs_.find(features);
   if (known != programs_.end()) return known->second;
   return programs_.emplace(features, Programs(*gl_, quality_, features)).first->second;
@@ -158,6 +166,9 @@ const Shading::Programs& Shading::programs(const Features& features) {
 void Shading::upload_materials(std::span<const Material> materials, double heat_scale) {
   constexpr int kColumns = 5;  // of surface.frag
   std::vector<Eigen::Vector4f> texels;
+  heat_ = heat_scale > 0;
+  glossy_ = std::ranges::any_of(
+      materials, [](const Material& material) { return material.cloth && material.appearance.finish.gloss > kMatte; });
   for (const auto& [look, cloth, opacity] : materials) {
     texels.push_back(texel(look.color, std::clamp(look.roughness, 0.0, 1.0)));
     texels.push_back(texel(look.back_color, look.thread_spacing));
@@ -238,8 +249,8 @@ void Shading::draw_open_floor(const Features& features) {
 
 void Shading::draw(std::span<const Material> materials, double heat_scale, const Features& features,
                    const PixelArea& subjects, std::span<const PixelArea> shaded_floor) {
-  const Programs& chosen = programs(features);
   upload_materials(materials, heat_scale);
+  const Programs& chosen = programs(features);
   bind();
   mark_shaded_floor(shaded_floor);
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);

@@ -26,10 +26,13 @@ class Shading {
   struct Features {
     LightSet lights;
     bool checker = false;     ///< on the floor
+    bool level = false;       ///< the floor, so that one axis is its normal
     bool painted = false;     ///< the geometry buffer has colours of its own
     bool trimmed = false;     ///< and hems
     bool reflecting = false;  ///< the floor shows what a Mirror has drawn, everywhere
     bool sheer = false;       ///< cloth says how opaque it is
+    bool glossy = false;      ///< threads of some cloth shine; draw() sees to that, and to the next
+    bool heat = false;        ///< in place of colours of cloth
     auto operator<=>(const Features&) const = default;
   };
   /// Looks of the surfaces in the order of their materials. `heat_scale`: 1 / hottest value, 0 for the surfaces' own
@@ -55,7 +58,7 @@ class Shading {
     bool floor_on_grid;  // open_floor is lit at the corners of the grid
     Programs(const Gl& gl, const QualitySettings& quality, const Features& features);
   };
-  const Programs& programs(const Features& features);
+  const Programs& programs(Features features);
   void bind();
 
   const Gl* gl_;
@@ -69,6 +72,7 @@ class Shading {
   Buffer area_vertices_, grid_vertices_, grid_triangles_;
   GLsizei grid_indices_ = 0;
   int material_rows_ = 0;
+  bool glossy_ = false, heat_ = false;  // of the materials
 };
 
 /// Share of the light that cloth stops, head-on. Dense weaves let light through, but nothing is seen behind them.

@@ -140,6 +140,8 @@ image::Image wall(double height, bool shelf) {
   const auto add = [&](const Vec3& center, const Vec3& normal, const Vec3& color) {
     auto& look = add_square(snapshot, frame::ObjectKind::cloth, center, normal, Vec3::UnitX(), 0.3).appearance;
     look.color = look.back_color = color;
+    // Matte: seen at this angle, fibres that stand out would add a quarter.
+    look.finish = {0, 0.5, 0, 0};
   };
   add(Vec3(0, 0, height + 0.3), -Vec3::UnitY(), Vec3(0.9, 0.3, 0.3));
   add(Vec3(0, -0.32, shelf ? 0.3 : 5e-4), Vec3::UnitZ(), shelf ? Vec3::Zero() : Vec3::Ones());
@@ -157,9 +159,9 @@ Vec3 light_on_floor(const image::Image& image) {
   return image::linear_from_srgb(Vec3(pixel[0], pixel[1], pixel[2]) / 255);
 }
 
-// What no light meets directly shows what a lit wall throws on it, summed up over the wall: too much of it, as cells of
-// 7 cm count for all of their width and pieces of wall twice as wide lie in the middle of what they hold. 1.35 and 1.25
-// of the sum were seen, and a tenth more or less is noticed. A shelf in between leaves less than a third.
+// What no light meets directly shows what a lit wall throws on it: within a tenth of the form factor, summed up over the
+// wall here. 1.08 to 1.09 of it were seen where the wall stands on the floor, for pieces of wall lie in the middle of cells
+// of 14 cm, 0.99 to 1.00 where it hangs. A shelf in between leaves less than a third.
 TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
   for (const double height : {0.0, 0.4}) {
     double factor = 0;
@@ -173,9 +175,8 @@ TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
     }
     const Vec3 light = light_on_floor(wall(height, false)),
                expected = factor * image::linear_from_srgb(Vec3(0.9, 0.3, 0.3));
-    constexpr double kSeen = 1.3;
-    EXPECT_NEAR(light.x() / expected.x(), kSeen, 0.1) << height;
-    EXPECT_NEAR(light.y() / expected.y(), kSeen, 0.1) << height;
+    EXPECT_NEAR(light.x() / expected.x(), 1, 0.1) << height;
+    EXPECT_NEAR(light.y() / expected.y(), 1, 0.1) << height;
     if (height == 0) continue;
     EXPECT_LT(light_on_floor(wall(height, true)).x(), light.x() / 3);
   }
