@@ -47,10 +47,10 @@ const Table& time_rules() {
                   "root mean square over a cloth, stays below this")
           .by_default("none; steps are those of step")
           .excludes("step")
-          .choice(
-              "integrator", &Time::integrator, kIntegratorNames,
-              "method of time integration; the midpoint rule damps nothing, so that steps in which something is near are "
-              "those of bdf2")
+          .choice("integrator", &Time::integrator, kIntegratorNames,
+                  "method of time integration; the midpoint rule damps nothing, so that steps in which something is "
+                  "near are "
+                  "those of bdf2")
           .build();
   return kTable;
 }

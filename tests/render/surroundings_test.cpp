@@ -159,9 +159,9 @@ Vec3 light_on_floor(const image::Image& image) {
   return image::linear_from_srgb(Vec3(pixel[0], pixel[1], pixel[2]) / 255);
 }
 
-// What no light meets directly shows what a lit wall throws on it: within a tenth of the form factor, summed up over the
-// wall here. 1.08 to 1.09 of it were seen where the wall stands on the floor, for pieces of wall lie in the middle of cells
-// of 14 cm, 0.99 to 1.00 where it hangs. A shelf in between leaves less than a third.
+// What no light meets directly shows what a lit wall throws on it: within a tenth of the form factor, summed up over
+// the wall here. 1.08 to 1.09 of it were seen where the wall stands on the floor, for pieces of wall lie in the middle
+// of cells of 14 cm, 0.99 to 1.00 where it hangs. A shelf in between leaves less than a third.
 TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
   for (const double height : {0.0, 0.4}) {
     double factor = 0;
