@@ -36,7 +36,9 @@ void main() {
 #else
   Softness soft = look_up_softness(distance_view, kFloor);
   vec4 bounced_here = bounced_light(position_world, n);
-  vec3 diffuse = ambient_light(n, min(soft.open, open_at_most(bounced_here.w)), albedo) + bounced_here.rgb + shaded_light(0, soft, position_world, n);
+  // Floor hides nothing from itself: what comes back from what does is all in the cubes.
+  vec3 diffuse = irradiance(n) * min(soft.open, open_at_most(bounced_here.w)) + bounced_here.rgb;
+  diffuse += shaded_light(0, soft, position_world, n);
 #if LIGHTS > 1
   diffuse += shaded_light(1, soft, position_world, n);
 #endif

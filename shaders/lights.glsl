@@ -2,7 +2,7 @@
 struct Light {
   mat4 shadow_from_world;         // to texture coordinates and depth, homogeneous
   mat4 shadow_planes_from_world;  // its inverse transpose: carries planes
-  vec4 toward_light_world;        // w: 1 for a spot
+  vec4 toward_light_world;        // w: squared distance of a spot from its target, of a sun 0
   vec4 position_world;            // w: cosine of half the cone
   vec4 color;                     // linear; w: 1 / width of the soft edge of the cone
   vec4 shadow;                    // penumbra width for each unit of depth, depth bias, raise of curved surfaces [m]
@@ -10,14 +10,17 @@ struct Light {
 // LIGHTS of them are there, one at least. Index them by constants: llvmpipe reads a member at a variable index once for
 // each pixel.
 layout(std140, binding = 1) uniform Lights { Light lights[4]; };
-// Unit vector toward light i, and how much of its cone covers the point.
+// Unit vector toward light i, and how much of it comes to the point through its cone: 1 at its target, by the square of the
+// distance from there on.
 vec3 toward_light(int i, vec3 position_world, out float cone) {
   cone = 1.0;
 #ifdef SPOTS
   if (lights[i].toward_light_world.w == 0.0) return lights[i].toward_light_world.xyz;
-  vec3 toward = normalize(lights[i].position_world.xyz - position_world);
+  vec3 way = lights[i].position_world.xyz - position_world;
+  float way_sq = max(dot(way, way), 1e-6);
+  vec3 toward = way * inversesqrt(way_sq);
   float cosine = dot(toward, lights[i].toward_light_world.xyz);
-  cone = smoothstep(0.0, 1.0, (cosine - lights[i].position_world.w) * lights[i].color.w);
+  cone = smoothstep(0.0, 1.0, (cosine - lights[i].position_world.w) * lights[i].color.w) * lights[i].toward_light_world.w / way_sq;
   return toward;
 #else
   return lights[i].toward_light_world.xyz;

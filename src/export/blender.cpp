@@ -58,6 +58,21 @@ Json pictures_json(const frame::Surface& surface) {
   return result;
 }
 
+// By material: linear colour of its back, where cloth shows another one there.
+Json backs_json(const frame::Surface& surface) {
+  Json result = Json::object();
+  if (surface.kind != frame::ObjectKind::cloth) return result;
+  const Materials materials = materials_of(surface);
+  for (const MaterialGroup& group : by_look(surface, materials)) {
+    const frame::Appearance& look =
+        group.material == 0 ? surface.appearance : surface.parts[group.material - 1].appearance;
+    const bool painted = look.paint.texture && look.back_painted;
+    if (look.back_color != look.color && !painted)
+      result[materials.all[group.material].name] = list(image::linear_from_srgb(look.back_color));
+  }
+  return result;
+}
+
 }  // namespace
 
 BlenderScript::BlenderScript(const frame::FrameSnapshot& first, const Lighting& lighting, std::string name, double fps,
@@ -74,8 +89,10 @@ BlenderScript::BlenderScript(const frame::FrameSnapshot& first, const Lighting& 
            {"lights", Json::array()},
            {"sky", {{"color", list(lighting.sky_color)}, {"strength", lighting.sky_share}}}};
   for (const auto& surface : first.surfaces)
-    film_["objects"].push_back(
-        {{"name", surface->name}, {"visible", surface->visible}, {"pictures", pictures_json(*surface)}});
+    film_["objects"].push_back({{"name", surface->name},
+                                {"visible", surface->visible},
+                                {"pictures", pictures_json(*surface)},
+                                {"backs", backs_json(*surface)}});
   for (const frame::Light& light : lighting.lights)
     film_["lights"].push_back(light_json(light, 1 - lighting.sky_share));
 }

@@ -8,7 +8,6 @@
 
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
-#include "render/gl/context.hpp"
 
 namespace weft::render {
 
@@ -29,10 +28,20 @@ void drawing_for(std::size_t count, std::size_t chunk, const Body& body) {
   helped_cpu_seconds += helped;
 }
 
-/// All of it so far, for the calling thread. Threads of the rasteriser belong to the process: of two renderers that
-/// draw at the same time each would count those of both.
-inline double drawing_cpu_seconds() {
-  return thread_cpu_seconds() + helped_cpu_seconds + rasteriser_cpu_seconds();
-}
+/// CPU time of one picture, from here on, on one thread. The threads of the rasteriser belong to the process: of
+/// pictures that are drawn at the same time each gets an equal share of theirs.
+class DrawingTimer {
+ public:
+  DrawingTimer();
+  ~DrawingTimer();
+  DrawingTimer(const DrawingTimer&) = delete;
+  DrawingTimer& operator=(const DrawingTimer&) = delete;
+
+  double cpu_seconds();
+
+ private:
+  double began_;           // on the clocks of this thread alone
+  double rasterised_ = 0;  // so far, for this picture
+};
 
 }  // namespace weft::render

@@ -4,12 +4,16 @@
 #include <cmath>
 
 #include "image/color.hpp"
+#include "render/depth_raster.hpp"
 
 namespace weft::render {
 namespace {
 
 // Share of a shadow map left free at each edge, so that penumbrae end inside it.
 constexpr double kBorder = 1.0 / 32;
+// Curved surfaces are raised by a texel of the whole map, as faces are larger in larger scenes, but no more than this
+// [m]: there would be light between a hem and the leg under it.
+constexpr double kMostRaised = 4e-3;
 
 Vec3 travel_direction(const frame::Light& light) {
   const bool spot = light.kind == frame::Light::Kind::spot;
@@ -72,6 +76,55 @@ ShadowView fit_spot(const frame::Light& light, std::span<const Vec3> casters, co
   return shadow;
 }
 
+using Box2 = Eigen::AlignedBox2d;
+
+/// Where places lie on a map, -1 to 1; all of it where one is behind the light.
+Box2 extent_of(std::span<const Vec3> places, const Mat4& clip_from_world) {
+  Box2 extent;
+  for (const Vec3& place : places) {
+    const Eigen::Vector4d clip = clip_from_world * place.homogeneous();
+    if (!(clip.w() > 1e-6)) return {Vec2(-1, -1), Vec2(1, 1)};
+    extent.extend(Vec2(clip.head<2>() / clip.w()));
+  }
+  return extent;
+}
+
+/// Where what is in view lies, in front of all that could shade it left out.
+Box2 extent_of(const InView& in_view, const Mat4& clip_from_world) {
+  Box2 extent = extent_of(in_view.places, clip_from_world);
+  for (const auto& corners : in_view.cut) {
+    std::array<Eigen::Vector4d, 3> clip;
+    for (int c = 0; c < 3; ++c) clip[c] = clip_from_world * corners[c].homogeneous();
+    clip_near(clip, [&](const auto& a, const auto& b, const auto& c) {
+      for (const auto& corner : {a, b, c}) extent.extend(Vec2(corner.template head<2>() / corner.w()));
+    });
+  }
+  return extent;
+}
+
+/// Leaves of a map the part that matters: where its light finds casters, and of that what is in view. A quarter of each
+/// side stays, as penumbrae of more texels would be too wide for their filter.
+void crop(ShadowView& shadow, std::span<const Vec3> casters, const InView* in_view) {
+  constexpr double kMargin = 0.06, kLeast = 0.25;
+  Box2 part = extent_of(casters, shadow.clip_from_world).intersection(Box2(Vec2(-1, -1), Vec2(1, 1)));
+  if (part.isEmpty()) return;
+  const auto grown = [](const Box2& box, const Vec2& by) { return Box2(box.min() - by, box.max() + by); };
+  if (in_view != nullptr) {
+    const Vec2 least = kLeast * part.sizes();
+    const Box2 needed = part.intersection(grown(extent_of(*in_view, shadow.clip_from_world), kMargin * part.sizes()));
+    if (!needed.isEmpty()) part = grown(needed, (0.5 * (least - needed.sizes())).cwiseMax(0));
+  }
+  part = grown(part, kBorder * part.sizes() + Vec2::Constant(1e-6));
+  Mat4 cropped = Mat4::Identity();
+  for (int k = 0; k < 2; ++k) {
+    cropped(k, k) = 2 / part.sizes()[k];
+    cropped(k, 3) = -part.center()[k] * cropped(k, k);
+  }
+  shadow.clip_from_world = cropped * shadow.clip_from_world;
+  shadow.penumbra_uv = shadow.penumbra_uv.cwiseProduct(Vec2(cropped(0, 0), cropped(1, 1)));
+  shadow.texel_metres *= 0.5 * part.sizes().maxCoeff();
+}
+
 }  // namespace
 
 std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot, frame::Stage::Look look,
@@ -100,9 +153,14 @@ LightSet light_set(std::span<const frame::Light> lights) {
   return {lights.size(), std::any_of(lights.begin(), lights.end(), is_spot)};
 }
 
-ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size) {
-  return light.kind == frame::Light::Kind::spot ? fit_spot(light, casters, up, map_size)
-                                                : fit_sun(light, casters, up, map_size);
+ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, const InView* in_view, const Vec3& up,
+                      int map_size) {
+  const bool spot = light.kind == frame::Light::Kind::spot;
+  ShadowView shadow = spot ? fit_spot(light, casters, up, map_size) : fit_sun(light, casters, up, map_size);
+  shadow.raise = std::min(shadow.texel_metres, kMostRaised);
+  // A sun's map fits its casters as it is.
+  if (spot || in_view != nullptr) crop(shadow, casters, in_view);
+  return shadow;
 }
 
 SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach) {
@@ -123,15 +181,15 @@ LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, con
   LightUniform packed;
   packed.shadow_from_world = shadow_from_world.cast<float>();
   packed.shadow_planes_from_world = Mat4(shadow_from_world.inverse().transpose()).cast<float>();
-  packed.toward_light << (-travel_direction(light)).cast<float>(), spot ? 1.0f : 0.0f;
+  const double reach_sq = std::max((light.target - light.position).squaredNorm(), 1e-6);
+  packed.toward_light << (-travel_direction(light)).cast<float>(), spot ? static_cast<float>(reach_sq) : 0.0f;
   const double outer = std::cos(half_cone(light)), inner = std::cos(0.8 * half_cone(light));
   packed.position << light.position.cast<float>(), static_cast<float>(outer);
   packed.color << (light.intensity * scale.cwiseProduct(image::linear_from_srgb(light.color))).cast<float>(),
       static_cast<float>(1 / (inner - outer));
   // Half a texel for the slope that the filter cannot see, and 0.2 mm for what rasterising rounds.
   const double bias = (0.25 * shadow.texel_metres + 2e-4) * shadow.depth_per_metre;
-  // By a texel: more would leave light under a layer of cloth two millimetres above another.
-  packed.shadow << shadow.penumbra_uv.cast<float>(), static_cast<float>(bias), static_cast<float>(shadow.texel_metres);
+  packed.shadow << shadow.penumbra_uv.cast<float>(), static_cast<float>(bias), static_cast<float>(shadow.raise);
   return packed;
 }
 

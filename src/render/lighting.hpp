@@ -35,10 +35,19 @@ struct ShadowView {
                            ///< central projection, and so does the blur
   double depth_per_metre = 1;  ///< of the depth buffer, in the middle of the subjects
   double texel_metres = 0;     ///< width of one texel there
+  double raise = 0;            ///< by which curved surfaces ask for light from outside, where it grazes them [m]
 };
 
-/// Fits a shadow map of `map_size` texels to the given casters (world space), as tightly as they allow.
-ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, const Vec3& up, int map_size);
+/// What a picture shows, world space: vertices, and triangles cut off at its borders.
+struct InView {
+  std::vector<Vec3> places;
+  std::vector<std::array<Vec3, 3>> cut;
+};
+
+/// Fits a shadow map of `map_size` texels to the given casters (world space), as tightly as they allow, and to what is
+/// `in_view`; where that is null, to all.
+ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, const InView* in_view, const Vec3& up,
+                      int map_size);
 
 /// A parallel view from straight above that covers `bounds` and `reach` metres more, for the
 /// light of the sky that things take from each other. Depth 0 to 1 covers `depth_metres`.
@@ -52,7 +61,7 @@ SkyView fit_sky(const Box3& bounds, const Vec3& up, double reach);
 struct LightUniform {
   Eigen::Matrix4f shadow_from_world;
   Eigen::Matrix4f shadow_planes_from_world;  ///< inverse transpose of the above: carries planes instead of points
-  Eigen::Vector4f toward_light;              ///< unit; w: 1 for a spot
+  Eigen::Vector4f toward_light;              ///< unit; w: squared distance of a spot from its target [m²], of a sun 0
   Eigen::Vector4f position;                  ///< [m]; w: cosine of half the cone
   Eigen::Vector4f color;  ///< linear, times intensity; w: 1 / (cosine inside which all is lit - position.w)
   Eigen::Vector4f

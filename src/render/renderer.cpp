@@ -11,6 +11,7 @@
 #include "render/drawing_time.hpp"
 #include "render/edges.hpp"
 #include "render/framing.hpp"
+#include "render/in_view.hpp"
 #include "render/instants.hpp"
 #include "render/mirror.hpp"
 #include "render/outlines.hpp"
@@ -279,7 +280,9 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
     if (sheer[i] != 0) opaque[i] = {};
   const FloorBuffers* floor = plan.floor ? &passes->floor : nullptr;
 
-  passes->shadows.draw(plan.lights, plan.caster_positions, meshes, plan.up, plan.lighting.exposure.direct);
+  const std::optional<InView> in_view = in_view_of(plan.view, meshes, plan.floor);
+  passes->shadows.draw(plan.lights, plan.caster_positions, meshes, in_view ? &*in_view : nullptr, plan.up,
+                       plan.lighting.exposure.direct);
   const double heat = heat_scale(snapshot, plan.stage);
   bounce(plan, meshes, heat);
   const SkyView above = fit_sky(plan.subjects, plan.up, sky_reach(plan.subjects));
@@ -449,12 +452,12 @@ void Renderer::look_through(CameraPath path) {
 image::Image Renderer::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
   check(snapshot);
   const WallTimer wall;
-  const double cpu_start = drawing_cpu_seconds();
+  DrawingTimer cpu;
   const CurrentContext current(*impl_->context);
   impl_->draw(snapshot, before);
   image::Image image = to_image(impl_->rgba, impl_->settings.width, impl_->settings.height);
   check_errors(impl_->gl, "drawing");
-  impl_->times = {wall.seconds(), drawing_cpu_seconds() - cpu_start};
+  impl_->times = {wall.seconds(), cpu.cpu_seconds()};
   return image;
 }
 

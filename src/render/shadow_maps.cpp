@@ -9,7 +9,8 @@
 namespace weft::render {
 namespace {
 
-constexpr int kBlock = 16;  // texels of a shadow map's side that share one range
+constexpr int kBlock = 16;   // texels of a shadow map's side that share one range
+constexpr int kCoarser = 4;  // sides of maps that only thrown light asks: its cubes are larger than their texels
 
 // Widest filter, in texels: a penumbra may take this much to each side. Wider ones would need more taps to stay smooth.
 constexpr int filter_limit(int map_size) {
@@ -42,6 +43,48 @@ void fill_with_holes(const DrawnMesh& mesh, std::span<const Eigen::Vector3f> pla
                                                        threshold_at(at % size, at / size);
                       write(at, here, depth, to_b, to_c);
                     });
+    }
+  }
+}
+
+void draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world, int size, std::vector<float>& map) {
+  map.assign(static_cast<std::size_t>(size) * size, 1.0f);
+  const auto write = [depths = map.data()](int at, bool covered, float depth, float, float) {
+    const float before = depths[at], nearer = std::min(before, depth);
+    depths[at] = covered ? nearer : before;
+  };
+  const auto place = [&](const Eigen::Vector4d& clip) {
+    const Vec3 at = (texture_from_clip() * (clip / clip.w())).head<3>();
+    return Eigen::Vector3f(at.cwiseProduct(Vec3(size, size, 1)).cast<float>());
+  };
+  std::vector<Eigen::Vector4d> clip;
+  std::vector<Eigen::Vector3f> places;
+  for (const DrawnMesh& mesh : casters) {
+    clip.clear();
+    places.clear();
+    for (const Vec3& position : mesh.positions) {
+      clip.push_back(clip_from_world * position.homogeneous());
+      places.push_back(place(clip.back()));
+    }
+    if (mesh.holes) {
+      fill_with_holes(mesh, places, size, write);
+      continue;
+    }
+    const auto partly = [&](int at, bool covered, float depth, float to_b, float to_c) {
+      write(at, covered && mesh.opacity > threshold_at(at % size, at / size), depth, to_b, to_c);
+    };
+    const auto in_front = [&](Index vertex) { return clip[vertex].z() >= -clip[vertex].w(); };
+    for (const auto& [a, b, c] : mesh.triangles) {
+      if (mesh.opacity < 1) {
+        if (in_front(a) && in_front(b) && in_front(c))
+          fill_triangle(places[a], places[b], places[c], size, size, partly);
+      } else if (in_front(a) && in_front(b) && in_front(c)) {
+        fill_triangle(places[a], places[b], places[c], size, size, write);
+      } else {
+        clip_near({clip[a], clip[b], clip[c]}, [&](const auto& p, const auto& q, const auto& r) {
+          fill_triangle(place(p), place(q), place(r), size, size, write);
+        });
+      }
     }
   }
 }
@@ -82,19 +125,26 @@ void ShadowMaps::reserve(int layers) {
 }
 
 void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3> caster_positions,
-                      std::span<const DrawnMesh> casters, const Vec3& up, const Vec3& scale) {
+                      std::span<const DrawnMesh> casters, const InView* in_view, const Vec3& up, const Vec3& scale) {
   // One layer at least, so that the samplers always have something to look at.
   reserve(std::max<int>(1, static_cast<int>(lights.size())));
   const int size = quality_.shadow_size, coarse = size / kBlock;
   LightsUniform block;
-  lights_.resize(lights.size());
-  depths_.resize(lights.size());
+  maps_.resize(lights.size());
+  whole_.resize(in_view == nullptr ? 0 : lights.size());
+  const auto fill = [&](Map& map, const frame::Light& light, const InView* needed, int map_size) {
+    const ShadowView view = fit_shadow(light, caster_positions, needed, up, map_size);
+    map.light = pack_light(light, view, scale);
+    map.size = map_size;
+    draw_depths(casters, view.clip_from_world, map_size, map.depths);
+  };
   for (int i = 0; i < static_cast<int>(lights.size()); ++i) {
-    const ShadowView view = fit_shadow(lights[i], caster_positions, up, size);
-    block.lights[i] = lights_[i] = pack_light(lights[i], view, scale);
-    draw_depths(casters, view.clip_from_world, depths_[i]);
-    find_ranges(depths_[i]);
-    gl_->TextureSubImage3D(depth_.name(), 0, 0, 0, i, size, size, 1, GL_DEPTH_COMPONENT, GL_FLOAT, depths_[i].data());
+    fill(maps_[i], lights[i], in_view, size);
+    if (in_view != nullptr) fill(whole_[i], lights[i], nullptr, size / kCoarser);
+    block.lights[i] = maps_[i].light;
+    const std::vector<float>& depths = maps_[i].depths;
+    find_ranges(depths);
+    gl_->TextureSubImage3D(depth_.name(), 0, 0, 0, i, size, size, 1, GL_DEPTH_COMPONENT, GL_FLOAT, depths.data());
     gl_->TextureSubImage3D(range_.name(), 0, 0, 0, i, coarse, coarse, 1, GL_RG, GL_FLOAT, ranges_.data());
   }
   gl_->NamedBufferData(light_block_.name(), sizeof(block), &block, GL_STREAM_DRAW);
@@ -108,17 +158,18 @@ void ShadowMaps::draw(std::span<const frame::Light> lights, std::span<const Vec3
 }
 
 Eigen::Vector3f ShadowMaps::light_on(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, bool shadowed) const {
-  const int size = quality_.shadow_size;
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
-  for (std::size_t i = 0; i < lights_.size(); ++i) {
-    const LightUniform& light = lights_[i];
+  for (const Map& map : whole_.empty() ? maps_ : whole_) {
+    const LightUniform& light = map.light;
+    const int size = map.size;
     Eigen::Vector3f toward = light.toward_light.head<3>();
     float cone = 1;
     if (light.toward_light.w() != 0) {
-      toward = (light.position.head<3>() - point).normalized();
+      const Eigen::Vector3f way = light.position.head<3>() - point;
+      toward = way.normalized();
       const float t = (toward.dot(light.toward_light.head<3>()) - light.position.w()) * light.color.w();
       cone = std::clamp(t, 0.0f, 1.0f);
-      cone *= cone * (3 - 2 * cone);
+      cone *= cone * (3 - 2 * cone) * light.toward_light.w() / std::max(way.squaredNorm(), 1e-6f);
     }
     const float facing = cone * normal.dot(toward);
     if (facing <= 0) continue;
@@ -130,56 +181,12 @@ Eigen::Vector3f ShadowMaps::light_on(const Eigen::Vector3f& point, const Eigen::
       // Depth 1 is no caster, also for what lies beyond the far plane.
       const float depth = std::min(at.z() / at.w() - 4 * light.shadow.z(), 1.0f);
       if (inside &&
-          depth > depths_[i][static_cast<std::size_t>(texel.y()) * size + static_cast<std::size_t>(texel.x())])
+          depth > map.depths[static_cast<std::size_t>(texel.y()) * size + static_cast<std::size_t>(texel.x())])
         continue;
     }
     sum += facing * light.color.head<3>();
   }
   return sum;
-}
-
-void ShadowMaps::draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world,
-                             std::vector<float>& map) const {
-  const int size = quality_.shadow_size;
-  map.assign(static_cast<std::size_t>(size) * size, 1.0f);
-  const auto write = [depths = map.data()](int at, bool covered, float depth, float, float) {
-    const float before = depths[at], nearer = std::min(before, depth);
-    depths[at] = covered ? nearer : before;
-  };
-  const auto place = [&](const Eigen::Vector4d& clip) {
-    const Vec3 at = (texture_from_clip() * (clip / clip.w())).head<3>();
-    return Eigen::Vector3f(at.cwiseProduct(Vec3(size, size, 1)).cast<float>());
-  };
-  std::vector<Eigen::Vector4d> clip;
-  std::vector<Eigen::Vector3f> places;
-  for (const DrawnMesh& mesh : casters) {
-    clip.clear();
-    places.clear();
-    for (const Vec3& position : mesh.positions) {
-      clip.push_back(clip_from_world * position.homogeneous());
-      places.push_back(place(clip.back()));
-    }
-    if (mesh.holes) {
-      fill_with_holes(mesh, places, size, write);
-      continue;
-    }
-    const auto partly = [&](int at, bool covered, float depth, float to_b, float to_c) {
-      write(at, covered && mesh.opacity > threshold_at(at % size, at / size), depth, to_b, to_c);
-    };
-    const auto in_front = [&](Index vertex) { return clip[vertex].z() >= -clip[vertex].w(); };
-    for (const auto& [a, b, c] : mesh.triangles) {
-      if (mesh.opacity < 1) {
-        if (in_front(a) && in_front(b) && in_front(c))
-          fill_triangle(places[a], places[b], places[c], size, size, partly);
-      } else if (in_front(a) && in_front(b) && in_front(c)) {
-        fill_triangle(places[a], places[b], places[c], size, size, write);
-      } else {
-        clip_near({clip[a], clip[b], clip[c]}, [&](const auto& p, const auto& q, const auto& r) {
-          fill_triangle(place(p), place(q), place(r), size, size, write);
-        });
-      }
-    }
-  }
 }
 
 /// Ranges of blocks and of what lies within reach of the widest filter, so that a block answers for every tap that

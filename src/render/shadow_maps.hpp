@@ -15,11 +15,13 @@ class ShadowMaps {
  public:
   ShadowMaps(const Gl& gl, const QualitySettings& quality);
 
-  /// Draws the map of every light and uploads the light block. Leaves the maps bound to units 0 to 2.
+  /// Draws the map of every light and uploads the light block. Leaves the maps bound to units 0 to 2. They hold what is
+  /// `in_view`; where that is null, all.
   void draw(std::span<const frame::Light> lights, std::span<const Vec3> caster_positions,
-            std::span<const DrawnMesh> casters, const Vec3& up, const Vec3& scale);
+            std::span<const DrawnMesh> casters, const InView* in_view, const Vec3& up, const Vec3& scale);
 
-  /// Direct light on matte white at a point that faces `normal`, after draw(); with hard shadows or none.
+  /// Direct light on matte white at a point that faces `normal`, in view or not, after draw(); with hard shadows or
+  /// none.
   Eigen::Vector3f light_on(const Eigen::Vector3f& point, const Eigen::Vector3f& normal, bool shadowed) const;
 
   /// Lines for the shaders that include lights.glsl.
@@ -30,8 +32,12 @@ class ShadowMaps {
   struct Range {
     float nearest = 1, farthest = 0;
   };
+  struct Map {
+    LightUniform light;
+    int size = 0;
+    std::vector<float> depths;  // 1 where no caster is
+  };
   void reserve(int layers);
-  void draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world, std::vector<float>& map) const;
   void find_ranges(std::span<const float> map);
   void spread_ranges(int step, int other_step);
 
@@ -41,8 +47,7 @@ class ShadowMaps {
   Texture depth_, range_;
   Sampler compare_, raw_;
   Buffer light_block_;
-  std::vector<LightUniform> lights_;
-  std::vector<std::vector<float>> depths_;  // of each light; 1 where no caster is
+  std::vector<Map> maps_, whole_;  // of each light; coarse ones of all, where those of the picture leave something out
   std::vector<Range> ranges_;
 };
 

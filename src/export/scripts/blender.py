@@ -1,4 +1,4 @@
-# Loads what lies beside this file: meshes that move, their colours, cameras, lights, frame rate and picture size.
+# Loads what lies beside this file: meshes that move, their colours on both sides, cameras, lights, frame rate and picture size.
 #
 #   blender -P FILE.py                      opens it
 #   blender -b -P FILE.py -- FILE.blend     saves it
@@ -74,12 +74,29 @@ def lay_picture(material, picture):
         material.blend_method = "CLIP"
 
 
-def add_mesh(name, visible, pictures, collection):
+def color_backs(mesh, backs):
+    for material in mesh.materials:
+        back = backs.get(material.name.split(".")[0]) if material else None
+        if not back:
+            continue
+        nodes, links = material.node_tree.nodes, material.node_tree.links
+        front = next(node for node in nodes if node.type == "BSDF_PRINCIPLED").inputs["Base Color"]
+        side, mix = nodes.new("ShaderNodeNewGeometry"), nodes.new("ShaderNodeMixRGB")
+        mix.inputs["Color1"].default_value, mix.inputs["Color2"].default_value = front.default_value, back + [1]
+        for link_to_front in front.links:
+            links.new(link_to_front.from_socket, mix.inputs["Color1"])
+        links.new(side.outputs["Backfacing"], mix.inputs["Fac"])
+        links.new(mix.outputs["Color"], front)
+
+
+def add_mesh(film_object, collection):
+    name, visible = film_object["name"], film_object["visible"]
     bpy.ops.object.select_all(action="DESELECT")
     bpy.ops.wm.obj_import(filepath=os.path.join(FOLDER, name + ".obj"))
     mesh = bpy.context.selected_objects[0]
     mesh.name = name
-    lay_pictures(mesh.data, pictures)
+    lay_pictures(mesh.data, film_object["pictures"])
+    color_backs(mesh.data, film_object["backs"])
     mesh.hide_render = not visible
     mesh.hide_set(not visible)
     motion = mesh.modifiers.new("Weft", "MESH_CACHE")
@@ -158,7 +175,7 @@ def main():
     scene.collection.children.link(collection)
     set_scene(scene)
     for film_object in FILM["objects"]:
-        add_mesh(film_object["name"], film_object["visible"], film_object["pictures"], collection)
+        add_mesh(film_object, collection)
     for film_light in FILM["lights"]:
         add_light(film_light, collection)
     cameras = [add_camera(film_camera, collection) for film_camera in FILM["cameras"]]
