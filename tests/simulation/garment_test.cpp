@@ -170,7 +170,8 @@ TEST_F(Garments, AStartThatMeetsACharacterTellsHowArmsAreHeldOff) {
   const auto refused = [&](const std::string& of_character, double height) {
     return refusal_of(support::scene_of_text(
         fmt::format("[[character]]\nname = 'rod'\nfile = '{}'\n{}[[cloth]]\nname = 'sheet'\nsize = 0.4\nparticles = 5\n"
-                    "position = [0, 0, {}]\n[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.1, 0.1, 0.1]\nposition = [0, 0, 3]\n",
+                    "position = [0, 0, {}]\n[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.1, 0.1, "
+                    "0.1]\nposition = [0, 0, 3]\n",
                     (folder_ / "rod.x").string(), of_character, height)));
   };
   const std::string hint = "stance_arms = 45 holds them off the body", dressed = "dressing = 0.5\nblend = 0.2\n";
