@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <utility>
 
@@ -346,6 +347,13 @@ std::vector<character::Ground> grounds_below(const Cast& cast) {
   return grounds;
 }
 
+/// Of the lowest of some vertices [m].
+double height_over(const character::Ground& ground, std::span<const Vec3> x) {
+  double least = std::numeric_limits<double>::infinity();
+  for (const Vec3& v : x) least = std::min(least, ground.up.dot(v) - ground.height);
+  return least;
+}
+
 /// What the scene says, else what its cloths need. The walk of the mannequin keeps its arms off by itself.
 double room_between_limbs(const Cast& cast) {
   if (cast.settings.room) return *cast.settings.room;
@@ -395,9 +403,12 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   std::vector<Vec3> bones;  // of the vertices, not of what follows
   if (cast.settings.grow > 0) bones = character::places_on_bones(body.character, start);
   bones.resize(std::min(bones.size(), vertices));
+  const std::vector<character::Ground> grounds = grounds_below(cast);
+  std::vector<double> lowest;  // over the floor, at each key
   KeyFrames keys = sample(cast, times, body.character.mesh.positions.size(), [&](double t, std::vector<Vec3>& x) {
     const character::Pose pose = performance.at(t);
     character::skin(body.character, pose, x);
+    if (grounds.size() == 1) lowest.push_back(height_over(grounds[0], std::span(x).first(vertices)));
     if (room) room->make(pose, x);
     const double since = t - begin_of(cast.scene);
     if (since >= cast.settings.grow) return;
@@ -406,6 +417,8 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
   });
   if (const auto doubt = doubt_of_speed(keys, static_cast<double>(times.first) / times.rate, times.rate, times.count,
                                         body.character.mesh.positions.size()))
+    body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
+  if (const auto doubt = doubt_of_floor(std::move(lowest), cast.scene.obstacles.size() == 1))
     body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
   mesh::Mesh mesh = std::move(body.character.mesh);
   mesh.positions.resize(vertices);

@@ -14,6 +14,8 @@ constexpr double kLeastHeight = 0.3, kMostHeight = 3, kUsualHeight = 1.7;
 constexpr int kNodesOfLimbs = 3;
 // Nothing with legs goes faster [m/s]; sprinters reach 12.
 constexpr double kMostSpeed = 20;
+// By how much feet may miss the floor [m]: people who look at a body see it from there on.
+constexpr double kMissedFloor = 0.05;
 
 }  // namespace
 
@@ -66,6 +68,19 @@ std::optional<std::string> doubt_of_speed(const KeyFrames& keys, double begin, d
   }
   if (fastest <= kMostSpeed) return std::nullopt;
   return fmt::format("it moves at up to {:.3g} m/s; bodies with legs reach {:g} m/s", fastest, kMostSpeed);
+}
+
+// Who jumps is on the floor at times, who rolls over it is in it at times.
+std::optional<std::string> doubt_of_floor(std::vector<double> lowest, bool alone) {
+  if (lowest.empty()) return std::nullopt;
+  std::ranges::sort(lowest);
+  const double least = lowest.front(), median = lowest[lowest.size() / 2];
+  if (median < -kMissedFloor)
+    return fmt::format(
+        "its lowest point is {:.3g} m below the floor in half of its motion or more; position puts it higher", -median);
+  if (alone && least > kMissedFloor)
+    return fmt::format("it comes no nearer to the floor than {:.3g} m; position puts it lower", least);
+  return std::nullopt;
 }
 
 }  // namespace weft::environment

@@ -4,6 +4,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "character/character.hpp"
 #include "environment/key_frames.hpp"
@@ -21,5 +22,9 @@ std::optional<std::string> doubt_of_skin(const character::Character& body, const
 /// second.
 std::optional<std::string> doubt_of_speed(const KeyFrames& keys, double begin, double rate, std::size_t count,
                                           std::size_t vertices);
+
+/// What is wrong with a body whose lowest vertex is as high over the one floor there is, at each of its key frames [m].
+/// `alone`: there is nothing else to stand on.
+std::optional<std::string> doubt_of_floor(std::vector<double> lowest, bool alone);
 
 }  // namespace weft::environment

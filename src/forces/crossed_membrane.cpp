@@ -27,10 +27,8 @@ std::array<std::size_t, 3> corners_of(std::size_t k) {
   return {k, (k + 1) % 4, 4};
 }
 
-// Length of a thread with slope s whose cell bulges.
-double length_of(const Vec3& s, double bulge) {
-  return std::max(std::sqrt(s.squaredNorm() + bulge), kCollapsed);
-}
+// How a corner counts in the twist; the middle does not.
+constexpr std::array<double, 5> kTwist{1, -1, 1, -1, 0};
 
 // What tension does across a thread as it is, and definite in two ways: see Stretch.
 double exact_lateral(double length) {
@@ -54,8 +52,7 @@ CrossedMembrane::CrossedMembrane(const mesh::Sheet& sheet, Index first, const St
     for (std::size_t k = 0; k < 4; ++k) {
       cell.particles[k] = triangles[t + k].particles[0];
       const Vec2& of_middle = triangles[t + k].gradients[2];
-      cell.bulge_u += kBulge * 0.25 * of_middle.x() * of_middle.x();
-      cell.bulge_v += kBulge * 0.25 * of_middle.y() * of_middle.y();
+      cell.bulge += kBulge * 0.25 * of_middle.cwiseAbs2();
       cell.least_size += 2 * kFoldedUp * triangles[t + k].area;
     }
     cell.particles[4] = triangles[t].particles[2];
@@ -107,6 +104,8 @@ CrossedMembrane::State CrossedMembrane::state_of(const Cell& cell, const Five& p
   state.kept = folded_up ? 1 - size * size / (least * state.size) : 0;
   state.height = state.normal.dot(state.lean);
   state.flat[4] -= state.height * state.normal;
+  state.twist = (a - b) + (c - d);
+  state.skew = state.normal.squaredNorm() * state.twist.squaredNorm();
   return state;
 }
 
@@ -115,29 +114,33 @@ Vec3 CrossedMembrane::turned(const State& state, const Vec3& product) {
   return (product - (1 - state.kept) * state.direction.dot(product) * state.direction) / state.size;
 }
 
-// From forces on the flat cell and along its height to those on the particles:
+// From forces on the flat cell, along its height and on its skew q to those on the particles:
 //
-//     δm' = δm − n δw − w δn,   δw = n·δd + d·δn,   δ(D₁ × D₂) = δD₁ × D₂ + D₁ × δD₂.
-void CrossedMembrane::pull_back(const State& state, Five& force, double along_height) {
+//     δm' = δm − n δw − w δn,   δw = n·δd + d·δn,   δq = 2 ‖n‖² t·δt + 2 ‖t‖² n·δn,
+//     δ(D₁ × D₂) = δD₁ × D₂ + D₁ × δD₂.
+void CrossedMembrane::pull_back(const State& state, Five& force, double along_height, double along_skew) {
   const auto& [d1, d2] = state.diagonals;
-  const Vec3& n = state.normal;
+  const Vec3 &n = state.normal, &t = state.twist;
   const double along = along_height - force[4].dot(n);
-  const Vec3 turn = turned(state, along * state.lean - state.height * force[4]);
+  const Vec3 turn = turned(state, along * state.lean - state.height * force[4] + 2 * along_skew * t.squaredNorm() * n);
   const Vec3 on_d1 = d2.cross(turn), on_d2 = turn.cross(d1), share = 0.25 * along * n;
-  force[0] -= on_d1 + share;
-  force[1] -= on_d2 + share;
-  force[2] += on_d1 - share;
-  force[3] += on_d2 - share;
+  const Vec3 on_twist = 2 * along_skew * n.squaredNorm() * t;
+  force[0] -= on_d1 + share - on_twist;
+  force[1] -= on_d2 + share + on_twist;
+  force[2] += on_d1 - share + on_twist;
+  force[3] += on_d2 - share - on_twist;
   force[4] += along * n;
 }
 
-// The other way: how the flat cell and its height change with the velocities.
-void CrossedMembrane::push_forward(const State& state, Five& flat, double& height) {
+// The other way: how the flat cell, its height and its skew change with the velocities.
+void CrossedMembrane::push_forward(const State& state, Five& flat, double& height, double& skew) {
   const Vec3 lean = flat[4] - 0.25 * (flat[0] + flat[1] + flat[2] + flat[3]);
+  const Vec3 twist = (flat[0] - flat[1]) + (flat[2] - flat[3]);
   const auto& [d1, d2] = state.diagonals;
-  const Vec3& n = state.normal;
+  const Vec3 &n = state.normal, &t = state.twist;
   const Vec3 turn = turned(state, (flat[2] - flat[0]).cross(d2) + d1.cross(flat[3] - flat[1]));
   height = n.dot(lean) + turn.dot(state.lean);
+  skew = 2 * (n.squaredNorm() * t.dot(twist) + t.squaredNorm() * n.dot(turn));
   flat[4] -= height * n + state.height * turn;
 }
 
@@ -152,20 +155,21 @@ void CrossedMembrane::add(const Evaluation& at) const {
   ranges_.for_each(at.range, cells_.size(), [&](std::size_t c) {
     const Cell& cell = cells_[c];
     const State state = state_of(cell, vectors_of(cell, at.x));
-    const double w = state.height, bulge_u = w * w * cell.bulge_u, bulge_v = w * w * cell.bulge_v;
     Five rate, force;
-    double w_rate = 0, along_height = 0;
+    double height_rate = 0, skew_rate = 0, along_height = 0, along_skew = 0;
     rate.fill(Vec3::Zero()), force.fill(Vec3::Zero());
     if (viscous) {
       rate = vectors_of(cell, at.v);
-      push_forward(state, rate, w_rate);
+      push_forward(state, rate, height_rate, skew_rate);
     }
     for (std::size_t k = 0; k < 4; ++k) {
       const Element& element = elements()[4 * c + k];
       const Gradient s = gradient_of(element, state.flat, k), s_rate = gradient_of(element, rate, k);
-      const double u = length_of(s.u, bulge_u), v = length_of(s.v, bulge_v);
-      const double u_rate = (s.u.dot(s_rate.u) + w * w_rate * cell.bulge_u) / u;
-      const double v_rate = (s.v.dot(s_rate.v) + w * w_rate * cell.bulge_v) / v;
+      const Bulge bulge = bulge_of(cell, element);
+      const Vec2 length = lengths_of(s, bulge, state);
+      const Vec2 added_rate = state.height * height_rate * bulge.of_height + 0.5 * skew_rate * bulge.of_skew;
+      const double u = length.x(), v = length.y();
+      const double u_rate = (s.u.dot(s_rate.u) + added_rate.x()) / u, v_rate = (s.v.dot(s_rate.v) + added_rate.y()) / v;
       const double weft = (stretch_.weft * (u - 1) + stretch_.viscosity * u_rate) / u;
       const double warp = (stretch_.warp * (v - 1) + stretch_.viscosity * v_rate) / v;
       const double stress =
@@ -174,9 +178,10 @@ void CrossedMembrane::add(const Evaluation& at) const {
       const Vec3 along_v = element.area * (warp * s.v + stress * s.u);
       for (std::size_t i = 0; i < 3; ++i)
         force[corners_of(k)[i]] -= element.gradients[i].x() * along_u + element.gradients[i].y() * along_v;
-      along_height -= element.area * w * (weft * cell.bulge_u + warp * cell.bulge_v);
+      along_height -= element.area * state.height * bulge.of_height.dot(Vec2(weft, warp));
+      along_skew -= element.area * 0.5 * bulge.of_skew.dot(Vec2(weft, warp));
     }
-    pull_back(state, force, along_height);
+    pull_back(state, force, along_height, along_skew);
     for (std::size_t i = 0; i < 5; ++i) at.force.add(cell.particles[i], solver::quad_of<double>(force[i]));
     if (!at.assembly) return;
     const Blocks blocks = blocks_of(
@@ -203,8 +208,19 @@ TriangleMembrane::Gradient CrossedMembrane::gradient_of(const Element& element, 
   return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
 }
 
+CrossedMembrane::Bulge CrossedMembrane::bulge_of(const Cell& cell, const Element& element) {
+  return {cell.bulge, element.gradients[2].cwiseAbs2() / 16};
+}
+
+// Of the threads of a triangle, with what its cell's height and skew add.
+Vec2 CrossedMembrane::lengths_of(const Gradient& s, const Bulge& bulge, const State& state) {
+  const Vec2 added = state.height * state.height * bulge.of_height + state.skew * bulge.of_skew;
+  return (Vec2(s.u.squaredNorm(), s.v.squaredNorm()) + added).cwiseSqrt().cwiseMax(kCollapsed);
+}
+
 // k (1 − lateral) ∂L ∂Lᵀ of each length L, and the like of the shear. Then what the stresses pull straight: across n
-// the slopes between corners and middle, along n those between corners with the middle of them, and the height.
+// the slopes between corners and middle, along n those between corners with the middle of them, and the height; the
+// twist in all directions.
 CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& state, double rate, Lateral lateral_of,
                                                    bool definite) const {
   const Cell& cell = cells_[c];
@@ -213,9 +229,9 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
   Blocks sum;
   sum.fill(packed_scalar(0));
   std::array<double, 25> across{}, along{};
-  double of_height = 0;
-  const auto add_outer = [&](double size, Five slope, double of_w) {
-    pull_back(state, slope, of_w);
+  double of_height = 0, of_twist = 0;
+  const auto add_outer = [&](double size, Five slope, double along_height, double along_skew) {
+    pull_back(state, slope, along_height, along_skew);
     for (std::size_t a = 0; a < 5; ++a) {
       const Vec3 scaled = size * slope[a];
       for (std::size_t b = 0; b < 5; ++b) sum[5 * a + b] = sum[5 * a + b] + packed_outer(scaled, slope[b]);
@@ -224,7 +240,9 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
   for (std::size_t k = 0; k < 4; ++k) {
     const Element& element = elements()[4 * c + k];
     const Gradient s = gradient_of(element, state.flat, k);
-    const double u = length_of(s.u, w * w * cell.bulge_u), v = length_of(s.v, w * w * cell.bulge_v);
+    const Bulge bulge = bulge_of(cell, element);
+    const Vec2 length = lengths_of(s, bulge, state);
+    const double u = length.x(), v = length.y();
     const double lateral_u = lateral_of(u), lateral_v = lateral_of(v);
     Five of_u, of_v, of_shear;
     of_u.fill(Vec3::Zero()), of_v = of_shear = of_u;
@@ -242,9 +260,11 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
     for (std::size_t i = 0; i < 4; ++i) level[i] += 0.25 * flattened * element.gradients[2];
     level[4] = (1 - flattened) * element.gradients[2];
     const double viscous = rate * stretch_.viscosity;
-    add_outer(element.area * (stretch_.weft * (1 - lateral_u) + viscous), of_u, w * cell.bulge_u / u);
-    add_outer(element.area * (stretch_.warp * (1 - lateral_v) + viscous), of_v, w * cell.bulge_v / v);
-    add_outer(element.area * 0.5 * (shear_.modulus + rate * shear_.viscosity), of_shear, 0);
+    add_outer(element.area * (stretch_.weft * (1 - lateral_u) + viscous), of_u, w * bulge.of_height.x() / u,
+              0.5 * bulge.of_skew.x() / u);
+    add_outer(element.area * (stretch_.warp * (1 - lateral_v) + viscous), of_v, w * bulge.of_height.y() / v,
+              0.5 * bulge.of_skew.y() / v);
+    add_outer(element.area * 0.5 * (shear_.modulus + rate * shear_.viscosity), of_shear, 0, 0);
     const double weft = element.area * stretch_.weft * lateral_u, warp = element.area * stretch_.warp * lateral_v;
     const double stress = element.area * 0.5 * shear_.modulus * s.u.dot(s.v);
     const double shear = definite ? 0.5 * stress : stress, added = definite ? 0.5 * std::abs(stress) : 0;
@@ -256,36 +276,37 @@ CrossedMembrane::Blocks CrossedMembrane::blocks_of(std::size_t c, const State& s
         across[5 * a + b] += stiffness(flat[a], flat[b]);
         along[5 * a + b] += stiffness(level[a], level[b]);
       }
-    of_height += weft * cell.bulge_u + warp * cell.bulge_v;
+    of_height += bulge.of_height.dot(Vec2(weft, warp));
+    of_twist += flattened * bulge.of_skew.dot(Vec2(weft, warp));
   }
   for (std::size_t a = 0; a < 5; ++a)
     for (std::size_t b = 0; b < 5; ++b) {
       const double height = (a == 4 ? 1 : -0.25) * (b == 4 ? 1 : -0.25) * of_height;
       const std::size_t i = 5 * a + b;
-      sum[i] = sum[i] + packed_scalar(across[i]) + packed_outer((along[i] + height - across[i]) * n, n);
+      sum[i] = sum[i] + packed_scalar(across[i] + kTwist[a] * kTwist[b] * of_twist) +
+               packed_outer((along[i] + height - across[i]) * n, n);
     }
   return sum;
 }
 
 double CrossedMembrane::strain(std::size_t triangle, std::span<const Vec3> x) const {
   const Cell& cell = cells_[triangle / 4];
+  const Element& element = elements()[triangle];
   const State state = state_of(cell, vectors_of(cell, x));
-  const Gradient s = gradient_of(elements()[triangle], state.flat, triangle % 4);
-  const double w_sq = state.height * state.height;
-  return std::max(std::abs(length_of(s.u, w_sq * cell.bulge_u) - 1), std::abs(length_of(s.v, w_sq * cell.bulge_v) - 1));
+  const Vec2 length = lengths_of(gradient_of(element, state.flat, triangle % 4), bulge_of(cell, element), state);
+  return (length - Vec2::Ones()).cwiseAbs().maxCoeff();
 }
 
 double CrossedMembrane::energy(std::span<const Vec3> x) const {
   double sum = 0;
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const State state = state_of(cells_[c], vectors_of(cells_[c], x));
-    const double w_sq = state.height * state.height;
     for (std::size_t k = 0; k < 4; ++k) {
       const Element& element = elements()[4 * c + k];
       const Gradient s = gradient_of(element, state.flat, k);
-      const double weft = length_of(s.u, w_sq * cells_[c].bulge_u) - 1,
-                   warp = length_of(s.v, w_sq * cells_[c].bulge_v) - 1, shear = s.u.dot(s.v);
-      sum += element.area * (0.5 * stretch_.weft * weft * weft + 0.5 * stretch_.warp * warp * warp +
+      const Vec2 stretched = lengths_of(s, bulge_of(cells_[c], element), state) - Vec2::Ones();
+      const double shear = s.u.dot(s.v);
+      sum += element.area * (0.5 * Vec2(stretch_.weft, stretch_.warp).dot(stretched.cwiseAbs2()) +
                              0.25 * shear_.modulus * shear * shear);
     }
   }

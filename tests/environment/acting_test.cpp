@@ -8,8 +8,8 @@
 #include <string>
 
 #include "environment/environment.hpp"
-#include "environment/plausibility.hpp"
 #include "mesh/topology.hpp"
+#include "support/small_character.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::environment {
@@ -18,24 +18,6 @@ namespace {
 // Files hold single precision; figures here are of some metres.
 constexpr double kSingle = 1e-6;
 
-/// A rod along y that a joint at its middle bends, as ASCII X: no other text format with a skin is as short. (Numbers
-/// have decimals because assimp takes "1,0" for 1.0.)
-std::string rod_file() {
-  return R"(xof 0303txt 0032
-Frame Root { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }
- Frame Hips { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }
-  Frame Spine { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,1.0,0.0,1.0;; } } }
- Mesh Rod { 5; -0.1;0.0;0.0;, 0.1;0.0;0.0;, 0.0;1.0;0.0;, -0.1;2.0;0.0;, 0.1;2.0;0.0;;
-  3; 3;0,1,2;, 3;2,4,3;, 3;0,2,3;;
-  XSkinMeshHeader { 1; 1; 2; }
-  SkinWeights { "Hips"; 2; 0,1; 1.0,1.0; 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0;; }
-  SkinWeights { "Spine"; 3; 2,3,4; 1.0,1.0,1.0; 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,-1.0,0.0,1.0;; } } }
-AnimTicksPerSecond { 10; }
-AnimationSet Walk { Animation { { Hips } AnimationKey { 2; 3; 0;3;0.0,0.0,0.0;;, 10;3;0.0,0.0,2.0;;, 20;3;0.0,0.0,4.0;;; } } }
-AnimationSet Wave { Animation { { Spine } AnimationKey { 2; 2; 0;3;0.0,1.0,0.0;;, 10;3;1.0,1.0,0.0;;; } } }
-)";
-}
-
 /// Its ends at x = -0.1. The reader turns faces round and with them the order of vertices.
 constexpr std::size_t kLow = 2, kHigh = 3;
 
@@ -43,7 +25,7 @@ class Acting : public support::TestFolder {
  protected:
   void SetUp() override {
     TestFolder::SetUp();
-    support::write_bytes(folder_ / "rod.x", rod_file());
+    support::write_bytes(folder_ / "rod.x", support::rod_file());
     scene_.file = "scenes/a.toml";
     scene_.time.duration = 2;
     scene_.characters.emplace_back();
@@ -129,7 +111,7 @@ TEST_F(Acting, WarnsOfALoopThatDoesNotClose) {
   const Actor actor = make();
   ASSERT_EQ(actor.warnings.size(), 0u) << "moving along is the clip's way";
   support::write_bytes(folder_ / "rod.x", [] {
-    std::string text = rod_file();
+    std::string text = support::rod_file();
     const std::string level = "10;3;1.0,1.0,0.0";
     return text.replace(text.find(level), level.size(), "10;3;0.0,1.5,0.0");  // up
   }());
@@ -176,7 +158,7 @@ TEST_F(Acting, KnowsPartsByJointsAndBones) {
 
 /// The rod with its upper end as a hand of three fingers.
 std::string hand_file() {
-  std::string text = rod_file();
+  std::string text = support::rod_file();
   const auto replace = [&](const std::string& from, const std::string& to) {
     ASSERT_NE(text.find(from), std::string::npos) << from;
     text.replace(text.find(from), from.size(), to);
@@ -332,7 +314,7 @@ TEST_F(Acting, TakesOverTheMotionOfAnotherFileByTheNamesThatTheSceneGives) {
 }
 
 TEST_F(Acting, PutsABodyWhoseOriginIsInItsMiddleOnTheFloor) {
-  std::string file = rod_file();
+  std::string file = support::rod_file();
   file.replace(file.find("0.0,0.0,0.0,1.0;; }") + 4, 3, "-1.0");
   support::write_bytes(file_.path, file);
   support::write_bytes(folder_ / "walk.bvh", bvh());
@@ -396,6 +378,31 @@ TEST_F(Acting, WarnsOfSizesAndSpeedsThatNobodyHas) {
   EXPECT_TRUE(make().warnings.empty());
   character_.scale = 0.5;
   EXPECT_EQ(make().warnings.size(), 1u);
+}
+
+TEST_F(Acting, DoubtsABodyThatMissesTheFloor) {
+  scene_.obstacles.emplace_back();
+  scene_.obstacles[0].shape = scene::Plane{};
+  const auto warning = [&](double height) {
+    character_.pose.position = {0, 0, height};
+    const std::vector<std::string> warnings = make().warnings;
+    return warnings.empty() ? std::string() : warnings[0];
+  };
+  for (const double height : {0.0, -0.04, 0.04}) EXPECT_EQ(warning(height), "") << height;
+  EXPECT_EQ(
+      warning(-0.3),
+      "scenes/a.toml:7:1: character.rod: its lowest point is 0.3 m below the floor in half of its motion or more; "
+      "position puts it higher");
+  const std::string above =
+      "scenes/a.toml:7:1: character.rod: it comes no nearer to the floor than 0.3 m; position puts it lower";
+  EXPECT_EQ(warning(0.3), above);
+  // There may be something that it stands on, and below a floor that moves there may be anything.
+  scene_.obstacles.emplace_back();
+  scene_.obstacles[1].shape = scene::BoxShape{};
+  EXPECT_EQ(warning(0.3), "");
+  scene_.obstacles.pop_back();
+  scene_.obstacles[0].motion.keys.emplace_back();
+  EXPECT_EQ(warning(-0.3), "");
 }
 
 std::string triangle(double height, const std::string& face = "1 2 3") {
@@ -471,28 +478,6 @@ TEST_F(Acting, CharactersOfASceneMoveAsBodiesAfterItsObstacles) {
   EXPECT_EQ(start, body.mesh.positions);
   EXPECT_NEAR((later[0] - start[0]).norm(), 2, 1e-5);
   EXPECT_NEAR(environment.vertex(1, 0, 1).velocity.norm(), 2, 1e-4);
-}
-
-TEST(Plausibility, DoubtsABodyWhoseBonesHoldNoSkin) {
-  // Hips and below them five bones, all of which the clip turns; the mesh hangs on the hips.
-  character::Character body;
-  body.nodes.push_back({"hips", -1, character::Affine::Identity()});
-  character::Clip clip;
-  for (Index n = 1; n <= 5; ++n) {
-    body.nodes.push_back({"bone", 0, character::Affine::Identity()});
-    clip.channels.push_back({n, {}, {{0, 1}, {Quat::Identity(), Quat(0, 1, 0, 0)}}, {}});
-  }
-  body.bones = {{0, character::Affine::Identity()}, {3, character::Affine::Identity()}};
-  body.influences = {{0, 1}, {0, 1}};
-  EXPECT_EQ(
-      doubt_of_skin(body, clip),
-      "has no skin on its bones: node \"hips\" holds all of it, and 5 nodes that the motion turns move nothing of "
-      "it; bind the mesh to the skeleton in the program that it is from");
-  body.influences[1].bone = 1;
-  EXPECT_EQ(doubt_of_skin(body, clip), std::nullopt) << "one limb has a skin";
-  body.influences[1].bone = 0;
-  clip.channels.resize(3);
-  EXPECT_EQ(doubt_of_skin(body, clip), std::nullopt) << "what turns may be something else";
 }
 
 }  // namespace

@@ -1,4 +1,4 @@
-// The membrane of crossed cells: exact where it must be, and in the plane that of its triangles.
+// The membrane of crossed cells: exact where it must be, and that of its triangles in flat parallelograms.
 #include "forces/crossed_membrane.hpp"
 
 #include <gtest/gtest.h>
@@ -23,17 +23,33 @@ ShearParameters shear(double viscosity) {
   return {0.3 * kStiffness, 0.5 * viscosity};
 }
 
-/// Off their places by up to `size` [m], in the plane or anywhere.
-Positions crumpled(const mesh::Sheet& sheet, double size, bool in_plane) {
+bool is_middle(std::size_t i) {
+  return i >= static_cast<std::size_t>(kGrid.nu * kGrid.nv);
+}
+
+/// Off their places by up to `size` [m].
+Positions crumpled(const mesh::Sheet& sheet, double size) {
   Positions x = sheet.rest;
   const Positions noise = testing::random_vectors(x.size(), size, 5);
-  for (std::size_t i = 0; i < x.size(); ++i) x[i] += in_plane ? Vec3(noise[i].x(), noise[i].y(), 0) : noise[i];
+  for (std::size_t i = 0; i < x.size(); ++i) x[i] += noise[i];
+  return x;
+}
+
+/// Corners sheared and stretched to parallelograms, and middles anywhere in their plane.
+Positions parallelograms(const mesh::Sheet& sheet, double size) {
+  Positions x = sheet.rest;
+  const Positions noise = testing::random_vectors(x.size(), size, 5);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Vec3 at = sheet.rest[i];
+    x[i] += Vec3(0.1 * at.x() + 0.2 * at.y(), -0.05 * at.x() - 0.1 * at.y(), 0);
+    if (is_middle(i)) x[i] += Vec3(noise[i].x(), noise[i].y(), 0);
+  }
   return x;
 }
 
 /// Each cell sheared until its corners span `share` of their area.
 Positions folded_up(const mesh::Sheet& sheet, double share) {
-  Positions x = crumpled(sheet, 0.001, false);
+  Positions x = crumpled(sheet, 0.001);
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3& at = sheet.rest[i];
     x[i] += Vec3(std::sqrt(1 - share * share) * at.y(), (share - 1) * at.y(), 0);
@@ -44,7 +60,7 @@ Positions folded_up(const mesh::Sheet& sheet, double share) {
 TEST(CrossedMembrane, ForceIsMinusTheGradientOfTheEnergy) {
   const mesh::Sheet sheet = crossed_sheet();
   const CrossedMembrane membrane(sheet, 0, stretch(0), shear(0));
-  for (const Positions& x : {crumpled(sheet, 0.006, false), folded_up(sheet, 0.6), folded_up(sheet, 0.2)}) {
+  for (const Positions& x : {crumpled(sheet, 0.006), folded_up(sheet, 0.6), folded_up(sheet, 0.2)}) {
     const Positions f = testing::force_of(membrane, x, testing::zeros(x));
     double largest = 0;
     for (const Vec3& force : f) largest = std::max(largest, force.norm());
@@ -73,8 +89,7 @@ TEST(CrossedMembrane, IsThatOfItsTrianglesWhereCellsAreFoldedUp) {
   Positions x = sheet.rest;
   for (std::size_t i = 0; i < x.size(); ++i) {
     const Vec3& at = sheet.rest[i];
-    const bool middle = i >= static_cast<std::size_t>(kGrid.nu * kGrid.nv);
-    x[i] = {at.x() + at.y(), 1e-6 * at.y(), middle ? 0.002 : 0};
+    x[i] = {at.x() + at.y(), 1e-6 * at.y(), is_middle(i) ? 0.002 : 0};
   }
   const Positions a = testing::force_of(crossed, x, testing::zeros(x)),
                   b = testing::force_of(plain, x, testing::zeros(x));
@@ -83,12 +98,27 @@ TEST(CrossedMembrane, IsThatOfItsTrianglesWhereCellsAreFoldedUp) {
   for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((a[i] - b[i]).norm(), 1e-5 * largest);
 }
 
-TEST(CrossedMembrane, IsThatOfItsTrianglesInThePlane) {
+// Threads of a cell that is folded about a diagonal, or of one of a saddle, keep their lengths.
+TEST(CrossedMembrane, LetsThreadsAtOppositeSidesOfACellBeSkew) {
+  const mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet({2, 2, 0.02, 0.02}, mesh::Pattern::crossed));
+  const CrossedMembrane crossed(sheet, 0, stretch(0), shear(0));
+  Positions x = sheet.rest;
+  const double angle = 0.8, half = 0.02 * std::sqrt(0.5);
+  // Corners in the order of the grid: (0, 0), (1, 0), (0, 1), (1, 1); the fold runs from the second to the third.
+  x[0] = {-half * std::cos(angle), 0, half * std::sin(angle)},
+  x[3] = {half * std::cos(angle), 0, half * std::sin(angle)};
+  x[1] = {0, -half, 0}, x[2] = {0, half, 0};
+  x[4] = 0.25 * (x[0] + x[1] + x[2] + x[3]);
+  const CrossedMembrane without_shear(sheet, 0, stretch(0), {0, 0});
+  EXPECT_NEAR(without_shear.energy(x), 0, 1e-15 * kStiffness);
+  EXPECT_NEAR(crossed.max_strain(x), 0, 1e-12);
+}
+
+TEST(CrossedMembrane, IsThatOfItsTrianglesInParallelograms) {
   const mesh::Sheet sheet = crossed_sheet();
   const CrossedMembrane crossed(sheet, 0, stretch(2), shear(2));
   const TriangleMembrane plain(sheet, 0, stretch(2), shear(2));
-  const Positions x = testing::moved_rigidly(crumpled(sheet, 0.004, true));
-  const Positions v = testing::rigid_velocities(crumpled(sheet, 0.5, true));
+  const Positions x = testing::moved_rigidly(parallelograms(sheet, 0.004));
   EXPECT_NEAR(crossed.energy(x), plain.energy(x), 1e-12 * plain.energy(x));
   EXPECT_NEAR(crossed.max_strain(x), plain.max_strain(x), 1e-12);
   const Positions a = testing::force_of(crossed, x, testing::zeros(x)),
@@ -99,7 +129,7 @@ TEST(CrossedMembrane, IsThatOfItsTrianglesInThePlane) {
 TEST(CrossedMembrane, ViscosityTakesEnergyAndNoneFromRigidMotion) {
   const mesh::Sheet sheet = crossed_sheet();
   const CrossedMembrane elastic(sheet, 0, stretch(0), shear(0)), viscous(sheet, 0, stretch(2), shear(2));
-  const Positions x = crumpled(sheet, 0.006, false), rest = testing::force_of(elastic, x, testing::zeros(x));
+  const Positions x = crumpled(sheet, 0.006), rest = testing::force_of(elastic, x, testing::zeros(x));
   const auto power = [&](const Positions& v) {
     const Positions f = testing::force_of(viscous, x, v);
     double sum = 0, size = 0;
@@ -129,7 +159,7 @@ TEST(CrossedMembrane, MatrixIsTheJacobianWhereNothingIsStressedAndNeverIndefinit
       }
     }
   for (const Linearisation form : {Linearisation::definite, Linearisation::abs_projected}) {
-    const Eigen::MatrixXd m = testing::stiffness_of(membrane, crumpled(sheet, 0.006, false), v, 0, form);
+    const Eigen::MatrixXd m = testing::stiffness_of(membrane, crumpled(sheet, 0.006), v, 0, form);
     EXPECT_LT((m - m.transpose()).norm(), 1e-12 * m.norm());
     EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(m).eigenvalues().minCoeff(), -1e-12 * m.norm());
   }

@@ -1,14 +1,17 @@
 // Garments sewn and worn: seams stay closed, measures become those of the pattern, nothing intersects.
 #include "garment/garment.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
+#include <string>
 
 #include "environment/environment.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
+#include "support/small_character.hpp"
 #include "support/test_folder.hpp"
 
 namespace weft::simulation {
@@ -150,6 +153,37 @@ TEST_F(Garments, AStartThatTouchesTheWearerIsRefusedWithItsPlace) {
   const scene::Scene scene =
       dressed("[[obstacle]]\nname = 'post'\nshape = 'cylinder'\nradius = 0.16\nheight = 1.2\nposition = [0, 0, 0.4]\n");
   support::expect_error(ExitCode::scene_invalid, "'tube'", [&] { Simulation simulation(scene); });
+}
+
+/// What a start is refused with.
+std::string refusal_of(const scene::Scene& scene) {
+  try {
+    Simulation simulation(scene);
+  } catch (const Error& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST_F(Garments, AStartThatMeetsACharacterTellsHowArmsAreHeldOff) {
+  support::write_bytes(folder_ / "rod.x", support::rod_file());
+  const auto refused = [&](const std::string& of_character, double height) {
+    return refusal_of(support::scene_of_text(
+        fmt::format("[[character]]\nname = 'rod'\nfile = '{}'\n{}[[cloth]]\nname = 'sheet'\nsize = 0.4\nparticles = 5\n"
+                    "position = [0, 0, {}]\n[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.1, 0.1, "
+                    "0.1]\nposition = [0, 0, 3]\n",
+                    (folder_ / "rod.x").string(), of_character, height)));
+  };
+  const std::string hint = "stance_arms = 45 holds them off the body", dressed = "dressing = 0.5\nblend = 0.2\n";
+  const std::string told = refused(dressed, 0.5);
+  EXPECT_NE(told.find("'rod'"), std::string::npos) << told;
+  EXPECT_NE(told.find(hint), std::string::npos) << told;
+  // Not where nothing is put on, and not where it is something else that the cloth meets.
+  const std::string moving = refused("", 0.5), elsewhere = refused(dressed, 3);
+  EXPECT_NE(moving.find("'rod'"), std::string::npos) << moving;
+  EXPECT_EQ(moving.find(hint), std::string::npos) << moving;
+  EXPECT_NE(elsewhere.find("'box'"), std::string::npos) << elsewhere;
+  EXPECT_EQ(elsewhere.find(hint), std::string::npos) << elsewhere;
 }
 
 }  // namespace
