@@ -105,7 +105,8 @@ Table light_key_table(const std::function<void(TableBuilder<LightKey>&)>& rows) 
       .number("time", &LightKey::time, kMoment, "s", "later than the key before")
       .need(Need::required)
       .with(rows)
-      .number("intensity", &LightKey::intensity, kIntensity, "", "1 lights a white surface that faces it to white")
+      .number("intensity", &LightKey::intensity, kIntensity, "",
+              "1 lights a white surface that faces it to white, a spot one at its target")
       .by_default(kHeld)
       .build();
 }
@@ -183,7 +184,7 @@ const Table& light_rules() {
           .selects()
           .color("color", &Light::color, "of the light")
           .number("intensity", own(&LightKey::intensity), kIntensity, "",
-                  "1 lights a white surface that faces it to white")
+                  "1 lights a white surface that faces it to white, a spot one at its target")
           .written_if(stands_still<Light>)
           .number("softness", &Light::softness, within(0, 90), "degrees",
                   "width of the source as seen from the scene; wider gives softer shadows")

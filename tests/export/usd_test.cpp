@@ -28,6 +28,7 @@ class Staged : public MadeFrames {
     dress.triangles = {{0, 1, 2}, {0, 2, 3}};
     dress.paint_uv = {{Vec2(0, 0), Vec2(1, 0), Vec2(1, 1)}, {Vec2(5, 5), Vec2(6, 6), Vec2(5, 6)}};
     dress.appearance.color = {0.8, 0.2, 0.1};
+    dress.appearance.back_color = {0.1, 0.5, 0.6};
     dress.appearance.roughness = 0.7;
     dress.parts = {{"front", dress.appearance}, {"back", {}}};
     dress.part_of_triangle = {0, 1};
@@ -215,12 +216,16 @@ TEST_F(Staged, UsdCamerasStandAndSeeAsTheFramesDo) {
 TEST_F(Staged, TheScriptForBlenderNamesAllThatItLoads) {
   const std::string text = written(Format::blender, "1st film.py");
   const auto start = text.find("r\"\"\"") + 4;
-  const auto film = nlohmann::json::parse(text.substr(start, text.find("\"\"\"", start) - start));
+  auto film = nlohmann::json::parse(text.substr(start, text.find("\"\"\"", start) - start));
   EXPECT_EQ(film["fps"], 23.976);
   EXPECT_EQ(film["size"], nlohmann::json({400, 200}));
   EXPECT_EQ(film["frames"], nlohmann::json({2, 3, 4}));
+  const auto none = nlohmann::json::object();
   EXPECT_EQ(film["objects"][2],
-            nlohmann::json({{"name", "hidden"}, {"visible", false}, {"pictures", nlohmann::json::object()}}));
+            nlohmann::json({{"name", "hidden"}, {"visible", false}, {"pictures", none}, {"backs", none}}));
+  nlohmann::json& backs = film["objects"][0]["backs"];
+  EXPECT_EQ(backs.size(), 1u);  // the other part's is as its front
+  EXPECT_NEAR(backs["red-dress"][1].get<double>(), std::pow((0.5 + 0.055) / 1.055, 2.4), 1e-9);
   EXPECT_EQ(film["cameras"][0]["frames"][1], nlohmann::json({90, {1, 0, 0, 3}, {0, 1, 0, 2}, {0, 0, 1, 3}}));
   EXPECT_NEAR(film["lights"][0]["strength"].get<double>(), 2 * (1 - request_.lighting.sky_share), 1e-12);
   for (const char* file : {"red-dress.obj", "red-dress.pc2", "hidden.pc2"})
