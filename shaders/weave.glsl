@@ -4,7 +4,10 @@
 const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
 const float kUneven = 0.04;  // share of its tone by which a yarn differs at most, at each size
 
-float thread_noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
+float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
+// From -1 to 1, of neighbours that make up for each other: what varies slowly from thread to thread would be left to see,
+// as bands, from where threads are not.
+float thread_noise(float thread) { return noise(thread + 1.0) - noise(thread); }
 
 // From -0.5 to 0.5, another one in each cell.
 float speck(ivec2 cell) {
@@ -116,7 +119,7 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
     Top top = threads == kPlain ? plain_top(thread) : threads == kKnit ? knit_top(thread) : twill_top(thread);
     result.normal_world = normalize(n_world + 0.75 * fine * (top.tilt.x * weft + top.tilt.y * warp));
     // Less the mean of the height: the tone stays when the threads fade.
-    result.tone *= 1.0 + fine * (0.85 * top.height + 0.10 * (thread_noise(top.yarn) - 0.5));
+    result.tone *= 1.0 + fine * (0.85 * top.height + 0.07 * thread_noise(top.yarn));
     result.shine = 1.0 + fine * top.height;
     result.weft = mix(result.weft, top.weft ? 1.0 : 0.0, fine);
   }
