@@ -92,9 +92,8 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
     const double share = stiffness_share(proximity);
     if (share == 0 || pinched.concern(proximity.vertices)) continue;
     if (const auto contact = build(proximity, share, kNoLimit, motion)) response.add(*contact, motion.x_t0);
-    if (share == 1) in_contact_.push_back(sorted(proximity.vertices));
+    if (share == 1) in_contact_.insert(sorted(proximity.vertices));
   }
-  std::ranges::sort(in_contact_);
 }
 
 void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotion& motion,
@@ -107,16 +106,12 @@ void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotio
   response.add(*contact, motion.x_t0);
 }
 
-bool ContactBuilder::add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response,
-                                 bool again) {
-  const ClosestFeatures features = closest_features(pair, motion.x_from);
+bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
+                                 ContactResponse& response, bool again) {
   const double distance = std::sqrt(features.points.distance_sq);
   const FeaturePair closest{features.vertices, features.points.weights, features.points.difference / distance,
                             distance};
-  const std::array<Index, 4> vertices = sorted(features.vertices);
-  const auto place = std::ranges::lower_bound(in_contact_, vertices);
-  const bool is_new = place == in_contact_.end() || *place != vertices;
-  if (is_new) in_contact_.insert(place, vertices);
+  const bool is_new = in_contact_.insert(sorted(features.vertices)).second;
   if (motion.is_straight() && !is_new) return false;
   const bool with_obstacle = is_particle(pair.a[0]) != is_particle(pair.b[0]);
   if (response.form() == ResponseForm::velocity_constraints && with_obstacle) {

@@ -3,6 +3,7 @@
 
 #include <array>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -70,7 +71,9 @@ class ContactBuilder {
   /// from coming closer, but pushed away where a step before met it too (`again`). On those that follow it is pushed
   /// away, and every corner is kept on its own side of the plane between the triangles: what slides past the features
   /// that were closest meets there.
-  bool add_failing(const CornerPair& pair, const StepMotion& motion, ContactResponse& response, bool again = false);
+  /// `features`: the closest ones at x_from.
+  bool add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
+                   ContactResponse& response, bool again = false);
 
   /// Of two skins.
   const Friction& friction_of(std::size_t a, std::size_t b) const { return friction_[a * bodies_.skins().size() + b]; }
@@ -88,8 +91,8 @@ class ContactBuilder {
   double stiffness_, step_;
   std::vector<Friction> friction_;  // of each pair of bodies
   std::span<const double> masses_;
-  // Sorted vertices of the features that push with all their stiffness; sorted itself.
-  std::vector<std::array<Index, 4>> in_contact_;
+  // Sorted vertices of the features that push with all their stiffness.
+  std::set<std::array<Index, 4>> in_contact_;
 };
 
 }  // namespace weft::collision

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/archive.hpp"
+#include "core/parallel_append.hpp"
 
 namespace weft::collision {
 namespace {
@@ -15,6 +16,8 @@ constexpr double kReachOfRange = 1.5;
 // Relative motion that kept closest points survive, in reaches: they are then a quarter of the reach farther apart than
 // their features at most. With half of the reach twice as many are kept (tests/bench/README.md).
 constexpr double kCoherenceBudget = 0.125;
+// Pairs whose closest features a thread looks for at once.
+constexpr std::size_t kPairsAtOnce = 64;
 
 // Distance below which contacts are prepared [m].
 double reach_of(const Bodies& bodies) {
@@ -101,15 +104,26 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
 // What only a solve shows, the next one would show again: sheets that lay on each other were solved twice in each step
 // (multi_sheet at rest, 76 frames: 3,551 iterations for 1,103). Features that are near have their contact without this.
 void Engine::add_late_contacts(const StepMotion& motion) {
-  std::erase_if(late_, [&](const CornerPair& pair) {
-    return pinched_.exempts(pair) || !builder_.add_failing(pair, motion, response_, true);
+  std::erase_if(late_, [&](const CornerPair& pair) { return pinched_.exempts(pair); });
+  late_ = add_failing(late_, motion, true);
+}
+
+// Adds their contacts; returns for which pairs they are new.
+std::vector<CornerPair> Engine::add_failing(std::span<const CornerPair> pairs, const StepMotion& motion, bool again) {
+  std::vector<ClosestFeatures> closest(pairs.size());
+  parallel_for(pairs.size(), kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t p = begin; p < end; ++p) closest[p] = closest_features(pairs[p], motion.x_from);
   });
+  std::vector<CornerPair> fresh;
+  for (std::size_t p = 0; p < pairs.size(); ++p)
+    if (builder_.add_failing(pairs[p], closest[p], motion, response_, again)) fresh.push_back(pairs[p]);
+  return fresh;
 }
 
 // Adds contacts of what would meet on this way.
 void Engine::foresee(const StepMotion& motion) {
   if (apart(motion.x_t0, motion.x_t1)) return;
-  for (const CornerPair& pair : failing_) builder_.add_failing(pair, motion, response_);
+  add_failing(failing_, motion);
 }
 
 void Engine::add_contacts(std::span<const Proximity> near, const StepMotion& motion) {
@@ -124,7 +138,7 @@ void Engine::go_on_from(std::span<const Vec3> x) {
   if (coherence_) candidates_.drop();  // what is kept was closest where the step began
   find_near(x, x, near_bend_);
   add_contacts(near_bend_, motion);
-  for (const CornerPair& pair : pushed_) builder_.add_failing(pair, motion, response_);
+  add_failing(pushed_, motion);
 }
 
 // Features near each other at x_from, and no contacts yet.
@@ -149,11 +163,9 @@ bool Engine::apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
 }
 
 int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  const std::size_t before = late_.size();
-  std::ranges::copy_if(failing_, std::back_inserter(late_), [&](const CornerPair& pair) {
-    return builder_.add_failing(pair, {x_t0, x_t0, x_t1, step_}, response_);
-  });
-  return static_cast<int>(late_.size() - before);
+  const std::vector<CornerPair> fresh = add_failing(failing_, {x_t0, x_t0, x_t1, step_});
+  append(late_, fresh);
+  return static_cast<int>(fresh.size());
 }
 
 void Engine::accept(std::span<const Vec3> x) {

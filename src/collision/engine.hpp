@@ -110,6 +110,7 @@ class Engine {
   void count_failures();
   void add_late_contacts(const StepMotion& motion);
   void foresee(const StepMotion& motion);
+  std::vector<CornerPair> add_failing(std::span<const CornerPair> pairs, const StepMotion& motion, bool again = false);
   void add_contacts(std::span<const Proximity> near, const StepMotion& motion);
   void find_near(std::span<const Vec3> x_from, std::span<const Vec3> x_t1, std::vector<Proximity>& near);
   template <class Archive>

@@ -30,7 +30,7 @@ template <class Number, class Body>
 Number parallel_max(std::size_t count, std::size_t chunk, Number least, const Body& body) {
   std::vector<Number> largest((count + chunk - 1) / chunk, least);
   parallel_for(count, chunk, [&](std::size_t begin, std::size_t end) { largest[begin / chunk] = body(begin, end); });
-  for (const Number number : largest) least = std::max(least, number);
+  for (const Number& number : largest) least = std::max(least, number);
   return least;
 }
 

@@ -2,8 +2,13 @@
 
 #include <cmath>
 
+#include "core/parallel_append.hpp"
+
 namespace weft::forces {
 namespace {
+
+// Pieces of threads that are looked at at once.
+constexpr std::size_t kPiecesAtOnce = 1024;
 
 // Below the onset a piece has to have some stiffness, for its tension to tell where it is; any leads to the same end.
 StretchParameters some(StretchParameters below) {
@@ -190,24 +195,28 @@ void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, c
 
 void StretchLimit::begin(std::span<const Vec3> x, LockLag& lag) const {
   lag.extensions.resize(threads_.size());
-  for (std::size_t t = 0; t < threads_.size(); ++t)
-    lag.extensions[t] = derivative(threads_[t], threads_[t].along, x).norm() - 1;
+  parallel_for(threads_.size(), kPiecesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t)
+      lag.extensions[t] = derivative(threads_[t], threads_[t].along, x).norm() - 1;
+  });
 }
 
 void StretchLimit::update(std::span<const Vec3> x, bool first, LockLag& lag) const {
   const Lock lock(stretch_);
   const double onset = lock.onset(), onset_sq = (1 + onset) * (1 + onset);
   lag.near.clear();
-  for (std::size_t t = 0; t < threads_.size(); ++t) {
-    const double length_sq = derivative(threads_[t], threads_[t].along, x).squaredNorm();
-    double& at = lag.extensions[t];
-    if (length_sq <= onset_sq && at <= onset) continue;
-    lag.near.push_back(static_cast<std::uint32_t>(t));
-    if (first) continue;
-    const double e = std::sqrt(length_sq) - 1;
-    const double tension = threads_[t].stiffness * e + tangent(at, e).stress;
-    at = extension_with(lock, threads_[t].stiffness, tension, std::max(e, at));
-  }
+  parallel_append(threads_.size(), kPiecesAtOnce, lag.near, [&](std::size_t begin, std::size_t end, auto& near) {
+    for (std::size_t t = begin; t < end; ++t) {
+      const double length_sq = derivative(threads_[t], threads_[t].along, x).squaredNorm();
+      double& at = lag.extensions[t];
+      if (length_sq <= onset_sq && at <= onset) continue;
+      near.push_back(static_cast<std::uint32_t>(t));
+      if (first) continue;
+      const double e = std::sqrt(length_sq) - 1;
+      const double tension = threads_[t].stiffness * e + tangent(at, e).stress;
+      at = extension_with(lock, threads_[t].stiffness, tension, std::max(e, at));
+    }
+  });
 }
 
 void StretchLimit::add_lag(std::span<const Vec3> x, const LockLag& lag, std::span<Vec3> force) const {
@@ -254,19 +263,21 @@ double StretchLimit::energy(std::span<const Vec3> x) const {
 }
 
 StretchLimit::Worst StretchLimit::worst(std::span<const Vec3> x) const {
-  const Thread* longest = nullptr;
-  double length_sq = 1;
-  for (const Thread& thread : threads_) {
-    const double of_thread = derivative(thread, thread.along, x).squaredNorm();
-    if (of_thread <= length_sq) continue;
-    length_sq = of_thread;
-    longest = &thread;
-  }
+  using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², and minus the number: of several the first
+  const Longest none{1, 1},
+      longest = parallel_max(threads_.size(), kPiecesAtOnce, none, [&](std::size_t begin, std::size_t end) {
+        Longest most = none;
+        for (std::size_t t = begin; t < end; ++t)
+          most = std::max(
+              most, {derivative(threads_[t], threads_[t].along, x).squaredNorm(), -static_cast<std::ptrdiff_t>(t)});
+        return most;
+      });
   Worst worst;
-  if (longest == nullptr) return worst;
-  worst.extension = std::sqrt(length_sq) - 1;
-  for (std::size_t k = 0; k < longest->corners; ++k)
-    worst.place += x[longest->particles[k]] / static_cast<double>(longest->corners);
+  if (longest == none) return worst;
+  const Thread& thread = threads_[static_cast<std::size_t>(-longest.second)];
+  worst.extension = std::sqrt(longest.first) - 1;
+  for (std::size_t k = 0; k < thread.corners; ++k)
+    worst.place += x[thread.particles[k]] / static_cast<double>(thread.corners);
   return worst;
 }
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <utility>
 
-#include "core/parallel.hpp"
+#include "core/parallel_append.hpp"
 
 namespace weft::integrator {
 namespace {
@@ -52,7 +52,7 @@ constexpr double kUnseenSpeed = 1e-3;
 constexpr double kVelocityShare = 0.5;
 
 // Particles that a thread takes at once.
-constexpr std::size_t kParticlesAtOnce = 8192;
+constexpr std::size_t kParticlesAtOnce = 1024;
 
 // Calls body(i) for all of `count` particles.
 template <class Body>
@@ -61,11 +61,35 @@ void for_each_particle(std::size_t count, const Body& body) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }
+// Likewise for those of a part.
+template <class Body>
+void for_each_particle(const solver::Part& rows, const Body& body) {
+  for_each_particle(static_cast<std::size_t>(rows.end - rows.begin),
+                    [&](std::size_t i) { body(static_cast<std::size_t>(rows.begin) + i); });
+}
+
+// Σ body(i) over the particles of a part.
+template <class Body>
+double sum_over_particles(const solver::Part& rows, const Body& body) {
+  const auto first = static_cast<std::size_t>(rows.begin), count = static_cast<std::size_t>(rows.end) - first;
+  return parallel_sum(count, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
+    double sum = 0;
+    for (std::size_t i = first + begin; i < first + end; ++i) sum += body(i);
+    return sum;
+  });
+}
 
 double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
-  double sum = 0;
-  for (std::size_t i = 0; i < a.size(); ++i) sum += a[i].dot(b[i]);
-  return sum;
+  return sum_over_particles({0, static_cast<Index>(a.size())}, [&](std::size_t i) { return a[i].dot(b[i]); });
+}
+
+// The largest coordinate [m].
+double size_of(std::span<const Vec3> x) {
+  return parallel_max(x.size(), kParticlesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
+    double largest = 0;
+    for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, x[i].cwiseAbs().maxCoeff());
+    return largest;
+  });
 }
 
 }  // namespace
@@ -167,23 +191,19 @@ double Stepper::carried_on(double h) {
 // error of velocity, or what moves the part in the time of a swing, or in the step where that is longer, by as much of
 // the method's error of position. That displacement itself as a share would not do: where steps h follow a tolerance as
 // h^(p+1), a displacement of that size left in each step would cost the method an order.
-void Stepper::allow_velocities(const State& now, double h) {
+void Stepper::allow_velocities(double h) {
   const double time = carried_on(h);
   double unseen = kUnseen * h * time;
   if (parameters_.position_tolerance > 0) unseen = std::min(unseen, parameters_.position_tolerance);
-  double largest = 0;
-  for (std::size_t i = 0; i < x_.size(); ++i) largest = std::max(largest, now.x[i].cwiseAbs().maxCoeff());
-  const double rounding = kRoundings * std::numeric_limits<double>::epsilon() * largest / beta_;
   for (PartState& part : parts_) {
     const double error = std::max(kVelocityShare * part.velocity_error, std::max(part.local_error, unseen) / time);
-    part.allowed = std::max(parameters_.tolerance * error, rounding);
+    part.allowed = std::max(parameters_.tolerance * error, rounding_);
   }
 }
 
 // Over the mass of a part.
 double Stepper::root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of) {
-  double sum = 0;
-  for (auto i = part.rows.begin; i < part.rows.end; ++i) sum += masses[i] * of[i].squaredNorm();
+  const double sum = sum_over_particles(part.rows, [&](std::size_t i) { return masses[i] * of[i].squaredNorm(); });
   return std::sqrt(sum / part.mass);
 }
 
@@ -200,10 +220,10 @@ void Stepper::measure(std::span<const Vec3> displacements, std::span<const doubl
 // by a factor which the solution tells.
 void Stepper::estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses) {
   const bool whole = fraction == 1 && solved.definite;
-  std::copy(residual_.begin(), residual_.end(), scratch_.begin());
+  for_each_particle(scratch_.size(), [&](std::size_t i) { scratch_[i] = residual_[i]; });
   if (whole)
     for (std::size_t p : unsolved_)
-      for (auto i = parts_[p].rows.begin; i < parts_[p].rows.end; ++i) scratch_[i] -= cg_.residual()[i];
+      for_each_particle(parts_[p].rows, [&](std::size_t i) { scratch_[i] -= cg_.residual()[i]; });
   measure(delta_, masses, changes_);
   measure(precondition(scratch_), masses, speeds_);
   for (std::size_t p = 0; p < parts_.size(); ++p)
@@ -235,7 +255,8 @@ double Stepper::search_along_delta(System& system, const State& now, const Stage
   // too stiff it stays as it was.
   const std::size_t n = x_.size();
   const double start_slope = dot(residual_, delta_);
-  line_start_ = x_;
+  line_start_.swap(x_);
+  x_.resize(n);
   double fraction = 1, low = 0, low_slope = start_slope, high = 0, high_slope = 0;
   for (int trial = 1;; ++trial) {
     for_each_particle(n, [&](std::size_t i) { x_[i] = line_start_[i] + fraction * delta_[i]; });
@@ -303,7 +324,8 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   beta_ = stage.beta;
   list_parts(masses, linear);
   linear.metric.resize(n);
-  for (std::size_t i = 0; i < n; ++i) linear.metric[i] = masses[i] / (stage.beta * stage.beta);
+  for_each_particle(n, [&](std::size_t i) { linear.metric[i] = masses[i] / (stage.beta * stage.beta); });
+  rounding_ = kRoundings * std::numeric_limits<double>::epsilon() * size_of({now.x.data(), n}) / beta_;
   prepare_guess(system, now, stage, h, gravity);
   if (start == Start::next)
     for (std::size_t i = 0; i < n; ++i) x_[i] = now.x[i] + (next.x[i] - now.x[i]) / stage.end_rate;
@@ -325,7 +347,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     gather_residual(masses, stage);
     if (report.newton_iterations == 0) {  // else where the last one ended
       estimate_local_errors(masses, now, stage, h);
-      allow_velocities(now, h);
+      allow_velocities(h);
     }
     const bool first = report.newton_iterations == 0 && start == Start::unchanged_velocity;
     std::span<const Vec3> change = precondition(residual_);
@@ -343,7 +365,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     }
     residual(system, now, stage, Equation::itself);
     estimate_local_errors(masses, now, stage, h);
-    allow_velocities(now, h);
+    allow_velocities(h);
     estimate_left(solved, fraction, masses);
     select_unsolved(report.newton_iterations);
     report_worst(h, report);
@@ -401,10 +423,10 @@ void Stepper::report_worst(double h, StepReport& report) const {
 
 // The end of the step from its stage.
 void Stepper::finish(const State& now, const Stage& stage, std::span<const HeldParticle> held, State& next) const {
-  for (std::size_t i = 0; i < x_.size(); ++i) {
+  for_each_particle(x_.size(), [&](std::size_t i) {
     next.x[i] = x_end_[i];
     next.v[i] = v_end(now, stage, i);
-  }
+  });
   for (const HeldParticle& particle : held) {
     const auto i = static_cast<std::size_t>(particle.constraint.particle);
     const Mat3& free = particle.constraint.free;

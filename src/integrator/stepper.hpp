@@ -155,7 +155,7 @@ class Stepper {
   void evaluate(const State& now, const Stage& stage);
   void gather_residual(std::span<const double> masses, const Stage& stage);
   void estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h);
-  void allow_velocities(const State& now, double h);
+  void allow_velocities(double h);
   static double carried_on(double h);
   static double root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of);
   bool foresee(System& system, const State& now, const Stage& stage, std::span<const Vec3> change);
@@ -171,8 +171,9 @@ class Stepper {
   Method method_;
   NewtonParameters parameters_;
   History history_;
-  double beta_ = 0;     // of the last stage [s]
-  int unfinished_ = 0;  // iterations of the last solve, where that ended for a look
+  double beta_ = 0;      // of the last stage [s]
+  double rounding_ = 0;  // velocity in it that is lost in the roundings of positions [m/s]
+  int unfinished_ = 0;   // iterations of the last solve, where that ended for a look
 
   // Scratch of one step.
   StageTimes times_;

@@ -22,7 +22,7 @@ constexpr int kPlainIterations = 4;
 // Rows of the matrix that a thread writes at once.
 constexpr std::size_t kRowsAtOnce = 512;
 // Particles that a thread copies or compares at once.
-constexpr std::size_t kParticlesAtOnce = 8192;
+constexpr std::size_t kParticlesAtOnce = 1024;
 
 std::size_t size_of(const solver::Part& part) {
   return static_cast<std::size_t>(part.end - part.begin);
@@ -113,7 +113,7 @@ void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> fo
 }
 
 void StepProblem::add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
-  for (std::size_t c = 0; c < cloth_.cloths(); ++c) chosen_[c] = move_to(c, at);
+  parallel_for(cloth_.cloths(), 1, [&](std::size_t c, std::size_t) { chosen_[c] = move_to(c, at); });
   evaluate(at, false);
   parallel_for(force.size(), kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) force[i] += solver::vec3_of(memory_.force[i]);

@@ -85,8 +85,9 @@ void Preconditioner<Real>::prepare(const LinearSystem& system, Sums sums) {
   }
   mark_touched();
   if (levels_.empty()) return invert_particles();
-  for (std::size_t p = 0; p < parts_.size(); ++p)
+  parallel_for(parts_.size(), 1, [&](std::size_t p, std::size_t) {
     if (sums_changed_[p]) sum_blocks(p);
+  });
   parallel_invoke([&] { factorise_patches(); },
                   [&] {
                     invert_particles();
@@ -98,12 +99,12 @@ template <class Real>
 void Preconditioner<Real>::select(std::span<const std::size_t> parts) {
   if (std::ranges::equal(parts, selected_)) return;
   selected_.assign(parts.begin(), parts.end());
-  rows_ = RowChunks(ranges_of(parts_, selected_), kRowsAtOnce, kRowsAtOnce);
+  rows_ = RowChunks(ranges_of(parts_, selected_), kRowsAtOnce);
   for (Level& level : levels_) {
     std::vector<RowRange> ranges;
     for (std::size_t p : selected_) ranges.push_back(level.of_part[p]);
     // A group has some twelve members, or so many that it is interpolated from.
-    level.groups = RowChunks(ranges, kRowsAtOnce / 4, kRowsAtOnce / 4);
+    level.groups = RowChunks(ranges, kRowsAtOnce / 4);
   }
 }
 
@@ -111,8 +112,11 @@ template <class Real>
 bool Preconditioner<Real>::is_stiff() const {
   if (system_->metric.empty()) return false;
   return std::ranges::any_of(parts_of(*system_), [&](const Part& part) {
-    double metric = 0;
-    for (Index i = part.begin; i < part.end; ++i) metric += system_->metric[at(i)];
+    const double metric = parallel_sum(at(part.end - part.begin), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+      double sum = 0;
+      for (std::size_t k = begin; k < end; ++k) sum += system_->metric[at(part.begin) + k];
+      return sum;
+    });
     const auto stiff = [&](std::size_t i) {
       const double* block = system_->matrix.values().data() + 9 * at(system_->matrix.diagonal(static_cast<Index>(i)));
       return block[0] + block[4] + block[8] > kStiff * metric;

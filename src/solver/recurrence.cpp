@@ -40,6 +40,13 @@ double absolute_goal(const LinearGoal& goal, std::size_t part) {
   return goal.absolute.empty() ? 0 : goal.absolute[part];
 }
 
+template <class Real>
+void take(std::span<const Vec3> from, std::span<Quad<Real>> to) {
+  parallel_for(from.size(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) to[i] = quad_of<Real>(from[i]);
+  });
+}
+
 }  // namespace
 
 double Progress::OfPart::error_energy() const {
@@ -93,7 +100,7 @@ void Recurrence<Real>::prepare(const LinearSystem& system, Sums sums) {
 
 template <class Real>
 std::span<const Quad<Real>> Recurrence<Real>::precondition(std::span<const Vec3> b) {
-  for (std::size_t i = 0; i < b.size(); ++i) q_[i] = quad_of<Real>(b[i]);
+  take<Real>(b, q_);
   preconditioner_.apply(q_, z_, all_parts_);
   return z_;
 }
@@ -136,10 +143,10 @@ void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, s
   moved_.resize(selected_.size());
   rz_.resize(selected_.size());
   for (auto* vector : {&x_, &p_, &q_}) std::fill(vector->begin(), vector->end(), Quad<Real>{});
-  for (std::size_t i = 0; i < b.size(); ++i) r_[i] = quad_of<Real>(b[i]);
+  take<Real>(b, r_);
   product_.filter(r_);
   if (progress.iterations > 0) {
-    for (std::size_t i = 0; i < x.size(); ++i) p_[i] = quad_of<Real>(x[i]);
+    take<Real>(x, p_);
     multiply();
     rows_.for_each([&](std::size_t first, std::size_t end) {
       for (std::size_t i = first; i < end; ++i) r_[i] -= q_[i];
@@ -161,8 +168,12 @@ void Recurrence<Real>::begin_along(std::span<const Vec3> start) {
   const double curvature = multiply();
   if (!(curvature > 0)) return;
   double slope = 0;
-  for (std::size_t part : selected_)
-    for (auto i = parts_[part].begin; i < parts_[part].end; ++i) slope += sum_of_three(products(p_[i], r_[i]));
+  for (const Quad<double>&of_part : rows_.sums([&](std::size_t first, std::size_t end) {
+         Quad<double> of_chunk{};
+         for (std::size_t i = first; i < end; ++i) of_chunk += products(p_[i], r_[i]);
+         return of_chunk;
+       }))
+    slope += sum_of_three(of_part);
   along_ = slope / curvature;
   along_energy_ = along_ * slope;
   const Real alpha = static_cast<Real>(along_);
@@ -233,15 +244,15 @@ template <class Real>
 End Recurrence<Real>::solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                             std::span<const Vec3> start, std::span<const std::size_t> parts, Progress& progress) {
   selected_.assign(parts.begin(), parts.end());
-  rows_ = RowChunks(ranges_of(parts_, selected_), kRowsOfChunk, kRowsAtOnce);
+  rows_ = RowChunks(ranges_of(parts_, selected_), kRowsAtOnce);
   begin(b, x, start, progress);
   const End end = iterate(goal, max_iterations, progress);
   if (end == End::needs_double && progress.iterations == 0) return end;  // that begins anew
-  for (std::size_t part : selected_)
-    for (auto i = parts_[part].begin; i < parts_[part].end; ++i) x[i] += vec3_of(x_[i]);
-  if (along_ != 0)
-    for (std::size_t part : selected_)
-      for (auto i = parts_[part].begin; i < parts_[part].end; ++i) x[i] += along_ * start_[i];
+  rows_.for_each([&](std::size_t first, std::size_t last) {
+    for (std::size_t i = first; i < last; ++i) x[i] += vec3_of(x_[i]);
+    if (along_ == 0) return;
+    for (std::size_t i = first; i < last; ++i) x[i] += along_ * start_[i];
+  });
   return end;
 }
 

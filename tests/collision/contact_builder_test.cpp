@@ -209,8 +209,8 @@ TEST(ContactBuilder, WhatWouldMeetBecomesAContactOnceAtTheDistanceThatItHas) {
   builder.begin_step();
   builder.add({}, scene.pinched, scene.motion(), response);
   const CornerPair pair{{3, 4, 5}, {0, 1, 2}};
-  EXPECT_TRUE(builder.add_failing(pair, scene.motion(), response));
-  EXPECT_FALSE(builder.add_failing(pair, scene.motion(), response));
+  EXPECT_TRUE(builder.add_failing(pair, closest_features(pair, scene.x_t0), scene.motion(), response));
+  EXPECT_FALSE(builder.add_failing(pair, closest_features(pair, scene.x_t0), scene.motion(), response));
   ASSERT_EQ(response.springs().size(), 1U);
   const Contact& contact = response.springs()[0];
   EXPECT_DOUBLE_EQ(contact.range, 0.001);  // no less than it is, though the full range is more
@@ -230,7 +230,7 @@ TEST(ContactBuilder, WhatIsInContactAlreadyIsNoNewContact) {
   known.vertices = closest_features(pair, scene.x_t0).vertices;
   known.weights = closest_features(pair, scene.x_t0).points.weights;
   builder.add(std::vector{known}, scene.pinched, scene.motion(), response);
-  EXPECT_FALSE(builder.add_failing(pair, scene.motion(), response));
+  EXPECT_FALSE(builder.add_failing(pair, closest_features(pair, scene.x_t0), scene.motion(), response));
   EXPECT_EQ(response.springs().size(), 1U);
 }
 
@@ -243,7 +243,7 @@ TEST(ContactBuilder, EachCornerThatWouldMeetAnObstacleGetsAWall) {
     ContactResponse response(ResponseForm::velocity_constraints, scene.masses);
     response.begin_step(kBuilderStep);
     builder.begin_step();
-    EXPECT_TRUE(builder.add_failing(pair, scene.motion(), response));
+    EXPECT_TRUE(builder.add_failing(pair, closest_features(pair, scene.x_t0), scene.motion(), response));
     response.prepare(scene.x_t0, scene.x_t1);
     EXPECT_TRUE(response.springs().empty());
     ASSERT_EQ(response.prescribed().size(), 3U);

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+#include <vector>
+
 namespace weft::environment {
 namespace {
 
@@ -25,6 +28,23 @@ TEST(Plausibility, DoubtsABodyWhoseBonesHoldNoSkin) {
   body.influences[1].bone = 0;
   clip.channels.resize(3);
   EXPECT_EQ(doubt_of_skin(body, clip), std::nullopt) << "what turns may be something else";
+}
+
+// Who jumps is in the air for most of its motion, who rolls in the floor for a part of it.
+TEST(Plausibility, DoubtsTheFloorByHalfOfTheMotionOrAllOfIt) {
+  const auto doubts = [](std::vector<double> lowest, bool alone = true) {
+    return doubt_of_floor(std::move(lowest), alone).value_or("");
+  };
+  EXPECT_EQ(doubts({}), "");
+  EXPECT_EQ(doubts({-0.3, 0, 0.6, -0.3, 0.6}), "") << "two of five below";
+  EXPECT_EQ(doubts({-0.3, 0, -0.2, -0.4, 0.6}),
+            "its lowest point is 0.2 m below the floor in half of its motion or more; position puts it higher");
+  EXPECT_EQ(doubts({0.6, 0.04, 0.6}), "") << "on it once";
+  EXPECT_EQ(doubts({0.6, 0.06, 0.6}), "it comes no nearer to the floor than 0.06 m; position puts it lower");
+  EXPECT_EQ(doubts({0.6, 0.06, 0.6}, false), "") << "it may stand on something else";
+  // What is seen: 5 cm.
+  EXPECT_EQ(doubts({-0.049}), "");
+  EXPECT_NE(doubts({-0.051}), "");
 }
 
 }  // namespace

@@ -204,8 +204,7 @@ TEST_F(Wrapping, MistakesSayWhatWouldBeRight) {
          "expected a wearer with the joints UpperLeg, LowerLeg and Foot for panels around left_leg");
 }
 
-// As the gallery has them, with coarser meshes: 16 pairs of triangles that crossed were left before seams decided where
-// hoods lie.
+// As the gallery has them: 16 pairs of triangles that crossed were left before seams decided where hoods lie.
 TEST(ShippedPatterns, StartOnTheMannequinWithoutIntersections) {
   for (const std::string name : {"jacket", "poncho"}) {
     const auto file = std::filesystem::path(WEFT_SOURCE_DIR) / "scenes/gallery" / (name + ".toml");

@@ -3,7 +3,9 @@
 
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <numbers>
+#include <string>
 
 #include "bench/fabric_tests.hpp"
 #include "scene/fabrics.hpp"
@@ -66,16 +68,23 @@ TEST_F(Cusick, PlatesClampAtTheirEdge) {
   }
 }
 
+// Published figures are met within 10 %, but for polyester (tests/bench/README.md#fabrics). Ranges are as wide as 24
+// points, so that a fabric may wander there unseen: each is held to what it came to as well, within the 0.9 points by
+// which four specimens differ.
 TEST_F(Cusick, FabricsDrapeAsMeasured) {
+  const std::map<std::string, double> found = {{"cotton", 0.780}, {"poplin", 0.846}, {"denim", 0.875},
+                                               {"jersey", 0.329}, {"wool", 0.546},   {"suiting", 0.739},
+                                               {"silk", 0.326},   {"satin", 0.545},  {"polyester", 0.726},
+                                               {"faille", 0.309}, {"leather", 0.763}};
   for (const scene::Fabric& fabric : scene::fabrics()) {
     if (!fabric.measured.drape) continue;
+    const std::string& name = fabric.material.fabric;
     const auto [low, high] = *fabric.measured.drape;
-    const double mean = mean_coefficient(fabric.material.fabric.c_str(), fabric.material);
-    // One that is known to miss what was measured of it (tests/bench/README.md#fabrics); of the others the most is 9.6
-    // %.
-    const double allowed = fabric.material.fabric == "polyester" ? 0.5 : 0.12;
-    EXPECT_GT(mean, (1 - allowed) * low) << fabric.material.fabric;
-    EXPECT_LT(mean, (1 + allowed) * high) << fabric.material.fabric;
+    const double mean = mean_coefficient(name.c_str(), fabric.material);
+    EXPECT_GT(mean, 0.9 * low) << name;
+    EXPECT_TRUE(mean < 1.1 * high || name == "polyester") << name;
+    ASSERT_TRUE(found.contains(name)) << name;
+    EXPECT_NEAR(mean, found.at(name), 0.009) << name;
   }
 }
 
@@ -114,7 +123,7 @@ scene::Scene square(ClothShape shape, const scene::Material& material) {
   return scene;
 }
 
-// Within 6 points (measured: 0.2 to 5.4, leather on crossed triangles, whose cells are 1.4 times as wide).
+// Measured: aligned within 2.4 points, crossed, whose cells are 1.4 times as wide, within 5.4, both of leather.
 TEST_F(Cusick, QuadsDrapeAsTrianglesDo) {
   for (const char* fabric : {"silk", "wool", "leather", "denim"}) {
     std::printf("%s, square:", fabric);
@@ -125,7 +134,8 @@ TEST_F(Cusick, QuadsDrapeAsTrianglesDo) {
       const Drape d = drape_to_rest(scene, environment.cloths[0].mesh.topology.triangles);
       std::printf(" %s %.1f %% (strain %.4f, %.1f s)", testing::name_of(shape), 100 * d.coefficient, d.strain, d.cpu_s);
       if (shape == ClothShape::quads) quads = d.coefficient;
-      EXPECT_NEAR(d.coefficient, quads, 0.06) << fabric << ", " << testing::name_of(shape);
+      EXPECT_NEAR(d.coefficient, quads, shape == ClothShape::crossed_triangles ? 0.06 : 0.03)
+          << fabric << ", " << testing::name_of(shape);
     }
     std::printf("\n");
   }

@@ -16,7 +16,7 @@ namespace {
 constexpr int kMaxCentreSplits = 64;
 
 /// Vertices, and leaves, whose bounds a thread makes at once.
-constexpr std::size_t kVerticesAtOnce = 4096, kLeavesAtOnce = 256;
+constexpr std::size_t kVerticesAtOnce = 1024, kLeavesAtOnce = 256;
 
 void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {
   const Index first = surface.first_vertex, last = first + surface.vertex_count;

@@ -3,8 +3,13 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/parallel_append.hpp"
+
 namespace weft::collision {
 namespace {
+
+// Contacts that a thread looks at at once.
+constexpr std::size_t kContactsAtOnce = 256;
 
 Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   Vec3 sum = contact.weights[0] * x[contact.particles[0]];
@@ -130,19 +135,22 @@ void ContactSet::add(const Contact& contact) {
 }
 
 void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
-  for (std::size_t c = 0; c < lag.depths.size() && lag.updates > 0; ++c) {
+  const auto follow_solve = [&](std::size_t c) {
     const Contact& contact = contacts_[c];
     const Vec3 relative = relative_end(contact, x_end);
     const double depth = contact.range - contact.normal.dot(relative);
     const double force = tangent_force(load_at(contact, lag.depths[c]), lag.depths[c], depth);
     lag.depths[c] = depth_with(contact, force, std::max(depth, lag.depths[c]));
     if (lag.updates < kLoadUpdates) lag.loads[c] = force;
-    if (!contact.against_obstacle || contact.static_friction == 0) continue;
+    if (!contact.against_obstacle || contact.static_friction == 0) return;
     if (lag.updates < kLoadUpdates)
       follow(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
     else
       lag.frictions[c].sticks = false;
-  }
+  };
+  parallel_for(lag.updates > 0 ? lag.depths.size() : 0, kContactsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t c = begin; c < end; ++c) follow_solve(c);
+  });
   for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
     lag.depths.push_back(std::max(0.0, contacts_[c].depth));
     lag.loads.push_back(load_at(contacts_[c], lag.depths.back()).force);
@@ -207,35 +215,51 @@ void ContactSet::add_linear_forces(std::span<const Vec3> x_end, const ContactLag
 }
 
 void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const {
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const Contact& contact = contacts_[c];
-    const Response response = respond(c, law, x_end, lag);
-    if (!response.active) continue;
-    for (int k = 0; k < 4; ++k) force[contact.particles[k]] += contact.weights[k] * response.force;
-  }
+  struct Push {
+    const Contact* contact;
+    Vec3 force;
+  };
+  std::vector<Push> pushes;
+  parallel_append(contacts_.size(), kContactsAtOnce, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
+    for (std::size_t c = begin; c < end; ++c)
+      if (const Response response = respond(c, law, x_end, lag); response.active)
+        list.push_back({&contacts_[c], response.force});
+  });
+  for (const auto& [contact, push] : pushes)
+    for (int k = 0; k < 4; ++k) force[contact->particles[k]] += contact->weights[k] * push;
 }
 
 void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                            solver::LinearSystem& system) const {
-  for (std::size_t c = 0; c < contacts_.size(); ++c) {
-    const Contact& contact = contacts_[c];
-    const Response response = respond(c, Law::tangent, x_end, lag);
-    if (!response.active) continue;
+  struct Push {
+    const Contact* contact;
+    Vec3 force;
+    Mat3 stiffness;
+  };
+  std::vector<Push> pushes;
+  parallel_append(contacts_.size(), kContactsAtOnce, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
+    for (std::size_t c = begin; c < end; ++c) {
+      const Contact& contact = contacts_[c];
+      const Response response = respond(c, Law::tangent, x_end, lag);
+      if (!response.active) continue;
+      Mat3 stiffness = response.slope * contact.normal * contact.normal.transpose();
+      if (response.stickiness > 0)
+        stiffness += response.stickiness * friction_slope(contact, response.slip, lag.frictions[c].drag);
+      list.push_back({&contact, response.force, end_rate * stiffness});
+    }
+  });
+  for (const auto& [contact, push, stiffness] : pushes) {
     int involved = 0, last = 0;
     for (int k = 0; k < 4; ++k) {
-      force[contact.particles[k]] += contact.weights[k] * response.force;
-      if (contact.weights[k] != 0) ++involved, last = k;
+      force[contact->particles[k]] += contact->weights[k] * push;
+      if (contact->weights[k] != 0) ++involved, last = k;
     }
-    Mat3 stiffness = response.slope * contact.normal * contact.normal.transpose();
-    if (response.stickiness > 0)
-      stiffness += response.stickiness * friction_slope(contact, response.slip, lag.frictions[c].drag);
-    stiffness *= end_rate;
     if (involved == 1) {
       // A single particle on an obstacle couples with nothing.
-      const double w = contact.weights[last];
-      system.diagonal_terms.push_back({contact.particles[last], w * w * stiffness});
+      const double w = contact->weights[last];
+      system.diagonal_terms.push_back({contact->particles[last], w * w * stiffness});
     } else {
-      system.terms.push_back({contact.particles, contact.weights, stiffness});
+      system.terms.push_back({contact->particles, contact->weights, stiffness});
     }
   }
 }

@@ -23,7 +23,7 @@ Points8 cross(const Points8& a, const Points8& b) {
 }
 
 // What a thread looks at at once: new pairs, a multiple of eight; pairs with planes; vertices and triangles.
-constexpr std::size_t kNewPairsAtOnce = 8192, kPairsAtOnce = 16384, kVerticesAtOnce = 8192;
+constexpr std::size_t kNewPairsAtOnce = 4096, kPairsAtOnce = 4096, kVerticesAtOnce = 2048;
 
 /// One triangle in each lane.
 struct Triangles8 {

@@ -18,7 +18,7 @@ constexpr int kPushRounds = 24;
 constexpr int kHalfRounds = 36;
 constexpr int kRounds = 60;
 // Vertices that a thread looks at at once.
-constexpr std::size_t kVerticesMovedAtOnce = 8192;
+constexpr std::size_t kVerticesMovedAtOnce = 2048;
 
 }  // namespace
 
