@@ -152,21 +152,6 @@ void Stepper::linearise(System& system, const State& now, const Stage& stage, in
   system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, iteration, force_);
 }
 
-// Has what lags behind the positions go by where `change` leads from the stage just linearised; false where nothing
-// does.
-bool Stepper::foresee(System& system, const State& now, const Stage& stage, std::span<const Vec3> change) {
-  const Stopwatch watch(times_.forces);
-  scratch_.resize(x_.size());
-  for_each_particle(x_.size(), [&](std::size_t i) {
-    scratch_[i] = now.x[i] + stage.end_rate * (x_[i] + change[i] - now.x[i]);
-    force_[i].setZero();
-  });
-  if (!system.foresee({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, scratch_, force_)) return false;
-  cg_.prepare(system.linear_system(), solver::Sums::kept);
-  gather_residual(system.masses(), stage);
-  return true;
-}
-
 // P⁻¹ of it, valid until the next call.
 std::span<const Vec3> Stepper::precondition(std::span<const Vec3> residual) {
   const Stopwatch watch(times_.preconditioner);
@@ -349,10 +334,8 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
       estimate_local_errors(masses, now, stage, h);
       allow_velocities(h);
     }
+    measure(precondition(residual_), masses, foreseen_);
     const bool first = report.newton_iterations == 0 && start == Start::unchanged_velocity;
-    std::span<const Vec3> change = precondition(residual_);
-    if (first && foresee(system, now, stage, change)) change = precondition(residual_);
-    measure(change, masses, foreseen_);
     const solver::LinearReport solved =
         solve_linear(report.newton_iterations, first ? likely_change(masses, now) : std::span<const Vec3>());
     ++report.newton_iterations;

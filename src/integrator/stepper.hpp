@@ -158,7 +158,6 @@ class Stepper {
   void allow_velocities(double h);
   static double carried_on(double h);
   static double root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of);
-  bool foresee(System& system, const State& now, const Stage& stage, std::span<const Vec3> change);
   std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void measure(std::span<const Vec3> displacements, std::span<const double> masses, std::vector<double>& speeds) const;
   void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);

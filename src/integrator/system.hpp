@@ -46,14 +46,6 @@ class System {
   /// catch up here, before they are added.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
-  /// After linearise() and at the same stage: the step will lead to about x_end. Forces that lag behind the positions
-  /// and that the matrix knows nothing of are taken from there; `force` is added as by linear_forces(), and what stands
-  /// beside the matrix is written anew. False, and nothing is done, where there are none.
-  virtual bool foresee(const StagePoint& at, std::span<const Vec3> x_end, std::span<Vec3> force) {
-    (void)at, (void)x_end, (void)force;
-    return false;
-  }
-
   /// What linearise() fills; its constraints are the integrator's.
   virtual solver::LinearSystem& linear_system() = 0;
 };

@@ -76,25 +76,13 @@ void StepProblem::linear_forces(const integrator::StagePoint& at, std::span<Vec3
 }
 
 void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) {
+  solver::LinearSystem& system = memory_.system;
   use_rate(at.rate);
   const bool all = memory_.linearised_at.empty();
   if (all) memory_.linearised_at.assign(at.x.begin(), at.x.end());
   for (std::size_t c = 0; c < cloth_.cloths(); ++c) chosen_[c] = all || is_stale(c, at.x);
   if (!memory_.locks.empty()) cloth_.update_locks(at.x, iteration == 0, memory_.locks);
   put_together(at, iteration);
-  if (contacts_ != nullptr) contacts_->update(at.x_end, memory_.contacts);
-  add_with_terms(at, force);
-}
-
-bool StepProblem::foresee(const integrator::StagePoint& at, std::span<const Vec3> x_end, std::span<Vec3> force) {
-  if (contacts_ == nullptr || !contacts_->foresee(x_end, memory_.contacts)) return false;
-  add_with_terms(at, force);
-  return true;
-}
-
-// As linear_forces, and writes what stands beside the matrix.
-void StepProblem::add_with_terms(const integrator::StagePoint& at, std::span<Vec3> force) {
-  solver::LinearSystem& system = memory_.system;
   add_cloth_forces(at, force);
   if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
   add_pulls(at, force);
@@ -103,7 +91,9 @@ void StepProblem::add_with_terms(const integrator::StagePoint& at, std::span<Vec
   for (const Pull& pull : pulls_)
     system.diagonal_terms.push_back(
         {pull.particle, (at.end_rate * pull.stiffness + at.rate * pull.damping) * Mat3::Identity()});
-  if (contacts_ != nullptr) contacts_->linearise(at.x_end, at.end_rate, memory_.contacts, force, system);
+  if (contacts_ == nullptr) return;
+  contacts_->update(at.x_end, memory_.contacts);
+  contacts_->linearise(at.x_end, at.end_rate, memory_.contacts, force, system);
 }
 
 void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const {

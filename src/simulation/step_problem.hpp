@@ -68,11 +68,9 @@ class StepProblem final : public integrator::System {
   void forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
   void linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
   void linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) override;
-  bool foresee(const integrator::StagePoint& at, std::span<const Vec3> x_end, std::span<Vec3> force) override;
   solver::LinearSystem& linear_system() override { return memory_.system; }
 
  private:
-  void add_with_terms(const integrator::StagePoint& at, std::span<Vec3> force);
   void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
   void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
   bool move_to(std::size_t cloth, const integrator::StagePoint& at);

@@ -48,7 +48,6 @@ class ContactResponse {
 
   /// As those of ContactSet.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const { springs_.update(x_end, lag); }
-  bool foresee(std::span<const Vec3> x_end, ContactLag& lag) const { return springs_.foresee(x_end, lag); }
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
   void linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,

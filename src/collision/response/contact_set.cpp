@@ -163,18 +163,6 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
   ++lag.updates;
 }
 
-bool ContactSet::foresee(std::span<const Vec3> x_end, ContactLag& lag) const {
-  bool rubs = false;
-  for (std::size_t c = 0; c < lag.depths.size(); ++c) {
-    const Contact& contact = contacts_[c];
-    if (contact.static_friction == 0) continue;
-    const double depth = contact.range - contact.normal.dot(relative_end(contact, x_end));
-    lag.loads[c] = tangent_force(load_at(contact, lag.depths[c]), lag.depths[c], depth);
-    rubs = true;
-  }
-  return rubs;
-}
-
 ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<const Vec3> x_end,
                                          const ContactLag& lag) const {
   const Contact& contact = contacts_[index];

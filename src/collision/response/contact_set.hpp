@@ -90,11 +90,6 @@ class ContactSet {
   /// both sides give way, does not gain by that.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const;
 
-  /// After the first update of a step, which will lead to about x_end: friction goes by the loads there. By those of
-  /// unchanged velocity whatever lands sticks, and a stiff tangent hides that it should slide: a block dropped by 1 mm
-  /// on an incline half a degree too steep went 0.92 to 0.97 of its way. False where there is no friction.
-  bool foresee(std::span<const Vec3> x_end, ContactLag& lag) const;
-
   /// force += contact forces [N] with the particles at x_end. Friction goes by the loads there, as long as they are
   /// followed: what lags must show in the residual (a sheet that landed on an incline lost the friction of the
   /// landing).
