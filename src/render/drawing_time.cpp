@@ -45,7 +45,7 @@ DrawingTimer::~DrawingTimer() {
   std::erase(shares.sums, &rasterised_);
 }
 
-double DrawingTimer::cpu_seconds() {
+double DrawingTimer::cpu_seconds() const {
   RasteriserShares& shares = rasteriser_shares();
   const std::lock_guard lock(shares.mutex);
   shares.share_out();

@@ -37,7 +37,7 @@ class DrawingTimer {
   DrawingTimer(const DrawingTimer&) = delete;
   DrawingTimer& operator=(const DrawingTimer&) = delete;
 
-  double cpu_seconds();
+  double cpu_seconds() const;
 
  private:
   double began_;           // on the clocks of this thread alone
