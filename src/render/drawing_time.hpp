@@ -40,8 +40,8 @@ class DrawingTimer {
   double cpu_seconds() const;
 
  private:
-  double began_;           // on the clocks of this thread alone
-  double rasterised_ = 0;  // so far, for this picture
+  double began_;                   // on the clocks of this thread alone
+  mutable double rasterised_ = 0;  // so far, for this picture; any timer shares out for all
 };
 
 }  // namespace weft::render

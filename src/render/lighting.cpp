@@ -5,6 +5,7 @@
 
 #include "image/color.hpp"
 #include "render/depth_raster.hpp"
+#include "render/in_view.hpp"
 
 namespace weft::render {
 namespace {

@@ -11,6 +11,8 @@
 
 namespace weft::render {
 
+struct InView;
+
 /// More lights than this are left out: each costs a shadow map.
 inline constexpr int kMaxLights = 4;
 
@@ -36,12 +38,6 @@ struct ShadowView {
   double depth_per_metre = 1;  ///< of the depth buffer, in the middle of the subjects
   double texel_metres = 0;     ///< width of one texel there
   double raise = 0;            ///< by which curved surfaces ask for light from outside, where it grazes them [m]
-};
-
-/// What a picture shows, world space: vertices, and triangles cut off at its borders.
-struct InView {
-  std::vector<Vec3> places;
-  std::vector<std::array<Vec3, 3>> cut;
 };
 
 /// Fits a shadow map of `map_size` texels to the given casters (world space), as tightly as they allow, and to what is

@@ -452,7 +452,7 @@ void Renderer::look_through(CameraPath path) {
 image::Image Renderer::draw(const frame::FrameSnapshot& snapshot, const frame::FrameSnapshot* before) {
   check(snapshot);
   const WallTimer wall;
-  DrawingTimer cpu;
+  const DrawingTimer cpu;
   const CurrentContext current(*impl_->context);
   impl_->draw(snapshot, before);
   image::Image image = to_image(impl_->rgba, impl_->settings.width, impl_->settings.height);
