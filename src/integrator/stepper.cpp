@@ -51,6 +51,12 @@ constexpr double kUnseenSpeed = 1e-3;
 // rejected where cloth is pulled tight, and threads of falling_band stretch by 12 % for 4.
 constexpr double kVelocityShare = 0.5;
 
+// Friction that the motion of a cloth as a whole takes, against the most that it can be, from which the cloth counts as
+// about to slide, and the share of the velocity that may be left by which all of it may then slide wrongly. With 0.3
+// sheets that fall onto slopes half a degree too steep lose 3 % of their way in two of nine cases; from 0.5 on instead of
+// 0.9 they go as far.
+constexpr double kAboutToSlide = 0.9, kSlidingShare = 0.2;
+
 // Particles that a thread takes at once.
 constexpr std::size_t kParticlesAtOnce = 1024;
 
@@ -183,6 +189,7 @@ void Stepper::allow_velocities(double h) {
   for (PartState& part : parts_) {
     const double error = std::max(kVelocityShare * part.velocity_error, std::max(part.local_error, unseen) / time);
     part.allowed = std::max(parameters_.tolerance * error, rounding_);
+    part.may_slide = std::max({kSlidingShare * part.allowed, parameters_.tolerance * unseen / time, rounding_});
   }
 }
 
@@ -218,17 +225,52 @@ void Stepper::estimate_left(const solver::LinearReport& solved, double fraction,
       parts_[p].left = std::hypot(parts_[p].left, solved.errors[p] / std::sqrt(parts_[p].mass));
 }
 
+// What is left may be hidden by friction: cloth that sticks is held stiffly, up to where it lets go as a whole, and
+// what pushes it is stiffer still. So where friction is near its limit the momentum counts that is missing along it,
+// and the friction that the motion takes beyond what its load allows. By the preconditioner alone, sheets that had
+// fallen by a millimetre on slopes half a degree too steep were solved while they stuck, for up to five steps: 0.92 to
+// 0.97 of a block's way, and 0.57 with velocity constraints; so 1.00 to 1.01, with 2 and 0 % more iterations. Asking
+// that of particles at their limit, one by one or as a piece, sphere_drape takes two to three times the iterations.
+void Stepper::estimate_slides(const System& system, const Stage& stage) {
+  for (PartState& part : parts_) part.slides = 0;
+  if (std::ranges::none_of(parts_, [](const PartState& part) { return !part.is_held && part.left <= part.allowed; }))
+    return;
+  for (auto* force : {&push_, &friction_}) force->assign(x_.size(), Vec3::Zero());
+  friction_limit_.assign(x_.size(), 0);
+  system.contact_forces({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, push_, friction_, friction_limit_);
+  for (PartState& part : parts_) {
+    if (part.is_held) continue;
+    Vec3 push = Vec3::Zero(), friction = Vec3::Zero(), missing = Vec3::Zero();
+    double load = 0, limit = 0;
+    for (auto i = static_cast<std::size_t>(part.rows.begin); i < static_cast<std::size_t>(part.rows.end); ++i) {
+      push += push_[i];
+      friction += friction_[i];
+      missing += residual_[i];
+      load += push_[i].norm();
+      limit += friction_limit_[i];
+    }
+    const double pushed = push.norm(), rubbed = friction.norm();
+    if (pushed == 0 || rubbed == 0) continue;
+    // Friction that the motion takes, and the most that its load allows.
+    const double along = missing.dot(friction) / rubbed, taken = rubbed - along;
+    const double most = limit * (1 - missing.dot(push) / (pushed * load));
+    if (taken > kAboutToSlide * most) part.slides = std::max(std::abs(along), taken - most) * stage.beta / part.mass;
+  }
+}
+
 bool Stepper::is_solved(int iterations, double h) const {
   double most = iterations < kPatience ? 0 : parameters_.tolerance * kUnseenSpeed;
   if (parameters_.position_tolerance > 0) most = std::min(most, parameters_.position_tolerance / carried_on(h));
-  return std::ranges::all_of(parts_, [&](const PartState& part) { return part.left <= std::max(part.allowed, most); });
+  return std::ranges::all_of(parts_, [&](const PartState& part) {
+    return part.left <= std::max(part.allowed, most) && part.slides <= std::max(part.may_slide, most);
+  });
 }
 
 // Parts that the next linear solve is for.
 void Stepper::select_unsolved(int iterations) {
   unsolved_.clear();
   for (std::size_t p = 0; p < parts_.size(); ++p)
-    if (iterations >= kTogether || parts_[p].left > kSolvedShare * parts_[p].allowed) unsolved_.push_back(p);
+    if (iterations >= kTogether || parts_[p].excess() > kSolvedShare) unsolved_.push_back(p);
 }
 
 // Moves x along delta_: the whole way, less where the whole way overshoots, or farther where it hardly gets nearer.
@@ -307,7 +349,6 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   const auto masses = system.masses();
   const Stage stage = begin(now, h);
   beta_ = stage.beta;
-  list_parts(masses, linear);
   linear.metric.resize(n);
   for_each_particle(n, [&](std::size_t i) { linear.metric[i] = masses[i] / (stage.beta * stage.beta); });
   rounding_ = kRoundings * std::numeric_limits<double>::epsilon() * size_of({now.x.data(), n}) / beta_;
@@ -317,6 +358,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   next.x.resize(now.x.size());
   next.v.resize(n);
   hold(now, stage, held, linear.constraints);
+  list_parts(masses, linear);
 
   const int done = start == Start::next ? std::exchange(unfinished_, 0) : 0;
   StepReport report;
@@ -350,6 +392,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     estimate_local_errors(masses, now, stage, h);
     allow_velocities(h);
     estimate_left(solved, fraction, masses);
+    estimate_slides(system, stage);
     select_unsolved(report.newton_iterations);
     report_worst(h, report);
     solved_all = is_solved(done + report.newton_iterations, h);
@@ -373,6 +416,10 @@ void Stepper::list_parts(std::span<const double> masses, const solver::LinearSys
     PartState& part = parts_.emplace_back();
     part.rows = rows;
     for (auto i = rows.begin; i < rows.end; ++i) part.mass += masses[i];
+    // A wall that is slid along leaves two directions free.
+    part.is_held = std::ranges::any_of(linear.constraints, [&](const solver::ParticleConstraint& constraint) {
+      return constraint.particle >= rows.begin && constraint.particle < rows.end && constraint.free.trace() < 1.5;
+    });
     // The first iteration is for all: cloth that creeps within the tolerance would never stop.
     unsolved_.push_back(unsolved_.size());
   }
@@ -396,11 +443,12 @@ void Stepper::report_worst(double h, StepReport& report) const {
   double worst = -1;
   for (const PartState& part : parts_) {
     report.local_error = std::max(report.local_error, part.local_error);
-    report.solver_error = std::max(report.solver_error, part.left * time);
-    if (part.left <= worst * part.allowed) continue;
-    worst = part.left / part.allowed;
-    report.left = part.left;
-    report.allowed = part.allowed;
+    report.solver_error = std::max({report.solver_error, part.left * time, part.slides * time});
+    if (part.excess() <= worst) continue;
+    worst = part.excess();
+    const bool is_loose = part.left * part.may_slide >= part.slides * part.allowed;
+    report.left = is_loose ? part.left : part.slides;
+    report.allowed = is_loose ? part.allowed : part.may_slide;
   }
 }
 

@@ -1,6 +1,7 @@
 // One implicit time step (seed, Fig. 2): method → implicit equation → Newton with residual control → constrained CG.
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -138,6 +139,12 @@ class Stepper {
     double velocity_error = 0;  // likewise of the velocity, where it is known [m/s]
     double allowed = 0;         // velocity that may be left [m/s]
     double left = 0;            // velocity that is left [m/s]
+    bool is_held = false;       // somewhere, against sliding too
+    double may_slide = 0;       // velocity of all of it by which friction may be off [m/s]
+    double slides = 0;          // by which it is off, where it is about to slide [m/s]
+
+    // Of what is left over what may be.
+    double excess() const { return std::max(left / allowed, slides / may_slide); }
   };
 
   bool is_first_order(double h) const;
@@ -161,6 +168,7 @@ class Stepper {
   std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void measure(std::span<const Vec3> displacements, std::span<const double> masses, std::vector<double>& speeds) const;
   void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);
+  void estimate_slides(const System& system, const Stage& stage);
   void select_unsolved(int iterations);
   bool is_solved(int iterations, double h) const;
   void report_worst(double h, StepReport& report) const;
@@ -181,6 +189,8 @@ class Stepper {
   std::vector<std::size_t> unsolved_;
   // Per part: energy norms that may be left, and velocities [m/s].
   std::vector<double> goals_, foreseen_, changes_, speeds_;
+  std::vector<Vec3> push_, friction_;   // of contacts [N]
+  std::vector<double> friction_limit_;  // [N]
   std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, scratch_;
 };
 

@@ -78,6 +78,12 @@ void ContactResponse::add_forces(std::span<const Vec3> x_end, const ContactLag& 
   if (walls_) walls_->add_forces(x_end, force);
 }
 
+void ContactResponse::add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
+                                          std::span<Vec3> friction, std::span<double> limit) const {
+  springs_.add_parts_of_forces(x_end, lag, push, friction, limit);
+  if (walls_) walls_->add_parts_of_forces(x_end, push, friction, limit);
+}
+
 void ContactResponse::add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag,
                                         std::span<Vec3> force) const {
   springs_.add_linear_forces(x_end, lag, force);

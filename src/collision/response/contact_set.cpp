@@ -217,6 +217,23 @@ void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactL
     for (int k = 0; k < 4; ++k) force[contact->particles[k]] += contact->weights[k] * push;
 }
 
+void ContactSet::add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
+                                     std::span<Vec3> friction, std::span<double> limit) const {
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_[c];
+    const Response response = respond(c, Law::itself, x_end, lag);
+    if (!response.active) continue;
+    const Vec3 across = contact.normal.dot(response.force) * contact.normal;
+    const double most = contact.static_friction * stick_slip_ * response.stickiness;
+    for (int k = 0; k < 4; ++k) {
+      const Index i = contact.particles[k];
+      push[i] += contact.weights[k] * across;
+      friction[i] += contact.weights[k] * (response.force - across);
+      limit[i] += std::abs(contact.weights[k]) * most;
+    }
+  }
+}
+
 void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const ContactLag& lag, std::span<Vec3> force,
                            solver::LinearSystem& system) const {
   struct Push {

@@ -97,6 +97,10 @@ class ContactSet {
   /// Likewise with the tangents in place of the laws.
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
 
+  /// What add_forces adds, friction apart from what pushes, and that times its coefficient of friction [N].
+  void add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
+                           std::span<Vec3> friction, std::span<double> limit) const;
+
   /// As add_linear_forces, and adds −∂f/∂x to the system, where x_end changes by `end_rate` per change of the unknown;
   /// for friction a form in its place that is definite. Friction −λ w of a slip u = ψ(‖u‖) w is linearised with w as
   /// an unknown of its own (Chan, Golub & Mulet, "A Nonlinear Primal-Dual Method for Total Variation-Based Image

@@ -29,14 +29,6 @@ constexpr int kFlips = 3;
 // the weight. Of friction, a fifth of what it was besides.
 constexpr double kNegligibleAcceleration = 0.5;
 constexpr double kLoadChange = 0.2;
-// Steps on end that a particle has to be slow in before it sticks. What begins to slide is held by neighbours that do
-// so a step later, and if it stuck for that they would hold each other for ever: a sheet that fell by 1 mm onto a slope
-// stood still one degree above the angle of friction.
-constexpr std::int8_t kSlowSteps = 2;
-// And what was let go because it was held too weakly, and has not been fast since: it hands its load on to those that
-// stick around it, and they let go a step later. With kSlowSteps for these too sheets that fell onto slopes 0.5 degrees
-// above the angle of friction stood still (friction 0.6, and 0.3 in some meshes).
-constexpr std::int8_t kSlowStepsOfReleased = 20;
 // Walls that are looked at for one particle, the most violated ones.
 constexpr std::size_t kMostWalls = 8;
 
@@ -256,7 +248,6 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
     if (!(slips || passes) || particle.flips++ >= kFlips) return false;
     if (slips) {
       memory.state = State::sliding;
-      memory.slow = kSlowSteps - kSlowStepsOfReleased;
       particle.friction_load = memory.load;
     }
     hold(particle, held_at, next);
@@ -268,7 +259,6 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   const bool other_load = change > negligible && change > kLoadChange * limit;
   const bool fast = slip(particle, x_end).norm() >= ContactSet::kStickSpeed * step_;
   particle.slow = limit > 0 && !other_load && !other_walls && !fast;
-  if (fast) memory.slow = 0;
   hold(particle, held_at, next);
   particle.friction_load = memory.load;
   const bool matters = other_load || (other_walls && (passed.load() >= kPassed || left.norm() > negligible));
@@ -281,9 +271,7 @@ void VelocityConstraints::accept() {
   for (const Touched& particle : touched_) {
     if (particle.memory.state == State::away) continue;
     Memory& memory = memory_[particle.particle] = particle.memory;
-    const bool slow = particle.slow && memory.state == State::sliding;
-    memory.slow = slow ? static_cast<std::int8_t>(memory.slow + 1) : std::min<std::int8_t>(memory.slow, 0);
-    if (memory.slow == kSlowSteps) memory.state = State::sticking, memory.slow = 0;
+    if (particle.slow) memory.state = State::sticking;
     remembered_.push_back(particle.particle);
   }
 }
@@ -352,6 +340,18 @@ void VelocityConstraints::add_forces(std::span<const Vec3> x_end, std::span<Vec3
   }
 }
 
+void VelocityConstraints::add_parts_of_forces(std::span<const Vec3> x_end, std::span<Vec3> push,
+                                              std::span<Vec3> friction, std::span<double> limit) const {
+  for (const Touched& particle : touched_) {
+    if (particle.memory.state != State::sliding || particle.friction_load == 0) continue;
+    const Index i = particle.particle;
+    const Wall& wall = walls_[main_wall(particle)];
+    push[i] += particle.friction_load * wall.normal;
+    friction[i] += this->friction(particle, x_end[i]).force;
+    limit[i] += wall.static_friction * particle.friction_load;
+  }
+}
+
 void VelocityConstraints::linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
                                     solver::LinearSystem& system) const {
   for (const Touched& particle : touched_) {
@@ -370,11 +370,8 @@ void VelocityConstraints::serialize(Archive& archive) {
     if constexpr (Archive::kReads)
       require(particle >= 0 && static_cast<std::size_t>(particle) < masses_.size(), "particles of the scene");
     Memory& memory = memory_[particle];
-    serialize_values(archive, memory.state, memory.push, memory.load, memory.slow);
-    if constexpr (Archive::kReads)
-      require(memory.state <= State::sliding && memory.slow < kSlowSteps &&
-                  memory.slow >= kSlowSteps - kSlowStepsOfReleased,
-              "a particle that sticks or slides");
+    serialize_values(archive, memory.state, memory.push, memory.load);
+    if constexpr (Archive::kReads) require(memory.state <= State::sliding, "a particle that sticks or slides");
   });
 }
 

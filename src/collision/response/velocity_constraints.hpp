@@ -35,9 +35,8 @@ struct PrescribedParticle {
 /// residual says that it would pull. Walls of one particle act together: up to three hold it at once. What is held is
 /// held in the tangent plane too, moving with the obstacle, while the force that this takes lies in the friction cone.
 /// Else it slides, with friction μ · load against the slip, smooth below kStickSpeed as that of ContactSet; sliding
-/// that slow in two steps on end, or in twenty where it was let go just now, sticks from then on. (As an explicit
-/// force, friction threw neighbours that began to slide together back past where they came from, and cloth at rest went
-/// to and fro between sticking and sliding.)
+/// that slow at the end of a step sticks from then on. (As an explicit force, friction threw neighbours that began to
+/// slide together back past where they came from, and cloth at rest went to and fro between sticking and sliding.)
 ///
 /// All this is decided anew between solves of a step (revise) and remembered for the next step (accept).
 class VelocityConstraints {
@@ -79,6 +78,9 @@ class VelocityConstraints {
 
   /// force += friction of the sliding particles at x_end [N].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
+  /// That, the loads that it goes by, and these times the coefficient of friction [N].
+  void add_parts_of_forces(std::span<const Vec3> x_end, std::span<Vec3> push, std::span<Vec3> friction,
+                           std::span<double> limit) const;
   /// As add_forces, and adds −∂f/∂x to the matrix, where x_end changes by `end_rate` per change of the unknown; in a
   /// form that is definite, that of ContactSet::linearise.
   void linearise(std::span<const Vec3> x_end, double end_rate, std::span<Vec3> force,
@@ -112,8 +114,6 @@ class VelocityConstraints {
     State state = State::away;
     Vec3 push = Vec3::Zero();  // force of the walls, normal part [N]
     double load = 0;           // its size, by walls [N]
-    // Steps on end that it has slid so slowly that it might stick; below zero where it was let go just before.
-    std::int8_t slow = 0;
   };
   struct Touched {
     Index particle;
