@@ -17,9 +17,9 @@ float tiles(vec2 at) {
   return 0.5 - 0.5 * i.x * i.y;
 }
 
-vec3 shaded_light(int i, Softness soft, vec3 position_world, vec3 n) {
-  vec3 light = light_on_floor(i, position_world, n);
-  return light * share_of_light(i, soft, position_world, n, n, light.g > 0.0);
+vec3 shaded_light(int i, Softness soft, FloorPoint at) {
+  vec3 light = light_on_floor(i, at);
+  return light * share_of_light(i, soft, at.position_world, at.n, at.n, light.g > 0.0);
 }
 
 void main() {
@@ -37,18 +37,19 @@ void main() {
   Softness soft = look_up_softness(distance_view, kFloor);
   vec4 bounced_here = bounced_light(position_world, n);
   // Floor hides nothing from itself: what comes back from what does is all in the cubes.
-  vec3 diffuse = irradiance(n) * min(soft.open, open_at_most(bounced_here.w)) + bounced_here.rgb;
-  diffuse += shaded_light(0, soft, position_world, n);
+  FloorPoint at = floor_point(albedo, ray_world);
+  vec3 shown = albedo * (irradiance(n) * min(soft.open, open_at_most(bounced_here.w)) + bounced_here.rgb);
+  shown += shaded_light(0, soft, at);
 #if LIGHTS > 1
-  diffuse += shaded_light(1, soft, position_world, n);
+  shown += shaded_light(1, soft, at);
 #endif
 #if LIGHTS > 2
-  diffuse += shaded_light(2, soft, position_world, n);
+  shown += shaded_light(2, soft, at);
 #endif
 #if LIGHTS > 3
-  diffuse += shaded_light(3, soft, position_world, n);
+  shown += shaded_light(3, soft, at);
 #endif
-  vec3 linear = fade_out(albedo * diffuse, position_world, ray_world);
+  vec3 linear = fade_out(shown, position_world, ray_world);
 #endif
   color = vec4(encode(linear), 1.0);
 #ifdef REFLECTING

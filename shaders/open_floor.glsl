@@ -1,10 +1,25 @@
 // Floor that nothing shades or hides from the sky, as the ray of a pixel meets it, in linear light.
 #include "stage.glsl"
 
-vec3 light_on_floor(int i, vec3 position_world, vec3 n) {
+#ifdef SHINY
+#include "highlight.glsl"
+#endif
+
+// Where the ray of a pixel meets the floor.
+struct FloorPoint {
+  vec3 position_world, n, v, albedo;
+};
+
+// What the floor shows of light i. SHINY: it mirrors the lamp, too.
+vec3 light_on_floor(int i, FloorPoint at) {
   float cone;
-  vec3 l = toward_light(i, position_world, cone);
-  return lights[i].color.rgb * (cone * max(dot(n, l), 0.0));
+  vec3 l = toward_light(i, at.position_world, cone);
+  vec3 shown = at.albedo * max(dot(at.n, l), 0.0);
+#ifdef SHINY
+  float roughness = frame.center_world.w;
+  shown += highlight(at.n, at.v, l, max(roughness * roughness, 0.05), head_on(roughness));
+#endif
+  return lights[i].color.rgb * cone * shown;
 }
 
 // 0 near the subjects, to 1 far from them.
@@ -24,18 +39,22 @@ float floor_distance(vec3 ray_world) {
   return frame.floor_plane_world.w / max(-dot(frame.floor_plane_world.xyz, ray_world), 1e-6);
 }
 
-vec3 open_floor(vec3 albedo, vec3 ray_world) {
-  vec3 n = frame.floor_plane_world.xyz;
+FloorPoint floor_point(vec3 albedo, vec3 ray_world) {
   vec3 position_world = frame.eye_world.xyz + floor_distance(ray_world) * ray_world;
-  vec3 diffuse = irradiance(n) + light_on_floor(0, position_world, n);
+  return FloorPoint(position_world, frame.floor_plane_world.xyz, -normalize(ray_world), albedo);
+}
+
+vec3 open_floor(vec3 albedo, vec3 ray_world) {
+  FloorPoint at = floor_point(albedo, ray_world);
+  vec3 shown = albedo * irradiance(at.n) + light_on_floor(0, at);
 #if LIGHTS > 1
-  diffuse += light_on_floor(1, position_world, n);
+  shown += light_on_floor(1, at);
 #endif
 #if LIGHTS > 2
-  diffuse += light_on_floor(2, position_world, n);
+  shown += light_on_floor(2, at);
 #endif
 #if LIGHTS > 3
-  diffuse += light_on_floor(3, position_world, n);
+  shown += light_on_floor(3, at);
 #endif
-  return fade_out(albedo * diffuse, position_world, ray_world);
+  return fade_out(shown, at.position_world, ray_world);
 }

@@ -13,7 +13,7 @@ layout(binding = 6) uniform sampler2D sky_map;  // depths of what is highest and
 layout(location = 0) out vec4 soft_light;
 
 // Directions and radii of the taps. Any 5x5 texels have the 25 values of each once, so that the mean over them, which
-// soft_light_blur.frag takes, is free of noise wherever the surface goes on.
+// SoftBlur takes, is free of noise wherever the surface goes on.
 vec2 blur_jitter(vec2 texel) {
   texel = floor(texel);
   vec2 at = mod(texel + 2.0 * texel.yx, 5.0);

@@ -1,5 +1,6 @@
 // Cloth and solid surfaces: direct light with soft shadows, light of the sky, and the sheen or gloss of the material.
 #include "shading.glsl"
+#include "highlight.glsl"
 #include "soft_look_up.glsl"
 #include "bounced_light.glsl"
 #ifdef CLOTH
@@ -19,15 +20,6 @@ layout(binding = 6) uniform sampler2D heat_colors;
 layout(binding = 10) uniform sampler2D paints;  // geometry.frag
 #endif
 layout(location = 0) out vec4 color;
-
-// Microfacet highlight (GGX, Walter et al. 2007; visibility term by Hammon 2017), for reflectance f0 head-on.
-float highlight(vec3 n, vec3 v, vec3 l, float alpha, float f0) {
-  vec3 h = normalize(v + l);
-  float n_h = max(dot(n, h), 0.0), n_l = max(dot(n, l), 0.0), n_v = max(dot(n, v), 1e-3), l_h = max(dot(l, h), 0.0);
-  float a_sq = alpha * alpha, d = n_h * n_h * (a_sq - 1.0) + 1.0;
-  float grazing = 1.0 - l_h, fresnel = f0 + (1.0 - f0) * grazing * grazing * grazing * grazing * grazing;
-  return fresnel * a_sq / (d * d) * 0.25 / mix(2.0 * n_l * n_v, n_l + n_v, alpha) * 2.0 * n_l;
-}
 
 #ifdef CLOTH
 // Highlight of threads that run along t: the facets of each lie around it, so that it is wide across and narrow along
@@ -102,7 +94,7 @@ void main() {
   at.n = at.n_smooth = normalize(n_seen + at.v * max(0.02 - dot(n_seen, at.v), 0.0));
   float roughness = front_roughness.w;
   at.alpha = max(roughness * roughness, 0.02);
-  at.f0 = 0.04 * (1.0 - 0.9 * roughness * roughness);
+  at.f0 = head_on(roughness);
   at.shine = 1.0;
   vec3 albedo = front_roughness.rgb;
 #ifdef CLOTH

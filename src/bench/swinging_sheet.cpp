@@ -23,6 +23,7 @@ size = 1.0
 particles = 21             # 441
 position = [0, -0.35, 1.35]
 rotation = [45, 0, 0]
+look = { color = "#6a9dbb", back_color = "#c9b48c" }
 
 # Smooth forces: waves that steps of a few milliseconds follow and viscosity takes away, too stiff to buckle in folds
 # that tell one method from another, no dry friction of bending.

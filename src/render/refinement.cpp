@@ -4,14 +4,6 @@
 #include <unordered_map>
 
 namespace weft::render {
-namespace {
-
-// Below half of what lies between layers of thin cloth [m]: with 0.5 mm the inner side of a fold of silk showed through
-// its outer one.
-constexpr double kFarthest = 2e-4;
-
-}  // namespace
-
 void Refinement::update(std::span<const Triangle> coarse, std::size_t vertices) {
   if (std::ranges::equal(coarse, coarse_)) return;
   coarse_.assign(coarse.begin(), coarse.end());
@@ -32,11 +24,11 @@ void Refinement::update(std::span<const Triangle> coarse, std::size_t vertices) 
   }
 }
 
-Middle middle(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b) {
+Middle middle(const Vec3& a, const Vec3& b, const Vec3& normal_a, const Vec3& normal_b, double farthest) {
   const Vec3 along = b - a, sum = normal_a + normal_b;
   Vec3 off = along.dot(normal_b) * normal_b - along.dot(normal_a) * normal_a;
   off *= 0.125;
-  if (off.norm() > kFarthest) off *= kFarthest / off.norm();
+  if (off.norm() > farthest) off *= farthest / off.norm();
   // Of normals that face each other nothing is left.
   const Vec3 normal = sum.squaredNorm() > 1e-6 ? Vec3(sum.normalized()) : normal_a;
   return {0.5 * (a + b) + off, normal};

@@ -129,7 +129,9 @@ struct Renderer::Impl {
   void upload_frame(const Plan& plan);
   Shading::Features features(const Plan& plan) const;
   std::vector<Shading::Material> materials(const Plan& plan) const;
-  bool reflects(const Plan& plan) const { return quality.mirrors && mirror_roughness(plan.lighting.style, plan.floor); }
+  bool reflects(const Plan& plan) const {
+    return quality.mirrors && floor_roughness(plan.lighting.style, plan.floor) < kMirrorsSubjects;
+  }
   void bounce(const Plan& plan, std::span<const DrawnMesh> meshes, double heat);
   void shade(const Plan& plan, const PixelArea& subjects, double heat);
   void look_through_cloth(const Plan& plan, std::span<const char> sheer, const SkyView& above,
@@ -227,6 +229,7 @@ Shading::Features Renderer::Impl::features(const Plan& plan) const {
           .level = plan.floor && plan.floor->normal.cwiseAbs().maxCoeff() > 1 - 1e-9,
           .painted = passes->geometry.painted() && !plan.lighting.style.plain,
           .trimmed = passes->geometry.trimmed(),
+          .shiny = floor_roughness(plan.lighting.style, plan.floor) < kMirrorsLamps,
           .reflecting = reflects(plan)};
 }
 

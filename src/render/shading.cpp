@@ -147,11 +147,13 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
   solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, paint));
   std::vector<const char*> floor{features.checker ? "CHECKER" : "PLAIN"};
   if (features.level) floor.push_back("LEVEL");
+  const std::vector<const char*> shiny(features.shiny ? 1 : 0, "SHINY");
+  floor.insert(floor.end(), shiny.begin(), shiny.end());
   if (features.reflecting) floor.push_back("REFLECTING");
   shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, crisp, floor));
   floor.push_back("OPEN");
   open_floor = floor_on_grid
-                   ? Program(gl, "open_floor.vert", "grid.frag", shading_defines(quality, lights, false))
+                   ? Program(gl, "open_floor.vert", "grid.frag", shading_defines(quality, lights, false, shiny))
                    : Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, false, floor));
 }
 

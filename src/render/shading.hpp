@@ -29,6 +29,7 @@ class Shading {
     bool level = false;       ///< the floor, so that one axis is its normal
     bool painted = false;     ///< the geometry buffer has colours of its own
     bool trimmed = false;     ///< and hems
+    bool shiny = false;       ///< the floor mirrors lamps
     bool reflecting = false;  ///< the floor shows what a Mirror has drawn, everywhere
     bool sheer = false;       ///< cloth says how opaque it is
     bool glossy = false;      ///< threads of some cloth shine; draw() sees to that, and to the next

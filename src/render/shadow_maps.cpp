@@ -53,18 +53,20 @@ void draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world
     const float before = depths[at], nearer = std::min(before, depth);
     depths[at] = covered ? nearer : before;
   };
-  const auto place = [&](const Eigen::Vector4d& clip) {
-    const Vec3 at = (texture_from_clip() * (clip / clip.w())).head<3>();
-    return Eigen::Vector3f(at.cwiseProduct(Vec3(size, size, 1)).cast<float>());
+  const Mat4 texels_from_clip = Eigen::Vector4d(size, size, 1, 1).asDiagonal() * texture_from_clip();
+  const Mat4 texels_from_world = texels_from_clip * clip_from_world;
+  const auto place = [](const Eigen::Vector4d& texels) {
+    return Eigen::Vector3f((texels.head<3>() / texels.w()).cast<float>());
   };
-  std::vector<Eigen::Vector4d> clip;
+  std::vector<char> in_front;
   std::vector<Eigen::Vector3f> places;
   for (const DrawnMesh& mesh : casters) {
-    clip.clear();
+    in_front.clear();
     places.clear();
     for (const Vec3& position : mesh.positions) {
-      clip.push_back(clip_from_world * position.homogeneous());
-      places.push_back(place(clip.back()));
+      const Eigen::Vector4d texels = texels_from_world * position.homogeneous();
+      in_front.push_back(texels.z() >= 0 ? 1 : 0);
+      places.push_back(place(texels));
     }
     if (mesh.holes) {
       fill_with_holes(mesh, places, size, write);
@@ -73,16 +75,19 @@ void draw_depths(std::span<const DrawnMesh> casters, const Mat4& clip_from_world
     const auto partly = [&](int at, bool covered, float depth, float to_b, float to_c) {
       write(at, covered && mesh.opacity > threshold_at(at % size, at / size), depth, to_b, to_c);
     };
-    const auto in_front = [&](Index vertex) { return clip[vertex].z() >= -clip[vertex].w(); };
+    const auto clip = [&](Index vertex) -> Eigen::Vector4d {
+      return clip_from_world * mesh.positions[vertex].homogeneous();
+    };
     for (const auto& [a, b, c] : mesh.triangles) {
+      const bool whole = in_front[a] != 0 && in_front[b] != 0 && in_front[c] != 0;
       if (mesh.opacity < 1) {
-        if (in_front(a) && in_front(b) && in_front(c))
-          fill_triangle(places[a], places[b], places[c], size, size, partly);
-      } else if (in_front(a) && in_front(b) && in_front(c)) {
+        if (whole) fill_triangle(places[a], places[b], places[c], size, size, partly);
+      } else if (whole) {
         fill_triangle(places[a], places[b], places[c], size, size, write);
       } else {
-        clip_near({clip[a], clip[b], clip[c]}, [&](const auto& p, const auto& q, const auto& r) {
-          fill_triangle(place(p), place(q), place(r), size, size, write);
+        clip_near({clip(a), clip(b), clip(c)}, [&](const auto& p, const auto& q, const auto& r) {
+          fill_triangle(place(texels_from_clip * p), place(texels_from_clip * q), place(texels_from_clip * r), size,
+                        size, write);
         });
       }
     }

@@ -40,20 +40,17 @@ SoftLight::SoftLight(const Gl& gl, const QualitySettings& quality, int width, in
       height_((height + quality.soft_divisor - 1) / quality.soft_divisor),
       distances_program_(gl, "fullscreen.vert", "soft_distances.frag",
                          {"REDUCTION " + std::to_string(quality.soft_divisor)}),
-      first_blur_(gl, "fullscreen.vert", "soft_light_blur.frag", {"SHARES_TOO"}),
-      second_blur_(gl, "fullscreen.vert", "soft_light_blur.frag"),
       sky_(make_texture(gl, GL_RG32F, kSkySize, kSkySize, GL_NEAREST)),
       distances_(make_texture(gl, GL_R32F, width_, height_, GL_NEAREST)),
       light_(make_texture(gl, GL_RGBA32F, width_, height_, GL_NEAREST)),
-      smoothed_(make_texture(gl, GL_RGBA32F, width_, height_, GL_NEAREST)),
       distances_target_(gl),
       light_target_(gl),
-      smoothed_target_(gl),
-      no_vertices_(gl) {
+      no_vertices_(gl),
+      texels_(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_)),
+      blur_(width_, height_) {
   gl.NamedFramebufferTexture(light_target_.name(), GL_COLOR_ATTACHMENT0, light_.name(), 0);
-  gl.NamedFramebufferTexture(smoothed_target_.name(), GL_COLOR_ATTACHMENT0, smoothed_.name(), 0);
   gl.NamedFramebufferTexture(distances_target_.name(), GL_COLOR_ATTACHMENT0, distances_.name(), 0);
-  for (const Framebuffer* target : {&distances_target_, &light_target_, &smoothed_target_}) {
+  for (const Framebuffer* target : {&distances_target_, &light_target_}) {
     check_framebuffer(gl, *target, "soft light");
   }
 }
@@ -79,24 +76,14 @@ void SoftLight::draw(std::span<const DrawnMesh> meshes, const SkyView& above, Li
   program->second.use();
   gl_->DrawArrays(GL_TRIANGLES, 0, 3);
 
-  // Across, then down, ending where it began. A second time, for where an outline cuts the window within which taps
-  // make up for each other: right under a ball the first leaves streaks.
-  for (int pass = 0; pass < 4; ++pass) {
-    const bool across = pass % 2 == 0;
-    const Program& blur = pass < 2 ? first_blur_ : second_blur_;
-    blur.use();
-    gl_->BindFramebuffer(GL_FRAMEBUFFER, (across ? smoothed_target_ : light_target_).name());
-    gl_->BindTextureUnit(3, (across ? light_ : smoothed_).name());
-    gl_->Uniform2i(blur.uniform("axis"), across, !across);
-    gl_->DrawArrays(GL_TRIANGLES, 0, 3);
-  }
+  const GLsizei bytes = static_cast<GLsizei>(texels_.size() * sizeof(SoftTexel));
+  gl_->GetTextureImage(light_.name(), 0, GL_RGBA, GL_FLOAT, bytes, texels_.data());
+  blur_.smooth(texels_);
+  gl_->TextureSubImage2D(light_.name(), 0, 0, 0, width_, height_, GL_RGBA, GL_FLOAT, texels_.data());
   gl_->BindTextureUnit(3, light_.name());
 }
 
-std::vector<PixelArea> SoftLight::shaded_floor() {
-  texels_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_));
-  gl_->GetTextureImage(light_.name(), 0, GL_RGBA, GL_FLOAT, static_cast<GLsizei>(texels_.size() * sizeof(SoftTexel)),
-                       texels_.data());
+std::vector<PixelArea> SoftLight::shaded_floor() const {
   // Texel x counts for the tiles of x - kMargin and x + kMargin; flags begin at x = -kMargin.
   const auto tiles = [](int texels_along) { return (texels_along + 2 * kMargin + kSoftTile - 1) / kSoftTile; };
   const int columns = tiles(width_), rows = tiles(height_);

@@ -9,17 +9,10 @@
 #include "render/quality.hpp"
 #include "render/shadow_maps.hpp"
 #include "render/sky_map.hpp"
+#include "render/soft_blur.hpp"
 #include "render/view.hpp"
 
 namespace weft::render {
-
-/// Lights whose shares the small picture holds.
-inline constexpr std::size_t kSoftLights = 2;
-
-/// As shaders/soft_light.glsl packs it.
-struct SoftTexel {
-  float surface_open, lit[kSoftLights], distance;
-};
 
 class SoftLight {
  public:
@@ -31,19 +24,20 @@ class SoftLight {
   void draw(std::span<const DrawnMesh> meshes, const SkyView& above, LightSet lights);
 
   /// Parts of the picture that hold all floor to which the small picture denies light or sky. Call after draw().
-  std::vector<PixelArea> shaded_floor();
+  std::vector<PixelArea> shaded_floor() const;
 
  private:
   const Gl* gl_;
   QualitySettings quality_;
   int picture_width_, picture_height_, width_, height_;
   std::map<LightSet, Program> soft_light_;  // made when first needed
-  Program distances_program_, first_blur_, second_blur_;
-  Texture sky_, distances_, light_, smoothed_;
-  Framebuffer distances_target_, light_target_, smoothed_target_;
+  Program distances_program_;
+  Texture sky_, distances_, light_;
+  Framebuffer distances_target_, light_target_;
   VertexArray no_vertices_;
   std::vector<SkyTexel> sky_map_;
-  std::vector<SoftTexel> texels_;
+  std::vector<SoftTexel> texels_;  // of the last picture, smoothed
+  SoftBlur blur_;
 };
 
 }  // namespace weft::render

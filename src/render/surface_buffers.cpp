@@ -111,8 +111,9 @@ void SurfaceBuffers::update(const frame::SurfaceState& state, double rim) {
 
 void SurfaceBuffers::add_middles(std::vector<Vertex>& vertices) {
   refinement_->update(mesh_.triangles, vertices.size());
+  const double farthest = farthest_middle(surface_->appearance.thickness);
   for (const auto& [a, b] : refinement_->edges()) {
-    const Middle here = middle(positions_[a], positions_[b], mesh_.normals[a], mesh_.normals[b]);
+    const Middle here = middle(positions_[a], positions_[b], mesh_.normals[a], mesh_.normals[b], farthest);
     positions_.push_back(here.position);
     vertices.push_back({here.position.cast<float>(), here.normal.cast<float>(),
                         0.5f * (vertices[a].rest_uv + vertices[b].rest_uv),
@@ -135,13 +136,14 @@ void SurfaceBuffers::add_rims(std::vector<Vertex>& vertices, double width) {
   for (std::size_t v = 0; v < vertex_count_; ++v) normals[v] = mesh_.normals[drawn[v]];
   std::vector<std::pair<Index, Index>> ends;  // between which a place lies
   for (std::size_t v = 0; v < vertex_count_; ++v) ends.emplace_back(drawn[v], drawn[v]);
+  const double farthest = farthest_middle(surface_->appearance.thickness);
   std::vector<Trims::Rim> rims;
   for (const Trims::Rim& rim : trims_->rims()) {
     if (!refinement_) {
       rims.push_back(rim);
       continue;
     }
-    const Middle here = middle(places[rim.a], places[rim.b], normals[rim.a], normals[rim.b]);
+    const Middle here = middle(places[rim.a], places[rim.b], normals[rim.a], normals[rim.b], farthest);
     const auto m = static_cast<Index>(places.size());
     places.push_back(here.position);
     normals.push_back(here.normal);

@@ -120,11 +120,10 @@ Lighting light_up(const frame::Stage& stage, const Vec3& up, const std::optional
   return lighting;
 }
 
-std::optional<double> mirror_roughness(const Style& style, const std::optional<Floor>& floor) {
-  constexpr double kMirrors = 0.5, kMatte = 1;
-  if (!floor || floor->look.roughness >= kMatte) return std::nullopt;
-  const double roughness = std::min(floor->look.roughness, style.floor_roughness);
-  return roughness < kMirrors ? std::optional(roughness) : std::nullopt;
+double floor_roughness(const Style& style, const std::optional<Floor>& floor) {
+  constexpr double kMatte = 1;
+  if (!floor || floor->look.roughness >= kMatte) return kMatte;
+  return std::min(floor->look.roughness, style.floor_roughness);
 }
 
 FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects,
@@ -146,7 +145,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   frame.clip_from_world = view.clip_from_world.cast<float>();
   frame.view_from_world = view.view_from_world.cast<float>();
   frame.eye_world = four(view.eye, radius);
-  frame.center_world = four(subjects.center(), mirror_roughness(style, floor).value_or(1));
+  frame.center_world = four(subjects.center(), floor_roughness(style, floor));
   frame.up_world = four(around.up, 0);
   frame.right_world = four(view.axes.right, 0);
   frame.sky = four(around.sky, reach);

@@ -78,9 +78,10 @@ struct Lighting {
 Lighting light_up(const frame::Stage& stage, const Vec3& up, const std::optional<Floor>& floor,
                   std::span<const frame::Light> lights);
 
-/// Roughness of a floor that reflects the subjects; absent where it does not: floor that is matte, and what is rougher
-/// than half of that.
-std::optional<double> mirror_roughness(const Style& style, const std::optional<Floor>& floor);
+/// Roughness of the floor, by its own look and that of the picture; 1 where there is none. Floors that shine more than
+/// those of scenes that do not say so mirror lamps, and those that shine still more the subjects.
+double floor_roughness(const Style& style, const std::optional<Floor>& floor);
+inline constexpr double kMirrorsLamps = 0.6, kMirrorsSubjects = 0.5;
 
 FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects,
                         const std::optional<Floor>& floor, int width, int height);

@@ -105,7 +105,9 @@ TEST(SpotLight, FallsWithTheSquareOfTheDistanceFromItsTarget) {
 }
 
 // Two renderers that draw at the same time have not taken more than the process. The threads of the rasteriser are
-// asked when a picture begins, as of their last tick: a hundredth of a second each at most.
+// asked when a picture begins, as of their last tick: a hundredth of a second each at most. Nor much less: what the
+// process does beside the pictures, to check and to free, is 0.3 to 0.6 % of its time (eleven runs); ten times that is
+// allowed.
 TEST(DrawingTime, OfRenderersThatDrawAtTheSameTimeIsCountedOnce) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
@@ -131,7 +133,7 @@ TEST(DrawingTime, OfRenderersThatDrawAtTheSameTimeIsCountedOnce) {
   beside.join();
   const double taken = process_cpu_seconds() - before;
   EXPECT_LT(taken_by_one + taken_by_other, taken + 0.01 * 2);
-  EXPECT_GT(taken_by_one + taken_by_other, 0.9 * taken);
+  EXPECT_GT(taken_by_one + taken_by_other, 0.94 * taken - 0.01 * 2);
 }
 
 }  // namespace

@@ -1,0 +1,11 @@
+// Microfacet highlight (GGX, Walter et al. 2007; visibility term by Hammon 2017), for reflectance f0 head-on.
+float highlight(vec3 n, vec3 v, vec3 l, float alpha, float f0) {
+  vec3 h = normalize(v + l);
+  float n_h = max(dot(n, h), 0.0), n_l = max(dot(n, l), 0.0), n_v = max(dot(n, v), 1e-3), l_h = max(dot(l, h), 0.0);
+  float a_sq = alpha * alpha, d = n_h * n_h * (a_sq - 1.0) + 1.0;
+  float grazing = 1.0 - l_h, fresnel = f0 + (1.0 - f0) * grazing * grazing * grazing * grazing * grazing;
+  return fresnel * a_sq / (d * d) * 0.25 / mix(2.0 * n_l * n_v, n_l + n_v, alpha) * 2.0 * n_l;
+}
+
+// What a surface mirrors head-on: rough ones hide half of their facets from each other.
+float head_on(float roughness) { return 0.04 * (1.0 - 0.9 * roughness * roughness); }
