@@ -38,6 +38,7 @@ class Room {
   void find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
                     std::vector<double>& missing) const;
   void smooth(std::vector<double>& shares) const;
+  void round_off(std::span<const double> missing, std::span<Vec3> x) const;
   void lift(std::span<const Vec3> from, std::span<Vec3> x) const;
 
   double room_;

@@ -142,6 +142,22 @@ TEST_F(RoomOfAMannequin, IsMadeWhereArmsGoIntoHips) {
   EXPECT_GT(least, 0.9 * kRoom);
 }
 
+// Skin folds onto itself there, which lines from bones do not see.
+TEST_F(RoomOfAMannequin, IsMadeInTheCreaseOfAHip) {
+  for (const double degrees : {75, 90, 105}) {
+    Pose pose = rest_pose(body_);
+    const Index thigh = joints_[place_of(Joint::left_upper_leg)];
+    const Quat above(global_transforms(body_, pose)[body_.nodes[thigh].parent].linear());
+    const Quat turn(Eigen::AngleAxisd(-degrees * kDegree, above.conjugate() * Vec3::UnitX()));
+    pose.nodes[thigh].rotation = (turn * pose.nodes[thigh].rotation).normalized();
+    const std::vector<Vec3> before = skinned(pose);
+    std::vector<Vec3> after = before;
+    room({}, 0.016).make(pose, after);
+    EXPECT_GT(crossings(before), 10u) << degrees;
+    EXPECT_EQ(crossings(after), 0u) << degrees;
+  }
+}
+
 // Ten centimetres are not there at rest, between its legs above all.
 TEST_F(RoomOfAMannequin, LeavesARestingBodyToTheBit) {
   const std::vector<Vec3> before = skinned(rest_pose(body_));
