@@ -28,16 +28,8 @@ constexpr int kRounds = 8;
 /// Of the room, what may be missing in the end.
 constexpr double kEnough = 0.02;
 
-/// Rounds of smoothing: dents end over so many edges, and where they are less than a share of the way from the bone.
+/// Smoothings in each round: dents end over so many edges and more.
 constexpr int kSmoothings = 3;
-constexpr double kLeastDent = 0.01;
-
-/// Rooms that are missing where skin is rounded off wholly. With one it jumps as they come and go: a jumpsuit in a high
-/// kick then had 22 and 42 steps rejected where it has 11 and 20.
-constexpr double kWhole = 3;
-
-/// Rounds of rounding: with 20 no crease of a hip bent by 75, 90 and 105° crosses itself, with 10 one still does.
-constexpr int kRoundings = 20;
 
 /// Of the room, what is left between the body and the ground.
 constexpr double kAboveGround = 0.5;
@@ -156,30 +148,7 @@ void Room::smooth(std::vector<double>& shares) const {
       ++counts[a], ++counts[b];
     }
     for (std::size_t v = 0; v < shares.size(); ++v)
-      if (counts[v] > 0 && sums[v] < (1 - kLeastDent) * counts[v]) shares[v] = std::min(shares[v], sums[v] / counts[v]);
-  }
-}
-
-// Near a joint skin folds onto itself where lines from bones cross: there each vertex goes to the middle of its
-// neighbours, and those around it half as far with each edge.
-void Room::round_off(std::span<const double> missing, std::span<Vec3> x) const {
-  std::vector<double> share(missing.size(), 0), counts(missing.size(), 0);
-  for (std::size_t v = 0; v < share.size(); ++v) share[v] = std::min(1.0, missing[v] / (kWhole * room_));
-  if (std::ranges::all_of(share, [](double s) { return s == 0; })) return;
-  for (int ring = 0; ring < kSmoothings; ++ring) {
-    const std::vector<double> inner = share;
-    for (const auto& [a, b] : edges_) {
-      share[a] = std::max(share[a], inner[b] / 2);
-      share[b] = std::max(share[b], inner[a] / 2);
-    }
-  }
-  for (const auto& [a, b] : edges_) ++counts[a], ++counts[b];
-  std::vector<Vec3> sums(missing.size());
-  for (int round = 0; round < kRoundings; ++round) {
-    std::ranges::fill(sums, Vec3::Zero());
-    for (const auto& [a, b] : edges_) sums[a] += x[b], sums[b] += x[a];
-    for (std::size_t v = 0; v < share.size(); ++v)
-      if (share[v] > 0) x[v] += share[v] * (sums[v] / counts[v] - x[v]);
+      if (counts[v] > 0) shares[v] = std::min(shares[v], sums[v] / counts[v]);
   }
 }
 
@@ -216,8 +185,6 @@ void Room::make(const Pose& pose, std::span<Vec3> x) const {
     move();
     if (!changed) break;
   }
-  find_missing(from, whole, x, missing);
-  round_off(missing, x);
   lift(from, x);
 }
 

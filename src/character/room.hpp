@@ -21,9 +21,8 @@ struct Ground {
 
 /// Skin gives way along the lines from its bones to where it is: upper and lower arms and legs, feet, and the trunk
 /// with the head against each other, by half of what is missing each. Skin that is as close at rest, as at the joint of
-/// two limbs, is not asked for more room than it has there. Creases in which that is not enough are rounded off. It
-/// does not show: skin that is in another limb is not seen. Skin that goes into the ground, but for that of feet, is
-/// flattened above it.
+/// two limbs, is not asked for more room than it has there. It does not show: skin that is in another limb is not seen.
+/// Skin that goes into the ground, but for that of feet, is flattened above it.
 class Room {
  public:
   /// How much of a vertex each limb holds.
@@ -39,7 +38,6 @@ class Room {
   void find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
                     std::vector<double>& missing) const;
   void smooth(std::vector<double>& shares) const;
-  void round_off(std::span<const double> missing, std::span<Vec3> x) const;
   void lift(std::span<const Vec3> from, std::span<Vec3> x) const;
 
   double room_;
