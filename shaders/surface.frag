@@ -123,9 +123,9 @@ void main() {
   albedo *= woven.tone;
   at.shine = woven.shine;
 #ifdef TRIMMED
-  Trimmed trimmed = trim(pixel, rest_uv, heat_trim.yzw, front, woven, at.n);
+  Trimmed trimmed = trim(pixel, rest_uv, heat_trim.yzw, front, threads, woven, at.n);
   at.n = trimmed.normal_world;
-  albedo *= trimmed.tone;
+  albedo = mix(albedo * trimmed.tone, kJeans, trimmed.thread);
   if (trimmed.layers > 1.0) at.finish.w = mix(at.finish.w, at.finish.w * at.finish.w, trimmed.layers - 1.0);
 #endif
   at.weft = normalize(woven.weft_world - dot(woven.weft_world, at.n) * at.n + 1e-6);

@@ -7,6 +7,8 @@ const float kStitchFromFold = 0.002;  // by which a hem goes on beyond its stitc
 const float kGroove = 0.0011, kThread = 0.00028;  // half widths
 const float kStitch = 0.0032;  // from one to the next
 const float kOnTop = 0.78;     // share of it that the thread shows
+const float kTwin = 0.005;     // between rows: knits are hemmed, and denim is sewn, with two needles
+const vec3 kJeans = vec3(0.60, 0.27, 0.05);  // linear colour of the thread that denim is sewn with
 const float kValley = 0.0013;  // half width of what a seam draws in
 
 // Share of a pixel that is `width` wide about `at` that a band of half width `half_width` about `center` covers.
@@ -27,6 +29,19 @@ float stitches(float at, float width, float center, float shown) {
   return 1.0 - 0.16 * band(at, width, center, kGroove) + band(at, width, center, kThread) * mix(-0.5, 0.16, shown);
 }
 
+// Stitches of one thread or two, the second `beside` the first.
+struct Rows {
+  float tone, thread;  // thread: share of the pixel that it covers
+};
+Rows rows(float at, float width, float center, float beside, float shown, int threads) {
+  Rows result = Rows(stitches(at, width, center, shown), band(at, width, center, kThread) * shown);
+  if (threads == kKnit || threads == kDenim) {
+    result.tone *= stitches(at, width, center + beside, shown);
+    result.thread += band(at, width, center + beside, kThread) * shown;
+  }
+  return result;
+}
+
 // How steeply cloth rises with the distance from a line of stitches.
 float groove(float at, float width, float center) {
   return band(at, width, center, kGroove) * 0.55 * clamp((at - center) / kGroove, -1.0, 1.0) * step(width, kGroove);
@@ -36,10 +51,11 @@ struct Trimmed {
   vec3 normal_world;
   float tone;    // factor on the colour
   float layers;  // of cloth that lie on each other
+  float thread;  // share of the pixel that shows stitches of another colour
 };
 
 // `look`: width of the hem [m], thickness of the cloth [m], distance of stitches from seams [m], 0 for none.
-Trimmed trim(ivec2 pixel, vec2 rest_uv, vec3 look, bool front, Weave woven, vec3 n_world) {
+Trimmed trim(ivec2 pixel, vec2 rest_uv, vec3 look, bool front, int threads, Weave woven, vec3 n_world) {
   vec3 at = texelFetch(trims, pixel, 0).xyz;
   vec3 right = dFdx(at), up = dFdy(at), width = clamp(abs(right) + abs(up), 1e-6, 1.0);
   // The directions in which border and seam are left, in the surface.
@@ -55,20 +71,24 @@ Trimmed trim(ivec2 pixel, vec2 rest_uv, vec3 look, bool front, Weave woven, vec3
 
   // The edge is round. A hem ends in a step on the back, which shows through a little on the front.
   float fold = hem > 0.0 ? 2.0 * thickness : 0.5 * thickness;
-  float rise = band(at.x, width.x, 0.5 * fold, 0.5 * fold) * 0.8, tone = 1.0;
+  float rise = band(at.x, width.x, 0.5 * fold, 0.5 * fold) * 0.8, tone = 1.0, thread = 0.0;
   if (hem > 0.0) {
     float line = hem - kStitchFromFold, side = front ? 0.25 : 1.0;
     rise += groove(at.x, width.x, line) - side * 0.7 * band(at.x, width.x, hem, 0.5 * thickness + 1e-4);
-    tone = stitches(at.x, width.x, line, shown) * (1.0 - 0.3 * side * band(at.x, width.x, hem + thickness, thickness));
+    Rows sewn = rows(at.x, width.x, line, -kTwin, shown, threads);
+    tone = sewn.tone * (1.0 - 0.3 * side * band(at.x, width.x, hem + thickness, thickness));
+    thread = sewn.thread;
   }
   float valley = band(at.y, width.y, 0.0, kValley);
   float fall = 0.7 * valley * step(width.y, kValley);
   tone *= 1.0 - 0.22 * valley - band(at.y, width.y, 0.0, 0.0004) * mix(0.5, 0.1, shown);
   if (look.z > 0.0) {
-    tone *= stitches(at.y, width.y, look.z, shown);
+    Rows sewn = rows(at.y, width.y, look.z, kTwin, shown, threads);
+    tone *= sewn.tone;
+    thread += sewn.thread;
     fall += groove(at.y, width.y, look.z);
   }
   float doubled = hem > 0.0 ? clamp((hem - at.x) / width.x + 0.5, 0.0, 1.0) : 0.0;
   vec3 n = normalize(n_world - (rise * step(width.x, fold + kGroove)) * inward - fall * aside);
-  return Trimmed(n, tone, 1.0 + doubled);
+  return Trimmed(n, tone, 1.0 + doubled, threads == kDenim ? min(thread, 1.0) : 0.0);
 }

@@ -28,7 +28,7 @@ constexpr int kRounds = 8;
 /// Of the room, what may be missing in the end.
 constexpr double kEnough = 0.02;
 
-/// Rounds of smoothing: dents end over so many edges.
+/// Smoothings in each round: dents end over so many edges and more.
 constexpr int kSmoothings = 3;
 
 /// Of the room, what is left between the body and the ground.
@@ -180,11 +180,11 @@ void Room::make(const Pose& pose, std::span<Vec3> x) const {
       shares[v] = std::max(kLeast, shares[v] - 0.5 * missing[v] / (whole[v] - from[v]).norm());
       changed |= missing[v] > kEnough * room_;
     }
+    // In each round: what gives way alone leaves its neighbours in what it went out of.
+    smooth(shares);
     move();
     if (!changed) break;
   }
-  smooth(shares);
-  move();
   lift(from, x);
 }
 

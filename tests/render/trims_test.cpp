@@ -147,7 +147,7 @@ TEST(Trims, AStripAlongTheBorderFacesOutwardAndIsAsThickAsTheCloth) {
 }
 
 /// Cloth that fills the picture, leant back by 50 degrees, with a line of stitches (a seam) up or across its middle.
-frame::FrameSnapshot sewn_cloth(double distance, bool seam) {
+frame::FrameSnapshot sewn_cloth(double distance, bool seam, Threads threads = Threads::plain) {
   frame::FrameSnapshot snapshot;
   snapshot.stage = stage_without_sky();
   const double angle = 50 * std::numbers::pi / 180, half = 10;
@@ -163,9 +163,10 @@ frame::FrameSnapshot sewn_cloth(double distance, bool seam) {
   cloth.parts = grid.parts;
   cloth.part_of_triangle = grid.part_of_triangle;
   cloth.appearance.color = cloth.appearance.back_color = Vec3(0.6, 0.4, 0.3);
+  cloth.appearance.finish.threads = threads;
   for (frame::SurfacePart& part : cloth.parts) part.appearance = cloth.appearance;
   cloth.appearance.thickness = 1e-3;
-  cloth.appearance.hem = seam ? 0 : half;  // so that its stitches are in the middle
+  cloth.appearance.hem = seam ? 0 : half - 0.008;  // so that its stitches are 1 cm from the middle, on both sides
   snapshot.cameras = {camera_at(Vec3(0, -distance, 0), Vec3::Zero(), 30)};
   snapshot.lights = {sun(Vec3::UnitY())};
   return snapshot;
@@ -185,6 +186,40 @@ TEST(Trims, StitchesShowCloseByAndInFinalQualityOnly) {
     const image::Image preview = drawn(sewn_cloth(0.1, seam), 1, Quality::preview);
     EXPECT_LE(std::abs(preview.pixel(80, 50)[1] - preview.pixel(20, 20)[1]), 4);
   }
+}
+
+/// How many dark lines go across the middle of a picture.
+int dark_lines(const image::Image& image) {
+  const auto level = [&](int y) {
+    double sum = 0;
+    for (int x = 40; x < 120; ++x) sum += image.pixel(x, y)[1];
+    return sum / 80;
+  };
+  int lines = 0;
+  for (int y = 5; y < 95; ++y) {
+    // Light falls off by less than a level over five pixels; a row takes five or more.
+    const bool least = level(y) < level(y - 1) && level(y) <= level(y + 1);
+    if (least && level(y) < std::min(level(y - 5), level(y + 5)) - 2) ++lines;
+  }
+  return lines;
+}
+
+// Above and below the middle, from where both borders are as far away.
+TEST(Trims, KnitsAreHemmedInTwoRows) {
+  EXPECT_EQ(dark_lines(drawn(sewn_cloth(0.08, false), 1)), 2);
+  EXPECT_EQ(dark_lines(drawn(sewn_cloth(0.08, false, Threads::knit), 1)), 4);
+}
+
+TEST(Trims, ThreadOfDenimHasAColorOfItsOwn) {
+  const auto reddest = [](Threads threads) {
+    const image::Image image = drawn(sewn_cloth(0.08, true, threads), 1);
+    int most = 0;
+    for (int y = 5; y < 95; ++y)
+      for (int x = 40; x < 120; ++x) most = std::max(most, image.pixel(x, y)[0] - image.pixel(x, y)[2]);
+    return most;
+  };
+  // The cloth has 0.3 more red than blue, and so has its own thread; that of denim has 0.55.
+  EXPECT_GT(reddest(Threads::denim), reddest(Threads::twill) + 20);
 }
 
 // From any distance a line of stitches is the mean of one drawn six times as fine: 0.4 to 2.6 levels are seen, 4.6
