@@ -51,11 +51,9 @@ constexpr double kUnseenSpeed = 1e-3;
 // rejected where cloth is pulled tight, and threads of falling_band stretch by 12 % for 4.
 constexpr double kVelocityShare = 0.5;
 
-// Friction that the motion of a cloth as a whole takes, against the most that it can be, from which the cloth counts as
-// about to slide, and the share of the velocity that may be left by which all of it may then slide wrongly. With 0.3
-// sheets that fall onto slopes half a degree too steep lose 3 % of their way in two of nine cases; from 0.5 on instead of
-// 0.9 they go as far.
-constexpr double kAboutToSlide = 0.9, kSlidingShare = 0.2;
+// Share of the velocity that may be left by which a whole cloth may slide wrongly. With 0.3 sheets that fall onto
+// slopes half a degree too steep lose 3 % of their way in two of nine cases.
+constexpr double kSlidingShare = 0.2;
 
 // Particles that a thread takes at once.
 constexpr std::size_t kParticlesAtOnce = 1024;
@@ -225,37 +223,12 @@ void Stepper::estimate_left(const solver::LinearReport& solved, double fraction,
       parts_[p].left = std::hypot(parts_[p].left, solved.errors[p] / std::sqrt(parts_[p].mass));
 }
 
-// What is left may be hidden by friction: cloth that sticks is held stiffly, up to where it lets go as a whole, and
-// what pushes it is stiffer still. So where friction is near its limit the momentum counts that is missing along it,
-// and the friction that the motion takes beyond what its load allows. By the preconditioner alone, sheets that had
-// fallen by a millimetre on slopes half a degree too steep were solved while they stuck, for up to five steps: 0.92 to
-// 0.97 of a block's way, and 0.57 with velocity constraints; so 1.00 to 1.01, with 2 and 0 % more iterations. Asking
-// that of particles at their limit, one by one or as a piece, sphere_drape takes two to three times the iterations.
+// Velocities by which whole parts slide wrongly, where they would be solved otherwise.
 void Stepper::estimate_slides(const System& system, const Stage& stage) {
-  for (PartState& part : parts_) part.slides = 0;
-  if (std::ranges::none_of(parts_, [](const PartState& part) { return !part.is_held && part.left <= part.allowed; }))
-    return;
-  for (auto* force : {&push_, &friction_}) force->assign(x_.size(), Vec3::Zero());
-  friction_limit_.assign(x_.size(), 0);
-  system.contact_forces({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, push_, friction_, friction_limit_);
-  for (PartState& part : parts_) {
-    if (part.is_held) continue;
-    Vec3 push = Vec3::Zero(), friction = Vec3::Zero(), missing = Vec3::Zero();
-    double load = 0, limit = 0;
-    for (auto i = static_cast<std::size_t>(part.rows.begin); i < static_cast<std::size_t>(part.rows.end); ++i) {
-      push += push_[i];
-      friction += friction_[i];
-      missing += residual_[i];
-      load += push_[i].norm();
-      limit += friction_limit_[i];
-    }
-    const double pushed = push.norm(), rubbed = friction.norm();
-    if (pushed == 0 || rubbed == 0) continue;
-    // Friction that the motion takes, and the most that its load allows.
-    const double along = missing.dot(friction) / rubbed, taken = rubbed - along;
-    const double most = limit * (1 - missing.dot(push) / (pushed * load));
-    if (taken > kAboutToSlide * most) part.slides = std::max(std::abs(along), taken - most) * stage.beta / part.mass;
-  }
+  const auto counts = [](const PartState& part) { return !part.is_held && part.left <= part.allowed; };
+  if (std::ranges::any_of(parts_, counts)) sliding_.evaluate(system, {x_, v_, x_end_, 1 / stage.beta, stage.end_rate});
+  for (PartState& part : parts_)
+    part.slides = counts(part) ? sliding_.wrong_friction(part.rows, residual_) * stage.beta / part.mass : 0;
 }
 
 bool Stepper::is_solved(int iterations, double h) const {
@@ -416,10 +389,7 @@ void Stepper::list_parts(std::span<const double> masses, const solver::LinearSys
     PartState& part = parts_.emplace_back();
     part.rows = rows;
     for (auto i = rows.begin; i < rows.end; ++i) part.mass += masses[i];
-    // A wall that is slid along leaves two directions free.
-    part.is_held = std::ranges::any_of(linear.constraints, [&](const solver::ParticleConstraint& constraint) {
-      return constraint.particle >= rows.begin && constraint.particle < rows.end && constraint.free.trace() < 1.5;
-    });
+    part.is_held = is_held(rows, linear.constraints);
     // The first iteration is for all: cloth that creeps within the tolerance would never stop.
     unsolved_.push_back(unsolved_.size());
   }

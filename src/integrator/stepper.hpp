@@ -11,6 +11,7 @@
 
 #include "core/archive.hpp"
 #include "core/timer.hpp"
+#include "integrator/sliding.hpp"
 #include "integrator/system.hpp"
 #include "solver/conjugate_gradient.hpp"
 
@@ -185,12 +186,11 @@ class Stepper {
   // Scratch of one step.
   StageTimes times_;
   solver::ConjugateGradient cg_;
+  Sliding sliding_;
   std::vector<PartState> parts_;
   std::vector<std::size_t> unsolved_;
   // Per part: energy norms that may be left, and velocities [m/s].
   std::vector<double> goals_, foreseen_, changes_, speeds_;
-  std::vector<Vec3> push_, friction_;   // of contacts [N]
-  std::vector<double> friction_limit_;  // [N]
   std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, scratch_;
 };
 

@@ -142,16 +142,16 @@ TEST(VelocityConstraintsInScenes, NothingIntersectsAndADrapeComesToRest) {
     scene.obstacles.push_back(testing::obstacle("floor", scene::Plane{}));
     scene.time.duration = 6;
     scene.time.step = step;
-    int steps = 0, iterations = 0, moving = 0;  // at rest
+    int steps = 0, iterations = 0;  // at rest
     for (const auto& frame : support::run_scene(scene)) {
       EXPECT_EQ(frame.pairs, 0u) << frame.between << " in frame " << frame.report.frame << " at " << step << " s";
       if (frame.report.frame >= 120) {
-        moving += frame.rms_speed > 1e-3 ? 1 : 0;
+        // A fold topples late, at 1.6 mm/s.
+        EXPECT_LT(frame.rms_speed, frame.report.frame < 140 ? 2e-3 : 4e-4) << "in frame " << frame.report.frame;
         steps += frame.report.steps;
         iterations += frame.report.newton_iterations;
       }
     }
-    EXPECT_LE(moving, 5) << "of 31 frames at " << step << " s";  // a fold topples late, at 2 mm/s
     // Where walls are forgotten from step to step 13 a step at 40 ms.
     EXPECT_LT(iterations, 2 * steps) << "at " << step << " s";
   }
