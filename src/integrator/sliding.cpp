@@ -12,10 +12,10 @@ constexpr double kAboutToSlide = 0.9;
 
 }  // namespace
 
-void Sliding::evaluate(const System& system, const StagePoint& at) {
+bool Sliding::evaluate(const System& system, const StagePoint& at) {
   for (auto* force : {&push_, &friction_}) force->assign(at.v.size(), Vec3::Zero());
   limit_.assign(at.v.size(), 0);
-  system.contact_forces(at, push_, friction_, limit_);
+  return system.contact_forces(at, push_, friction_, limit_);
 }
 
 double Sliding::wrong_friction(const solver::Part& rows, std::span<const Vec3> residual) const {

@@ -19,8 +19,8 @@ namespace weft::integrator {
 /// times the iterations.
 class Sliding {
  public:
-  /// Forces of the contacts of a system at this stage.
-  void evaluate(const System& system, const StagePoint& at);
+  /// Takes the forces of the contacts of a system at this stage. False where nothing touches.
+  bool evaluate(const System& system, const StagePoint& at);
 
   /// Force [N] by which friction is wrong for a part as a whole, by its residual [N]; 0 unless it is about to slide.
   double wrong_friction(const solver::Part& rows, std::span<const Vec3> residual) const;

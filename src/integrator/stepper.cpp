@@ -228,9 +228,10 @@ void Stepper::estimate_left(const solver::LinearReport& solved, double fraction,
 // Velocities by which whole parts slide wrongly, where they would be solved otherwise.
 void Stepper::estimate_slides(const System& system, const Stage& stage) {
   const auto counts = [](const PartState& part) { return !part.is_held && part.left <= part.allowed; };
-  if (std::ranges::any_of(parts_, counts)) sliding_.evaluate(system, {x_, v_, x_end_, 1 / stage.beta, stage.end_rate});
+  const bool any = std::ranges::any_of(parts_, counts) &&
+                   sliding_.evaluate(system, {x_, v_, x_end_, 1 / stage.beta, stage.end_rate});
   for (PartState& part : parts_)
-    part.slides = counts(part) ? sliding_.wrong_friction(part.rows, residual_) * stage.beta / part.mass : 0;
+    part.slides = any && counts(part) ? sliding_.wrong_friction(part.rows, residual_) * stage.beta / part.mass : 0;
 }
 
 bool Stepper::is_solved(int iterations, double h) const {

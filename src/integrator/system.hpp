@@ -46,11 +46,12 @@ class System {
   /// catch up here, before they are added.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
-  /// Adds what contacts have in `forces`, friction apart from what pushes, and that times its coefficient of
-  /// friction [N].
-  virtual void contact_forces(const StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
+  /// Adds what contacts have in `forces`, friction apart from what pushes, and the most that friction can be by the
+  /// loads that it goes by [N]. False, and nothing is added, where nothing touches.
+  virtual bool contact_forces(const StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                               std::span<double> limit) const {
     (void)at, (void)push, (void)friction, (void)limit;
+    return false;
   }
 
   /// What linearise() fills; its constraints are the integrator's.

@@ -96,9 +96,11 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   contacts_->linearise(at.x_end, at.end_rate, memory_.contacts, force, system);
 }
 
-void StepProblem::contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
+bool StepProblem::contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                                  std::span<double> limit) const {
-  if (contacts_ != nullptr) contacts_->add_parts_of_forces(at.x_end, memory_.contacts, push, friction, limit);
+  if (contacts_ == nullptr || contacts_->empty()) return false;
+  contacts_->add_parts_of_forces(at.x_end, memory_.contacts, push, friction, limit);
+  return true;
 }
 
 void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const {

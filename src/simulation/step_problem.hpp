@@ -68,7 +68,7 @@ class StepProblem final : public integrator::System {
   void forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
   void linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) override;
   void linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) override;
-  void contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
+  bool contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                       std::span<double> limit) const override;
   solver::LinearSystem& linear_system() override { return memory_.system; }
 

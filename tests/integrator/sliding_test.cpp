@@ -16,13 +16,14 @@ class Block final : public System {
  public:
   explicit Block(const Contacts& whole) : whole_(whole) {}
 
-  void contact_forces(const StagePoint&, std::span<Vec3> pushes, std::span<Vec3> frictions,
+  bool contact_forces(const StagePoint&, std::span<Vec3> pushes, std::span<Vec3> frictions,
                       std::span<double> limits) const override {
     for (std::size_t i = 0; i < 2; ++i) {
       pushes[i] += 0.5 * whole_.push;
       frictions[i] += 0.5 * whole_.friction;
       limits[i] += 0.5 * whole_.limit;
     }
+    return true;
   }
   std::span<const double> masses() const override { return masses_; }
   void constant_forces(std::span<Vec3>) const override {}

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simulation/scenes.hpp"
@@ -96,16 +97,20 @@ class Incline : public ::testing::TestWithParam<scene::Response> {};
 // height. Euler's method is ahead by half a step in 1.6 s.
 TEST_P(Incline, IsSlidDownAsABlockDoes) {
   for (double mu : {0.1, 0.3, 0.6})
-    for (double angle : {std::atan(mu) + 0.5 * kDegree, std::atan(mu) + kDegree, std::atan(mu) + 5 * kDegree})
-      for (double fall : {0.0, 0.001}) {
-        scene::Scene scene = incline(angle, mu, 21);
+    for (double steeper : {0.5, 1.0, 5.0, 45 - std::atan(mu) / kDegree})
+      for (const auto& [particles, fall] : {std::pair(11, 0.0), {11, 0.001}, {21, 0.0}, {21, 0.001}}) {
+        if (steeper > 5 && particles > 11) continue;  // it has slid, at any mesh
+        const double angle = std::atan(mu) + steeper * kDegree;
+        scene::Scene scene = incline(angle, mu, particles);
         scene.contact.response = GetParam();
         scene::Cloth& cloth = scene.cloths[0];
         cloth.pose.position += cloth.pose.rotation * Vec3(0, 0, fall);
         const auto way = ways_down(scene, 40);
         const double expected = 0.5 * kGravity * (std::sin(angle) - mu * std::cos(angle)) * 1.6 * 1.61;
+        // Of Euler's own distance 0.74 % is the most that was off, where friction 0.6 stops a fall.
         EXPECT_NEAR(way[40] - way[0], expected, 0.01 * expected)
-            << "friction " << mu << ", " << angle / kDegree << " degrees, after a fall of " << fall << " m";
+            << "friction " << mu << ", " << angle / kDegree << " degrees, after a fall of " << fall << " m, "
+            << particles;
       }
 }
 

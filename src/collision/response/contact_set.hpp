@@ -97,7 +97,8 @@ class ContactSet {
   /// Likewise with the tangents in place of the laws.
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
 
-  /// What add_forces adds, friction apart from what pushes, and that times its coefficient of friction [N].
+  /// What add_forces adds, friction apart from what pushes, and the most that friction can be by the loads that it goes
+  /// by [N].
   void add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
                            std::span<Vec3> friction, std::span<double> limit) const;
 

@@ -78,7 +78,7 @@ class VelocityConstraints {
 
   /// force += friction of the sliding particles at x_end [N].
   void add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const;
-  /// That, the loads that it goes by, and these times the coefficient of friction [N].
+  /// That friction, the loads that it goes by, and the most that it can be by them [N].
   void add_parts_of_forces(std::span<const Vec3> x_end, std::span<Vec3> push, std::span<Vec3> friction,
                            std::span<double> limit) const;
   /// As add_forces, and adds −∂f/∂x to the matrix, where x_end changes by `end_rate` per change of the unknown; in a
