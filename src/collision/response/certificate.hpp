@@ -1,4 +1,4 @@
-// Moving separating planes: when two sets of vertices are apart for a whole step.
+// Separating planes that move and turn: when two sets of vertices are apart for a whole step.
 #pragma once
 
 #include <array>
@@ -34,9 +34,16 @@ double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x)
 /// sought.
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-/// Looks for a certificate, by increasing cost: the face normals separate layers, the direction between the centres
-/// separates neighbours in the plane, and the closest direction at the start separates whatever hardly moves. The
-/// direction found is rounded to single precision, so that it can be kept in half the space.
+/// Looks for a certificate, by increasing cost: a plane that keeps its direction, then one that turns with the pair, at
+/// last three times in halves of the way. Face normals separate layers, the direction between the centres neighbours in
+/// the plane, and the closest direction whatever hardly moves.
+///
+/// A plane turns with n(t) = (1 − t) n₀ + t n₁. Along it a difference d(t) of corners that move linearly is quadratic
+/// in time, with the Bernstein coefficients n₀·d₀, (n₀·d₁ + n₁·d₀)/2 and n₁·d₁, and positive where these are. Two
+/// layers at a distance d, however wide, that turn together by an angle θ have d, d cos θ and d; a plane of constant
+/// direction is in the way of one of them once their width times sin(θ/2) is more than d.
+///
+/// Returns the direction at the end, rounded to single precision, so that it can be kept in half the space.
 std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
 /// The closest pair of features of two sides.
