@@ -106,6 +106,9 @@ class Engine {
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  void update_coherence(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  template <class Collect>
+  void collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs);
   void gather();
   void count_failures();
   void add_late_contacts(const StepMotion& motion);
