@@ -8,6 +8,14 @@ namespace {
 // Bounds of slow steps are enlarged by this much more, in reaches, so that the candidates hold for several steps.
 constexpr double kSkin = 0.5;
 
+// Where pairs are kept with their closest points they are listed as a whole, else ProximityFinder knows who shares a
+// vertex.
+BroadPhaseOptions options_of(const SearchParameters& parameters) {
+  BroadPhaseOptions options = parameters.broad_phase;
+  options.one_shared = parameters.coherence;
+  return options;
+}
+
 }  // namespace
 
 CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& parameters, std::span<const Vec3> x,
@@ -15,7 +23,7 @@ CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& par
     : bodies_(bodies),
       parameters_(parameters),
       reach_(reach),
-      broad_phase_(bodies.surfaces(), x, parameters.broad_phase),
+      broad_phase_(bodies.surfaces(), x, options_of(parameters)),
       from_(x.begin(), x.end()),
       low_(from_) {
   for (std::size_t a = 0; a < bodies.size(); ++a) {

@@ -121,6 +121,7 @@ class Engine {
 
   Bodies bodies_;
   CandidateCache candidates_;
+  bool meets_itself_;  // cloth, and other cloth
   Separation separation_;
   ProximityFinder finder_;
   bool gathered_ = false;                       // whether the finder has those of the candidates collected last

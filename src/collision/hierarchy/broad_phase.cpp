@@ -64,7 +64,7 @@ class TreesOf final : public BroadPhase::Trees {
  private:
   Traversal traversal(std::size_t a, std::size_t b) {
     return {options_.open_longer_side, options_.separation_list ? &lists_[{a, b}] : nullptr,
-            options_.normal_cones && a == b ? &cones_[a].regions() : nullptr};
+            options_.normal_cones && a == b ? &cones_[a].regions() : nullptr, options_.one_shared};
   }
 
   BroadPhaseOptions options_;

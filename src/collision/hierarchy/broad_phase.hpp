@@ -46,6 +46,9 @@ struct BroadPhaseOptions {
   bool velocity_cones = false;
   /// Leaves out pairs in regions of a surface that are provably flat enough. Lists all other pairs.
   bool normal_cones = false;
+  /// Pairs that share one vertex are listed, too. In smooth cloth they are three times as many as the others, and all
+  /// are known beforehand.
+  bool one_shared = true;
 };
 
 class BroadPhase {

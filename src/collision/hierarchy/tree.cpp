@@ -60,7 +60,7 @@ struct Tree<K>::Builder {
   Tree& tree;
   std::size_t most_children, most_triangles;
   std::vector<KDop<K>> bounds;  // of each triangle
-  std::vector<Index> order;   // triangles, those of a group side by side
+  std::vector<Index> order;     // triangles, those of a group side by side
 
   /// Cuts group in two; it keeps the first half and the second is returned.
   Group split(Group& group) {
@@ -126,6 +126,8 @@ Tree<K>::Tree(const Surface& surface, std::span<const Vec3> positions, const Tre
   std::iota(builder.order.begin(), builder.order.end(), Index{0});
   root_ = builder.add({0, builder.order.size(), 0});
 
+  nodes_.shrink_to_fit();
+  leaves_.shrink_to_fit();
   node_bounds_.resize(nodes_.size());
   leaf_bounds_.resize(leaves_.size());
   refit({positions, positions}, 0);
@@ -208,8 +210,8 @@ void Tree<K>::refit_lazily(const Motion& motion, double margin) {
   changed_.resize(nodes_.size());
   leaf_changed_.resize(leaves_.size());
   for (std::size_t v = 0; v < vertex_bounds_.size(); ++v)
-    moved_[v] = static_cast<std::uint8_t>(stay_or_move(v, motion.x_t0[first + v], motion.low_t1[first + v],
-                                                       motion.high_t1[first + v], margin));
+    moved_[v] = static_cast<std::uint8_t>(
+        stay_or_move(v, motion.x_t0[first + v], motion.low_t1[first + v], motion.high_t1[first + v], margin));
 
   for (std::size_t n = 0; n < leaves_.size(); ++n) {
     const Leaf& leaf = leaves_[n];

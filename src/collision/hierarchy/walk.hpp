@@ -200,7 +200,7 @@ class Walk {
     if (hits == 0) return;
     const SharedMasks shared = shared_vertices(leaf_b.corners, leaf_a.corners, i);
     append(out_.apart, leaf_a.triangle[i], leaf_b, hits & ~shared.one & ~shared.more);
-    append(out_.one_shared, leaf_a.triangle[i], leaf_b, hits & shared.one);
+    if (how_.one_shared) append(out_.one_shared, leaf_a.triangle[i], leaf_b, hits & shared.one);
   }
 
   void append(PairList& list, Index a, const Leaf& leaf_b, std::uint32_t mask) {

@@ -200,6 +200,15 @@ TEST(BroadPhase, DoesNotListWhatMovesAlongWithEachOther) {
   EXPECT_EQ(pairs_to(far), pairs_to(x));
 }
 
+TEST(BroadPhase, LeavesOutPairsWithACommonVertexWhereTheyAreNotWanted) {
+  const FoldingSlidingFlying motion(9);
+  const std::vector<Surface> surfaces = motion.scene().surfaces();
+  BroadPhase all(surfaces, motion.at(0)), apart(surfaces, motion.at(0), {.one_shared = false});
+  EXPECT_FALSE(all_pairs(all, surfaces.size())[1].empty());
+  EXPECT_TRUE(all_pairs(apart, surfaces.size())[1].empty());
+  EXPECT_EQ(all_pairs(apart, surfaces.size())[0], all_pairs(all, surfaces.size())[0]);
+}
+
 TEST(BroadPhase, WithASeparationListListsTheSamePairsAgainWhenAskedTwice) {
   const FoldingSlidingFlying motion(9);
   const std::vector<Surface> surfaces = motion.scene().surfaces();
