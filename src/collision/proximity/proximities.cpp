@@ -17,6 +17,8 @@ constexpr double kSameDistance = 1e-9;
 
 // What a thread looks at at once: pairs of triangles, a multiple of eight; pairs of features; triangles and vertices.
 constexpr std::size_t kPairsAtOnce = 4096, kFeaturesAtOnce = 1024, kTrianglesAtOnce = 2048;
+// Whose pairs with a common vertex are listed before they are looked at: six to nine each.
+constexpr std::size_t kTrianglesListed = 64;
 
 /// Unit vector along v, or along a fallback where the two features touch and v has no direction.
 Vec3 direction(const Vec3& v, const Vec3& fallback) {
@@ -319,9 +321,13 @@ void ProximityFinder::gather(const PairList& apart, std::span<const Surface> def
   for (const Surface& surface : deformable)
     parallel_append(surface.triangles.size(), kTrianglesAtOnce, pairs_,
                     [&](std::size_t begin, std::size_t end, FeaturePairs& found) {
+                      Gathering gathering(*this, first, found);
                       std::vector<TrianglePair> pairs;
-                      append_connected(begin, end, surface, open, pairs);
-                      Gathering(*this, first, found).look_at(pairs);
+                      for (; begin < end; begin += kTrianglesListed) {
+                        pairs.clear();
+                        append_connected(begin, std::min(begin + kTrianglesListed, end), surface, open, pairs);
+                        gathering.look_at(pairs);
+                      }
                     });
 }
 
