@@ -9,6 +9,7 @@ namespace weft::collision {
 void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
                  std::span<const Patch> patches, std::span<const Index> limbs) {
   const auto first_triangle = static_cast<Index>(triangles_.size()), first_vertex = static_cast<Index>(body_of_.size());
+  triangles_.reserve(triangles_.size() + triangles.size());
   for (Triangle t : triangles) {
     for (Index& corner : t) corner += first_vertex;
     triangles_.push_back(t);

@@ -8,6 +8,14 @@ namespace {
 // Bounds of slow steps are enlarged by this much more, in reaches, so that the candidates hold for several steps.
 constexpr double kSkin = 0.5;
 
+// Where pairs are kept with their closest points they are listed as a whole, else ProximityFinder knows who shares a
+// vertex.
+BroadPhaseOptions options_of(const SearchParameters& parameters) {
+  BroadPhaseOptions options = parameters.broad_phase;
+  options.one_shared = parameters.coherence;
+  return options;
+}
+
 }  // namespace
 
 CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& parameters, std::span<const Vec3> x,
@@ -15,9 +23,9 @@ CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& par
     : bodies_(bodies),
       parameters_(parameters),
       reach_(reach),
-      broad_phase_(bodies.surfaces(), x, parameters.broad_phase),
+      broad_phase_(bodies.surfaces(), x, options_of(parameters)),
       from_(x.begin(), x.end()),
-      to_(from_) {
+      low_(from_) {
   for (std::size_t a = 0; a < bodies.size(); ++a) {
     if (!bodies[a].deformable) continue;
     if (parameters.self) wanted_.push_back({a, a});
@@ -27,31 +35,50 @@ CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& par
 }
 
 CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  double motion = 0;
-  for (std::size_t i = 0; i < x_t0.size(); ++i) motion = std::max(motion, (x_t1[i] - x_t0[i]).cwiseAbs().maxCoeff());
-  const double margin = (0.5 + (parameters_.reuse && motion < kSkin * reach_ ? kSkin : 0.0)) * reach_;
-  refit(x_t0, x_t1, margin);
+  return collect(x_t0, x_t1, x_t1);
+}
+
+CandidatePairs& CandidateCache::collect_more(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, bool all) {
+  std::vector<Vec3> low = low_, high = high_.empty() ? low_ : high_;
+  for (std::size_t v = 0; v < x_t1.size(); ++v) {
+    if (!all && covers_end(v, x_t1[v])) continue;
+    low[v] = low[v].cwiseMin(x_t0[v]).cwiseMin(x_t1[v]);
+    high[v] = high[v].cwiseMax(x_t0[v]).cwiseMax(x_t1[v]);
+  }
+  return collect(x_t0, low, high);
+}
+
+CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<const Vec3> low_t1,
+                                        std::span<const Vec3> high_t1) {
+  double way = 0;
+  for (std::size_t i = 0; i < x_t0.size(); ++i)
+    way = std::max(way, (high_t1[i] - x_t0[i]).cwiseMax(x_t0[i] - low_t1[i]).maxCoeff());
+  const double margin = (0.5 + (parameters_.reuse && way < kSkin * reach_ ? kSkin : 0.0)) * reach_;
+  const Motion motion(x_t0, low_t1, high_t1);
+  refit(motion, margin);
   pairs_.clear();
   for (const auto& [a, b] : wanted_) a == b ? broad_phase_.self_pairs(a, pairs_) : broad_phase_.pairs(a, b, pairs_);
-  cover(x_t0, x_t1, margin);
+  cover(motion, margin);
   return pairs_;
 }
 
-void CandidateCache::cover(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
-  from_.assign(x_t0.begin(), x_t0.end());
-  to_.assign(x_t1.begin(), x_t1.end());
+void CandidateCache::cover(const Motion& motion, double margin) {
+  from_.assign(motion.x_t0.begin(), motion.x_t0.end());
+  low_.assign(motion.low_t1.begin(), motion.low_t1.end());
+  high_.clear();
+  if (motion.high_t1.data() != motion.low_t1.data()) high_.assign(motion.high_t1.begin(), motion.high_t1.end());
   margin_ = margin;
 }
 
 // A still obstacle keeps the bounds it has.
-void CandidateCache::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+void CandidateCache::refit(const Motion& motion, double margin) {
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    const auto same = [&](std::span<const Vec3> x, std::span<const Vec3> y) {
-      return x.size() == y.size() && std::ranges::equal(bodies_.part(b, x), bodies_.part(b, y));
+    const auto stays = [&](std::span<const Vec3> x) {
+      return x.size() == motion.x_t0.size() && std::ranges::equal(bodies_.part(b, motion.x_t0), bodies_.part(b, x));
     };
-    const bool still =
-        !bodies_[b].deformable && margin == margin_ && same(x_t0, x_t1) && same(x_t0, from_) && same(x_t0, to_);
-    if (!still) broad_phase_.refit(b, x_t0, x_t1, margin);
+    const bool still = !bodies_[b].deformable && margin == margin_ && stays(motion.low_t1) && stays(motion.high_t1) &&
+                       stays(from_) && stays(low_end()) && stays(high_end());
+    if (!still) broad_phase_.refit(b, motion, margin);
   }
 }
 
@@ -63,11 +90,14 @@ bool CandidateCache::covers_start(std::span<const Vec3> x) const {
   return true;
 }
 
+bool CandidateCache::covers_end(std::size_t vertex, const Vec3& x) const {
+  return (x - high_end()[vertex]).cwiseMax(low_[vertex] - x).maxCoeff() <= margin_;
+}
+
 bool CandidateCache::covers_end(std::span<const Vec3> x) const {
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const Vec3 out = (x[i] - from_[i].cwiseMax(to_[i])).cwiseMax(from_[i].cwiseMin(to_[i]) - x[i]);
-    if (!(out.maxCoeff() <= margin_)) return false;
-  }
+  if (margin_ < 0) return false;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (!covers_end(i, x[i])) return false;
   return true;
 }
 

@@ -32,7 +32,8 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
                std::span<const double> masses)
     : bodies_(std::move(bodies)),
       candidates_(bodies_, parameters.search, x, reach_of(bodies_)),
-      separation_(bodies_.triangles(), parameters.search.self ? bodies_.deformable() : std::span<const Surface>()),
+      meets_itself_(parameters.search.self),
+      separation_(bodies_.triangles(), meets_itself_ ? bodies_.deformable() : std::span<const Surface>()),
       finder_(bodies_.triangles(), bodies_.vertex_count()),
       builder_(bodies_, parameters.contact, masses),
       response_(parameters.response, {masses.begin(), masses.end()}),
@@ -52,18 +53,25 @@ void Engine::forget() {
   candidates_.drop();
 }
 
-// Pairs that can meet on the way from x_t0 to x_t1; of them only those whose separating planes leave them near can have
-// features that are.
+// Pairs that can meet on the way from x_t0 to x_t1.
 void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  if (coherence_) {
-    coherence_->update(candidates_.hierarchies(), finder_, x_t0, x_t1);
-    candidates_.cover(x_t0, x_t1, 0.5 * candidates_.reach());
-    separation_.watch(coherence_->candidates().apart.view(), x_t0);
-    return;
-  }
+  if (coherence_) return update_coherence(x_t0, x_t1);
+  collect_by(x_t0, [&] { candidates_.collect(x_t0, x_t1); });
+}
+
+void Engine::update_coherence(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  coherence_->update(candidates_.hierarchies(), finder_, x_t0, x_t1);
+  candidates_.cover(x_t0, x_t1, 0.5 * candidates_.reach());
+  separation_.watch(coherence_->candidates().apart.view(), x_t0);
+}
+
+// Of the pairs only those whose separating planes leave them near can have features that are.
+template <class Collect>
+void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
   // The long list of all pairs lives in one place, that of closer ones in another.
-  separation_.exchange(candidates_.pairs().apart);
-  CandidatePairs& pairs = candidates_.collect(x_t0, x_t1);
+  CandidatePairs& pairs = candidates_.pairs();
+  separation_.exchange(pairs.apart);
+  list_pairs();
   separation_.exchange(pairs.apart);
   separation_.watch(x_t0);
   pairs.apart.clear();
@@ -75,7 +83,8 @@ void Engine::collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
 // handkerchief pulled through a ring collects 1,163 times in 40 frames, and 407 times for contacts.
 void Engine::gather() {
   if (!gathered_)
-    finder_.gather(candidates_.pairs(), bodies_.deformable(), candidates_.from(), candidates_.radius(), kFlattest,
+    finder_.gather(candidates_.pairs().apart, meets_itself_ ? bodies_.deformable() : std::span<const Surface>(),
+                   candidates_.from(), candidates_.radius(), kFlattest,
                    separation_.open_triangles(candidates_.radius()));
   gathered_ = true;
 }
@@ -196,8 +205,9 @@ void Engine::count_failures() {
 
 SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> x_t1,
                                     std::span<const std::uint8_t> movable_in_step, bool may_pinch, bool may_give_way) {
-  // Corrections can carry vertices out of the bounds that the candidates stand for; then these are collected anew.
-  constexpr int kCollections = 8;
+  // Corrections can carry vertices out of the bounds that the candidates stand for; then these are collected anew, at
+  // last for all ways between start and end.
+  constexpr int kCollections = 8, kTightCollections = 3;
   SeparationReport report;
   count_failures();
   PinchedPairs pinched = pinched_;
@@ -216,7 +226,10 @@ SeparationReport Engine::push_apart(std::span<const Vec3> x_t0, std::span<Vec3> 
     }
     if (!report.separated) return report;
     if (!candidates_.covers_end(x_t1)) {
-      collect(x_t0, x_t1);
+      if (coherence_)
+        update_coherence(x_t0, x_t1);
+      else
+        collect_by(x_t0, [&] { candidates_.collect_more(x_t0, x_t1, c >= kTightCollections); });
       continue;
     }
     if (const auto fresh = first_fresh(pinched, pinched_, candidates_.hierarchies()); fresh && !may_pinch) {
@@ -258,22 +271,29 @@ void Engine::serialize(Archive& archive, std::span<const Vec3> x) {
     candidates_.drop();
 }
 
-// Candidates and features follow from the two positions that they were collected for.
+// Candidates and features follow from the positions that they were collected for.
 template <class Archive>
 void Engine::serialize_candidates(Archive& archive) {
-  std::vector<Vec3> from(candidates_.from().begin(), candidates_.from().end()),
-      to(candidates_.to().begin(), candidates_.to().end());
+  const auto copy = [](std::span<const Vec3> x) { return std::vector<Vec3>(x.begin(), x.end()); };
+  std::vector<Vec3> from = copy(candidates_.from()), low = copy(candidates_.low_end()),
+                    high = copy(candidates_.high_end());
+  bool to_one_place = low == high;
+  archive.value(to_one_place);
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (!bodies_[b].moving) continue;
-    for (std::vector<Vec3>* x : {&from, &to}) {
+    for (std::vector<Vec3>* x : {&from, &low, &high}) {
+      if (x == &high && to_one_place) continue;
       const std::span<Vec3> part = bodies_.part(b, std::span(*x));
       archive.raw(part.data(), part.size_bytes());
     }
   }
   if constexpr (Archive::kReads) {
     const auto finite = [](const Vec3& x) { return x.allFinite(); };
-    require(std::ranges::all_of(from, finite) && std::ranges::all_of(to, finite), "finite points");
-    collect(from, to);
+    for (const std::vector<Vec3>* x : {&from, &low, &high}) require(std::ranges::all_of(*x, finite), "finite points");
+    if (coherence_)
+      update_coherence(from, low);
+    else
+      collect_by(from, [&] { candidates_.collect(from, low, to_one_place ? low : high); });
   }
   separation_.serialize(archive);
 }

@@ -106,6 +106,9 @@ class Engine {
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  void update_coherence(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+  template <class Collect>
+  void collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs);
   void gather();
   void count_failures();
   void add_late_contacts(const StepMotion& motion);
@@ -118,6 +121,7 @@ class Engine {
 
   Bodies bodies_;
   CandidateCache candidates_;
+  bool meets_itself_;  // cloth, and other cloth
   Separation separation_;
   ProximityFinder finder_;
   bool gathered_ = false;                       // whether the finder has those of the candidates collected last

@@ -54,8 +54,6 @@ StretchLimit::StretchLimit(const mesh::Grid& grid, Index first, const StretchPar
                             first + grid.index(i + 1, j + 1)};
       crossings_.push_back({4, corners, {-u, u, -u, u}, {-v, -v, v, v}, grid.du(i) * grid.dv(j)});
     }
-  thread_blocks_.resize(threads_.size());
-  crossing_blocks_.resize(crossings_.size());
 }
 
 StretchLimit::StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch,
@@ -77,8 +75,6 @@ void StretchLimit::follow(const TriangleMembrane& membrane) {
     }
     if (!std::isinf(shear_)) crossings_.push_back({3, corners, weft, warp, element.area});
   }
-  thread_blocks_.resize(threads_.size());
-  crossing_blocks_.resize(crossings_.size());
 }
 
 void StretchLimit::couple(std::vector<std::pair<Index, Index>>& pairs) const {
@@ -89,18 +85,6 @@ void StretchLimit::couple(std::vector<std::pair<Index, Index>>& pairs) const {
   };
   couple_all(threads_);
   couple_all(crossings_);
-}
-
-void StretchLimit::attach(const solver::Assembly& assembly) {
-  const auto attach_all = [&](const auto& pieces, std::vector<Blocks>& blocks) {
-    for (std::size_t p = 0; p < pieces.size(); ++p)
-      for (std::size_t a = 0; a < pieces[p].corners; ++a)
-        for (std::size_t b = 0; b < pieces[p].corners; ++b)
-          if (pieces[p].particles[a] < pieces[p].particles[b])
-            blocks[p][kMost * a + b] = assembly.block(pieces[p].particles[a], pieces[p].particles[b]);
-  };
-  attach_all(threads_, thread_blocks_);
-  attach_all(crossings_, crossing_blocks_);
 }
 
 template <class Piece>
@@ -117,7 +101,7 @@ Vec3 StretchLimit::derivative(const Piece& piece, const Weights& weights, std::s
   return solver::vec3_of(s);
 }
 
-// Calls body(piece, blocks, pulls, block_of) for each that locks.
+// Calls body(piece, pulls, block_of) for each that locks.
 template <class Points, class Body>
 void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const LockLag* lag, const Body& body) const {
   // Of nearly all pieces the squared length tells that they are below the onset.
@@ -126,16 +110,14 @@ void StretchLimit::for_each_lock(Points x, std::size_t range, bool exact, const 
     const Vec3 s = derivative(threads_[t], threads_[t].along, x);
     const double* at = lag != nullptr ? &lag->extensions[t] : nullptr;
     if (s.squaredNorm() <= onset_sq && (at == nullptr || *at <= onset - 1)) return;
-    lock(threads_[t], s, at,
-         [&](const Pulls& pulls, const auto& block_of) { body(threads_[t], thread_blocks_[t], pulls, block_of); });
+    lock(threads_[t], s, at, [&](const Pulls& pulls, const auto& block_of) { body(threads_[t], pulls, block_of); });
   });
   const double shear_onset = Lock(shear_).onset();
   ranges_of_crossings_.for_each(range, crossings_.size(), [&](std::size_t c) {
     const Crossing& crossing = crossings_[c];
     const Vec3 s_u = derivative(crossing, crossing.weft, x), s_v = derivative(crossing, crossing.warp, x);
     if (!(std::abs(s_u.dot(s_v)) > shear_onset)) return;
-    lock(crossing, s_u, s_v, exact,
-         [&](const Pulls& pulls, const auto& block_of) { body(crossing, crossing_blocks_[c], pulls, block_of); });
+    lock(crossing, s_u, s_v, exact, [&](const Pulls& pulls, const auto& block_of) { body(crossing, pulls, block_of); });
   });
 }
 
@@ -151,25 +133,24 @@ void StretchLimit::cut(std::span<const Index> bounds) {
 
 void StretchLimit::add(const Evaluation& at) const {
   for_each_lock(at.x, at.range, false, at.assembly ? at.locks : nullptr,
-                [&](const auto& piece, const Blocks& blocks, const Pulls& pulls, const auto& block_of) {
+                [&](const auto& piece, const Pulls& pulls, const auto& block_of) {
                   for (std::size_t k = 0; k < piece.corners; ++k)
                     at.force.subtract(piece.particles[k], solver::quad_of<double>(pulls[k]));
                   if (!at.assembly) return;
                   for (std::size_t a = 0; a < piece.corners; ++a)
                     for (std::size_t b = 0; b < piece.corners; ++b)
                       if (piece.particles[a] < piece.particles[b])
-                        at.assembly.add(blocks[kMost * a + b], block_of(a, b));
+                        at.assembly.add(at.assembly.block(piece.particles[a], piece.particles[b]), block_of(a, b));
                 });
 }
 
 void StretchLimit::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> /*v*/, double /*rate*/,
                                 solver::BlockMatrix& jacobian) const {
-  for_each_lock(x, Evaluation::kAll, true, nullptr,
-                [&](const auto& piece, const Blocks&, const Pulls&, const auto& block_of) {
-                  for (std::size_t a = 0; a < piece.corners; ++a)
-                    for (std::size_t b = 0; b < piece.corners; ++b)
-                      jacobian.add(jacobian.slot(piece.particles[a], piece.particles[b]), block_of(a, b));
-                });
+  for_each_lock(x, Evaluation::kAll, true, nullptr, [&](const auto& piece, const Pulls&, const auto& block_of) {
+    for (std::size_t a = 0; a < piece.corners; ++a)
+      for (std::size_t b = 0; b < piece.corners; ++b)
+        jacobian.add(jacobian.slot(piece.particles[a], piece.particles[b]), block_of(a, b));
+  });
 }
 
 StretchLimit::Tangent StretchLimit::tangent(double lag, double e) const {

@@ -68,7 +68,8 @@ class StretchLimit final : public Force {
   StretchLimit(const TriangleMembrane& membrane, const StretchParameters& below, double stretch, double shear);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
-  void attach(const solver::Assembly& assembly) override;
+  /// Few pieces lock at a time: these look their blocks up then.
+  void attach(const solver::Assembly& /*assembly*/) override {}
   void cut(std::span<const Index> bounds) override;
   void add(const Evaluation& at) const override;
   void add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double rate,
@@ -112,8 +113,6 @@ class StretchLimit final : public Force {
     Weights weft, warp;
     double area;  // [m²]
   };
-  /// Blocks of pairs of corners [kMost a + b], where particle a is before b.
-  using Blocks = std::array<Index, kMost * kMost>;
   /// How one piece pulls at its corners, and block (a, b) of its Jacobian.
   using Pulls = std::array<Vec3, kMost>;
 
@@ -138,7 +137,6 @@ class StretchLimit final : public Force {
   double stretch_, shear_;
   std::vector<Thread> threads_;
   std::vector<Crossing> crossings_;  // none without a limit to shear
-  std::vector<Blocks> thread_blocks_, crossing_blocks_;
   Ranges ranges_of_threads_, ranges_of_crossings_;
 };
 

@@ -31,6 +31,9 @@ Assembly::Assembly(const BlockMatrix& matrix) {
   own_.assign(9 * at(matrix.rows()), 0);
   constant_own_.assign(at(matrix.rows()), 0);
   constant_scalars_ = scalars_;
+  block_of_.reserve(matrix.full().columns.size());
+  scalar_of_full_.reserve(matrix.full().columns.size());
+  scalar_of_isotropic_.reserve(matrix.isotropic().columns.size());
   for (Index row = 0; row < matrix.rows(); ++row) {
     for (Index s = matrix.full().start[at(row)]; s < matrix.full().start[at(row) + 1]; ++s) {
       const auto [i, j] = std::minmax(row, matrix.full().columns[at(s)]);

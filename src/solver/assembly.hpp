@@ -84,6 +84,9 @@ class AssemblyRows {
 
   explicit operator bool() const { return assembly_ != nullptr; }
 
+  /// As Assembly::block().
+  Index block(Index i, Index j) const { return assembly_->block(i, j); }
+
   void add_scalar(Index scalar, double value) const {
     if (scalars_.has(scalar)) assembly_->add_scalar(scalar, value);
   }

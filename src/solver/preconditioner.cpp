@@ -214,37 +214,29 @@ void Preconditioner<Real>::mark_touched() {
 
 template <class Real>
 void Preconditioner<Real>::invert_particles() {
-  std::vector<Index> anew;
-  std::vector<Index> place(inverse_.size(), -1);
-  for (std::size_t p = 0; p < parts_.size(); ++p)
-    for (auto i = at(parts_[p].begin); i < at(parts_[p].end); ++i)
-      if (changed_[p] || touched_[i] || touched_before_[i]) {
-        place[i] = static_cast<Index>(anew.size());
-        anew.push_back(static_cast<Index>(i));
-      }
-  std::vector<Mat3> blocks(anew.size());
-  parallel_for(anew.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) blocks[k] = system_->matrix.block(system_->matrix.diagonal(anew[k]));
-  });
-  for (const DiagonalTerm& term : system_->diagonal_terms) blocks[at(place[at(term.particle)])] += term.stiffness;
+  TouchedBlocks with_terms = touched_blocks();
+  for (std::size_t i = 0; i < touched_.size(); ++i)
+    if (touched_[i]) with_terms.of(static_cast<Index>(i)) = own_block(static_cast<Index>(i));
+  for (const DiagonalTerm& term : system_->diagonal_terms) with_terms.of(term.particle) += term.stiffness;
   for (const StencilTerm& term : system_->terms)
     for (int a = 0; a < 4; ++a)
-      if (term.weights[a] != 0)
-        blocks[at(place[at(term.particles[a])])] += term.weights[a] * term.weights[a] * term.stiffness;
-  parallel_for(anew.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      const Index c = constraint_of_[at(anew[k])];
-      Mat3 inverse;
-      if (c < 0) {
-        inverse = blocks[k].inverse();
-      } else {
-        const Mat3& free = constraints_[at(c)].free;
-        inverse = (free * blocks[k] * free + (Mat3::Identity() - free)).inverse();
-        inverse = (free * inverse * free).eval();
-      }
-      inverse_[at(anew[k])] = QuadBlock<Real>(inverse);
+      if (const double w = term.weights[a]; w != 0) with_terms.of(term.particles[a]) += w * w * term.stiffness;
+  const auto invert = [&](Index i) {
+    const Mat3 block = touched_[at(i)] ? with_terms.of(i) : own_block(i);
+    Mat3 inverse;
+    if (const Index c = constraint_of_[at(i)]; c < 0) {
+      inverse = block.inverse();
+    } else {
+      const Mat3 &free = constraints_[at(c)].free, held = Mat3::Identity() - free;
+      inverse = free * (free * block * free + held).inverse() * free;
     }
-  });
+    inverse_[at(i)] = QuadBlock<Real>(inverse);
+  };
+  for (std::size_t p = 0; p < parts_.size(); ++p)
+    parallel_for(at(parts_[p].end - parts_[p].begin), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = at(parts_[p].begin) + begin; i < at(parts_[p].begin) + end; ++i)
+        if (changed_[p] || touched_[i] || touched_before_[i]) invert(static_cast<Index>(i));
+    });
 }
 
 // The blocks of a part of the matrix but its metric, each into the first group that has both its row and its column,
@@ -312,27 +304,27 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
 // metric, and what holds particles.
 template <class Real>
 void Preconditioner<Real>::scale_sums(std::size_t part) {
-  std::vector<Mat3> lasting;  // of the members, from the part's first on, then of groups
-  std::size_t first = at(parts_[part].begin);
-  for (Index i = parts_[part].begin; i < parts_[part].end; ++i) {
-    lasting.push_back(system_->metric.empty() ? Mat3(Mat3::Zero()) : Mat3(system_->metric[i] * Mat3::Identity()));
-    if (is_free(i)) continue;
+  const auto lasting_of = [&](Index i) -> Mat3 {
+    const Mat3 lasting = (system_->metric.empty() ? 0 : system_->metric[i]) * Mat3::Identity();
+    if (is_free(i)) return lasting;
     const Mat3 free = constraints_[at(constraint_of_[i])].free, held = Mat3::Identity() - free;
-    const Mat3 block = system_->matrix.block(system_->matrix.diagonal(i));
-    lasting.back() = free * lasting.back() * free + held * block * held;
-  }
+    return free * lasting * free + held * own_block(i) * held;
+  };
+  std::vector<Mat3> lasting;  // of the members, from the part's first on, where these are groups
   double share = 1;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
     if (smooth_) share *= kSpread;
     const RowRange groups = level.of_part[part];
+    const RowRange members =
+        l == 0 ? RowRange{at(parts_[part].begin), at(parts_[part].end)} : levels_[l - 1].of_part[part];
     std::vector<Mat3> sums(groups.end - groups.begin, Mat3::Zero());
-    for (std::size_t m = 0; m < lasting.size(); ++m)
-      sums[at(system_->groupings[l].of[first + m]) - groups.begin] += lasting[m];
+    for (std::size_t m = members.begin; m < members.end; ++m)
+      sums[at(system_->groupings[l].of[m]) - groups.begin] +=
+          l == 0 ? lasting_of(static_cast<Index>(m)) : lasting[m - members.begin];
     for (std::size_t g = groups.begin; g < groups.end; ++g)
       level.of_matrix[g] = share * level.of_matrix[g] + sums[g - groups.begin];
     lasting = std::move(sums);
-    first = groups.begin;
   }
   const Level& patches = levels_.back();
   const RowRange groups = patches.of_part[part];
@@ -341,12 +333,24 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
         patches.of_matrix[g];
 }
 
+// Of zeros. Terms act on few of a large cloth's particles.
+template <class Real>
+typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::touched_blocks() const {
+  TouchedBlocks all{std::vector<Index>(touched_.size(), -1), {}};
+  for (std::size_t i = 0; i < touched_.size(); ++i) {
+    if (!touched_[i]) continue;
+    all.place[i] = static_cast<Index>(all.blocks.size());
+    all.blocks.push_back(Mat3::Zero());
+  }
+  return all;
+}
+
 // Of each particle what the terms hold it with where all that is on its side of them moves with it.
 template <class Real>
-std::vector<Mat3> Preconditioner<Real>::lumped_terms() const {
-  std::vector<Mat3> lumped(inverse_.size(), Mat3::Zero());
+typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lumped_terms() const {
+  TouchedBlocks lumped = touched_blocks();
   const auto add = [&](Index i, double weight, const Mat3& stiffness) {
-    lumped[at(i)] += is_free(i) ? Mat3(weight * stiffness) : filtered(i, weight * stiffness, i);
+    lumped.of(i) += is_free(i) ? Mat3(weight * stiffness) : filtered(i, weight * stiffness, i);
   };
   for (const DiagonalTerm& term : system_->diagonal_terms) add(term.particle, 1, term.stiffness);
   for (const StencilTerm& term : system_->terms) {
@@ -362,7 +366,8 @@ std::vector<Mat3> Preconditioner<Real>::lumped_terms() const {
 // touches something here and there was taken for free beside it.
 template <class Real>
 void Preconditioner<Real>::invert_groups() {
-  std::vector<Mat3> of_members = lumped_terms();
+  const TouchedBlocks of_particles = lumped_terms();
+  std::vector<Mat3> of_members;  // where these are groups
   for (std::size_t l = 0; l + 1 < levels_.size(); ++l) {
     Level& level = levels_[l];
     // Groups of changed parts and those that terms act on, or have acted on.
@@ -375,7 +380,8 @@ void Preconditioner<Real>::invert_groups() {
       for (Index s = level.of_groups.start[m]; s < level.of_groups.start[m + 1]; ++s) {
         const std::size_t group = at(level.of_groups.columns[s]);
         level.touched[group] = anew[group] = 1;
-        of_groups[group] += static_cast<double>(level.of_groups.values[s]) * of_members[m];
+        of_groups[group] += static_cast<double>(level.of_groups.values[s]) *
+                            (l == 0 ? of_particles.of(static_cast<Index>(m)) : of_members[m]);
       }
     }
     for (std::size_t p = 0; p < parts_.size(); ++p)

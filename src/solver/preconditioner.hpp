@@ -65,13 +65,22 @@ class Preconditioner {
   void scale_sums(std::size_t part);
   void mark_touched();
   void invert_particles();
-  std::vector<Mat3> lumped_terms() const;
+  /// A block of each particle that terms act on.
+  struct TouchedBlocks {
+    std::vector<Index> place;  // per particle, −1 for none
+    std::vector<Mat3> blocks;
+    Mat3& of(Index i) { return blocks[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]; }
+    const Mat3& of(Index i) const { return blocks[static_cast<std::size_t>(place[static_cast<std::size_t>(i)])]; }
+  };
+  TouchedBlocks touched_blocks() const;
+  TouchedBlocks lumped_terms() const;
   void invert_groups();
   void factorise_patches();
   void select(std::span<const std::size_t> parts);
   void restrict_residual(std::span<const Quad<Real>> r);
   void correct_groups();
   bool is_free(Index i) const { return constraint_of_[i] < 0; }
+  Mat3 own_block(Index i) const { return system_->matrix.block(system_->matrix.diagonal(i)); }
   Mat3 filtered(Index i, const Mat3& block, Index j) const;
 
   const LinearSystem* system_ = nullptr;

@@ -136,7 +136,7 @@ TEST(CandidateCache, TheSkinIsHalfTheReachWhereNothingMovesFast) {
   EXPECT_FALSE(every_step.covers_start(inside));
 }
 
-TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundTheWay) {
+TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundThatOfTheWay) {
   const Layers layers(2, kReach);
   std::vector<Vec3> to = layers.x;
   to[4].x() += 3 * kReach;  // fast: the margin is half the reach
@@ -147,10 +147,48 @@ TEST(CandidateCache, AnEndIsCoveredUpToTheMarginAroundTheWay) {
   EXPECT_TRUE(cache.covers_end(end));
   end[4].x() += 0.02 * kReach;
   EXPECT_FALSE(cache.covers_end(end));
-  end[4] = layers.x[4] + Vec3(1.5 * kReach, 0, 0.49 * kReach);
-  EXPECT_TRUE(cache.covers_end(end));
-  end[4].z() = layers.x[4].z() - 0.51 * kReach;
-  EXPECT_FALSE(cache.covers_end(end));
+  end[4] = layers.x[4] + Vec3(1.5 * kReach, 0, 0);
+  EXPECT_FALSE(cache.covers_end(end));  // halfway
+  cache.drop();
+  EXPECT_FALSE(cache.covers_end(to));
+}
+
+// What pushing apart has carried off may be taken back, all the way, and what was covered stays so.
+TEST(CandidateCache, EndsBetweenStartAndEndAreCoveredOfWhatWasCarriedOff) {
+  const Layers layers(2, kReach);
+  std::vector<Vec3> to = layers.x;
+  for (Vec3& x : to) x.x() += 3 * kReach;
+  CandidateCache cache(layers.bodies, {}, layers.x, kReach);
+  cache.collect(layers.x, to);
+  std::vector<Vec3> pushed = to, half = to, other_half = to;
+  pushed[4].z() += kReach;
+  half[4] = 0.5 * (layers.x[4] + pushed[4]);
+  other_half[5] = 0.5 * (layers.x[5] + to[5]);
+  cache.collect_more(layers.x, pushed, false);
+  for (const auto* end : {&to, &pushed, &half}) EXPECT_TRUE(cache.covers_end(*end));
+  EXPECT_FALSE(cache.covers_end(other_half));
+  cache.collect_more(layers.x, pushed, true);
+  for (const auto* end : {&to, &pushed, &half, &other_half}) EXPECT_TRUE(cache.covers_end(*end));
+  EXPECT_TRUE(cache.covers_end(layers.x));
+}
+
+// Pairs of all ends between, held against brute force.
+TEST(CandidateCache, EveryPairWithinReachAtAnEndBetweenIsCollectedThen) {
+  const Layers layers(4, 0.5 * kReach);
+  CandidateCache cache(layers.bodies, {}, layers.x, kReach);
+  std::mt19937 generator(3);
+  std::vector<Vec3> far = layers.x;
+  for (std::size_t v = 0; v < 25; ++v) far[v] += Vec3(0.05, -0.03, 0.02);  // the lower sheet, through the other one
+  cache.collect(layers.x, far);
+  const std::set<std::pair<Index, Index>> collected = set_of(cache.collect_more(layers.x, far, true).apart);
+  std::uniform_real_distribution<double> share(0, 1);
+  for (int trial = 0; trial < 50; ++trial) {
+    std::vector<Vec3> end = layers.x;
+    for (std::size_t v = 0; v < end.size(); ++v)
+      end[v] += share(generator) * (far[v] - layers.x[v]) + random_in_ball(generator, 0.49 * kReach);
+    ASSERT_TRUE(cache.covers_end(end));
+    for (const auto& pair : near(layers.bodies.triangles(), end, kReach)) EXPECT_TRUE(collected.contains(pair));
+  }
 }
 
 TEST(CandidateCache, WhatIsNotWantedIsLeftOut) {

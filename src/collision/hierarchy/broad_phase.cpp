@@ -1,5 +1,7 @@
 #include "collision/hierarchy/broad_phase.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <map>
 #include <utility>
 #include <vector>
@@ -24,12 +26,16 @@ class TreesOf final : public BroadPhase::Trees {
     }
   }
 
-  void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) override {
+  void refit(std::size_t surface, const Motion& motion, double margin) override {
     if (options_.velocity_cones)
-      trees_[surface].refit_lazily(x_t0, x_t1, margin);
+      trees_[surface].refit_lazily(motion, margin);
     else
-      trees_[surface].refit(x_t0, x_t1, margin);
-    if (options_.normal_cones) cones_[surface].update(trees_[surface], x_t0, x_t1, 2 * margin);
+      trees_[surface].refit(motion, margin);
+    if (!options_.normal_cones) return;
+    // Only of a known motion can it be told that nothing comes near.
+    const bool is_known = std::ranges::equal(motion.low_t1, motion.high_t1);
+    const double reach = is_known ? 2 * margin : std::numeric_limits<double>::infinity();
+    cones_[surface].update(trees_[surface], motion.x_t0, motion.low_t1, reach);
   }
 
   void self_pairs(std::size_t surface, CandidatePairs& out) override {
@@ -58,7 +64,7 @@ class TreesOf final : public BroadPhase::Trees {
  private:
   Traversal traversal(std::size_t a, std::size_t b) {
     return {options_.open_longer_side, options_.separation_list ? &lists_[{a, b}] : nullptr,
-            options_.normal_cones && a == b ? &cones_[a].regions() : nullptr};
+            options_.normal_cones && a == b ? &cones_[a].regions() : nullptr, options_.one_shared};
   }
 
   BroadPhaseOptions options_;
@@ -86,8 +92,8 @@ std::unique_ptr<BroadPhase::Trees> make_trees(std::span<const Surface> surfaces,
 BroadPhase::BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options)
     : surfaces_(surfaces.begin(), surfaces.end()), trees_(make_trees(surfaces, x, options)) {}
 
-void BroadPhase::refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
-  trees_->refit(surface, x_t0, x_t1, margin);
+void BroadPhase::refit(std::size_t surface, const Motion& motion, double margin) {
+  trees_->refit(surface, motion, margin);
 }
 
 void BroadPhase::self_pairs(std::size_t surface, CandidatePairs& out) {

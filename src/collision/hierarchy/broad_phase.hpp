@@ -17,6 +17,7 @@
 
 #include "collision/hierarchy/query.hpp"
 #include "collision/hierarchy/surface.hpp"
+#include "collision/hierarchy/tree.hpp"
 #include "core/types.hpp"
 
 namespace weft::collision {
@@ -45,6 +46,9 @@ struct BroadPhaseOptions {
   bool velocity_cones = false;
   /// Leaves out pairs in regions of a surface that are provably flat enough. Lists all other pairs.
   bool normal_cones = false;
+  /// Pairs that share one vertex are listed, too. In smooth cloth they are three times as many as the others, and all
+  /// are known beforehand.
+  bool one_shared = true;
 };
 
 class BroadPhase {
@@ -55,8 +59,12 @@ class BroadPhase {
   /// the broad phase. Throws Error(internal) for options or indices out of range.
   BroadPhase(std::span<const Surface> surfaces, std::span<const Vec3> x, const BroadPhaseOptions& options = {});
 
-  /// As Tree::refit: bounds for the motion from x_t0 to x_t1, enlarged by margin [m].
-  void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin);
+  /// As Tree::refit: bounds for this motion, enlarged by margin [m]. Pairs hold for every other one, too, whose ends
+  /// are no farther than that from those, along any axis.
+  void refit(std::size_t surface, const Motion& motion, double margin);
+  void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+    refit(surface, {x_t0, x_t1}, margin);
+  }
 
   /// Appends pairs of different triangles of one surface, a < b.
   void self_pairs(std::size_t surface, CandidatePairs& out);
@@ -81,7 +89,7 @@ class BroadPhase {
   /// One kind of tree; the only place that knows its type.
   struct Trees {
     virtual ~Trees() = default;
-    virtual void refit(std::size_t surface, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) = 0;
+    virtual void refit(std::size_t surface, const Motion& motion, double margin) = 0;
     virtual void self_pairs(std::size_t surface, CandidatePairs& out) = 0;
     virtual void pairs(std::size_t a, std::size_t b, CandidatePairs& out) = 0;
     virtual void nearest_triangles(std::size_t surface, const Vec3& p, const DistanceSq& distance_sq,

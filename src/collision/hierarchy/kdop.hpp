@@ -9,6 +9,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <iterator>
 
 #include "core/types.hpp"
 
@@ -90,6 +92,52 @@ inline KDop<K> swept_point(const Vec3& p, const Vec3& q, double margin) {
     const double low = std::min(at_p, at_q) - margin * dir.length[r];
     bound.row[r] = static_cast<float>(low - std::abs(low) * 0x1p-23 - cancel);
   }
+  return bound;
+}
+
+/// Support values of a set that moves linearly, at the start in rows 0 to K − 1 and at the end in the K that follow.
+/// Along any direction the gap between two such sets is concave in time: where it is positive at the start and at the
+/// end, it is all the way. What moves along with each other is told from what meets by nothing less.
+template <int K>
+struct alignas(32) MovingKDop {
+  float row[(2 * K + 7) / 8 * 8];
+
+  void join(const MovingKDop& other) {
+    for (std::size_t r = 0; r < std::size(row); ++r) row[r] = std::min(row[r], other.row[r]);
+  }
+
+  /// Distance of the opposite faces that are furthest apart, of the whole way [m].
+  double longest_side() const {
+    double longest = 0;
+    for (int d = 0; d < K / 2; ++d) longest = std::max(longest, (-least(2 * d) - least(2 * d + 1)) / length(d));
+    return longest;
+  }
+
+  /// False only where the two are apart all the way.
+  bool overlaps(const MovingKDop& other) const {
+    for (int r = 0; r < K; ++r)
+      if (row[r] + other.row[r ^ 1] > 0 && row[K + r] + other.row[(K + r) ^ 1] > 0) return false;
+    return true;
+  }
+
+ private:
+  double least(int r) const { return static_cast<double>(std::min(row[r], row[K + r])); }
+  static double length(int d) { return kDirections<K>.length[2 * d]; }
+};
+
+/// Of a vertex that moves from p to somewhere in the box from `low` to `high`, enlarged by `margin` [m] at both ends.
+template <int K>
+inline MovingKDop<K> moving_point(const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
+  const KDop<K> start = swept_point<K>(p, p, margin);
+  KDop<K> end = swept_point<K>(low, high, margin);
+  if (K > 6 && low != high)
+    for (int corner = 1; corner < 7; ++corner) {
+      const Vec3 at(corner & 1 ? high[0] : low[0], corner & 2 ? high[1] : low[1], corner & 4 ? high[2] : low[2]);
+      end.join(swept_point<K>(at, at, margin));
+    }
+  MovingKDop<K> bound{};
+  std::copy_n(start.row, K, bound.row);
+  std::copy_n(end.row, K, bound.row + K);
   return bound;
 }
 

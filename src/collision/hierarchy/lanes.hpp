@@ -27,28 +27,32 @@ void for_each_bit(std::uint32_t mask, const Visit& visit) {
   for (; mask != 0; mask &= mask - 1) visit(std::countr_zero(mask));
 }
 
-/// Bounds of eight sets, structure of arrays: row r of set l is row[r][l].
+/// Bounds of eight moving sets, structure of arrays: row r of set l is row[r][l].
 template <int K>
 struct alignas(32) LaneBounds {
-  float row[K][kLanes];
+  float row[2 * K][kLanes];
 };
 
-/// Bit l is set where set l of `bounds` overlaps (or touches) the k-DOP whose row r is query[r * stride].
-/// The largest gap over all directions decides; a sum of two floats never has the wrong sign.
+/// Bit l is set where set l of `bounds` overlaps (or touches) the moving k-DOP whose row r is query[r * stride].
+/// The largest over all directions of the smaller gap of both ends decides; a sum of two floats never has the wrong
+/// sign.
 template <int K>
 inline std::uint32_t overlap_mask(const LaneBounds<K>& bounds, const float* query, std::size_t stride) {
 #if defined(__AVX__)
-  __m256 gap = _mm256_add_ps(_mm256_load_ps(bounds.row[0]), _mm256_broadcast_ss(query + stride));
-  for (std::size_t r = 1; r < K; ++r)
-    gap =
-        _mm256_max_ps(gap, _mm256_add_ps(_mm256_load_ps(bounds.row[r]), _mm256_broadcast_ss(query + (r ^ 1) * stride)));
+  const auto gap_along = [&](std::size_t r) {
+    return _mm256_add_ps(_mm256_load_ps(bounds.row[r]), _mm256_broadcast_ss(query + (r ^ 1) * stride));
+  };
+  __m256 gap = _mm256_min_ps(gap_along(0), gap_along(K));
+  for (std::size_t r = 1; r < K; ++r) gap = _mm256_max_ps(gap, _mm256_min_ps(gap_along(r), gap_along(K + r)));
   return static_cast<std::uint32_t>(_mm256_movemask_ps(_mm256_cmp_ps(gap, _mm256_setzero_ps(), _CMP_LE_OQ)));
 #elif defined(__SSE2__)
   std::uint32_t mask = 0;
   for (int half = 0; half < kLanes; half += 4) {
-    __m128 gap = _mm_add_ps(_mm_load_ps(bounds.row[0] + half), _mm_set1_ps(query[stride]));
-    for (std::size_t r = 1; r < K; ++r)
-      gap = _mm_max_ps(gap, _mm_add_ps(_mm_load_ps(bounds.row[r] + half), _mm_set1_ps(query[(r ^ 1) * stride])));
+    const auto gap_along = [&](std::size_t r) {
+      return _mm_add_ps(_mm_load_ps(bounds.row[r] + half), _mm_set1_ps(query[(r ^ 1) * stride]));
+    };
+    __m128 gap = _mm_min_ps(gap_along(0), gap_along(K));
+    for (std::size_t r = 1; r < K; ++r) gap = _mm_max_ps(gap, _mm_min_ps(gap_along(r), gap_along(K + r)));
     mask |= static_cast<std::uint32_t>(_mm_movemask_ps(_mm_cmple_ps(gap, _mm_setzero_ps()))) << half;
   }
   return mask;
@@ -56,7 +60,9 @@ inline std::uint32_t overlap_mask(const LaneBounds<K>& bounds, const float* quer
   std::uint32_t mask = 0;
   for (int l = 0; l < kLanes; ++l) {
     bool overlap = true;
-    for (std::size_t r = 0; r < K; ++r) overlap &= bounds.row[r][l] + query[(r ^ 1) * stride] <= 0;
+    for (std::size_t r = 0; r < K; ++r)
+      overlap &=
+          bounds.row[r][l] + query[(r ^ 1) * stride] <= 0 || bounds.row[K + r][l] + query[((K + r) ^ 1) * stride] <= 0;
     mask |= static_cast<std::uint32_t>(overlap) << l;
   }
   return mask;

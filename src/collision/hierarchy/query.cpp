@@ -7,13 +7,20 @@
 namespace weft::collision {
 namespace {
 
-/// Squared distances of a point from the boxes of eight bounds, whose rows 0 to 5 are the axes.
+/// Row r of bound l anywhere on its way; rows 0 to 5 are the axes.
+template <int K>
+float row_on_way(const LaneBounds<K>& bounds, int r, int l) {
+  return std::min(bounds.row[r][l], bounds.row[K + r][l]);
+}
+
+/// Squared distances of a point from the boxes of eight bounds.
 template <int K>
 std::array<double, kLanes> box_distances_sq(const LaneBounds<K>& bounds, const Vec3& p) {
   std::array<double, kLanes> all{};
   for (int axis = 0; axis < 3; ++axis)
     for (int l = 0; l < kLanes; ++l) {
-      const double below = bounds.row[2 * axis][l] - p[axis], above = bounds.row[2 * axis + 1][l] + p[axis];
+      const double below = row_on_way(bounds, 2 * axis, l) - p[axis],
+                   above = row_on_way(bounds, 2 * axis + 1, l) + p[axis];
       const double gap = std::max({below, above, 0.0});
       all[l] += gap * gap;
     }
@@ -82,7 +89,7 @@ std::uint32_t boxes_met(const LaneBounds<K>& bounds, const Vec3& low, const Vec3
   for (int l = 0; l < kLanes; ++l) {
     bool meets = true;
     for (int axis = 0; axis < 3; ++axis)
-      meets &= bounds.row[2 * axis][l] <= high[axis] && -bounds.row[2 * axis + 1][l] >= low[axis];
+      meets &= row_on_way(bounds, 2 * axis, l) <= high[axis] && -row_on_way(bounds, 2 * axis + 1, l) >= low[axis];
     mask |= static_cast<std::uint32_t>(meets) << l;
   }
   return mask;

@@ -16,13 +16,16 @@ struct Regions {
   bool nothing_near(std::int32_t ref) const { return (ref >= 0 ? node[ref] : leaf[~ref]) != 0; }
 };
 
-/// How to walk; none of it changes what is found, except that pairs inside `regions` are left out.
+/// How to walk; none of it changes what is found, except that pairs inside `regions` are left out, and those that share
+/// a vertex where they are not wanted.
 struct Traversal {
   /// Of two overlapping nodes, open the one with the longer k-DOP side only (seed, "Detection Process").
   bool open_longer_side = false;
   /// Resume where the list stopped, and note in it where this walk stops. One list per pair of trees.
   SeparationList* list = nullptr;
   const Regions* regions = nullptr;
+  /// List pairs that share one vertex, too.
+  bool one_shared = true;
 };
 
 /// Appends all pairs of different triangles of one surface whose bounds overlap, except those sharing an edge or more.

@@ -42,8 +42,8 @@ constexpr double kSlackPart = 1.0 / 8;
 
 /// Writes one bound into lane l.
 template <int K>
-void set_lane(LaneBounds<K>& bounds, int l, const KDop<K>& bound) {
-  for (int r = 0; r < K; ++r) bounds.row[r][l] = bound.row[r];
+void set_lane(LaneBounds<K>& bounds, int l, const MovingKDop<K>& bound) {
+  for (int r = 0; r < 2 * K; ++r) bounds.row[r][l] = bound.row[r];
 }
 
 }  // namespace
@@ -59,8 +59,8 @@ struct Tree<K>::Builder {
 
   Tree& tree;
   std::size_t most_children, most_triangles;
-  std::vector<Bound> bounds;  // of each triangle
-  std::vector<Index> order;   // triangles, those of a group side by side
+  std::vector<KDop<K>> bounds;  // of each triangle
+  std::vector<Index> order;     // triangles, those of a group side by side
 
   /// Cuts group in two; it keeps the first half and the second is returned.
   Group split(Group& group) {
@@ -118,7 +118,7 @@ Tree<K>::Tree(const Surface& surface, std::span<const Vec3> positions, const Tre
   builder.bounds.reserve(surface.triangles.size());
   for (const Triangle& triangle : surface.triangles) {
     const auto at = [&](std::size_t c) -> const Vec3& { return positions[triangle[c]]; };
-    Bound bound = swept_point<K>(at(0), at(1), 0);
+    KDop<K> bound = swept_point<K>(at(0), at(1), 0);
     bound.join(swept_point<K>(at(2), at(2), 0));
     builder.bounds.push_back(bound);
   }
@@ -126,17 +126,20 @@ Tree<K>::Tree(const Surface& surface, std::span<const Vec3> positions, const Tre
   std::iota(builder.order.begin(), builder.order.end(), Index{0});
   root_ = builder.add({0, builder.order.size(), 0});
 
+  nodes_.shrink_to_fit();
+  leaves_.shrink_to_fit();
   node_bounds_.resize(nodes_.size());
   leaf_bounds_.resize(leaves_.size());
-  refit(positions, positions, 0);
+  refit({positions, positions}, 0);
 }
 
 template <int K>
-void Tree<K>::refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+void Tree<K>::refit(const Motion& motion, double margin) {
   const auto first = static_cast<std::size_t>(surface_.first_vertex);
   parallel_for(vertex_bounds_.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
-      vertex_bounds_[v] = swept_point<K>(x_t0[first + v], x_t1[first + v], margin);
+      vertex_bounds_[v] =
+          moving_point<K>(motion.x_t0[first + v], motion.low_t1[first + v], motion.high_t1[first + v], margin);
   });
   parallel_for(leaves_.size(), kLeavesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) fit(n);
@@ -177,28 +180,29 @@ void Tree<K>::fit_node(std::size_t n) {
   }
 }
 
-/// Whether the vertex v gets another bound for its way from p to q.
+/// Whether the vertex v gets another bound for its way from p to somewhere between two corners.
 template <int K>
-bool Tree<K>::stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, double margin) {
+bool Tree<K>::stay_or_move(std::size_t v, const Vec3& p, const Vec3& low, const Vec3& high, double margin) {
   Resting& resting = resting_[v];
   const double slack_sq = resting.slack * resting.slack;
-  if (resting.slack >= 0 && (p - resting.place).squaredNorm() <= slack_sq &&
-      (q - resting.place).squaredNorm() <= slack_sq)
+  const bool to_one_place = low == high;
+  if (resting.slack >= 0 && to_one_place && (p - resting.place).squaredNorm() <= slack_sq &&
+      (low - resting.place).squaredNorm() <= slack_sq)
     return false;
   // The ball must hold both ends now; where that is more slack than is given, the bound is as tight as refit makes it.
-  const double slack = kSteps * (q - p).norm() + kLeastSlackPart * margin;
-  if (slack <= kSlackPart * margin) {
-    resting = {q, slack};
-    vertex_bounds_[v] = swept_point<K>(q, q, margin + slack * (1 + 1e-12));
+  const double slack = kSteps * (low - p).norm() + kLeastSlackPart * margin;
+  if (slack <= kSlackPart * margin && to_one_place) {
+    resting = {low, slack};
+    vertex_bounds_[v] = moving_point<K>(low, low, low, margin + slack * (1 + 1e-12));
   } else {
     resting.slack = -1;
-    vertex_bounds_[v] = swept_point<K>(p, q, margin);
+    vertex_bounds_[v] = moving_point<K>(p, low, high, margin);
   }
   return true;
 }
 
 template <int K>
-void Tree<K>::refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+void Tree<K>::refit_lazily(const Motion& motion, double margin) {
   const auto first = static_cast<std::size_t>(surface_.first_vertex);
   if (resting_margin_ != margin) resting_.assign(vertex_bounds_.size(), {});
   resting_margin_ = margin;
@@ -206,7 +210,8 @@ void Tree<K>::refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t
   changed_.resize(nodes_.size());
   leaf_changed_.resize(leaves_.size());
   for (std::size_t v = 0; v < vertex_bounds_.size(); ++v)
-    moved_[v] = static_cast<std::uint8_t>(stay_or_move(v, x_t0[first + v], x_t1[first + v], margin));
+    moved_[v] = static_cast<std::uint8_t>(
+        stay_or_move(v, motion.x_t0[first + v], motion.low_t1[first + v], motion.high_t1[first + v], margin));
 
   for (std::size_t n = 0; n < leaves_.size(); ++n) {
     const Leaf& leaf = leaves_[n];

@@ -13,6 +13,16 @@
 
 namespace weft::collision {
 
+/// Where vertices go, by global number [m]: from x_t0 to anywhere in the box between two corners, which may be one.
+struct Motion {
+  std::span<const Vec3> x_t0, low_t1, high_t1;
+
+  Motion(std::span<const Vec3> start, std::span<const Vec3> low, std::span<const Vec3> high)
+      : x_t0(start), low_t1(low), high_t1(high) {}
+  /// To one place each; the same twice for a still surface.
+  Motion(std::span<const Vec3> start, std::span<const Vec3> end) : Motion(start, end, end) {}
+};
+
 /// How many children a node and how many triangles a leaf has at most, one per lane.
 struct TreeShape {
   int children = kLanes;  ///< 2 to 8
@@ -25,7 +35,7 @@ struct TreeShape {
 template <int K>
 class Tree {
  public:
-  using Bound = KDop<K>;
+  using Bound = MovingKDop<K>;
 
   /// A child or the root: a node (≥ 0) or leaf ~ref (< 0).
   using Ref = std::int32_t;
@@ -49,15 +59,19 @@ class Tree {
   /// side until the triangles left fit into a leaf. Throws Error(internal) where an index or the shape is out of range.
   Tree(const Surface& surface, std::span<const Vec3> positions, const TreeShape& shape = {});
 
-  /// Fits all bounds to the linear motion from x_t0 to x_t1 (global arrays, [m]; the same twice for a still surface),
-  /// enlarged by `margin` [m] in every direction. With margin ε/2 on both sides, triangles that come closer than ε at
-  /// any time of the motion have overlapping bounds (seed, "Bounding Volume Hierarchy").
-  void refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin);
+  /// Fits all bounds to linear motion, enlarged by `margin` [m] in every direction at both ends. With margin ε/2 on
+  /// both sides, triangles that come closer than ε at any time of the motion have overlapping bounds (seed, "Bounding
+  /// Volume Hierarchy").
+  void refit(const Motion& motion, double margin);
+  void refit(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) { refit({x_t0, x_t1}, margin); }
 
   /// As refit, but only where something left the bounds it has: vertices that move little get bounds that hold for a
   /// few steps ahead (see kSlackPart in tree.cpp), and nodes below which every vertex is still inside its own are left
   /// as they are. Bounds are never smaller than after refit.
-  void refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin);
+  void refit_lazily(const Motion& motion, double margin);
+  void refit_lazily(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+    refit_lazily({x_t0, x_t1}, margin);
+  }
 
   /// Makes the next lazy refit give all bounds anew.
   void forget() { resting_margin_ = -1; }
@@ -80,7 +94,7 @@ class Tree {
     double slack = -1;
   };
 
-  bool stay_or_move(std::size_t v, const Vec3& p, const Vec3& q, double margin);
+  bool stay_or_move(std::size_t v, const Vec3& p, const Vec3& low, const Vec3& high, double margin);
   void fit(std::size_t n);
   void fit_node(std::size_t n);
 

@@ -189,7 +189,7 @@ class Walk {
     for (int i = 0; i + 1 < leaf.count; ++i) lane(leaf, i, leaf, first_lanes(leaf.count) & ~first_lanes(i + 1));
   }
 
-  void leaves(const Leaf& leaf_a, const Leaf& leaf_b, const KDop<K>& bound_b) {
+  void leaves(const Leaf& leaf_a, const Leaf& leaf_b, const MovingKDop<K>& bound_b) {
     const std::uint32_t near_b = overlap_mask(leaf_a.bounds, bound_b.row, 1) & first_lanes(leaf_a.count);
     for_each_bit(near_b, [&](int i) { lane(leaf_a, i, leaf_b, first_lanes(leaf_b.count)); });
   }
@@ -200,7 +200,7 @@ class Walk {
     if (hits == 0) return;
     const SharedMasks shared = shared_vertices(leaf_b.corners, leaf_a.corners, i);
     append(out_.apart, leaf_a.triangle[i], leaf_b, hits & ~shared.one & ~shared.more);
-    append(out_.one_shared, leaf_a.triangle[i], leaf_b, hits & shared.one);
+    if (how_.one_shared) append(out_.one_shared, leaf_a.triangle[i], leaf_b, hits & shared.one);
   }
 
   void append(PairList& list, Index a, const Leaf& leaf_b, std::uint32_t mask) {

@@ -68,6 +68,9 @@ void Features::own_edges() {
   }
   std::sort(hinges_.begin(), hinges_.end());
   hinges_.erase(std::unique(hinges_.begin(), hinges_.end()), hinges_.end());
+  hinges_.shrink_to_fit();
+  apexes_.shrink_to_fit();
+  apexes_begin_.shrink_to_fit();
 }
 
 std::span<const TrianglePair> Features::hinges(Index first, Index count) const {

@@ -17,6 +17,8 @@ constexpr double kSameDistance = 1e-9;
 
 // What a thread looks at at once: pairs of triangles, a multiple of eight; pairs of features; triangles and vertices.
 constexpr std::size_t kPairsAtOnce = 4096, kFeaturesAtOnce = 1024, kTrianglesAtOnce = 2048;
+// Whose pairs with a common vertex are listed before they are looked at: six to nine each.
+constexpr std::size_t kTrianglesListed = 64;
 
 /// Unit vector along v, or along a fallback where the two features touch and v has no direction.
 Vec3 direction(const Vec3& v, const Vec3& fallback) {
@@ -30,19 +32,26 @@ Vec3 direction(const Vec3& v, const Vec3& fallback) {
 
 }  // namespace
 
+/// How a gathering looks.
+struct ProximityFinder::First {
+  std::span<const Vec3> x;
+  double radius;
+  float radius_rounded;
+  double flattest;
+};
+
 /// From pairs of triangles to pairs of features within a radius.
 class ProximityFinder::Gathering {
  public:
-  Gathering(const ProximityFinder& finder, std::span<const Vec3> x, double radius, float radius_rounded,
-            double flattest, FeaturePairs& found)
+  Gathering(const ProximityFinder& finder, const First& first, FeaturePairs& found)
       : finder_(finder),
         found_(found),
         features_(finder.features_),
         rounded_(finder.rounded_),
-        x_(x),
-        radius_sq_(radius * radius),
-        radius_rounded_(radius_rounded),
-        flattest_(static_cast<float>(flattest)) {}
+        x_(first.x),
+        radius_sq_(first.radius * first.radius),
+        radius_rounded_(first.radius_rounded),
+        flattest_(static_cast<float>(first.flattest)) {}
 
   /// All features that the two triangles of each pair own, against each other. First the boxes of vertices, edges and
   /// faces, for eight pairs at once and without branches: which feature is near is as good as random, and a wrong
@@ -250,16 +259,16 @@ class ProximityFinder::Search {
 void ProximityFinder::measure_folds(std::span<const Vec3> x) {
   const auto triangles = features_.triangles();
   const auto at = [&](Index vertex) -> const Vec3& { return x[vertex]; };
-  face_normals_.resize(triangles.size());
+  std::vector<Vec3> normals(triangles.size());
   folds_.resize(triangles.size());
   parallel_for(triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
-      face_normals_[t] =
+      normals[t] =
           (at(triangles[t][1]) - at(triangles[t][0])).cross(at(triangles[t][2]) - at(triangles[t][0])).normalized();
   });
   // 1 − cos θ = 2 sin² (θ / 2)
   const auto fold = [&](std::size_t t, Index other) {
-    return static_cast<float>(std::sqrt(std::max(0.0, 0.5 - 0.5 * face_normals_[t].dot(face_normals_[other]))));
+    return static_cast<float>(std::sqrt(std::max(0.0, 0.5 - 0.5 * normals[t].dot(normals[other]))));
   };
   parallel_for(triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
@@ -270,9 +279,7 @@ void ProximityFinder::measure_folds(std::span<const Vec3> x) {
   });
 }
 
-void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const Surface> deformable,
-                             std::span<const Vec3> x, double radius, double flattest,
-                             std::span<const std::uint8_t> open) {
+ProximityFinder::First ProximityFinder::begin_gathering(std::span<const Vec3> x, double radius, double flattest) {
   if (flattest > 0) measure_folds(x);
   // First look in float. Rounding moves a coordinate by 2^-24 of itself, so a gap of two by four times that at most.
   rounded_.resize(x.size());
@@ -285,27 +292,60 @@ void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const S
     }
     return most;
   });
-  const auto radius_rounded = static_cast<float>(radius * (1 + 1e-6) + largest * 0x1p-21 + 1e-37);
-
   pairs_.vertex_faces.clear();
   pairs_.edge_edges.clear();
-  const auto look_at = [&](std::span<const TrianglePair> pairs) {
-    parallel_append(pairs.size(), kPairsAtOnce, pairs_, [&](std::size_t begin, std::size_t end, FeaturePairs& found) {
-      Gathering(*this, x, radius, radius_rounded, flattest, found).look_at(pairs.subspan(begin, end - begin));
-    });
-  };
-  // Of cloth that is not creased sharply nothing is left of these, which were 13 % of the run of ball_through_cloth.
-  const auto look_at_connected = [&](std::span<const TrianglePair> pairs) {
-    if (open.empty()) return look_at(pairs);
-    creased_.clear();
-    std::ranges::copy_if(pairs, std::back_inserter(creased_),
-                         [&](const TrianglePair& pair) { return !open[pair.a] && !open[pair.b]; });
-    look_at(creased_);
-  };
-  look_at(candidates.apart.view());
-  look_at_connected(candidates.one_shared.view());
+  return {x, radius, static_cast<float>(radius * (1 + 1e-6) + largest * 0x1p-21 + 1e-37), flattest};
+}
+
+void ProximityFinder::look_at(std::span<const TrianglePair> pairs, const First& first) {
+  parallel_append(pairs.size(), kPairsAtOnce, pairs_, [&](std::size_t begin, std::size_t end, FeaturePairs& found) {
+    Gathering(*this, first, found).look_at(pairs.subspan(begin, end - begin));
+  });
+}
+
+void ProximityFinder::gather(const CandidatePairs& candidates, std::span<const Surface> deformable,
+                             std::span<const Vec3> x, double radius, double flattest) {
+  const First first = begin_gathering(x, radius, flattest);
+  look_at(candidates.apart.view(), first);
+  look_at(candidates.one_shared.view(), first);
   for (const Surface& surface : deformable)
-    look_at_connected(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())));
+    look_at(features_.hinges(surface.first_triangle, static_cast<Index>(surface.triangles.size())), first);
+}
+
+// Of cloth that is not creased sharply nothing is left of the connected ones, which were 13 % of the run of
+// ball_through_cloth.
+void ProximityFinder::gather(const PairList& apart, std::span<const Surface> deformable, std::span<const Vec3> x,
+                             double radius, double flattest, std::span<const std::uint8_t> open) {
+  const First first = begin_gathering(x, radius, flattest);
+  look_at(apart.view(), first);
+  for (const Surface& surface : deformable)
+    parallel_append(surface.triangles.size(), kTrianglesAtOnce, pairs_,
+                    [&](std::size_t begin, std::size_t end, FeaturePairs& found) {
+                      Gathering gathering(*this, first, found);
+                      std::vector<TrianglePair> pairs;
+                      for (; begin < end; begin += kTrianglesListed) {
+                        pairs.clear();
+                        append_connected(begin, std::min(begin + kTrianglesListed, end), surface, open, pairs);
+                        gathering.look_at(pairs);
+                      }
+                    });
+}
+
+// Pairs a < b with a common vertex, of triangles a in [begin, end) of a surface; none of both is open.
+void ProximityFinder::append_connected(std::size_t begin, std::size_t end, const Surface& surface,
+                                       std::span<const std::uint8_t> open, std::vector<TrianglePair>& pairs) const {
+  for (std::size_t t = begin; t < end; ++t) {
+    const Index a = surface.first_triangle + static_cast<Index>(t);
+    if (open[a]) continue;
+    const std::size_t first = pairs.size();
+    for (const Index v : features_.triangle(a))
+      for (const Index b : features_.triangles_at(v)) {
+        // Across an edge it comes twice.
+        const auto is_it = [&](const TrianglePair& pair) { return pair.b == b; };
+        if (b > a && !open[b] && std::none_of(pairs.begin() + static_cast<std::ptrdiff_t>(first), pairs.end(), is_it))
+          pairs.push_back({a, b});
+      }
+  }
 }
 
 void ProximityFinder::find(std::span<const Vec3> x, double reach, std::vector<Proximity>& out) const {

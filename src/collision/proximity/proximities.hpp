@@ -47,9 +47,12 @@ class ProximityFinder {
   /// triangles closer than that (up to those with a common edge, which are looked up for each surface of `deformable`).
   /// Edge pairs are left out where the sines of half the angles by which the surface is folded along either edge add up
   /// to less than `flattest`: between two smooth layers vertices and faces tell all, and four of five pairs are edges.
-  /// `open`: per triangle, not 0 where what shares a vertex with it is known to be no closer; empty: nothing is known.
   void gather(const CandidatePairs& candidates, std::span<const Surface> deformable, std::span<const Vec3> x,
-              double radius, double flattest = 0, std::span<const std::uint8_t> open = {});
+              double radius, double flattest = 0);
+  /// The same with candidates without a common vertex alone: those with one or two are looked up for each surface of
+  /// `deformable`. `open`: per triangle, not 0 where what shares a vertex with it is known to be no closer.
+  void gather(const PairList& apart, std::span<const Surface> deformable, std::span<const Vec3> x, double radius,
+              double flattest, std::span<const std::uint8_t> open);
 
   /// Replaces `out` by the proximities below `reach` [m] among the pairs gathered, in their order. Complete as long as
   /// no vertex is farther than (radius − reach) / 2 from where it was gathered.
@@ -87,14 +90,17 @@ class ProximityFinder {
     }
   };
 
+  struct First;
+  First begin_gathering(std::span<const Vec3> x, double radius, double flattest);
+  void look_at(std::span<const TrianglePair> pairs, const First& first);
+  void append_connected(std::size_t begin, std::size_t end, const Surface& surface, std::span<const std::uint8_t> open,
+                        std::vector<TrianglePair>& pairs) const;
   void measure_folds(std::span<const Vec3> x);
 
   Features features_;
   std::vector<std::array<float, 3>> folds_;  ///< per triangle and edge it owns: sine of half the fold; 1 at borders
-  std::vector<Vec3> face_normals_;
-  std::vector<Rounded> rounded_;  ///< positions in float, for the first look
+  std::vector<Rounded> rounded_;             ///< positions in float, for the first look
   FeaturePairs pairs_;
-  std::vector<TrianglePair> creased_;  ///< of those with a common vertex, what may be near
 };
 
 }  // namespace weft::collision

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "core/parallel_append.hpp"
 
@@ -33,12 +34,25 @@ double room(double area, double lengths) {
 
 Fans::Fans(std::span<const Surface> surfaces) {
   for (const Surface& surface : surfaces) {
-    std::vector<std::vector<Triangle>> around(static_cast<std::size_t>(surface.vertex_count));
+    // Triangles by vertex, in their order.
+    std::vector<std::uint32_t> begin(static_cast<std::size_t>(surface.vertex_count) + 1, 0);
+    const auto place = [&](Index v) -> std::uint32_t& {
+      return begin[static_cast<std::size_t>(v - surface.first_vertex)];
+    };
     for (const Triangle& t : surface.triangles)
-      for (Index v : t) around[v - surface.first_vertex].push_back(turned(t, v));
-    for (Index v = 0; v < surface.vertex_count; ++v) add_fan(surface.first_vertex + v, around[v]);
+      for (Index v : t) ++place(v);
+    std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), std::uint32_t{0});
+    std::vector<Triangle> turned_to(begin.back());
+    for (const Triangle& t : surface.triangles)
+      for (Index v : t) turned_to[place(v)++] = turned(t, v);
+    std::uint32_t first = 0;  // places are now those of the ends
+    for (Index v = surface.first_vertex; v < surface.first_vertex + surface.vertex_count; ++v) {
+      add_fan(v, std::span(turned_to).subspan(first, place(v) - first));
+      first = place(v);
+    }
   }
-  slack_.assign(middle_.size(), -1.0F);
+  for (auto* numbers : {&middle_, &around_}) numbers->shrink_to_fit();
+  rooms_.assign(middle_.size(), {-1, -1});
   has_certificate_.assign(middle_.size(), 0);
 }
 
@@ -58,19 +72,22 @@ void Fans::add_fan(Index vertex, std::span<const Triangle> triangles) {
     return std::ranges::all_of(triangles, [&](const Triangle& t) { return touch({s[1], s[2]}, {t[1], t[2]}); });
   };
   if (!closed && std::ranges::all_of(triangles, touches_all)) return;
-  for (const Triangle& t : triangles) edges_.push_back({t[1], t[2]});
-  edges_begin_.push_back(edges_.size());
   middle_.push_back(vertex);
-  if (closed) ring_.insert(ring_.end(), ring.begin(), ring.end());
-  ring_begin_.push_back(ring_.size());
+  closed_.push_back(closed ? 1 : 0);
+  if (closed)
+    around_.insert(around_.end(), ring.begin(), ring.end());
+  else
+    for (const Triangle& t : triangles) around_.insert(around_.end(), {t[1], t[2]});
+  begin_.push_back(static_cast<std::uint32_t>(around_.size()));
 }
 
 // Calls body(pair) for all pairs of an edge opposite to the vertex and another triangle of the fan.
 template <class Body>
 void Fans::for_each_pair(std::size_t fan, const Body& body) const {
-  for (const Edge& s : edges(fan))
-    for (const Edge& t : edges(fan))
-      if (!touch(s, t)) body(CornerPair{{s[0], s[1], s[1]}, {middle_[fan], t[0], t[1]}});
+  for (std::size_t k = 0; k < edge_count(fan); ++k)
+    for (std::size_t l = 0; l < edge_count(fan); ++l)
+      if (const Edge s = edge(fan, k), t = edge(fan, l); !touch(s, t))
+        body(CornerPair{{s[0], s[1], s[1]}, {middle_[fan], t[0], t[1]}});
 }
 
 // Whether the fan, all of whose triangles are positively oriented along the axis, goes around once: of the directions
@@ -92,13 +109,14 @@ bool Fans::turns_once(std::size_t fan, const Vec3& axis, std::span<const Vec3> x
 void Fans::set_reference(std::span<const Vec3> x) {
   has_certificate_.assign(middle_.size(), 0);
   parallel_for(middle_.size(), kFansAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t fan = begin; fan < end; ++fan) slack_[fan] = slack_of(fan, x);
+    for (std::size_t fan = begin; fan < end; ++fan) rooms_[fan] = room_of(fan, x);
   });
 }
 
-float Fans::slack_of(std::size_t fan, std::span<const Vec3> x) const {
+Fans::Room Fans::room_of(std::size_t fan, std::span<const Vec3> x) const {
+  constexpr Room kNone{-1, -1};
   const auto vertices = ring(fan);
-  if (vertices.empty()) return -1;
+  if (vertices.empty()) return kNone;
   const Vec3& middle = x[middle_[fan]];
   Vec3 axis = Vec3::Zero(), e = x[vertices.front()] - middle;
   for (std::size_t k = 1; k < vertices.size(); ++k) {
@@ -107,21 +125,23 @@ float Fans::slack_of(std::size_t fan, std::span<const Vec3> x) const {
     e = f;
   }
   axis.normalize();
-  double slack = std::numeric_limits<double>::infinity(), e_length = e.norm();
+  double slack = std::numeric_limits<double>::infinity(), clearance = slack, e_length = e.norm();
   for (std::size_t k = 1; k < vertices.size(); ++k) {
     const Vec3 f = x[vertices[k]] - middle;
-    const double f_length = f.norm();
-    slack = std::min(slack, room(axis.dot(e.cross(f)), e_length + f_length));
+    const double f_length = f.norm(), area = axis.dot(e.cross(f));
+    slack = std::min(slack, room(area, e_length + f_length));
+    clearance = std::min(clearance, area / std::max({e_length, f_length, (f - e).norm()}));
     e = f;
     e_length = f_length;
   }
   // A thousandth less than it is covers all rounding.
-  return slack > 0 && turns_once(fan, axis, x) ? static_cast<float>(0.999 * slack) : -1;
+  if (!(slack > 0) || !turns_once(fan, axis, x)) return kNone;
+  return {static_cast<float>(0.999 * slack), static_cast<float>(0.999 * clearance)};
 }
 
 void Fans::mark_open(double distance, std::span<std::uint8_t> vertices) const {
   for (std::size_t fan = 0; fan < middle_.size(); ++fan)
-    if (2 * static_cast<double>(slack_[fan]) > distance) vertices[middle_[fan]] = 1;
+    if (static_cast<double>(rooms_[fan].clearance) > distance) vertices[middle_[fan]] = 1;
 }
 
 bool Fans::keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const {
@@ -151,14 +171,14 @@ bool Fans::keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::s
 void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
                         std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing) {
   const auto any_changed = [&](std::size_t fan) {
-    const auto has = [&](const Edge& edge) { return changed[edge[0]] || changed[edge[1]]; };
-    return changed[middle_[fan]] || std::ranges::any_of(edges(fan), has);
+    return changed[middle_[fan]] || std::ranges::any_of(around(fan), [&](Index v) { return changed[v] != 0; });
   };
   const auto stays = [&](std::size_t fan) {
-    if (!(slack_[fan] > 0)) return false;
+    const float slack = rooms_[fan].slack;
+    if (!(slack > 0)) return false;
     float most = moved[middle_[fan]];
     for (Index v : ring(fan)) most = std::max(most, moved[v]);
-    return most < slack_[fan];
+    return most < slack;
   };
   parallel_append(middle_.size(), kFansAtOnce, failing, [&](std::size_t begin, std::size_t end, auto& list) {
     for (std::size_t fan = begin; fan < end; ++fan) {

@@ -35,8 +35,10 @@ class Fans {
   void set_reference(std::span<const Vec3> x);
 
   /// Marks the middles of fans in which features without a common vertex were farther apart than `distance` [m] at the
-  /// reference: moved towards each other by half of what they are apart, they would meet, and while no vertex moves as
-  /// far as its fan allows none do.
+  /// reference: those whose triangles, seen along the axis, have longer altitudes. Of two such features, one of each of
+  /// two triangles, the closest points seen so are a vertex and a point of the other one. From the middle the way
+  /// between leads to an edge opposite to it; from another vertex it crosses a neighbouring edge of the fan, or goes
+  /// around the end of one. Both are no shorter than an altitude.
   void mark_open(double distance, std::span<std::uint8_t> vertices) const;
 
   /// Appends the edge-triangle pairs without certificate for the way from x_t0 to x_t1. `moved`: per vertex, a bound of
@@ -47,28 +49,39 @@ class Fans {
 
  private:
   using Edge = std::array<Index, 2>;
+  /// Of a fan at the reference [m].
+  struct Room {
+    float slack;      // how far its vertices may move; negative: it is not certified as a whole
+    float clearance;  // least altitude of its triangles along the axis, where it is
+  };
   void add_fan(Index vertex, std::span<const Triangle> triangles);
-  float slack_of(std::size_t fan, std::span<const Vec3> x) const;
+  Room room_of(std::size_t fan, std::span<const Vec3> x) const;
   template <class Body>
   void for_each_pair(std::size_t fan, const Body& body) const;
   bool turns_once(std::size_t fan, const Vec3& axis, std::span<const Vec3> x) const;
   bool keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const;
-  std::span<const Index> ring(std::size_t fan) const {
-    return std::span(ring_).subspan(ring_begin_[fan], ring_begin_[fan + 1] - ring_begin_[fan]);
+  std::span<const Index> around(std::size_t fan) const {
+    return std::span(around_).subspan(begin_[fan], begin_[fan + 1] - begin_[fan]);
   }
-  std::span<const Edge> edges(std::size_t fan) const {
-    return std::span(edges_).subspan(edges_begin_[fan], edges_begin_[fan + 1] - edges_begin_[fan]);
+  /// Empty for fans that are not closed.
+  std::span<const Index> ring(std::size_t fan) const { return closed_[fan] ? around(fan) : std::span<const Index>(); }
+  /// Edges opposite to the vertex, one of each triangle.
+  std::size_t edge_count(std::size_t fan) const {
+    return closed_[fan] ? around(fan).size() - 1 : around(fan).size() / 2;
+  }
+  Edge edge(std::size_t fan, std::size_t k) const {
+    const Index* first = around_.data() + begin_[fan] + (closed_[fan] ? k : 2 * k);
+    return {first[0], first[1]};
   }
 
-  // Closed fans: the vertex in the middle, and the others in their order around it.
   std::vector<Index> middle_;
-  std::vector<std::size_t> ring_begin_{0};
-  std::vector<Index> ring_;
-  std::vector<float> slack_;                   // per fan [m]; negative: not certified as a whole at the reference
+  // Of closed fans the other vertices in their order around the middle, the first one once more as the last; of others
+  // the ends of the edges opposite to it.
+  std::vector<std::uint32_t> begin_{0};
+  std::vector<Index> around_;
+  std::vector<std::uint8_t> closed_;           // per fan
+  std::vector<Room> rooms_;                    // per fan
   std::vector<std::uint8_t> has_certificate_;  // per fan: as a whole or pair by pair, when it was last looked at
-  // Of the triangles of each fan, closed or not: the edges opposite to the vertex.
-  std::vector<Edge> edges_;
-  std::vector<std::size_t> edges_begin_{0};  // by fan
 };
 
 }  // namespace weft::collision

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <set>
 
+#include "collision/hierarchy/feature_distance.hpp"
 #include "collision/hierarchy/kdop.hpp"
 #include "collision/hierarchy/test_motions.hpp"
 #include "core/error.hpp"
@@ -22,15 +24,15 @@ constexpr int kSteps = 40;
 /// Pairs without and with one common vertex.
 using BothLists = std::array<Pairs, 2>;
 
-/// Every pair of triangles, of one surface or of two, whose k-DOPs overlap, without any hierarchy.
+/// Every pair of triangles, of one surface or of two, whose moving k-DOPs overlap, without any hierarchy.
 template <int K>
 BothLists brute_force(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                       double margin = kMargin) {
-  std::vector<KDop<K>> bounds;
+  std::vector<MovingKDop<K>> bounds;
   for (const Triangle& t : scene.triangles) {
     const auto at = [&](std::size_t c) {
       const auto v = static_cast<std::size_t>(t[c]);
-      return swept_point<K>(x_t0[v], x_t1[v], margin);
+      return moving_point<K>(x_t0[v], x_t1[v], x_t1[v], margin);
     };
     bounds.push_back(at(0));
     bounds.back().join(at(1));
@@ -136,6 +138,75 @@ TYPED_TEST(BroadPhasePairs, WithVelocityConesHoldAllOfBruteForceAtEveryStep) {
     }
     EXPECT_GT(kept, 0U) << "no bound was ever left as it was";
   }
+}
+
+/// Pairs without a common vertex that come nearer to each other than `reach` on the way: feature by feature, at times
+/// close together.
+Pairs near_on_the_way(const MovingScene& scene, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double reach) {
+  Pairs near;
+  for (int k = 0; k <= 16; ++k) {
+    std::vector<Vec3> x(x_t0.size());
+    for (std::size_t v = 0; v < x.size(); ++v) x[v] = x_t0[v] + k / 16.0 * (x_t1[v] - x_t0[v]);
+    for (std::size_t a = 0; a < scene.triangles.size(); ++a)
+      for (std::size_t b = a + 1; b < scene.triangles.size(); ++b)
+        if (testing::shared_count(scene.triangles[a], scene.triangles[b]) == 0 &&
+            testing::feature_distance(scene.triangles[a], scene.triangles[b], x) < reach)
+          near.insert({static_cast<Index>(a), static_cast<Index>(b)});
+  }
+  return near;
+}
+
+// On a way to any place of the boxes between two corners, and from and to anywhere within the margin.
+TYPED_TEST(BroadPhasePairs, HoldAllThatComeNearOnTheWayToAnywhereBetweenTwoCorners) {
+  const FoldingSlidingFlying motion(5);
+  const std::vector<Surface> surfaces = motion.scene().surfaces();
+  BroadPhaseOptions options;
+  options.directions = TypeParam::value;
+  BroadPhase broad_phase(surfaces, motion.at(0), options);
+  std::mt19937 generator(5);
+  std::uniform_real_distribution<double> unit(0, 1);
+  std::size_t near_of_all = 0;
+  for (int step = 0; step < kSteps; step += 4) {
+    const std::vector<Vec3> x_t0 = motion.at(step), one = motion.at(step + 1), other = motion.at(step + 3);
+    std::vector<Vec3> low, high, start, end;
+    for (std::size_t v = 0; v < x_t0.size(); ++v) {
+      low.push_back(one[v].cwiseMin(other[v]));
+      high.push_back(one[v].cwiseMax(other[v]));
+      const auto off = [&] { return 2 * unit(generator) - 1; };
+      const double share = unit(generator);
+      start.push_back(x_t0[v] + kMargin * Vec3(off(), off(), off()));
+      end.push_back(low[v] + share * (high[v] - low[v]) + kMargin * Vec3(off(), off(), off()));
+    }
+    for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, Motion(x_t0, low, high), kMargin);
+    const Pairs found = all_pairs(broad_phase, surfaces.size())[0];
+    const Pairs meeting = near_on_the_way(motion.scene(), start, end, 1e-4);
+    EXPECT_TRUE(std::ranges::includes(found, meeting)) << step;
+    near_of_all += meeting.size();
+  }
+  EXPECT_GT(near_of_all, 20U);
+}
+
+TEST(BroadPhase, DoesNotListWhatMovesAlongWithEachOther) {
+  const FoldingSlidingFlying motion(9);
+  const std::vector<Surface> surfaces = motion.scene().surfaces();
+  const std::vector<Vec3> x = motion.at(0);
+  std::vector<Vec3> far = x;
+  for (Vec3& place : far) place += Vec3(3, -2, 5);
+  BroadPhase broad_phase(surfaces, x);
+  const auto pairs_to = [&](std::span<const Vec3> x_t1) {
+    for (std::size_t s = 0; s < surfaces.size(); ++s) broad_phase.refit(s, x, x_t1, kMargin);
+    return all_pairs(broad_phase, surfaces.size());
+  };
+  EXPECT_EQ(pairs_to(far), pairs_to(x));
+}
+
+TEST(BroadPhase, LeavesOutPairsWithACommonVertexWhereTheyAreNotWanted) {
+  const FoldingSlidingFlying motion(9);
+  const std::vector<Surface> surfaces = motion.scene().surfaces();
+  BroadPhase all(surfaces, motion.at(0)), apart(surfaces, motion.at(0), {.one_shared = false});
+  EXPECT_FALSE(all_pairs(all, surfaces.size())[1].empty());
+  EXPECT_TRUE(all_pairs(apart, surfaces.size())[1].empty());
+  EXPECT_EQ(all_pairs(apart, surfaces.size())[0], all_pairs(all, surfaces.size())[0]);
 }
 
 TEST(BroadPhase, WithASeparationListListsTheSamePairsAgainWhenAskedTwice) {

@@ -33,35 +33,41 @@ using Setups = ::testing::Types<Setup<6, 2, 1>, Setup<6, 4, 3>, Setup<6, 8, 8>, 
                                 Setup<18, 4, 8>, Setup<18, 8, 2>, Setup<26, 2, 5>, Setup<26, 4, 4>, Setup<26, 8, 8>>;
 TYPED_TEST_SUITE(HierarchyPairs, Setups);
 
-/// Everything by definition and in double: the interval of a triangle's path along each direction.
+/// Everything by definition and in double: the intervals of a triangle along each direction, at the start of its path
+/// and at the end.
 template <int K>
 class BruteForce {
  public:
   BruteForce(const TestMesh& mesh, std::span<const Vec3> x_t1, double margin)
       : mesh_(mesh), x_t1_(x_t1), margin_(margin) {}
 
-  /// Largest gap over all directions [m], margins taken off; the bounds overlap where it is not positive.
+  /// Largest over all directions of the gap that is left at both ends [m], margins taken off; the bounds overlap where
+  /// it is not positive.
   double gap(const Triangle& a, const BruteForce& other, const Triangle& b) const {
     double most = -1e300;
     for (int d = 0; d < K; d += 2) {
       const auto& dir = kDirections<K>;
       const auto row = static_cast<std::size_t>(d);
       const Vec3 axis = Vec3{dir.x[row], dir.y[row], dir.z[row]}.normalized();
-      const auto [a_low, a_high] = interval(a, axis);
-      const auto [b_low, b_high] = other.interval(b, axis);
-      most = std::max({most, a_low - b_high, b_low - a_high});
+      double above = 1e300, below = 1e300;
+      for (const bool at_end : {false, true}) {
+        const auto [a_low, a_high] = interval(a, axis, at_end);
+        const auto [b_low, b_high] = other.interval(b, axis, at_end);
+        above = std::min(above, a_low - b_high);
+        below = std::min(below, b_low - a_high);
+      }
+      most = std::max({most, above, below});
     }
     return most;
   }
 
  private:
-  std::pair<double, double> interval(const Triangle& t, const Vec3& axis) const {
+  std::pair<double, double> interval(const Triangle& t, const Vec3& axis, bool at_end) const {
     double low = 1e300, high = -1e300;
     for (const Index v : t) {
-      for (const Vec3& p : {mesh_.x[v], x_t1_[v]}) {
-        low = std::min(low, axis.dot(p));
-        high = std::max(high, axis.dot(p));
-      }
+      const double along = axis.dot(at_end ? x_t1_[v] : mesh_.x[v]);
+      low = std::min(low, along);
+      high = std::max(high, along);
     }
     return {low - margin_, high + margin_};
   }
