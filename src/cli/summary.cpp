@@ -138,7 +138,8 @@ std::vector<std::string> find_warnings(const std::vector<FrameRecord>& frames) {
       torn > 0) {
     warnings.push_back(
         fmt::format("cloth was stretched beyond its max_stretch in {} of {} frames, by up to {:.1f} times of it: pins "
-                    "farther apart than it is long, or something too fast for time.step",
+                    "farther apart than it is long, an obstacle driven into what is held, or something too fast for "
+                    "time.step",
                     torn, frames.size(), std::ranges::max(frames, {}, [](const FrameRecord& r) {
                                            return r.report.stretch_share;
                                          }).report.stretch_share));

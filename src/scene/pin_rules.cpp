@@ -13,10 +13,10 @@ void part_rows(TableBuilder<S>& rows) {
              "of a sewing pattern, of which the part is; fractions and the mask are then of its own width and height, "
              "along its grain")
       .by_default("the whole cloth");
-  rows.vector("low", &S::low, kWeftWarp, within(0, 1), "", "lower end of the part, in fractions of the size")
+  rows.vector("low", &S::low, kWeftWarp, within(0, 1), "",
+              "lower end of the part, in fractions of the size; of a mesh, of its extent along the x and y of its file")
       .single_fills_all();
-  rows.vector("high", &S::high, kWeftWarp, within(0, 1), "", "upper end of the part, in fractions of the size")
-      .single_fills_all();
+  rows.vector("high", &S::high, kWeftWarp, within(0, 1), "", "upper end of the part, likewise").single_fills_all();
   rows.plain(Type::text, "edge", &S::edge, "edge of a sewing pattern, as panel.edge, of which the part consists")
       .by_default("all between low and high");
   rows.plain(

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -21,6 +22,8 @@ constexpr double kJump = 1e-3;
 constexpr double kDepth = 1e-3;
 // Looks that are taken at each frame.
 constexpr int kLooks = 4;
+// Particles of a pin at most whose distances from those of others are looked at.
+constexpr std::size_t kMostLookedAt = 41;
 
 using Held = std::vector<integrator::HeldParticle>;
 
@@ -29,11 +32,12 @@ bool moves(const scene::Pin& pin) {
 }
 
 struct MovingPins {
+  std::vector<Index> first;  // particle of each cloth, and their number
   Pins pins;
   std::vector<Vec3> start;  // of all particles
 
   MovingPins(const scene::Scene& scene, const environment::Environment& environment)
-      : pins(scene, environment, firsts(environment)) {
+      : first(firsts(environment)), pins(scene, environment, first) {
     for (const environment::ClothObject& cloth : environment.cloths)
       start.insert(start.end(), cloth.start.begin(), cloth.start.end());
   }
@@ -52,6 +56,47 @@ struct MovingPins {
     return fmt::format("cloth.{}.pin.{}", scene.cloths[about.cloth].name, about.number);
   }
 };
+
+// Of a pin that holds what it has, on a rectangle of cloth: some of its particles now, and where they lie at rest [m].
+struct HeldPart {
+  std::vector<Vec3> x;
+  std::vector<Vec2> rest;
+};
+
+// By pin; of soft ones, and of those on other cloth, nothing.
+std::vector<HeldPart> held_parts(const scene::Scene& scene, const environment::Environment& environment,
+                                 const MovingPins& moving, const Held& held) {
+  std::vector<HeldPart> parts(moving.pins.size());
+  std::vector<std::size_t> seen(moving.pins.size(), 0);
+  for (const integrator::HeldParticle& particle : held) {
+    const std::size_t pin = moving.pins.of(particle.constraint.particle);
+    const Pins::About& about = moving.pins.about(pin);
+    const scene::Cloth& cloth = scene.cloths[about.cloth];
+    const std::size_t every = (about.particles + kMostLookedAt - 1) / kMostLookedAt, number = seen[pin]++;
+    if (about.strength || rectangle_particles(cloth) == 0 || (number % every != 0 && number + 1 != about.particles))
+      continue;
+    const auto at = static_cast<std::size_t>(particle.constraint.particle - moving.first[about.cloth]);
+    parts[pin].x.push_back(particle.x_end);
+    parts[pin].rest.push_back(environment.cloths[about.cloth].fractions[at].cwiseProduct(cloth.size));
+  }
+  return parts;
+}
+
+// Whether some particle was chosen by both, numbers of pins of one cloth.
+bool overlap(const environment::ClothObject& cloth, std::size_t a, std::size_t b) {
+  return std::ranges::any_of(cloth.pins[a], [&](const environment::Chosen& chosen) {
+    return std::ranges::find(cloth.pins[b], chosen.particle, &environment::Chosen::particle) != cloth.pins[b].end();
+  });
+}
+
+// Largest distance of two of their particles, over that at rest.
+double stretch_between(const HeldPart& a, const HeldPart& b) {
+  double most = 0;
+  for (std::size_t i = 0; i < a.x.size(); ++i)
+    for (std::size_t j = 0; j < b.x.size(); ++j)
+      most = std::max(most, (a.x[i] - b.x[j]).norm() / (a.rest[i] - b.rest[j]).norm());
+  return most;
+}
 
 // Times to look at: some of every frame, and all keys of pins and halves of what is between them.
 std::vector<double> times_of(const scene::Scene& scene) {
@@ -105,6 +150,42 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
   return found;
 }
 
+std::vector<std::string> find_stretches(const scene::Scene& scene, const environment::Environment& environment) {
+  std::vector<std::string> found;
+  if (!has_moving_pins(scene)) return found;
+  const MovingPins moving(scene, environment);
+  struct Stretch {
+    double from = 0, most = 0, at = 0;  // times [s]; shares of the length at rest
+  };
+  std::map<std::pair<std::size_t, std::size_t>, Stretch> stretches;
+  Held held;
+  for (const double t : times_of(scene)) {
+    moving.pins.held_at(t, environment, held);
+    const std::vector<HeldPart> parts = held_parts(scene, environment, moving, held);
+    for (std::size_t b = 1; b < parts.size(); ++b)
+      for (std::size_t a = 0; a < b; ++a) {
+        const std::size_t cloth = moving.pins.about(a).cloth;
+        const bool apart = moving.is_moved(scene, a) || moving.is_moved(scene, b);
+        if (cloth != moving.pins.about(b).cloth || !apart) continue;
+        const double limit = scene.cloths[cloth].material.max_stretch, share = stretch_between(parts[a], parts[b]);
+        if (limit == 0 || share <= 1 + limit) continue;
+        Stretch& stretch = stretches.try_emplace({a, b}, Stretch{t}).first->second;
+        if (share > stretch.most) stretch.most = share, stretch.at = t;
+      }
+  }
+  for (const auto& [pins, stretch] : stretches) {
+    const Pins::About &a = moving.pins.about(pins.first), &b = moving.pins.about(pins.second);
+    found.push_back(fmt::format(
+        "{}: stretches the cloth between it and pin {} beyond its max_stretch from {:.4g} s on, by {:.3g} % at {:.4g} "
+        "s{}",
+        moving.name(scene, pins.second), a.number, stretch.from, 100 * (stretch.most - 1), stretch.at,
+        overlap(environment.cloths[a.cloth], a.number, b.number)
+            ? fmt::format("; what both would hold pin {} holds", a.number)
+            : ""));
+  }
+  return found;
+}
+
 std::vector<std::string> find_entries(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<std::string> found;
   if (!has_moving_pins(scene) || !scene.contact.obstacles) return found;
@@ -116,17 +197,28 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
     if (!body.collide || body.character) continue;
     std::set<std::size_t> entered, outside;
     x.resize(body.mesh.positions.size());
-    for (const double t : times_of(scene)) {
+    Box3 box;
+    const auto look_at = [&](double t) {
       environment.place(b, t, x);
-      const Box3 box = mesh::bounding_box(x);
+      box = mesh::bounding_box(x);
       moving.pins.held_at(t, environment, held);
+    };
+    const auto height_of = [&](const Vec3& p) {
+      const bool may_be_in = box.contains(p) || body.infinite_floor;
+      return may_be_in ? collision::nearest_point(p, body.mesh.topology.triangles, x).height : 1;
+    };
+    // Where particles start counts too: keys may begin inside.
+    look_at(-scene.preroll_frames() / scene.time.fps);
+    for (const integrator::HeldParticle& particle : held)
+      if (height_of(moving.start[static_cast<std::size_t>(particle.constraint.particle)]) > 0)
+        outside.insert(moving.pins.of(particle.constraint.particle));
+    for (const double t : times_of(scene)) {
+      look_at(t);
       for (const integrator::HeldParticle& particle : held) {
         const std::size_t pin = moving.pins.of(particle.constraint.particle);
         if (entered.contains(pin) || !moving.is_moved(scene, pin)) continue;
         // Of an open surface, as the floor is, what is behind it counts as inside where it was before it first.
-        const bool may_be_in = box.contains(particle.x_end) || body.infinite_floor;
-        const double height =
-            may_be_in ? collision::nearest_point(particle.x_end, body.mesh.topology.triangles, x).height : 1;
+        const double height = height_of(particle.x_end);
         if (height > 0) outside.insert(pin);
         if (height > -kDepth || !outside.contains(pin)) continue;
         entered.insert(pin);

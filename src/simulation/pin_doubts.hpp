@@ -16,6 +16,10 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
 /// Likewise for each obstacle that such a pin enters, with the first time.
 std::vector<std::string> find_entries(const scene::Scene& scene, const environment::Environment& environment);
 
+/// Likewise for each two pins on a rectangle of cloth, one of them such a pin, that move farther apart than the cloth
+/// between them can be stretched.
+std::vector<std::string> find_stretches(const scene::Scene& scene, const environment::Environment& environment);
+
 /// Whether there is such a pin.
 bool has_moving_pins(const scene::Scene& scene);
 

@@ -60,11 +60,12 @@ class YieldingPins {
   Pins pins_;
   const environment::Environment& environment_;
   std::span<const double> masses_;
-  std::vector<double> most_force_;  // of a particle that lags, by pin [N]
+  std::vector<double> load_;  // that what lags of a pin is to bear together, by pin [N]
   std::vector<integrator::HeldParticle> targets_, at_start_, held_;
   std::vector<Pull> pulls_;
   std::vector<std::uint8_t> lagged_, lags_;          // per particle: in the step before, and in this one
   std::vector<std::uint8_t> forced_;                 // let go in this step
+  std::vector<std::size_t> lagging_particles_;       // in this step, by pin
   std::map<std::size_t, std::string> obstructions_;  // of pins that were
   double begun_t_ = 0, begun_h_ = 0;                 // the step that forced_ is of [s]
   bool any_lags_ = false;
