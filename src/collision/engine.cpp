@@ -129,9 +129,11 @@ std::vector<CornerPair> Engine::add_failing(std::span<const CornerPair> pairs, c
   return fresh;
 }
 
-// Adds contacts of what would meet on this way.
+// Adds contacts of what might meet on this way: what only planes that turn can tell apart comes near. Where these count
+// here too, contacts show late: 40 frames of sphere_drape, five starts, 2,116 iterations for 1,685 (1,761 where no
+// planes turn), and threads of falling_band stretched by 13 % for 3.
 void Engine::foresee(const StepMotion& motion) {
-  if (apart(motion.x_t0, motion.x_t1)) return;
+  if (!find_failing(motion.x_t0, motion.x_t1, Certificates::constant)) return;
   add_failing(failing_, motion);
 }
 
@@ -166,9 +168,14 @@ void Engine::find_near(std::span<const Vec3> x_from, std::span<const Vec3> x_t1,
 }
 
 bool Engine::apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
+  return !find_failing(x_t0, x_t1, Certificates::all);
+}
+
+// Whether any pair has none of these certificates.
+bool Engine::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, Certificates which) {
   if (!candidates_.covers_end(x_t1)) collect(x_t0, x_t1);
-  failing_ = separation_.find_failing(x_t0, x_t1, &pinched_, &carried_);
-  return failing_.empty();
+  failing_ = separation_.find_failing(x_t0, x_t1, &pinched_, &carried_, which);
+  return !failing_.empty();
 }
 
 int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {

@@ -112,6 +112,7 @@ class Engine {
   void gather();
   void count_failures();
   void add_late_contacts(const StepMotion& motion);
+  bool find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, Certificates which);
   void foresee(const StepMotion& motion);
   std::vector<CornerPair> add_failing(std::span<const CornerPair> pairs, const StepMotion& motion, bool again = false);
   void add_contacts(std::span<const Proximity> near, const StepMotion& motion);

@@ -58,21 +58,23 @@ class Search {
   Search(const Sides& t0, const Sides& t1, double floor)
       : t0_(t0), t1_(t1), floor_(floor), centres_(between_centres(t0)) {}
 
-  std::optional<Vec3> find(int halvings) {
+  std::optional<Vec3> find(Certificates which, int halvings) {
     const Vec3 of_a = facing(normal(t0_.a)), of_b = facing(normal(t0_.b));
     const Vec3 later_of_a = normal(t1_.a), later_of_b = normal(t1_.b);
-    if (keeps(of_a) || keeps(of_b) || keeps(centres_) || keeps(facing(later_of_a)) || keeps(facing(later_of_b)) ||
-        turns(of_a, turned(later_of_a, t0_.a)) || turns(of_b, turned(later_of_b, t0_.b)) ||
-        turns(centres_, between_centres(t1_)))
+    if (keeps(of_a) || keeps(of_b) || keeps(centres_) || keeps(facing(later_of_a)) || keeps(facing(later_of_b)))
+      return found_;
+    const bool turning = which == Certificates::all;
+    if (turning && (turns(of_a, turned(later_of_a, t0_.a)) || turns(of_b, turned(later_of_b, t0_.b)) ||
+                    turns(centres_, between_centres(t1_))))
       return found_;
     const Vec3 closest = closest_convex(t0_.a, t0_.b).difference;
-    if (keeps(closest)) return found_;
+    if (keeps(closest) || !turning) return found_;
     // What meets at the end is past help.
     const Vec3 closest_later = closest_convex(t1_.a, t1_.b).difference;
     if (closest_later == Vec3::Zero() || turns(closest, closest_later) || halvings == 0) return found_;
     const Sides middle = middle_of(t0_, t1_);
-    if (!Search(t0_, middle, kStartFloor).find(halvings - 1)) return std::nullopt;
-    return Search(middle, t1_, floor_).find(halvings - 1);
+    if (!Search(t0_, middle, kStartFloor).find(which, halvings - 1)) return std::nullopt;
+    return Search(middle, t1_, floor_).find(which, halvings - 1);
   }
 
  private:
@@ -121,8 +123,9 @@ bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0
   return gap_along(n, pair, x_t1) >= kFloor && gap_along(n, pair, x_t0) >= kStartFloor;
 }
 
-std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  return Search(sides_of(pair, x_t0), sides_of(pair, x_t1), kFloor).find(kHalvings);
+std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                                     Certificates which) {
+  return Search(sides_of(pair, x_t0), sides_of(pair, x_t1), kFloor).find(which, kHalvings);
 }
 
 ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x) {

@@ -34,6 +34,9 @@ double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x)
 /// sought.
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
+/// Which certificates count: planes of constant direction alone, or those that turn too.
+enum class Certificates { constant, all };
+
 /// Looks for a certificate, by increasing cost: a plane that keeps its direction, then one that turns with the pair, at
 /// last three times in halves of the way. Face normals separate layers, the direction between the centres neighbours in
 /// the plane, and the closest direction whatever hardly moves.
@@ -44,7 +47,8 @@ bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0
 /// direction is in the way of one of them once their width times sin(θ/2) is more than d.
 ///
 /// Returns the direction at the end, rounded to single precision, so that it can be kept in half the space.
-std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
+std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
+                                     Certificates which = Certificates::all);
 
 /// The closest pair of features of two sides.
 struct ClosestFeatures {

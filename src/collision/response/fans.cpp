@@ -169,7 +169,7 @@ bool Fans::keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::s
 }
 
 void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
-                        std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing) {
+                        std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing, Certificates which) {
   const auto any_changed = [&](std::size_t fan) {
     return changed[middle_[fan]] || std::ranges::any_of(around(fan), [&](Index v) { return changed[v] != 0; });
   };
@@ -186,7 +186,7 @@ void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
       has_certificate_[fan] = 1;
       if (stays(fan) || keeps_orientation(fan, x_t0, x_t1)) continue;
       for_each_pair(fan, [&](const CornerPair& pair) {
-        if (find_certificate(pair, x_t0, x_t1)) return;
+        if (find_certificate(pair, x_t0, x_t1, which)) return;
         has_certificate_[fan] = 0;
         list.push_back(pair);
       });

@@ -45,7 +45,8 @@ class Fans {
   /// its distance at either time from where it was at the reference [m]; `changed`: per vertex, whether x_t0 or x_t1 is
   /// another than in the last call.
   void find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, std::span<const float> moved,
-                    std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing);
+                    std::span<const std::uint8_t> changed, std::vector<CornerPair>& failing,
+                    Certificates which = Certificates::all);
 
  private:
   using Edge = std::array<Index, 2>;

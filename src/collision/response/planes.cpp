@@ -121,7 +121,7 @@ void Planes::append_closer(double radius, PairList& out) const {
 
 void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                           std::span<const float> moved, std::span<const std::uint8_t> changed,
-                          std::vector<CornerPair>& failing, const CarriedStarts* carried) {
+                          std::vector<CornerPair>& failing, const CarriedStarts* carried, Certificates which) {
   moved_.resize(triangles_.size());
   changed_.resize(triangles_.size());
   parallel_for(triangles_.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
@@ -133,12 +133,12 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
   });
   if (carried != nullptr) carried->make();
   parallel_append(pairs_.size(), kPairsAtOnce, failing, [&](std::size_t begin, std::size_t end, auto& list) {
-    find_failing(begin, end, {reference, x_t0, x_t1, carried}, list);
+    find_failing(begin, end, {reference, x_t0, x_t1, carried, which}, list);
   });
 }
 
 void Planes::find_failing(std::size_t begin, std::size_t end, const Way& way, std::vector<CornerPair>& failing) {
-  const auto& [reference, x_t0, x_t1, carried] = way;
+  const auto& [reference, x_t0, x_t1, carried, which] = way;
   for (std::size_t p = begin; p < end; ++p) {
     const TrianglePair& numbers = pairs_.view()[p];
     const auto a = static_cast<std::size_t>(numbers.a), b = static_cast<std::size_t>(numbers.b);
@@ -153,7 +153,7 @@ void Planes::find_failing(std::size_t begin, std::size_t end, const Way& way, st
 
     const Vec3 n(plane.n[0], plane.n[1], plane.n[2]);
     if (plane.is_known() && separates(n, pair, start, x_t1)) continue;
-    const std::optional<Vec3> found = find_certificate(pair, start, x_t1);
+    const std::optional<Vec3> found = find_certificate(pair, start, x_t1, which);
     if (!found) {
       has_certificate_[p] = 0;
       failing.push_back(pair);

@@ -41,7 +41,8 @@ class Planes {
   /// `carried`: starts of pairs with obstacles that turn, which are looked at without regard to that.
   void find_failing(std::span<const Vec3> reference, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                     std::span<const float> moved, std::span<const std::uint8_t> changed,
-                    std::vector<CornerPair>& failing, const CarriedStarts* carried = nullptr);
+                    std::vector<CornerPair>& failing, const CarriedStarts* carried = nullptr,
+                    Certificates which = Certificates::all);
 
   /// The planes that are others than watch() has found for these pairs at the reference: all else that a new object
   /// needs, once it watches the same pairs.
@@ -60,6 +61,7 @@ class Planes {
   struct Way {
     std::span<const Vec3> reference, x_t0, x_t1;
     const CarriedStarts* carried;
+    Certificates which;
   };
   void find_failing(std::size_t begin, std::size_t end, const Way& way, std::vector<CornerPair>& failing);
 

@@ -46,7 +46,8 @@ std::vector<std::uint8_t> Separation::open_triangles(double distance) const {
 }
 
 std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
-                                                     const PinchedPairs* pinched, const CarriedStarts* carried) {
+                                                     const PinchedPairs* pinched, const CarriedStarts* carried,
+                                                     Certificates which) {
   failing_.clear();
   moved_.resize(x_t0.size());
   changed_.resize(x_t0.size());
@@ -63,8 +64,8 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
       looked_t1_[v] = x_t1[v];
     }
   });
-  planes_.find_failing(reference_, x_t0, x_t1, moved_, changed_, failing_, carried);
-  fans_.find_failing(x_t0, x_t1, moved_, changed_, failing_);
+  planes_.find_failing(reference_, x_t0, x_t1, moved_, changed_, failing_, carried, which);
+  fans_.find_failing(x_t0, x_t1, moved_, changed_, failing_, which);
   if (pinched != nullptr && !pinched->empty())
     std::erase_if(failing_, [&](const CornerPair& pair) { return pinched->exempts(pair); });
   return failing_;

@@ -69,10 +69,11 @@ class Separation {
 
   /// Pairs without a certificate for the way from x_t0 to x_t1; changes nothing. x_t0 must be free of intersections but
   /// those of `pinched`, which are not looked at.
-  /// Pairs with an obstacle that turns are seen from there.
+  /// Pairs with an obstacle that turns are seen from there. `which` counts where ends are others than in the last call.
   std::span<const CornerPair> find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                            const PinchedPairs* pinched = nullptr,
-                                           const CarriedStarts* carried = nullptr);
+                                           const CarriedStarts* carried = nullptr,
+                                           Certificates which = Certificates::all);
 
   /// Changes x_t1 of what is movable until every pair has a certificate. Where that fails,
   /// pairs of cloth and obstacle are added to `pinched`, if given. `goes_on`: with what the last call found to be
