@@ -305,7 +305,7 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
 template <class Real>
 void Preconditioner<Real>::scale_sums(std::size_t part) {
   const auto lasting_of = [&](Index i) -> Mat3 {
-    const Mat3 lasting = (system_->metric.empty() ? 0 : system_->metric[i]) * Mat3::Identity();
+    Mat3 lasting = (system_->metric.empty() ? 0 : system_->metric[i]) * Mat3::Identity();
     if (is_free(i)) return lasting;
     const Mat3 free = constraints_[at(constraint_of_[i])].free, held = Mat3::Identity() - free;
     return free * lasting * free + held * own_block(i) * held;
