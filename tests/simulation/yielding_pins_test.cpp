@@ -168,7 +168,7 @@ TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
   const auto of = [](const std::string& text) { return doubts(support::scene_of_text(text)); };
   const auto entries = of(kIntoTheFloor);
   ASSERT_EQ(entries.size(), 1u);
-  EXPECT_EQ(entries[0].rfind("cloth.sheet.pin.0: enters 'floor' at 0.54 s", 0), 0u) << entries[0];
+  EXPECT_EQ(entries[0].rfind("cloth.sheet.pin.0: enters 'floor' at 0.63 s", 0), 0u) << entries[0];
   EXPECT_EQ(of(kIntoABox).size(), 1u);
   EXPECT_TRUE(of(kBeforeARam).empty()) << "of pins that keys do not move nothing is computed";
   const auto jump = of(hanging(0.4, "keys = [{ time = 0, position = [0, 0, 0] }]", ""));
