@@ -33,9 +33,9 @@ constexpr double kUnfeltGain = 0.1, kCorrectionGain = 0.2;
 constexpr double kUnfeltStrain = 0.05;
 // Limits to stretch by which a step may stretch cloth that is beyond one, and halvings that it is asked for first. What
 // a plate at 30 m/s carries along 0.3 m in a step cannot slip past it in one: of four starts a sheet of 41² was
-// stretched to 11 times its length in one and to 4 for good in another, for over 150 s each; to 1.11 and 1.14 so, for 6
-// and 29. With three halvings the second was stretched to 20 times. Wrung, pulled and draped cloth never comes near
-// (1.4 limits in a towel, slowly).
+// stretched to 11 times its length in one and to 4 for good in another, for over 150 s each. Since planes between
+// layers turn, of five to 5 and 4.5 times in two, and with this to at most 1.11 in all, for a sixth of the CPU. Wrung,
+// pulled and draped cloth never comes near (1.4 limits in a towel, slowly).
 constexpr double kTearingShare = 2;
 constexpr int kHalvingsBeforeTear = 6;
 // Of its limit to stretch, beyond which the run tells of it.
