@@ -41,7 +41,7 @@ CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<co
 CandidatePairs& CandidateCache::collect_more(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, bool all) {
   std::vector<Vec3> low = low_, high = high_.empty() ? low_ : high_;
   for (std::size_t v = 0; v < x_t1.size(); ++v) {
-    if (!all && covers_end(v, x_t1[v])) continue;
+    if (!all && is_at_end(v, x_t1[v], margin_)) continue;
     low[v] = low[v].cwiseMin(x_t0[v]).cwiseMin(x_t1[v]);
     high[v] = high[v].cwiseMax(x_t0[v]).cwiseMax(x_t1[v]);
   }
@@ -90,14 +90,22 @@ bool CandidateCache::covers_start(std::span<const Vec3> x) const {
   return true;
 }
 
-bool CandidateCache::covers_end(std::size_t vertex, const Vec3& x) const {
-  return (x - high_end()[vertex]).cwiseMax(low_[vertex] - x).maxCoeff() <= margin_;
+// Whether x is no farther than the margin from where the vertex was to end.
+bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin) const {
+  return (x - high_end()[vertex]).cwiseMax(low_[vertex] - x).maxCoeff() <= margin;
 }
 
 bool CandidateCache::covers_end(std::span<const Vec3> x) const {
   if (margin_ < 0) return false;
   for (std::size_t i = 0; i < x.size(); ++i)
-    if (!covers_end(i, x[i])) return false;
+    if (!is_at_end(i, x[i], margin_)) return false;
+  return true;
+}
+
+bool CandidateCache::lists_near(std::span<const Vec3> x) const {
+  if (margin_ < 0) return false;
+  for (std::size_t i = 0; i < x.size(); ++i)
+    if (!is_at_end(i, x[i], margin_ - 0.5 * reach_)) return false;
   return true;
 }
 

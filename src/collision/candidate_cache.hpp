@@ -56,6 +56,9 @@ class CandidateCache {
   /// to there.
   bool covers_end(std::span<const Vec3> x) const;
 
+  /// Whether features that are within the reach at x, an end of the way, are listed.
+  bool lists_near(std::span<const Vec3> x) const;
+
   /// For who collects by other means: pairs hold for ways within `margin` [m] of the one from x_t0 to x_t1.
   void cover(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     cover(Motion(x_t0, x_t1), margin);
@@ -81,7 +84,7 @@ class CandidateCache {
  private:
   void cover(const Motion& motion, double margin);
   void refit(const Motion& motion, double margin);
-  bool covers_end(std::size_t vertex, const Vec3& x) const;
+  bool is_at_end(std::size_t vertex, const Vec3& x, double margin) const;
 
   const Bodies& bodies_;
   SearchParameters parameters_;

@@ -40,11 +40,6 @@ double ramp(double from, double to, double value) {
   return std::clamp((value - from) / (to - from), 0.0, 1.0);
 }
 
-std::array<Index, 4> sorted(std::array<Index, 4> vertices) {
-  std::ranges::sort(vertices);
-  return vertices;
-}
-
 // One corner of a triangle against the point of the other that is closest to it.
 FeaturePair of_corner(Index corner, const Triangle& corners, const FeaturePair& closest) {
   FeaturePair result = closest;
@@ -92,7 +87,7 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
     const double share = stiffness_share(proximity);
     if (share == 0 || pinched.concern(proximity.vertices)) continue;
     if (const auto contact = build(proximity, share, kNoLimit, motion)) response.add(*contact, motion.x_t0);
-    if (share == 1) in_contact_.insert(sorted(proximity.vertices));
+    if (share == 1) in_contact_.insert(feature_key(proximity.kind, proximity.vertices));
   }
 }
 
@@ -110,8 +105,8 @@ bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& 
                                  ContactResponse& response, bool again) {
   const double distance = std::sqrt(features.points.distance_sq);
   const FeaturePair closest{features.vertices, features.points.weights, features.points.difference / distance,
-                            distance};
-  const bool is_new = in_contact_.insert(sorted(features.vertices)).second;
+                            distance, features.kind};
+  const bool is_new = in_contact_.insert(feature_key(features.kind, features.vertices)).second;
   if (motion.is_straight() && !is_new) return false;
   const bool with_obstacle = is_particle(pair.a[0]) != is_particle(pair.b[0]);
   if (response.form() == ResponseForm::velocity_constraints && with_obstacle) {

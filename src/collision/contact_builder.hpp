@@ -91,8 +91,7 @@ class ContactBuilder {
   double stiffness_, step_;
   std::vector<Friction> friction_;  // of each pair of bodies
   std::span<const double> masses_;
-  // Sorted vertices of the features that push with all their stiffness.
-  std::set<std::array<Index, 4>> in_contact_;
+  std::set<FeatureKey> in_contact_;  // features that push with all their stiffness
 };
 
 }  // namespace weft::collision

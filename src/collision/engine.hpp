@@ -2,7 +2,8 @@
 //
 //   CandidateCache     which pairs of triangles can meet, and for how long that holds
 //   Separation         a separating plane for each of them, which bounds their distance from below
-//   ProximityFinder    of those that the planes leave near: vertices and faces, edges and edges within the reach
+//   ProximityFinder    of those that the planes leave near: vertices and faces, edges and edges within the reach, where
+//                      the step is expected to end
 //   ContactBuilder     from these to contacts: stiffness, range, friction
 //   ContactResponse    what the contacts do in the solve, as springs or as constraints of velocities
 //   Separation         that no pair meets on the way to what was solved; what does is a contact more, or moved apart
@@ -92,7 +93,8 @@ class Engine {
   const PinchedPairs& exempted() const { return pinched_; }
   void exempt(const PinchedPairs::Key& key, const PinchedPairs::Origin& origin) { pinched_.add(key, origin); }
 
-  /// Pairs of features within the reach, 1.5 contact ranges, at the start of the last step.
+  /// Pairs of features within the reach, 1.5 contact ranges, where the last step was expected to end; of pairs that
+  /// would have met on the way there, where it began.
   int proximities() const { return static_cast<int>(proximities_.size()); }
   /// Their smallest distance [m]; infinite if there are none.
   double min_distance() const;
@@ -109,14 +111,15 @@ class Engine {
   void update_coherence(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   template <class Collect>
   void collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs);
-  void gather();
+  void gather(std::span<const Vec3> x);
   void count_failures();
   void add_late_contacts(const StepMotion& motion);
   bool find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, Certificates which);
-  void foresee(const StepMotion& motion);
+  void look_ahead(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
   std::vector<CornerPair> add_failing(std::span<const CornerPair> pairs, const StepMotion& motion, bool again = false);
   void add_contacts(std::span<const Proximity> near, const StepMotion& motion);
-  void find_near(std::span<const Vec3> x_from, std::span<const Vec3> x_t1, std::vector<Proximity>& near);
+  void begin_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1);
+  void find_near(std::span<const Vec3> x, std::vector<Proximity>& near);
   template <class Archive>
   void serialize_candidates(Archive& archive);
 
@@ -125,7 +128,8 @@ class Engine {
   bool meets_itself_;  // cloth, and other cloth
   Separation separation_;
   ProximityFinder finder_;
-  bool gathered_ = false;                       // whether the finder has those of the candidates collected last
+  std::vector<Vec3> gathered_at_;  // where the finder gathered features of these candidates [m]; empty: nowhere
+  PairList closer_;                // scratch: candidates that are near there
   std::optional<CoherentDetection> coherence_;  // keeps pairs and closest points in place of the cache, where wanted
   ContactBuilder builder_;
   ContactResponse response_;
@@ -139,7 +143,7 @@ class Engine {
   std::vector<PinchedPairs::Push> pinched_pushes_;  // back out of obstacles, of the step
   std::vector<CornerPair> pushed_;                  // pairs that were pushed apart in it
   std::vector<CornerPair> late_;                    // pairs in contact that a solve had to show
-  std::vector<Proximity> proximities_;              // at the start of the step
+  std::vector<Proximity> proximities_;              // at the start of the step, or its expected end
   std::vector<Proximity> near_bend_;                // where its way last bent
   std::span<const CornerPair> failing_;             // of the last call of apart()
 };

@@ -24,7 +24,7 @@ struct FrameReport {
   double solver_error = 0;    ///< likewise, of what the solver left [m]
   int newton_iterations = 0;
   int linear_iterations = 0;
-  int proximities = 0;          ///< pairs of features within 1.5 contact ranges at the start of the last step
+  int proximities = 0;          ///< pairs of features within 1.5 contact ranges, where the last step was expected to end
   int constraints = 0;          ///< contacts and pins that acted in the last step
   double min_distance = 0;      ///< least distance of two surfaces then [m]; infinite if none is within that
   double max_strain = 0;        ///< largest |length / rest length - 1| of a weft or warp edge, of all its steps

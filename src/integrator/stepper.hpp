@@ -163,9 +163,11 @@ class Stepper {
   void evaluate(const State& now, const Stage& stage);
   void gather_residual(std::span<const double> masses, const Stage& stage);
   void estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h);
-  void allow_velocities(double h);
+  void allow_velocities(double h, int iterations);
   static double carried_on(double h);
   static double root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of);
+  std::vector<int> free_groups(const solver::LinearSystem& linear) const;
+  void balance_momentum(const solver::LinearSystem& linear, const Stage& stage);
   std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void measure(std::span<const Vec3> displacements, std::span<const double> masses, std::vector<double>& speeds) const;
   void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);

@@ -17,7 +17,7 @@ constexpr double kStaleMotion = 0.005;
 // stiffness. Where cloth folds it overshoots without: a swing with threads of 1e8 N/m takes twice the iterations,
 // sphere_drape a fifth more. From the first on, cloth that rests takes four iterations a step in place of one
 // (multi_sheet).
-constexpr int kPlainIterations = 4;
+constexpr int kPlainIterations = 2;
 
 // Rows of the matrix that a thread writes at once.
 constexpr std::size_t kRowsAtOnce = 512;

@@ -245,9 +245,9 @@ class ProximityFinder::Search {
 
   void add(ProximityKind kind, const std::array<Index, 4>& vertices, const ClosestPoints& points, const Vec3& fallback,
            const std::array<double, 2>& outside) {
-    out_.push_back({{vertices, points.weights, direction(points.difference, fallback), std::sqrt(points.distance_sq)},
-                    kind,
-                    outside});
+    out_.push_back(
+        {{vertices, points.weights, direction(points.difference, fallback), std::sqrt(points.distance_sq), kind},
+         outside});
   }
 
   const Features& features_;

@@ -14,11 +14,8 @@
 
 namespace weft::collision {
 
-enum class ProximityKind : std::uint8_t { vertex_face, edge_edge };
-
 /// Two features closer than the reach, with their closest points: Σ w x = distance · normal.
 struct Proximity : FeaturePair {
-  ProximityKind kind = ProximityKind::vertex_face;
   /// Edge-edge: sine of the angle by which the normal leaves the wedge of edge a and b, the directions in which no face
   /// at the edge comes closer than the edge itself; ≤ 0 inside, 0 for vertex-face. Above 0 a neighbouring pair
   /// is closer, and the response may leave this one out.

@@ -136,7 +136,7 @@ ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x
     if (points.distance_sq >= best.points.distance_sq) return;
     points.difference *= sign;
     for (double& w : points.weights) w *= sign;
-    best = {{v, t[0], t[1], t[2]}, points};
+    best = {{v, t[0], t[1], t[2]}, points, ProximityKind::vertex_face};
   };
   for (int i = 0; i < 3; ++i) {
     vertex_face(pair.a[i], pair.b, 1);
@@ -144,7 +144,7 @@ ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x
     for (int j = 0; j < 3; ++j) {
       const std::array<Index, 4> v{pair.a[i], pair.a[(i + 1) % 3], pair.b[j], pair.b[(j + 1) % 3]};
       const ClosestPoints points = closest_edge_edge(x[v[0]], x[v[1]], x[v[2]], x[v[3]]);
-      if (points.distance_sq < best.points.distance_sq) best = {v, points};
+      if (points.distance_sq < best.points.distance_sq) best = {v, points, ProximityKind::edge_edge};
     }
   }
   return best;

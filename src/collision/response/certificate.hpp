@@ -7,6 +7,7 @@
 
 #include "collision/hierarchy/surface.hpp"
 #include "collision/proximity/closest_points.hpp"
+#include "collision/proximity/feature_pair.hpp"
 #include "core/types.hpp"
 
 namespace weft::collision {
@@ -54,6 +55,7 @@ std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec
 struct ClosestFeatures {
   std::array<Index, 4> vertices{};  ///< global numbers
   ClosestPoints points{};           ///< weights of the vertices; difference from b to a
+  ProximityKind kind = ProximityKind::vertex_face;
 };
 ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x);
 

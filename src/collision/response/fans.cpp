@@ -139,9 +139,11 @@ Fans::Room Fans::room_of(std::size_t fan, std::span<const Vec3> x) const {
   return {static_cast<float>(0.999 * slack), static_cast<float>(0.999 * clearance)};
 }
 
-void Fans::mark_open(double distance, std::span<std::uint8_t> vertices) const {
-  for (std::size_t fan = 0; fan < middle_.size(); ++fan)
-    if (static_cast<double>(rooms_[fan].clearance) > distance) vertices[middle_[fan]] = 1;
+void Fans::mark_open(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const {
+  parallel_for(middle_.size(), kFansAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t fan = begin; fan < end; ++fan)
+      if (static_cast<double>(room_of(fan, x).clearance) > distance) vertices[middle_[fan]] = 1;
+  });
 }
 
 bool Fans::keeps_orientation(std::size_t fan, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) const {

@@ -34,12 +34,12 @@ class Fans {
   /// Measures every fan at x [m]: how far its vertices may move from there, in any way, before it has to be looked at.
   void set_reference(std::span<const Vec3> x);
 
-  /// Marks the middles of fans in which features without a common vertex were farther apart than `distance` [m] at the
-  /// reference: those whose triangles, seen along the axis, have longer altitudes. Of two such features, one of each of
+  /// Marks the middles of fans in which features without a common vertex were farther apart than `distance` at x
+  /// [m]: those whose triangles, seen along the axis, have longer altitudes. Of two such features, one of each of
   /// two triangles, the closest points seen so are a vertex and a point of the other one. From the middle the way
   /// between leads to an edge opposite to it; from another vertex it crosses a neighbouring edge of the fan, or goes
   /// around the end of one. Both are no shorter than an altitude.
-  void mark_open(double distance, std::span<std::uint8_t> vertices) const;
+  void mark_open(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const;
 
   /// Appends the edge-triangle pairs without certificate for the way from x_t0 to x_t1. `moved`: per vertex, a bound of
   /// its distance at either time from where it was at the reference [m]; `changed`: per vertex, whether x_t0 or x_t1 is

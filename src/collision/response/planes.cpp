@@ -110,11 +110,15 @@ void Planes::watch(std::span<const Vec3> x) {
   });
 }
 
-void Planes::append_closer(double radius, PairList& out) const {
+void Planes::append_closer(double radius, std::span<const float> moved, PairList& out) const {
+  std::vector<float> of_triangles(triangles_.size());
+  for (std::size_t t = 0; t < triangles_.size(); ++t)
+    of_triangles[t] = std::max({moved[triangles_[t][0]], moved[triangles_[t][1]], moved[triangles_[t][2]]});
   TrianglePair* end = out.reserve_more(pairs_.size());
   for (std::size_t p = 0; p < pairs_.size(); ++p) {
-    *end = pairs_.view()[p];
-    end += planes_[p].gap < static_cast<float>(radius) ? 1 : 0;
+    const TrianglePair& pair = pairs_.view()[p];
+    *end = pair;
+    end += planes_[p].gap < static_cast<float>(radius) + of_triangles[pair.a] + of_triangles[pair.b] ? 1 : 0;
   }
   out.grow(end);
 }

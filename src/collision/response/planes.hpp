@@ -31,9 +31,9 @@ class Planes {
   /// Exchanges the list of watched pairs for another one, so that it is kept in one place only; watch() must follow.
   void exchange(PairList& pairs) { std::swap(pairs_, pairs); }
 
-  /// Appends the watched pairs that may be closer than `radius` [m] at the reference: the gap along any direction is no
-  /// more than the distance.
-  void append_closer(double radius, PairList& out) const;
+  /// Appends the watched pairs that may be closer than `radius` [m] where vertices have `moved` so far from the
+  /// reference: the gap along any direction is no more than the distance.
+  void append_closer(double radius, std::span<const float> moved, PairList& out) const;
 
   /// Appends the pairs without certificate for the way from x_t0 to x_t1. `moved`: per vertex, a bound of its distance
   /// at either time from where it was when the pairs were taken over [m]; `reference`: those positions; `changed`: per

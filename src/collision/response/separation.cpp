@@ -37,9 +37,18 @@ void Separation::watch(std::span<const Vec3> x) {
   fans_.set_reference(x);
 }
 
-std::vector<std::uint8_t> Separation::open_triangles(double distance) const {
+void Separation::append_closer(double radius, std::span<const Vec3> x, PairList& out) const {
+  std::vector<float> moved(x.size());
+  parallel_for(x.size(), kVerticesMovedAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
+      moved[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>((x[v] - reference_[v]).squaredNorm()));
+  });
+  planes_.append_closer(radius, moved, out);
+}
+
+std::vector<std::uint8_t> Separation::open_triangles(double distance, std::span<const Vec3> x) const {
   std::vector<std::uint8_t> vertices(reference_.size(), 0), triangles(triangles_.size(), 0);
-  fans_.mark_open(distance, vertices);
+  fans_.mark_open(distance, x, vertices);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     triangles[t] = vertices[triangles_[t][0]] & vertices[triangles_[t][1]] & vertices[triangles_[t][2]];
   return triangles;

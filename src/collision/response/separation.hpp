@@ -60,12 +60,12 @@ class Separation {
   /// As Planes::exchange().
   void exchange(PairList& pairs) { planes_.exchange(pairs); }
 
-  /// Appends the watched pairs that may have been closer than `radius` [m] then.
-  void append_closer(double radius, PairList& out) const { planes_.append_closer(radius, out); }
+  /// Appends the watched pairs that may be closer than `radius` at x [m].
+  void append_closer(double radius, std::span<const Vec3> x, PairList& out) const;
 
   /// Per triangle, 1 where all triangles of its surface that share a vertex with it were farther from it than
-  /// `distance` [m] then, but for where they share that.
-  std::vector<std::uint8_t> open_triangles(double distance) const;
+  /// `distance` at x [m], but for where they share that.
+  std::vector<std::uint8_t> open_triangles(double distance, std::span<const Vec3> x) const;
 
   /// Pairs without a certificate for the way from x_t0 to x_t1; changes nothing. x_t0 must be free of intersections but
   /// those of `pinched`, which are not looked at.
