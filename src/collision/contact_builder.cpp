@@ -104,8 +104,8 @@ void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotio
 bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
                                  ContactResponse& response, bool again) {
   const double distance = std::sqrt(features.points.distance_sq);
-  const FeaturePair closest{features.vertices, features.points.weights, features.points.difference / distance,
-                            distance, features.kind};
+  const FeaturePair closest{features.vertices, features.points.weights, features.points.difference / distance, distance,
+                            features.kind};
   const bool is_new = in_contact_.insert(feature_key(features.kind, features.vertices)).second;
   if (motion.is_straight() && !is_new) return false;
   const bool with_obstacle = is_particle(pair.a[0]) != is_particle(pair.b[0]);

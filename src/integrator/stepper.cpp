@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numeric>
 #include <utility>
 
 #include "core/parallel_append.hpp"
+#include "integrator/momentum.hpp"
 
 namespace weft::integrator {
 namespace {
@@ -42,21 +42,14 @@ constexpr double kRoundings = 32;
 // [m/s²].
 constexpr double kUnseen = 0.01;
 // Iterations of a solve after which a velocity that nobody sees may be left too, times the tolerance [m/s]: at 0.3 it
-// moves cloth by a hundredth of a millimetre in a frame. Friction of bending flips with less in cells of some
-// millimetres: with a step in halves as much is left, and less may be. Of three scenes of 150 with BDF2 that ended
-// there two are solved, one by 60 iterations a step.
+// moves cloth by a hundredth of a millimetre in a frame. So may this ratio of Euler's error of velocity. Friction of
+// bending flips with less in small cells, contacts of tight cloth converge slowly, and shorter steps would not help.
 constexpr int kPatience = 20;
-constexpr double kUnseenSpeed = 1e-3;
-// Iterations of a solve from which this ratio of Euler's own error of velocity counts as its error too. Contacts of
-// cloth that is pulled tight converge slowly, and steps would be rejected: 7 of 145 of a handkerchief in a ring.
-constexpr double kVelocityRatio = 0.5;
+constexpr double kUnseenSpeed = 1e-3, kVelocityRatio = 0.5;
 
 // Share of the velocity that may be left by which a whole cloth may slide wrongly. With 0.3 sheets that fall onto
 // slopes half a degree too steep lose 3 % of their way in two of nine cases.
 constexpr double kSlidingShare = 0.2;
-
-// Sum of the weights of a term up to which its sides balance.
-constexpr double kBalanced = 1e-9;
 
 // Particles that a thread takes at once.
 constexpr std::size_t kParticlesAtOnce = 1024;
@@ -180,9 +173,8 @@ double Stepper::carried_on(double h) {
 }
 
 // Velocity [m/s], root mean square over the mass of a part, that the solver may leave: what moves the part in the time
-// of a swing, or of kLastingSteps where that is longer, by `tolerance` times the method's error of position in this
-// step. So the solver adds less to the error than the steps do. A displacement of that size left in each step would
-// not do: where steps h follow a tolerance as h^(p+1) it would cost the method an order.
+// of a swing by `tolerance` times the method's error of position in this step. A displacement of that size left in each
+// step would not do: where steps h follow a tolerance as h^(p+1) it would cost the method an order.
 void Stepper::allow_velocities(double h, int iterations) {
   const double time = carried_on(h);
   double unseen = kUnseen * h * time;
@@ -383,7 +375,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   } while (!solved_all && report.verdict == Verdict::solved);
   report.times = times_;
   unfinished_ = report.verdict == Verdict::unfinished ? report.newton_iterations : 0;
-  if (report.verdict == Verdict::solved) balance_momentum(linear, stage);
+  if (report.verdict == Verdict::solved && system.is_translation_invariant()) balance_momentum(masses, linear, stage);
   if (report.verdict == Verdict::solved || report.verdict == Verdict::unfinished) finish(now, stage, held, next);
   return report;
 }
@@ -401,63 +393,15 @@ void Stepper::list_parts(std::span<const double> masses, const solver::LinearSys
   }
 }
 
-// Groups of parts that push on each other, directly or through others, by the number of their lowest part: of each
-// part, or −1 where anything but weight and air acts on its group from outside.
-std::vector<int> Stepper::free_groups(const solver::LinearSystem& linear) const {
-  std::vector<int> group(parts_.size());
-  std::iota(group.begin(), group.end(), 0);
-  std::vector<char> is_free(parts_.size(), 1);
-  const auto group_of = [&](Index particle) {
-    const auto after = std::ranges::upper_bound(parts_, particle, {}, [](const PartState& part) { return part.rows.begin; });
-    int number = static_cast<int>(after - parts_.begin()) - 1;
-    while (group[number] != number) number = group[number];
-    return number;
-  };
-  for (const auto& constraint : linear.constraints) is_free[group_of(constraint.particle)] = 0;
-  for (const auto& term : linear.diagonal_terms) is_free[group_of(term.particle)] = 0;
-  for (const auto& term : linear.terms) {
-    double sum = 0;
-    int joined = -1;
-    for (std::size_t k = 0; k < 4; ++k) {
-      if (term.weights[k] == 0) continue;
-      sum += term.weights[k];
-      const int other = group_of(term.particles[k]);
-      if (joined < 0) joined = other;
-      const auto [low, high] = std::minmax(joined, other);
-      group[high] = low;
-      is_free[low] = is_free[low] && is_free[high];
-      joined = low;
-    }
-    if (std::abs(sum) > kBalanced) is_free[joined] = 0;  // its other side is an obstacle
-  }
-  for (int& number : group)
-    while (group[number] != number) number = group[number];
-  for (int& number : group)
-    if (!is_free[number]) number = -1;
-  return group;
-}
-
-// Translates each group of cloths on which nothing acts from outside until its residual sums to zero: inner forces and
-// contacts stay as they are, and momentum is kept exactly, however little of the equation is solved.
-void Stepper::balance_momentum(const solver::LinearSystem& linear, const Stage& stage) {
-  const std::vector<int> group = free_groups(linear);
-  for (int g = 0; g < static_cast<int>(group.size()); ++g) {
-    Vec3 missing = Vec3::Zero();  // [N]
-    double mass = 0;
-    for (std::size_t p = 0; p < group.size(); ++p) {
-      if (group[p] != g) continue;
-      mass += parts_[p].mass;
-      for (auto i = parts_[p].rows.begin; i < parts_[p].rows.end; ++i) missing += residual_[i];
-    }
-    if (mass == 0) continue;
-    const Vec3 shift = stage.beta * stage.beta / mass * missing;
-    for (std::size_t p = 0; p < group.size(); ++p) {
-      if (group[p] != g) continue;
-      for_each_particle(parts_[p].rows, [&](std::size_t i) {
-        v_[i] += shift / stage.beta;
-        x_end_[i] += stage.end_rate * shift;
-      });
-    }
+// Keeps the momentum of cloth on which nothing acts from outside.
+void Stepper::balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage) {
+  const std::vector<Vec3> missing = missing_accelerations(linear, masses, residual_);
+  for (std::size_t p = 0; p < parts_.size(); ++p) {
+    if (missing[p] == Vec3::Zero()) continue;
+    for_each_particle(parts_[p].rows, [&](std::size_t i) {
+      v_[i] += stage.beta * missing[p];
+      x_end_[i] += stage.end_rate * stage.beta * stage.beta * missing[p];
+    });
   }
 }
 

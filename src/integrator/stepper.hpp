@@ -166,8 +166,7 @@ class Stepper {
   void allow_velocities(double h, int iterations);
   static double carried_on(double h);
   static double root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of);
-  std::vector<int> free_groups(const solver::LinearSystem& linear) const;
-  void balance_momentum(const solver::LinearSystem& linear, const Stage& stage);
+  void balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage);
   std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void measure(std::span<const Vec3> displacements, std::span<const double> masses, std::vector<double>& speeds) const;
   void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);

@@ -46,6 +46,9 @@ class System {
   /// catch up here, before they are added.
   virtual void linearise(const StagePoint& at, int iteration, std::span<Vec3> force) = 0;
 
+  /// Whether translating a part changes no force but by terms and constraints of linear_system(), and by air.
+  virtual bool is_translation_invariant() const { return false; }
+
   /// Adds what contacts have in `forces`, friction apart from what pushes, and the most that friction can be by the
   /// loads that it goes by [N]. False, and nothing is added, where nothing touches.
   virtual bool contact_forces(const StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,

@@ -70,6 +70,7 @@ class StepProblem final : public integrator::System {
   void linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) override;
   bool contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                       std::span<double> limit) const override;
+  bool is_translation_invariant() const override { return true; }
   solver::LinearSystem& linear_system() override { return memory_.system; }
 
  private:

@@ -43,14 +43,12 @@ struct Scene {
 
 /// Vertex `v` against a face.
 Proximity vertex_face(Index v, const Triangle& face) {
-  return {{{v, face[0], face[1], face[2]}, {1, -0.5, -0.3, -0.2}, Vec3::UnitZ(), 0.001},
-          ProximityKind::vertex_face,
+  return {{{v, face[0], face[1], face[2]}, {1, -0.5, -0.3, -0.2}, Vec3::UnitZ(), 0.001, ProximityKind::vertex_face},
           {0, 0}};
 }
 
 Proximity edges(double outside_a, double outside_b, double along_a) {
-  return {{{0, 1, 3, 4}, {1 - along_a, along_a, -0.5, -0.5}, Vec3::UnitZ(), 0.001},
-          ProximityKind::edge_edge,
+  return {{{0, 1, 3, 4}, {1 - along_a, along_a, -0.5, -0.5}, Vec3::UnitZ(), 0.001, ProximityKind::edge_edge},
           {outside_a, outside_b}};
 }
 

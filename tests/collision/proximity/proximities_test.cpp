@@ -273,7 +273,7 @@ TEST(Proximities, OpenTrianglesAreFartherFromTheirNeighbours) {
     Separation separation(mesh.triangles, std::span(&surface, 1));
     separation.watch({}, mesh.x);
     for (const double distance : {0.005, 0.02, 0.03}) {
-      const std::vector<std::uint8_t> open = separation.open_triangles(distance);
+      const std::vector<std::uint8_t> open = separation.open_triangles(distance, mesh.x);
       const auto sides_of_open = [&](const Key& key) {
         for (std::size_t t = 0; t < open.size(); ++t)
           for (const auto& [one, other] : {std::pair(key.first, key.second), std::pair(key.second, key.first)})

@@ -60,7 +60,7 @@ TEST(Planes, APlaneThatIsKnownIsTriedBeforeAnyIsSearchedFor) {
   Planes planes(pairs.triangles);
   planes.watch(pairs.pairs, pairs.x);
   PairList near;  // of some of these the first look knows no plane
-  planes.append_closer(1e-4, near);
+  planes.append_closer(1e-4, std::vector<float>(pairs.x.size(), 0.0F), near);
   std::erase_if(pairs.pairs, [&](const TrianglePair& pair) { return std::ranges::find(near, pair) != near.end(); });
   planes.watch(pairs.pairs, pairs.x);
   const std::string of_watching = saved(planes, pairs);
@@ -130,7 +130,7 @@ TEST(Planes, TheGapOfAPlaneIsNoMoreThanTheDistance) {
   planes.watch(pairs.pairs, pairs.x);
   for (double radius : {0.005, 0.02, 0.05}) {
     PairList closer;
-    planes.append_closer(radius, closer);
+    planes.append_closer(radius, std::vector<float>(pairs.x.size(), 0.0F), closer);
     std::size_t within = 0;
     for (const TrianglePair& pair : pairs.pairs) {
       const CornerPair corners{pairs.triangles[pair.a], pairs.triangles[pair.b]};

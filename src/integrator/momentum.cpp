@@ -1,0 +1,83 @@
+#include "integrator/momentum.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <utility>
+
+namespace weft::integrator {
+namespace {
+
+// Sum of the weights of a term up to which its two sides balance; rounding of barycentric weights is 1e-16.
+constexpr double kBalanced = 1e-9;
+
+/// Disjoint sets of parts, each named by its lowest part.
+class Groups {
+ public:
+  explicit Groups(std::span<const solver::Part> parts)
+      : parts_(parts), lowest_(parts.size()), is_free_(parts.size(), 1) {
+    std::iota(lowest_.begin(), lowest_.end(), std::size_t{0});
+  }
+  std::size_t of_part(std::size_t part) const {
+    while (lowest_[part] != part) part = lowest_[part];
+    return part;
+  }
+  std::size_t of_particle(Index particle) const {
+    const auto after = std::ranges::upper_bound(parts_, particle, {}, &solver::Part::begin);
+    return of_part(static_cast<std::size_t>(after - parts_.begin()) - 1);
+  }
+  std::size_t join(std::size_t a, std::size_t b) {
+    const auto [low, high] = std::minmax(a, b);
+    lowest_[high] = low;
+    is_free_[low] = is_free_[low] && is_free_[high];
+    return low;
+  }
+  void hold(std::size_t group) { is_free_[group] = 0; }
+  bool is_free(std::size_t group) const { return is_free_[group] != 0; }
+
+ private:
+  std::span<const solver::Part> parts_;
+  std::vector<std::size_t> lowest_;
+  std::vector<char> is_free_;  // per group: nothing holds it from outside
+};
+
+void add_term(const solver::StencilTerm& term, Groups& groups) {
+  double sum = 0;
+  int first = -1;
+  for (int k = 0; k < 4; ++k) {
+    if (term.weights[k] == 0) continue;
+    sum += term.weights[k];
+    if (first < 0)
+      first = k;
+    else
+      groups.join(groups.of_particle(term.particles[first]), groups.of_particle(term.particles[k]));
+  }
+  if (first >= 0 && std::abs(sum) > kBalanced) groups.hold(groups.of_particle(term.particles[first]));
+}
+
+}  // namespace
+
+std::vector<Vec3> missing_accelerations(const solver::LinearSystem& linear, std::span<const double> masses,
+                                        std::span<const Vec3> residual) {
+  const std::vector<solver::Part> parts = solver::parts_of(linear);
+  Groups groups(parts);
+  for (const auto& constraint : linear.constraints) groups.hold(groups.of_particle(constraint.particle));
+  for (const auto& term : linear.diagonal_terms) groups.hold(groups.of_particle(term.particle));
+  for (const auto& term : linear.terms) add_term(term, groups);
+
+  std::vector<Vec3> force(parts.size(), Vec3::Zero());
+  std::vector<double> mass(parts.size(), 0);
+  for (std::size_t p = 0; p < parts.size(); ++p) {
+    const std::size_t group = groups.of_part(p);
+    for (auto i = static_cast<std::size_t>(parts[p].begin); i < static_cast<std::size_t>(parts[p].end); ++i) {
+      force[group] += residual[i];
+      mass[group] += masses[i];
+    }
+  }
+  std::vector<Vec3> result(parts.size(), Vec3::Zero());
+  for (std::size_t p = 0; p < parts.size(); ++p)
+    if (const std::size_t group = groups.of_part(p); groups.is_free(group)) result[p] = force[group] / mass[group];
+  return result;
+}
+
+}  // namespace weft::integrator

@@ -1,0 +1,142 @@
+// Contact at default settings against mechanics: energy of cloth that slides without friction on a curved surface,
+// momentum of sheets that collide, motion that does not depend on where the axes point.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <string>
+#include <vector>
+
+#include "simulation/simulation.hpp"
+#include "support/scene_runs.hpp"
+
+namespace weft::simulation {
+namespace {
+
+using support::MeasuredFrame;
+using support::run_scene;
+using support::RunPlan;
+using support::scene_of_text;
+
+constexpr const char* kMaterial =
+    "material = { density = 0.2, stretch = [1000, 1000], shear = 100, bend = 1e-7, max_stretch = 0, max_shear = 0, "
+    "stretch_viscosity = 0, shear_viscosity = 0, bend_viscosity = 0, bend_friction = 0, thickness = 0.002, friction = "
+    "0, drag = 0 }\n";
+
+Vec3 centre(const std::vector<Vec3>& x) {
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& p : x) sum += p;
+  return sum / static_cast<double>(x.size());
+}
+
+/// A patch of 6 cm starts at rest 15 degrees from the bottom of a half pipe of 0.5 m.
+std::string half_pipe(const std::string& integrator) {
+  return "[time]\nduration = 0.4\nfps = 100\nstep = 0.01\nintegrator = \"" + integrator +
+         "\"\n[physics]\nair_density = 0\n[contact]\nself = false\n[[cloth]]\nname = \"patch\"\nsize = [0.06, 0.06]\n"
+         "particles = [7, 7]\nposition = [0, 0.12889, 0.51897]\nrotation = [15, 0, 0]\n" +
+         kMaterial +
+         "[[obstacle]]\nname = \"pipe\"\nshape = \"half_pipe\"\nradius = 0.5\nlength = 0.5\nthickness = 0.05\n"
+         "segments = 512\nposition = [0, 0, 1]\nfriction = 0\n";
+}
+
+/// Part of the energy of its fall that the patch has as motion at the bottom.
+double kept_at_the_bottom(const std::string& integrator) {
+  double most = 0, fall = 0, bottom = 0;
+  run_scene(scene_of_text(half_pipe(integrator)), {.judged = false, .keep_positions = true},
+            [&](const MeasuredFrame& frame) {
+              const Vec3 at = centre(frame.cloths[0]);
+              if (frame.report.frame == 0) bottom = 1 - std::hypot(at.y(), 1 - at.z()), fall = at.z() - bottom;
+              most = std::max(most, frame.report.kinetic_energy);
+            });
+  return most / (0.2 * 0.06 * 0.06 * 9.81 * fall);
+}
+
+// Implicit Euler damps a swing of frequency ω, ω² = g/R, by exp(−ω² h t) in energy: 0.933 down to the bottom at 10 ms.
+// With contact directions of where a step begins 0.38 of it was left.
+TEST(SlidingContact, LosesInAHalfPipeWhatTheMethodDampsAlone) {
+  const double quarter = 0.5 * std::numbers::pi * std::sqrt(0.5 / 9.81);
+  const double euler = std::exp(-9.81 / 0.5 * 0.01 * quarter);
+  EXPECT_NEAR(kept_at_the_bottom("implicit_euler"), euler, 0.02);
+  EXPECT_GT(kept_at_the_bottom("bdf2"), 0.97);
+}
+
+// Rounding alone is left: 1e-14 of it was seen.
+TEST(SlidingContact, SheetsThatCollideKeepTheirMomentum) {
+  for (const char* friction : {"0", "0.3"}) {
+    const std::string material = std::string(kMaterial).replace(std::string(kMaterial).find("friction = 0, drag"), 12,
+                                                                std::string("friction = ") + friction);
+    const scene::Scene scene = scene_of_text(
+        "[time]\nduration = 0.4\nfps = 25\nstep = 0.01\n[physics]\ngravity = [0, 0, 0]\nair_density = 0\n[[cloth]]\n"
+        "name = \"moving\"\nsize = [0.2, 0.2]\nparticles = [11, 11]\nposition = [0.03, 0.02, 0.06]\nrotation = [10, "
+        "20, "
+        "5]\nvelocity = [0.3, 0, -1]\n" +
+        material + "[[cloth]]\nname = \"still\"\nsize = [0.25, 0.25]\nparticles = [13, 13]\nposition = [0, 0, 0]\n" +
+        material);
+    // Centres of mass move evenly before and after; a particle of the border has half of the mass, one of a corner a
+    // quarter.
+    std::vector<Vec3> momentum_h;  // of a frame [kg m]
+    Vec3 before = Vec3::Zero();
+    double rubbed = 0;
+    run_scene(scene, {.judged = true, .keep_positions = true}, [&](const MeasuredFrame& frame) {
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t c = 0; c < 2; ++c) {
+        const int n = c == 0 ? 11 : 13;
+        const double cell = 0.2 * (c == 0 ? 0.04 : 0.0625) / ((n - 1) * (n - 1));
+        for (int j = 0; j < n; ++j)
+          for (int i = 0; i < n; ++i)
+            sum += cell * (i % (n - 1) == 0 ? 0.5 : 1) * (j % (n - 1) == 0 ? 0.5 : 1) *
+                   frame.cloths[c][static_cast<std::size_t>(j * n + i)];
+      }
+      EXPECT_EQ(frame.pairs, 0U);
+      if (frame.report.frame > 0) momentum_h.push_back(sum - before);
+      before = sum;
+      rubbed = std::max(rubbed, centre(frame.cloths[1]).norm());
+    });
+    EXPECT_GT(rubbed, 0.01) << "the sheet at rest was never hit";
+    // Positions of the snapshots are exact to 1e-16 m, steps of 0.04 s at 1 m/s.
+    EXPECT_LT((momentum_h.back() - momentum_h.front()).norm(), 1e-9 * momentum_h.front().norm()) << friction;
+  }
+}
+
+/// A napkin that falls onto a bar, all of it turned about the vertical by so many degrees.
+scene::Scene napkin(int turn) {
+  return scene_of_text(
+      "[time]\nduration = 0.4\n[[cloth]]\nname = \"napkin\"\nsize = [0.4, 0.4]\nparticles = [17, 17]\nposition = [0, "
+      "0, "
+      "0.5]\nrotation = [0, 12, " +
+      std::to_string(turn) +
+      "]\nmaterial = { fabric = \"ripstop\" }\n[[obstacle]]\nname = \"bar\"\nshape = \"cylinder\"\nradius = 0.03\n"
+      "height = 0.8\nposition = [0, 0, 0.4]\nrotation = [90, 0, " +
+      std::to_string(turn) + "]\n[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n");
+}
+
+// What the solver leaves hangs on the axes, and is told within a factor of three (`weft bench estimates`).
+TEST(SlidingContact, MovesTheSameWhereverTheAxesPoint) {
+  const auto run = [](int turn) { return run_scene(napkin(turn), {.judged = false, .keep_positions = true}); };
+  const auto straight = run(0), turned = run(90);
+  double said = 0;  // by both runs [m]
+  for (std::size_t k = 0; k < straight.size(); ++k) {
+    said += straight[k].report.solver_error + turned[k].report.solver_error;
+    double sum = 0;
+    const auto &x = straight[k].cloths[0], &y = turned[k].cloths[0];
+    for (std::size_t i = 0; i < x.size(); ++i) sum += (y[i] - Vec3(-x[i].y(), x[i].x(), x[i].z())).squaredNorm();
+    EXPECT_LE(std::sqrt(sum / static_cast<double>(x.size())), 3 * said + 1e-9) << "frame " << k;
+  }
+}
+
+// The steps decide how exact a run is, not the solver: that was 160 times as far off where this napkin crumpled to one
+// side. And where it falls symmetrically nothing stretches it: 0.3 % is twice what finer tolerances show.
+TEST(SlidingContact, TheSolverLeavesLessThanAThirdOfTheErrorOfTheSteps) {
+  double steps = 0, solver = 0, strain = 0;
+  for (const MeasuredFrame& frame : run_scene(napkin(0), {.judged = true})) {
+    steps += frame.report.error_estimate;
+    solver += frame.report.solver_error;
+    strain = std::max(strain, frame.report.max_strain);
+    EXPECT_EQ(frame.pairs, 0U);
+  }
+  EXPECT_LT(solver, steps / 3);
+  EXPECT_LT(strain, 0.003);
+}
+
+}  // namespace
+}  // namespace weft::simulation
