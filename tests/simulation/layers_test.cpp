@@ -92,7 +92,10 @@ TEST_F(Layers, ThatCrossOrLieTheWrongWayAroundGetOutsideOfWhatTheyAreWornOver) {
 }
 
 TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
-  const scene::Scene scene = dressed("preroll = 0.36\n");
+  scene::Scene scene = dressed("preroll = 0.36\n");
+  // Without friction: the shirt grips the vest so tightly that its speed with friction is chance.
+  for (scene::Cloth& cloth : scene.cloths) cloth.material.friction = 0;
+  for (scene::Obstacle& obstacle : scene.obstacles) obstacle.friction = 0;
   const std::vector<scene::Layer> layers = scene::list_layers(scene);
   ASSERT_EQ(layers.size(), 3U);
   EXPECT_EQ(layers[1].first_frame, -6);
@@ -108,8 +111,7 @@ TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
     EXPECT_EQ(three.state().positions.size(), vest);
     EXPECT_EQ(one.snapshot()->states[0].positions, three.snapshot()->states[1].positions) << frame;
   }
-  // And goes on from there as it fell: at 0.65 of the speed that it has alone, rubbing on the shirt, and at 0.25 if it
-  // stood still first.
+  // And goes on from there as it fell, with the speed that it has alone; at 0.25 of it if it stood still first.
   one.advance(), three.advance();
   EXPECT_EQ(three.state().positions.size(), 2 * vest);
   const auto speed = [&](const Simulation& simulation) {
@@ -117,7 +119,7 @@ TEST_F(Layers, ComeAfterEachOtherAndAreNotThereBefore) {
     for (std::size_t i = 0; i < vest; ++i) sum += simulation.state().velocities[i];
     return sum.z();
   };
-  EXPECT_GT(speed(three) / speed(one), 0.45);
+  EXPECT_NEAR(speed(three) / speed(one), 1, 0.25);
 }
 
 /// A sheet between jaws, whose pinned edge a ram pushes away, before and after another cloth comes, if there is one.
