@@ -89,11 +89,12 @@ double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   return sum_over_particles({0, static_cast<Index>(a.size())}, [&](std::size_t i) { return a[i].dot(b[i]); });
 }
 
-// The largest coordinate [m].
-double size_of(std::span<const Vec3> x) {
-  return parallel_max(x.size(), kParticlesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
+// The largest coordinate of a part [m].
+double size_of(const solver::Part& rows, std::span<const Vec3> x) {
+  const auto part = x.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.end - rows.begin));
+  return parallel_max(part.size(), kParticlesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
     double largest = 0;
-    for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, x[i].cwiseAbs().maxCoeff());
+    for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, part[i].cwiseAbs().maxCoeff());
     return largest;
   });
 }
@@ -188,8 +189,8 @@ void Stepper::allow_velocities(double h) {
   if (parameters_.position_tolerance > 0) unseen = std::min(unseen, parameters_.position_tolerance);
   for (PartState& part : parts_) {
     const double error = std::max(kVelocityShare * part.velocity_error, std::max(part.local_error, unseen) / time);
-    part.allowed = std::max(parameters_.tolerance * error, rounding_);
-    part.may_slide = std::max({kSlidingShare * part.allowed, parameters_.tolerance * unseen / time, rounding_});
+    part.allowed = std::max(parameters_.tolerance * error, part.rounding);
+    part.may_slide = std::max({kSlidingShare * part.allowed, parameters_.tolerance * unseen / time, part.rounding});
   }
 }
 
@@ -327,14 +328,13 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   beta_ = stage.beta;
   linear.metric.resize(n);
   for_each_particle(n, [&](std::size_t i) { linear.metric[i] = masses[i] / (stage.beta * stage.beta); });
-  rounding_ = kRoundings * std::numeric_limits<double>::epsilon() * size_of({now.x.data(), n}) / beta_;
   prepare_guess(system, now, stage, h, gravity);
   if (start == Start::next)
     for (std::size_t i = 0; i < n; ++i) x_[i] = now.x[i] + (next.x[i] - now.x[i]) / stage.end_rate;
   next.x.resize(now.x.size());
   next.v.resize(n);
   hold(now, stage, held, linear.constraints);
-  list_parts(masses, linear);
+  list_parts(masses, now, linear);
 
   const int done = start == Start::next ? std::exchange(unfinished_, 0) : 0;
   StepReport report;
@@ -385,13 +385,14 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   return report;
 }
 
-void Stepper::list_parts(std::span<const double> masses, const solver::LinearSystem& linear) {
+void Stepper::list_parts(std::span<const double> masses, const State& now, const solver::LinearSystem& linear) {
   parts_.clear();
   unsolved_.clear();
   for (const solver::Part& rows : solver::parts_of(linear)) {
     PartState& part = parts_.emplace_back();
     part.rows = rows;
     for (auto i = rows.begin; i < rows.end; ++i) part.mass += masses[i];
+    part.rounding = kRoundings * std::numeric_limits<double>::epsilon() * size_of(rows, now.x) / beta_;
     part.is_held = is_held(rows, linear.constraints);
     // The first iteration is for all: cloth that creeps within the tolerance would never stop.
     unsolved_.push_back(unsolved_.size());
