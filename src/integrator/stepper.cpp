@@ -123,7 +123,9 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
     vector->resize(n);
   std::copy_n(now.x.begin(), n, x_hat_.begin());
   v_hat_ = now.v;
+  past_.clear();
   if (method_ == Method::implicit_midpoint) return {0.5 * h, 2};
+  past_.push_back({{now.x.data(), n}, 1});
   if (is_first_order(h)) return {h, 1};
 
   // BDF2 with variable steps; those who choose them keep to longest_step().
@@ -133,6 +135,7 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
     x_hat_[i] = now_weight * now.x[i] - before_weight * history_.before.x[i];
     v_hat_[i] = now_weight * now.v[i] - before_weight * history_.before.v[i];
   });
+  past_ = {{{now.x.data(), n}, now_weight}, {history_.before.x, -before_weight}};
   return {h * (1 + r) / (1 + 2 * r), 1};
 }
 
@@ -156,7 +159,7 @@ void Stepper::gather_residual(std::span<const double> masses, const Stage& stage
 void Stepper::linearise(System& system, const State& now, const Stage& stage, int iteration) {
   const Stopwatch watch(times_.forces);
   evaluate(now, stage);
-  system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, iteration, force_);
+  system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, iteration, force_);
 }
 
 // P⁻¹ of it, valid until the next call.
@@ -169,7 +172,7 @@ std::span<const Vec3> Stepper::precondition(std::span<const Vec3> residual) {
 void Stepper::residual(System& system, const State& now, const Stage& stage, Equation equation) {
   const Stopwatch watch(times_.forces);
   evaluate(now, stage);
-  const StagePoint at{x_, v_, x_end_, 1 / stage.beta, stage.end_rate};
+  const StagePoint at{x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_};
   equation == Equation::itself ? system.forces(at, force_) : system.linear_forces(at, force_);
   gather_residual(system.masses(), stage);
 }

@@ -191,6 +191,7 @@ class Stepper {
   std::vector<std::size_t> unsolved_;
   // Per part: energy norms that may be left, and velocities [m/s].
   std::vector<double> goals_, foreseen_, changes_, speeds_;
+  std::vector<Past> past_;
   std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, scratch_;
 };
 
