@@ -25,7 +25,8 @@ CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& par
       reach_(reach),
       broad_phase_(bodies.surfaces(), x, options_of(parameters)),
       from_(x.begin(), x.end()),
-      low_(from_) {
+      low_(from_),
+      clear_(bodies.size()) {
   for (std::size_t a = 0; a < bodies.size(); ++a) {
     if (!bodies[a].deformable) continue;
     if (parameters.self) wanted_.push_back({a, a});
@@ -50,11 +51,13 @@ CandidatePairs& CandidateCache::collect_more(std::span<const Vec3> x_t0, std::sp
 
 CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<const Vec3> low_t1,
                                         std::span<const Vec3> high_t1) {
+  const Motion motion(x_t0, low_t1, high_t1);
+  find_clear_bodies(motion);
   double way = 0;
   for (std::size_t i = 0; i < x_t0.size(); ++i)
-    way = std::max(way, (high_t1[i] - x_t0[i]).cwiseMax(x_t0[i] - low_t1[i]).maxCoeff());
+    if (!is_clear(bodies_.body_of(static_cast<Index>(i))))
+      way = std::max(way, (high_t1[i] - x_t0[i]).cwiseMax(x_t0[i] - low_t1[i]).maxCoeff());
   const double margin = (0.5 + (parameters_.reuse && way < kSkin * reach_ ? kSkin : 0.0)) * reach_;
-  const Motion motion(x_t0, low_t1, high_t1);
   refit(motion, margin);
   pairs_.clear();
   for (const auto& [a, b] : wanted_) a == b ? broad_phase_.self_pairs(a, pairs_) : broad_phase_.pairs(a, b, pairs_);
@@ -68,6 +71,28 @@ void CandidateCache::cover(const Motion& motion, double margin) {
   high_.clear();
   if (motion.high_t1.data() != motion.low_t1.data()) high_.assign(motion.high_t1.begin(), motion.high_t1.end());
   margin_ = margin;
+}
+
+// By the box of all cloth: bounds of both sides grow by a margin of one reach at most.
+void CandidateCache::find_clear_bodies(const Motion& motion) {
+  const auto extend = [&](std::size_t body, Box3& box) {
+    for (std::span<const Vec3> x : {motion.x_t0, motion.low_t1, motion.high_t1})
+      for (const Vec3& place : bodies_.part(body, x)) box.extend(place);
+  };
+  Box3 cloth;
+  for (std::size_t b = 0; b < bodies_.size(); ++b)
+    if (bodies_[b].deformable) extend(b, cloth);
+  for (std::size_t b = 0; b < bodies_.size(); ++b) {
+    clear_[b] = {};
+    if (bodies_[b].deformable) continue;
+    Box3 box;
+    extend(b, box);
+    for (int axis = 0; axis < 3; ++axis)
+      for (const double sign : {1.0, -1.0}) {
+        const double from = 2 * reach_ + (sign > 0 ? cloth.max()[axis] : -cloth.min()[axis]);
+        if ((sign > 0 ? box.min()[axis] : -box.max()[axis]) >= from) clear_[b] = {axis, sign, from};
+      }
+  }
 }
 
 // A still obstacle keeps the bounds it has.
@@ -86,13 +111,17 @@ bool CandidateCache::covers_start(std::span<const Vec3> x) const {
   if (margin_ < 0) return false;
   const double skin = margin_ - 0.5 * reach_;
   for (std::size_t i = 0; i < x.size(); ++i)
-    if (!((x[i] - from_[i]).squaredNorm() <= skin * skin)) return false;
+    if (!((x[i] - from_[i]).squaredNorm() <= skin * skin) && !is_kept_clear(i, x[i])) return false;
   return true;
 }
 
-// Whether x is no farther than the margin from where the vertex was to end.
+bool CandidateCache::is_kept_clear(std::size_t vertex, const Vec3& x) const {
+  return clear_[bodies_.body_of(static_cast<Index>(vertex))].holds(x);
+}
+
+// Whether x is no farther than the margin from where the vertex was to end, or its body is out of everything's way.
 bool CandidateCache::is_at_end(std::size_t vertex, const Vec3& x, double margin) const {
-  return (x - high_end()[vertex]).cwiseMax(low_[vertex] - x).maxCoeff() <= margin;
+  return (x - high_end()[vertex]).cwiseMax(low_[vertex] - x).maxCoeff() <= margin || is_kept_clear(vertex, x);
 }
 
 bool CandidateCache::covers_end(std::span<const Vec3> x) const {

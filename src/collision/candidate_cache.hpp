@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -23,6 +24,8 @@ struct SearchParameters {
 /// Pairs are collected for the way of all vertices from x_t0 to x_t1, with bounds enlarged by a margin at both ends.
 /// They hold for every other way whose ends are inside those bounds, and what was near the reach then tells who can be
 /// within it while no vertex has left its start by more than the rest of the margin: cloth at rest is searched once.
+/// An obstacle that an axis keeps clear of all cloth is left alone while that axis does: however it moves, it changes
+/// neither what is collected nor when.
 /// What moves along with each other is not listed: bounds of the whole way, from start to end, listed 70 pairs a
 /// particle where those of its ends list 4 (sphere_drape at 256², falling over the edge of the ball).
 class CandidateCache {
@@ -61,8 +64,12 @@ class CandidateCache {
 
   /// For who collects by other means: pairs hold for ways within `margin` [m] of the one from x_t0 to x_t1.
   void cover(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
+    find_clear_bodies(Motion(x_t0, x_t1));
     cover(Motion(x_t0, x_t1), margin);
   }
+
+  /// Whether cloth could not meet a body when pairs were last collected, and cannot as long as they are covered.
+  bool is_clear(std::size_t body) const { return clear_[body].sign != 0; }
 
   /// The pairs of surfaces that are looked at.
   const std::vector<SurfacePair>& wanted() const { return wanted_; }
@@ -84,6 +91,8 @@ class CandidateCache {
  private:
   void cover(const Motion& motion, double margin);
   void refit(const Motion& motion, double margin);
+  void find_clear_bodies(const Motion& motion);
+  bool is_kept_clear(std::size_t vertex, const Vec3& x) const;
   bool is_at_end(std::size_t vertex, const Vec3& x, double margin) const;
 
   const Bodies& bodies_;
@@ -95,6 +104,14 @@ class CandidateCache {
   // What they are good for: starts and ends of vertices no farther than the margin from here [m].
   std::vector<Vec3> from_, low_, high_;  // the last one only where it is another than the one before
   double margin_ = -1;                   // negative: there are none
+  /// Half of space without cloth: where sign · x[axis] >= from. Both ends of a way in it, all of the way is.
+  struct HalfSpace {
+    int axis = 0;
+    double sign = 0;                                        // ±1; 0: there is none
+    double from = std::numeric_limits<double>::infinity();  // [m]
+    bool holds(const Vec3& x) const { return sign * x[axis] >= from; }
+  };
+  std::vector<HalfSpace> clear_;  // per body: one that holds it
 };
 
 }  // namespace weft::collision

@@ -105,6 +105,8 @@ class Engine {
   const Bodies& bodies() const { return bodies_; }
   /// Distance below which features are near [m].
   double reach() const { return candidates_.reach(); }
+  /// Whether cloth cannot meet a body in the step that was begun last: what that does then has no influence.
+  bool is_clear(std::size_t body) const { return candidates_.is_clear(body); }
 
  private:
   void collect(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);

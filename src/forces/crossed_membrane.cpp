@@ -169,11 +169,18 @@ void CrossedMembrane::add(const Evaluation& at) const {
       const Vec2 length = lengths_of(s, bulge, state);
       const Vec2 added_rate = state.height * height_rate * bulge.of_height + 0.5 * skew_rate * bulge.of_skew;
       const double u = length.x(), v = length.y();
-      const double u_rate = (s.u.dot(s_rate.u) + added_rate.x()) / u, v_rate = (s.v.dot(s_rate.v) + added_rate.y()) / v;
-      const double weft = (stretch_.weft * (u - 1) + stretch_.viscosity * u_rate) / u;
-      const double warp = (stretch_.warp * (v - 1) + stretch_.viscosity * v_rate) / v;
-      const double stress =
-          0.5 * (shear_.modulus * s.u.dot(s.v) + shear_.viscosity * (s_rate.u.dot(s.v) + s.u.dot(s_rate.v)));
+      Vec3 strain_rate = Vec3::Zero();
+      if (viscous)
+        strain_rate = at.rate_of(
+            Vec3(u, v, s.u.dot(s.v)),
+            [&](std::span<const Vec3> x) { return strains_of(c, k, state_of(cell, vectors_of(cell, x))); },
+            [&] {
+              return Vec3((s.u.dot(s_rate.u) + added_rate.x()) / u, (s.v.dot(s_rate.v) + added_rate.y()) / v,
+                          s_rate.u.dot(s.v) + s.u.dot(s_rate.v));
+            });
+      const double weft = (stretch_.weft * (u - 1) + stretch_.viscosity * strain_rate[0]) / u;
+      const double warp = (stretch_.warp * (v - 1) + stretch_.viscosity * strain_rate[1]) / v;
+      const double stress = 0.5 * (shear_.modulus * s.u.dot(s.v) + shear_.viscosity * strain_rate[2]);
       const Vec3 along_u = element.area * (weft * s.u + stress * s.v);
       const Vec3 along_v = element.area * (warp * s.v + stress * s.u);
       for (std::size_t i = 0; i < 3; ++i)
@@ -216,6 +223,13 @@ CrossedMembrane::Bulge CrossedMembrane::bulge_of(const Cell& cell, const Element
 Vec2 CrossedMembrane::lengths_of(const Gradient& s, const Bulge& bulge, const State& state) {
   const Vec2 added = state.height * state.height * bulge.of_height + state.skew * bulge.of_skew;
   return (Vec2(s.u.squaredNorm(), s.v.squaredNorm()) + added).cwiseSqrt().cwiseMax(kCollapsed);
+}
+
+Vec3 CrossedMembrane::strains_of(std::size_t c, std::size_t k, const State& state) const {
+  const Element& element = elements()[4 * c + k];
+  const Gradient s = gradient_of(element, state.flat, k);
+  const Vec2 length = lengths_of(s, bulge_of(cells_[c], element), state);
+  return {length.x(), length.y(), s.u.dot(s.v)};
 }
 
 // k (1 − lateral) ∂L ∂Lᵀ of each length L, and the like of the shear. Then what the stresses pull straight: across n

@@ -69,6 +69,8 @@ class CrossedMembrane final : public TriangleMembrane {
   static Gradient gradient_of(const Element& element, const Five& flat, std::size_t k);
   static Bulge bulge_of(const Cell& cell, const Element& element);
   static Vec2 lengths_of(const Gradient& s, const Bulge& bulge, const State& state);
+  /// Lengths along weft and warp of triangle k of a cell as it lies, and its shear.
+  Vec3 strains_of(std::size_t cell, std::size_t k, const State& state) const;
   static void pull_back(const State& state, Five& force, double along_height, double along_skew);
   static void push_forward(const State& state, Five& flat, double& height, double& skew);
   Blocks blocks_of(std::size_t cell, const State& state, double rate, Lateral lateral_of, bool definite) const;

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/past.hpp"
 #include "core/types.hpp"
 #include "mesh/mesh.hpp"
 #include "mesh/sheet.hpp"
@@ -51,6 +52,8 @@ struct Evaluation {
   /// gradients and descent need. Of none: forces only.
   solver::AssemblyRows assembly = {};
   double rate = 0;  ///< dv/dx of the integration scheme, v = rate (x − x̂) [1/s]; 0: none
+  /// What v is taken from; of none: rates are those of v at x.
+  std::span<const Past> past = {};
   Linearisation linearisation = Linearisation::definite;
   /// Which of the ranges that the force was cut into this is for; kAll: all in one go.
   static constexpr std::size_t kAll = std::numeric_limits<std::size_t>::max();
@@ -59,6 +62,17 @@ struct Evaluation {
   std::span<const solver::Quad<double>> air = {};
   /// Where the locks of a cloth's threads are linearised; without, at x.
   const LockLag* locks = nullptr;
+
+  /// Rate of a quantity of the positions, which is `now` at x; where there is no past, that of v, `by_velocity()`.
+  /// Viscosity goes by it: with ∂q/∂x v implicit Euler takes what turns by θ in a step for longer by 1 − cos θ, stiff
+  /// viscosity then shortens it by that, step by step, and the work of the threads' compression came from nowhere.
+  template <class Quantity, class OfPlaces, class ByVelocity>
+  Quantity rate_of(const Quantity& now, const OfPlaces& of_places, const ByVelocity& by_velocity) const {
+    if (past.empty()) return by_velocity();
+    Quantity change = now;
+    for (const Past& before : past) change = change - before.weight * of_places(before.x);
+    return rate * change;
+  }
 };
 
 /// A force on the particles of one cloth. `first` is the cloth's first particle in the global numbering.

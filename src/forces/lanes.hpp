@@ -51,6 +51,9 @@ struct VecLanes {
   }
 };
 
+inline VecLanes operator*(double s, const VecLanes& a) {
+  return lanes_of(s) * a;
+}
 inline VecLanes lanes_of(const Vec3& a) {
   return {lanes_of(a.x()), lanes_of(a.y()), lanes_of(a.z())};
 }

@@ -61,7 +61,8 @@ Shear::Strain Shear::strain(const Cell& cell, std::span<const Vec3> x) {
   return s;
 }
 
-Shear::StrainLanes Shear::strain(const Cells& cells, std::span<const solver::Quad<double>> x) {
+template <class Points>
+Shear::StrainLanes Shear::strain(const Cells& cells, Points x) {
   const VecLanes main = gather(x, cells.corners[3]) - gather(x, cells.corners[0]),
                  cross = gather(x, cells.corners[1]) - gather(x, cells.corners[2]);
   return {cells.half_u * (main + cross), cells.half_v * (main - cross)};
@@ -79,8 +80,15 @@ void Shear::add(const Evaluation& at) const {
     const Lanes c = dot(s.su, s.sv);
     Lanes stress = cells.elasticity * c;
     if (viscous_) {
-      const StrainLanes rate = strain(cells, at.v);
-      stress += cells.viscosity * (dot(rate.su, s.sv) + dot(s.su, rate.sv));
+      const auto then = [&](std::span<const Vec3> x) {
+        const StrainLanes of_then = strain(cells, x);
+        return dot(of_then.su, of_then.sv);
+      };
+      const auto by_velocity = [&] {
+        const StrainLanes rate = strain(cells, at.v);
+        return dot(rate.su, s.sv) + dot(s.su, rate.sv);
+      };
+      stress += cells.viscosity * at.rate_of(c, then, by_velocity);
     }
     // ∂c/∂x_k; opposite corners get opposite signs, so two vectors serve all four.
     const VecLanes u_part = stress * cells.half_u * s.sv, v_part = stress * cells.half_v * s.su;

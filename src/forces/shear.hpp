@@ -56,7 +56,8 @@ class Shear final : public Force {
   struct StrainLanes {
     VecLanes su, sv;
   };
-  static StrainLanes strain(const Cells& cells, std::span<const solver::Quad<double>> x);
+  template <class Points>
+  static StrainLanes strain(const Cells& cells, Points x);
   static void add_stiffness(const Cells& cells, const StrainLanes& s, const Lanes& c, const Evaluation& at);
 
   bool viscous_;

@@ -59,7 +59,14 @@ void Stretch::add(const Evaluation& at) const {
     const Lanes length = max(sqrt(dot(d, d)), 1e-12 * edges.rest_length);
     const VecLanes n = 1 / length * d;
     Lanes tension = edges.elasticity * (length - edges.rest_length);
-    if (viscous_) tension += edges.viscosity * dot(n, gather(at.v, edges.j) - gather(at.v, edges.i));
+    if (viscous_)
+      tension += edges.viscosity * at.rate_of(
+                                       length,
+                                       [&](std::span<const Vec3> x) {
+                                         const VecLanes then = gather(x, edges.j) - gather(x, edges.i);
+                                         return sqrt(dot(then, then));
+                                       },
+                                       [&] { return dot(n, gather(at.v, edges.j) - gather(at.v, edges.i)); });
     const VecLanes pull = tension * n;
     forces::add(at.force, edges.i, pull);
     subtract(at.force, edges.j, pull);

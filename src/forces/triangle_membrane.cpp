@@ -107,11 +107,15 @@ TriangleMembrane::Gradient TriangleMembrane::gradient(const Element& element, st
   return {gp.x() * p + gq.x() * q, gp.y() * p + gq.y() * q};
 }
 
-TriangleMembrane::GradientLanes TriangleMembrane::gradient(const Triangles& t,
-                                                           std::span<const solver::Quad<double>> x) {
+template <class Points>
+TriangleMembrane::GradientLanes TriangleMembrane::gradient(const Triangles& t, Points x) {
   const VecLanes origin = gather(x, t.corners[0]);
   const VecLanes p = gather(x, t.corners[1]) - origin, q = gather(x, t.corners[2]) - origin;
   return {t.along[1] * p + t.along[2] * q, t.across[1] * p + t.across[2] * q};
+}
+
+VecLanes TriangleMembrane::strains_of(const GradientLanes& s) {
+  return {length_of(s.u), length_of(s.v), dot(s.u, s.v)};
 }
 
 void TriangleMembrane::cut(std::span<const Index> bounds) {
@@ -124,15 +128,21 @@ void TriangleMembrane::add(const Evaluation& at) const {
   ranges_.for_each(at.range, packs_.size(), [&](std::size_t p) {
     const Triangles& t = packs_[p];
     const GradientLanes s = gradient(t, at.x);
-    const Lanes length_u = length_of(s.u), length_v = length_of(s.v), shear = dot(s.u, s.v);
+    const VecLanes strains = strains_of(s);
+    const auto& [length_u, length_v, shear] = strains;
     // Tensions k (‖s‖ − 1) with viscosity, over ‖s‖, and the shear stress ½ μ ⟨s_u, s_v⟩ with viscosity [N/m].
     Lanes tension_u = stretch_.weft * (length_u - 1), tension_v = stretch_.warp * (length_v - 1);
     Lanes stress = 0.5 * shear_.modulus * shear;
     if (viscous) {
-      const GradientLanes rate = gradient(t, at.v);
-      tension_u += stretch_.viscosity * dot(s.u, rate.u) / length_u;
-      tension_v += stretch_.viscosity * dot(s.v, rate.v) / length_v;
-      stress += 0.5 * shear_.viscosity * (dot(rate.u, s.v) + dot(s.u, rate.v));
+      const auto by_velocity = [&]() -> VecLanes {
+        const GradientLanes rate = gradient(t, at.v);
+        return {dot(s.u, rate.u) / length_u, dot(s.v, rate.v) / length_v, dot(rate.u, s.v) + dot(s.u, rate.v)};
+      };
+      const VecLanes rate = at.rate_of(
+          strains, [&](std::span<const Vec3> x) { return strains_of(gradient(t, x)); }, by_velocity);
+      tension_u += stretch_.viscosity * rate.x;
+      tension_v += stretch_.viscosity * rate.y;
+      stress += 0.5 * shear_.viscosity * rate.z;
     }
     const VecLanes along = t.area * (tension_u / length_u * s.u + stress * s.v),
                    across = t.area * (tension_v / length_v * s.v + stress * s.u);

@@ -68,7 +68,10 @@ class TriangleMembrane : public Membrane {
   static void use_rest(const Eigen::Matrix2d& inverse, Element& element);
   static Eigen::Matrix2d stretch_of(const Gradient& s);
   static Gradient gradient(const Element& element, std::span<const Vec3> x);
-  static GradientLanes gradient(const Triangles& triangles, std::span<const solver::Quad<double>> x);
+  template <class Points>
+  static GradientLanes gradient(const Triangles& triangles, Points x);
+  /// ‖s_u‖, ‖s_v‖ and ⟨s_u, s_v⟩.
+  static VecLanes strains_of(const GradientLanes& s);
   void pack();
   void add_stiffness(const Triangles& triangles, const GradientLanes& s, const Lanes& length_u, const Lanes& length_v,
                      const Lanes& shear, const Evaluation& at) const;

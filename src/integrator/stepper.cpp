@@ -26,9 +26,7 @@ constexpr double kUndershoot = 0.5, kFarthest = 4;
 // A part of the system (a cloth) is left alone while what is left of it is below this share of what may be.
 constexpr double kSolvedShare = 0.5;
 // Iterations of a solve from which all are solved for again: parts that press on each other and are solved in turns may
-// chase each other (three layers between plates that slide, steps of 40 ms: no solution in 60 iterations). So may their
-// frictions, and whole cloths may slide wrongly from then on: the first 90 frames of multi_sheet take 2,867 iterations,
-// 3,295 and a rejected step where that waits for the twentieth, 2,891 where it is never asked for.
+// chase each other (three layers between plates that slide, steps of 40 ms: no solution in 60 iterations).
 constexpr int kTogether = 10;
 // What Newton leaves is a wrong velocity, the same way in step after step: it moves the cloth on. This is for how long
 // it counts [s]: the time of a swing of cloth of a metre, in which the method's own errors of velocity do as much as
@@ -83,11 +81,12 @@ double dot(std::span<const Vec3> a, std::span<const Vec3> b) {
   return sum_over_particles({0, static_cast<Index>(a.size())}, [&](std::size_t i) { return a[i].dot(b[i]); });
 }
 
-// The largest coordinate [m].
-double size_of(std::span<const Vec3> x) {
-  return parallel_max(x.size(), kParticlesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
+// The largest coordinate of a part [m].
+double size_of(const solver::Part& rows, std::span<const Vec3> x) {
+  const auto part = x.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.end - rows.begin));
+  return parallel_max(part.size(), kParticlesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
     double largest = 0;
-    for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, x[i].cwiseAbs().maxCoeff());
+    for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, part[i].cwiseAbs().maxCoeff());
     return largest;
   });
 }
@@ -116,7 +115,9 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
     vector->resize(n);
   std::copy_n(now.x.begin(), n, x_hat_.begin());
   v_hat_ = now.v;
+  past_.clear();
   if (method_ == Method::implicit_midpoint) return {0.5 * h, 2};
+  past_.push_back({{now.x.data(), n}, 1});
   if (is_first_order(h)) return {h, 1};
 
   // BDF2 with variable steps; those who choose them keep to longest_step().
@@ -126,6 +127,7 @@ Stepper::Stage Stepper::begin(const State& now, double h) {
     x_hat_[i] = now_weight * now.x[i] - before_weight * history_.before.x[i];
     v_hat_[i] = now_weight * now.v[i] - before_weight * history_.before.v[i];
   });
+  past_ = {{{now.x.data(), n}, now_weight}, {history_.before.x, -before_weight}};
   return {h * (1 + r) / (1 + 2 * r), 1};
 }
 
@@ -149,7 +151,7 @@ void Stepper::gather_residual(std::span<const double> masses, const Stage& stage
 void Stepper::linearise(System& system, const State& now, const Stage& stage, int iteration) {
   const Stopwatch watch(times_.forces);
   evaluate(now, stage);
-  system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate}, iteration, force_);
+  system.linearise({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, iteration, force_);
 }
 
 // P⁻¹ of it, valid until the next call.
@@ -162,7 +164,7 @@ std::span<const Vec3> Stepper::precondition(std::span<const Vec3> residual) {
 void Stepper::residual(System& system, const State& now, const Stage& stage, Equation equation) {
   const Stopwatch watch(times_.forces);
   evaluate(now, stage);
-  const StagePoint at{x_, v_, x_end_, 1 / stage.beta, stage.end_rate};
+  const StagePoint at{x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_};
   equation == Equation::itself ? system.forces(at, force_) : system.linear_forces(at, force_);
   gather_residual(system.masses(), stage);
 }
@@ -182,8 +184,8 @@ void Stepper::allow_velocities(double h, int iterations) {
   for (PartState& part : parts_) {
     double error = std::max(part.local_error, unseen) / time;
     if (iterations >= kPatience) error = std::max(error, kVelocityRatio * part.velocity_error);
-    part.allowed = std::max(parameters_.tolerance * error, rounding_);
-    part.may_slide = std::max({kSlidingShare * part.allowed, parameters_.tolerance * unseen / time, rounding_});
+    part.allowed = std::max(parameters_.tolerance * error, part.rounding);
+    part.may_slide = std::max({kSlidingShare * part.allowed, parameters_.tolerance * unseen / time, part.rounding});
   }
 }
 
@@ -321,14 +323,13 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   beta_ = stage.beta;
   linear.metric.resize(n);
   for_each_particle(n, [&](std::size_t i) { linear.metric[i] = masses[i] / (stage.beta * stage.beta); });
-  rounding_ = kRoundings * std::numeric_limits<double>::epsilon() * size_of({now.x.data(), n}) / beta_;
   prepare_guess(system, now, stage, h, gravity);
   if (start == Start::next)
     for (std::size_t i = 0; i < n; ++i) x_[i] = now.x[i] + (next.x[i] - now.x[i]) / stage.end_rate;
   next.x.resize(now.x.size());
   next.v.resize(n);
   hold(now, stage, held, linear.constraints);
-  list_parts(masses, linear);
+  list_parts(masses, now, linear);
 
   const int done = start == Start::next ? std::exchange(unfinished_, 0) : 0;
   StepReport report;
@@ -380,13 +381,14 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   return report;
 }
 
-void Stepper::list_parts(std::span<const double> masses, const solver::LinearSystem& linear) {
+void Stepper::list_parts(std::span<const double> masses, const State& now, const solver::LinearSystem& linear) {
   parts_.clear();
   unsolved_.clear();
   for (const solver::Part& rows : solver::parts_of(linear)) {
     PartState& part = parts_.emplace_back();
     part.rows = rows;
     for (auto i = rows.begin; i < rows.end; ++i) part.mass += masses[i];
+    part.rounding = kRoundings * std::numeric_limits<double>::epsilon() * size_of(rows, now.x) / beta_;
     part.is_held = is_held(rows, linear.constraints);
     // The first iteration is for all: cloth that creeps within the tolerance would never stop.
     unsolved_.push_back(unsolved_.size());

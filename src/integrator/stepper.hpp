@@ -140,6 +140,7 @@ class Stepper {
     double velocity_error = 0;  // likewise of the velocity, where it is known [m/s]
     double allowed = 0;         // velocity that may be left [m/s]
     double left = 0;            // velocity that is left [m/s]
+    double rounding = 0;        // velocity that is lost in the roundings of its positions [m/s]
     bool is_held = false;       // somewhere, against sliding too
     double may_slide = 0;       // velocity of all of it by which friction may be off [m/s]
     double slides = 0;          // by which it is off, where it is about to slide [m/s]
@@ -153,7 +154,7 @@ class Stepper {
   void prepare_guess(const System& system, const State& now, const Stage& stage, double h, const Vec3& gravity);
   void hold(const State& now, const Stage& stage, std::span<const HeldParticle> held,
             std::vector<solver::ParticleConstraint>& constraints);
-  void list_parts(std::span<const double> masses, const solver::LinearSystem& linear);
+  void list_parts(std::span<const double> masses, const State& now, const solver::LinearSystem& linear);
   std::span<const Vec3> likely_change(std::span<const double> masses, const State& now);
   solver::LinearReport solve_linear(int iteration, std::span<const Vec3> start);
   double search_along_delta(System& system, const State& now, const Stage& stage);
@@ -180,9 +181,8 @@ class Stepper {
   Method method_;
   NewtonParameters parameters_;
   History history_;
-  double beta_ = 0;      // of the last stage [s]
-  double rounding_ = 0;  // velocity in it that is lost in the roundings of positions [m/s]
-  int unfinished_ = 0;   // iterations of the last solve, where that ended for a look
+  double beta_ = 0;     // of the last stage [s]
+  int unfinished_ = 0;  // iterations of the last solve, where that ended for a look
 
   // Scratch of one step.
   StageTimes times_;
@@ -192,6 +192,7 @@ class Stepper {
   std::vector<std::size_t> unsolved_;
   // Per part: energy norms that may be left, and velocities [m/s].
   std::vector<double> goals_, foreseen_, changes_, speeds_;
+  std::vector<Past> past_;
   std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, scratch_;
 };
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "core/past.hpp"
 #include "core/types.hpp"
 #include "solver/linear_system.hpp"
 
@@ -22,6 +23,8 @@ struct StagePoint {
   std::span<const Vec3> x_end;  ///< positions at the end of the step that this stage leads to; contacts act there
   double rate = 0;              ///< dv/dx = 1/β [1/s]
   double end_rate = 1;          ///< dx_end/dx: 1, or 2 for the midpoint rule
+  /// What x̂ is made of; empty with the midpoint rule, with which ∂q/∂x v is the change of a quadratic q in the step.
+  std::span<const Past> past = {};
 };
 
 class System {

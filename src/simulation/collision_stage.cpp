@@ -203,14 +203,25 @@ bool CollisionStage::turns_too_far(double t, double h, const Moment& now) const 
 bool CollisionStage::bodies_stay(double t0, double t1, Moment& now, Moment& next) const {
   place_bodies(t0, now);
   place_bodies(t1, next);
-  const auto first = static_cast<std::ptrdiff_t>(particles_);
-  return std::equal(now.x.begin() + first, now.x.end(), next.x.begin() + first);
+  const Box3 cloth = mesh::bounding_box(now.particles());
+  const collision::Bodies& bodies = engine_.bodies();
+  for (std::size_t b = environment_.cloths.size(); b < bodies.size(); ++b) {
+    const auto from = bodies.part(b, std::span<const Vec3>(now.x)), to = bodies.part(b, std::span<const Vec3>(next.x));
+    if (std::ranges::equal(from, to)) continue;
+    Box3 way = mesh::bounding_box(from).merged(mesh::bounding_box(to));
+    way.min().array() -= engine_.reach();
+    way.max().array() += engine_.reach();
+    if (way.intersects(cloth)) return false;
+  }
+  return true;
 }
 
 bool CollisionStage::obstacles_creep(const Moment& now, const Moment& next) const {
   const double most = kCreep * engine_.reach();
   for (std::size_t v = particles_; v < now.x.size(); ++v)
-    if ((next.x[v] - now.x[v]).squaredNorm() > most * most) return false;
+    if ((next.x[v] - now.x[v]).squaredNorm() > most * most &&
+        !engine_.is_clear(engine_.bodies().body_of(static_cast<Index>(v))))
+      return false;
   return true;
 }
 

@@ -59,7 +59,7 @@ class CollisionStage {
   /// that the search takes it for.
   bool turns_too_far(double t, double h, const Moment& now) const;
 
-  /// Whether all bodies are at t1 where they are at t0 [s], the time of `now`.
+  /// Whether all bodies that come near the cloth are at t1 where they are at t0 [s], the time of `now`.
   bool bodies_stay(double t0, double t1, Moment& now, Moment& next) const;
 
   /// Whether no obstacle moves so far between these that a shorter step could find room for cloth.

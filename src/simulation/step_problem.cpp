@@ -149,6 +149,7 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int 
     if (!chosen_[cloth]) return;
     forces::Evaluation evaluation{memory_.x, memory_.v, forces::ForceRows(memory_.force, begin, end)};
     evaluation.rate = at.rate;
+    evaluation.past = at.past;
     evaluation.range = number;
     evaluation.air = air_;
     if (assemble) {

@@ -57,6 +57,9 @@ class StepProblem final : public integrator::System {
   /// Within a step, where its contacts are others now.
   void forget_contacts() { memory_.contacts = {{}, {}, {}, memory_.contacts.updates}; }
 
+  /// Before a step is solved anew: friction goes by the loads of its start, whatever they become.
+  void keep_loads() { memory_.contacts = {{}, {}, {}, collision::ContactSet::kLoadUpdates}; }
+
   /// Makes the next linearisation put the matrix together anew: what is computed from here on depends on positions and
   /// velocities alone.
   void forget();

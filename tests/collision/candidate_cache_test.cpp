@@ -207,6 +207,33 @@ TEST(CandidateCache, WhatIsNotWantedIsLeftOut) {
 }
 
 // The bounds of a still obstacle stay as they are only while it is where they were fitted.
+TEST(CandidateCache, AnObstacleBeyondTheClothChangesNothingUntilItComesNear) {
+  Layers layers(4, 0.5 * kReach);
+  CandidateCache alone(layers.bodies, {}, layers.x, kReach);
+  const std::set<std::pair<Index, Index>> pairs = set_of(alone.collect(layers.x, layers.x).apart);
+  for (const Vec3& corner : {Vec3(3, 0, 0), Vec3(3, 1, 0), Vec3(3, 0, 1)}) layers.x.push_back(corner);
+  layers.bodies.add(std::vector<Triangle>{{0, 1, 2}}, 3, {});
+  CandidateCache cache(layers.bodies, {}, layers.x, kReach);
+  const auto with_obstacle_at = [&](double x) {
+    std::vector<Vec3> moved = layers.x;
+    for (std::size_t corner = moved.size() - 3; corner < moved.size(); ++corner) moved[corner].x() = x;
+    return moved;
+  };
+  // Fast as it is, it takes no skin from the others.
+  EXPECT_EQ(set_of(cache.collect(layers.x, with_obstacle_at(1)).apart), pairs);
+  EXPECT_EQ(cache.radius(), alone.radius());
+  EXPECT_TRUE(cache.is_clear(3));
+  EXPECT_FALSE(cache.is_clear(2));
+  EXPECT_TRUE(cache.covers_start(with_obstacle_at(0.2)));
+  EXPECT_TRUE(cache.covers_end(with_obstacle_at(500)));
+  // The cloth ends at 0.12 m: two reaches from it, and on its other side.
+  EXPECT_TRUE(cache.covers_end(with_obstacle_at(0.12 + 2.001 * kReach)));
+  EXPECT_FALSE(cache.covers_end(with_obstacle_at(0.12 + 1.999 * kReach)));
+  EXPECT_FALSE(cache.covers_start(with_obstacle_at(-1)));
+  cache.collect(layers.x, with_obstacle_at(0.1));
+  EXPECT_FALSE(cache.is_clear(3));
+}
+
 TEST(CandidateCache, AnObstacleThatHasMovedIsFoundWhereItIs) {
   Layers layers(2, 0.5 * kReach);
   CandidateCache cache(layers.bodies, {}, layers.x, kReach);

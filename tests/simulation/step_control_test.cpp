@@ -209,9 +209,10 @@ double mean_height(const Simulation& simulation) {
 TEST(Rest, TakesOneStepAFrameAndMovesNothing) {
   scene::Scene scene = sheet_on_block();
   Simulation resting(scene);
-  // Something else moves, far away: every step is taken.
-  scene.obstacles.push_back(testing::obstacle("far", scene::Sphere{0.1}));
-  scene.obstacles.back().motion.keys = {{0, {{5, 0, 0.2}, Quat::Identity()}}, {9, {{5, 0, 1}, Quat::Identity()}}};
+  // Something else moves, in the block: every step is taken.
+  scene.obstacles.push_back(testing::obstacle("inside", scene::Sphere{0.005}));
+  scene.obstacles.back().motion.keys = {{0, {{0, 0, 0.09}, Quat::Identity()}},
+                                        {9, {{0.01, 0, 0.09}, Quat::Identity()}}};
   Simulation stepping(scene);
   const std::vector<int> steps = steps_of(resting, 50);
   EXPECT_EQ(steps.front(), 2);
@@ -252,8 +253,8 @@ TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
                                        {2.035, {place, Quat::Identity()}}};
   };
   scene::Scene scene = sheet_on_block();
-  scene.obstacles.push_back(testing::obstacle("far", scene::Sphere{0.1}));
-  scene.obstacles.back().motion = {scene::Interpolation::linear, there_and_back({5, 0, 0.2})};
+  scene.obstacles.push_back(testing::obstacle("inside", scene::Sphere{0.005}));
+  scene.obstacles.back().motion = {scene::Interpolation::linear, there_and_back({0, 0, 0.09})};
   Simulation beside(scene);
   EXPECT_EQ(steps_of(beside, 50).back(), 1);
   EXPECT_EQ(beside.advance().steps, 2);

@@ -105,21 +105,34 @@ class ProximityFinder::Gathering {
   };
 
   /// Bit l is set where the boxes in lane l are within reach.
-  std::uint32_t near(const Points8& a_low, const Points8& a_high, const Boxes& b) const {
+  static std::uint32_t near(const Points8& a_low, const Points8& a_high, const Boxes& b, const Lanes8& radius) {
     Lanes8 gap = a_low.axis[0] - b.high.axis[0];
     raise_to(gap, b.low.axis[0] - a_high.axis[0]);
     for (std::size_t axis = 1; axis < 3; ++axis) {
       raise_to(gap, a_low.axis[axis] - b.high.axis[axis]);
       raise_to(gap, b.low.axis[axis] - a_high.axis[axis]);
     }
-    return sign_mask(gap - radius_rounded_);
+    return sign_mask(gap - radius);
+  }
+
+  /// The radius for boxes of these triangles in float. Rounding moves a coordinate by 2^-24 of itself, so a gap of two
+  /// by four times that at most; only the pair's own coordinates count, so that no other body has an influence.
+  Lanes8 rounded_radius(const Boxes& a, const Boxes& b) const {
+    Lanes8 largest = a.high.axis[0];
+    for (const Boxes* box : {&a, &b})
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        raise_to(largest, box->high.axis[axis]);
+        raise_to(largest, -box->low.axis[axis]);
+      }
+    return radius_rounded_ + largest * 0x1p-21F;
   }
 
   void look_at_eight(std::span<const TrianglePair, 8> pairs, std::size_t count) {
     std::array<Index, 8> number_a, number_b;
     for (std::size_t l = 0; l < 8; ++l) number_a[l] = pairs[l].a, number_b[l] = pairs[l].b;
     const Side a(features_, rounded_, number_a), b(features_, rounded_, number_b);
-    const std::uint32_t together = near(a.face.low, a.face.high, b.face) & ((1U << count) - 1);
+    const Lanes8 radius = rounded_radius(a.face, b.face);
+    const std::uint32_t together = near(a.face.low, a.face.high, b.face, radius) & ((1U << count) - 1);
     if (together == 0) return;
     std::array<std::array<std::uint32_t, 3>, 3> same;  // corner i of a is corner j of b
     for (std::size_t i = 0; i < 3; ++i)
@@ -127,15 +140,15 @@ class ProximityFinder::Gathering {
 
     for (std::size_t c = 0; c < 3; ++c) {
       const std::uint32_t a_in_b = same[c][0] | same[c][1] | same[c][2], b_in_a = same[0][c] | same[1][c] | same[2][c];
-      for_each_bit(near(a.at[c], a.at[c], b.face) & a.owned[c] & together & ~a_in_b,
+      for_each_bit(near(a.at[c], a.at[c], b.face, radius) & a.owned[c] & together & ~a_in_b,
                    [&](std::size_t l) { keep_vertex_face(a.corner[c][l], number_b[l]); });
-      for_each_bit(near(b.at[c], b.at[c], a.face) & b.owned[c] & together & ~b_in_a,
+      for_each_bit(near(b.at[c], b.at[c], a.face, radius) & b.owned[c] & together & ~b_in_a,
                    [&](std::size_t l) { keep_vertex_face(b.corner[c][l], number_a[l]); });
     }
     for (std::size_t i = 0, i1 = 1; i < 3; ++i, i1 = (i + 1) % 3) {
       for (std::size_t j = 0, j1 = 1; j < 3; ++j, j1 = (j + 1) % 3) {
         const std::uint32_t common = same[i][j] | same[i][j1] | same[i1][j] | same[i1][j1];
-        const std::uint32_t near_pairs = near(a.edge[i].low, a.edge[i].high, b.edge[j]) & together & ~common;
+        const std::uint32_t near_pairs = near(a.edge[i].low, a.edge[i].high, b.edge[j], radius) & together & ~common;
         for_each_bit(near_pairs & a.owned[3 + i] & b.owned[3 + j], [&](std::size_t l) {
           keep_edges({number_a[l], number_b[l], static_cast<std::uint8_t>(i), static_cast<std::uint8_t>(j)},
                      {a.corner[i][l], a.corner[i1][l], b.corner[j][l], b.corner[j1][l]});
@@ -281,20 +294,16 @@ void ProximityFinder::measure_folds(std::span<const Vec3> x) {
 
 ProximityFinder::First ProximityFinder::begin_gathering(std::span<const Vec3> x, double radius, double flattest) {
   if (flattest > 0) measure_folds(x);
-  // First look in float. Rounding moves a coordinate by 2^-24 of itself, so a gap of two by four times that at most.
+  // First look in float.
   rounded_.resize(x.size());
-  const double largest = parallel_max(x.size(), kTrianglesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
-    double most = 0;
-    for (std::size_t v = begin; v < end; ++v) {
-      most = std::max(most, x[v].cwiseAbs().maxCoeff());
+  parallel_for(x.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
       rounded_[v].xyz =
           Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
-    }
-    return most;
   });
   pairs_.vertex_faces.clear();
   pairs_.edge_edges.clear();
-  return {x, radius, static_cast<float>(radius * (1 + 1e-6) + largest * 0x1p-21 + 1e-37), flattest};
+  return {x, radius, static_cast<float>(radius * (1 + 1e-6) + 1e-37), flattest};
 }
 
 void ProximityFinder::look_at(std::span<const TrianglePair> pairs, const First& first) {

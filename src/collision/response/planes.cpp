@@ -34,7 +34,7 @@ struct Triangles8 {
 
 // Face normals and the direction of the centres for eight pairs at once, in float: 5 ns a pair, where the search in
 // double with its branches takes 60. What finds nothing here is searched for when it is first needed.
-void Planes::look_at_eight(std::size_t first, std::size_t count, float rounding) {
+void Planes::look_at_eight(std::size_t first, std::size_t count) {
   const auto gather = [&](bool side_b) {
     Triangles8 result;
     for (int c = 0; c < 3; ++c) {
@@ -49,6 +49,17 @@ void Planes::look_at_eight(std::size_t first, std::size_t count, float rounding)
     return result;
   };
   Triangles8 a = gather(false), b = gather(true);
+  // A coordinate is rounded by 2^-24 of itself, twice, and a dot product of triangles no farther apart than the
+  // coordinates are large by as much a few times over; half of the floor is for the length of n. Only the pair's own
+  // coordinates count, so that no other body has an influence.
+  Lanes8 rounding = a.corner[0].axis[0];
+  for (const Triangles8* side : {&a, &b})
+    for (const Points8& corner : side->corner)
+      for (const Lanes8& coordinate : corner.axis) {
+        raise_to(rounding, coordinate);
+        raise_to(rounding, -coordinate);
+      }
+  rounding = rounding * 0x1p-19F + static_cast<float>(1.5 * kFloor);
   // Relative to a corner, so that the dot products round at the size of the triangles.
   const Points8 origin = a.corner[0];
   for (int c = 0; c < 3; ++c) a.corner[c] = minus(a.corner[c], origin), b.corner[c] = minus(b.corner[c], origin);
@@ -81,7 +92,7 @@ void Planes::look_at_eight(std::size_t first, std::size_t count, float rounding)
   consider(cross(a.corner[1], a.corner[2]), false);
   consider(cross(minus(b.corner[1], b.corner[0]), minus(b.corner[2], b.corner[0])), false);
   for (std::size_t l = 0; l < count; ++l)
-    planes_[first + l] = {{best_n.axis[0][l], best_n.axis[1][l], best_n.axis[2][l]}, best_gap[l] - rounding};
+    planes_[first + l] = {{best_n.axis[0][l], best_n.axis[1][l], best_n.axis[2][l]}, best_gap[l] - rounding[l]};
 }
 
 void Planes::watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x) {
@@ -94,19 +105,12 @@ void Planes::watch(std::span<const Vec3> x) {
   planes_.resize(pairs_.size());
   has_certificate_.assign(pairs_.size(), 0);
   rounded_.resize(x.size());
-  const double largest = parallel_max(x.size(), kVerticesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
-    double most = 0;
-    for (std::size_t v = begin; v < end; ++v) {
-      most = std::max(most, x[v].cwiseAbs().maxCoeff());
+  parallel_for(x.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v)
       rounded_[v] = Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
-    }
-    return most;
   });
-  // A coordinate is rounded by 2^-24 of itself, twice, and a dot product of triangles no farther apart than the
-  // coordinates are large by as much a few times over; half of the floor is for the length of n.
-  const auto rounding = static_cast<float>(1.5 * kFloor + largest * 0x1p-19);
   parallel_for(pairs_.size(), kNewPairsAtOnce, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t p = begin; p < end; p += 8) look_at_eight(p, std::min<std::size_t>(8, end - p), rounding);
+    for (std::size_t p = begin; p < end; p += 8) look_at_eight(p, std::min<std::size_t>(8, end - p));
   });
 }
 

@@ -56,7 +56,7 @@ class Planes {
     bool is_known() const { return n[0] != 0 || n[1] != 0 || n[2] != 0; }
     bool operator==(const Plane&) const = default;
   };
-  void look_at_eight(std::size_t first, std::size_t count, float rounding);
+  void look_at_eight(std::size_t first, std::size_t count);
   /// As find_failing() is given it.
   struct Way {
     std::span<const Vec3> reference, x_t0, x_t1;
