@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/parallel_append.hpp"
+#include "core/stop.hpp"
 
 namespace weft::integrator {
 namespace {
@@ -341,6 +342,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   times_ = {};
   bool solved_all = false;
   do {
+    end_if_stopped();
     linearise(system, now, stage, done + report.newton_iterations);
     // Groups stand for long waves, whose stiffness hardly changes within a step.
     {
