@@ -268,6 +268,17 @@ std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, 
   return std::nullopt;
 }
 
+bool CollisionStage::find_pressing_pins() {
+  const auto is_cloth = [&](Index v) { return static_cast<std::size_t>(v) < particles_; };
+  for (const collision::CornerPair& pair : engine_.failing()) {
+    if (!is_cloth(pair.a[0]) || !is_cloth(pair.b[0])) continue;
+    for (const collision::Triangle& corners : {pair.a, pair.b})
+      for (Index v : corners)
+        if (movable_[static_cast<std::size_t>(v)] == collision::kPinned) gave_way_.push_back({v, pair});
+  }
+  return !gave_way_.empty();
+}
+
 void CollisionStage::go_on_from(const Moment& next) {
   bend_ = next.x;
   engine_.go_on_from(bend_);

@@ -350,6 +350,9 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
       ++adoptions;
       if (solved) response.revise(now.x, next_.x, force_on);
     } else if (may_bend) {
+      // Where cloth that a pin presses on could be moved, the solve has not moved it.
+      const bool may_let_go = bends > 0 && !may_give_way && (is_short_enough(retries, last_try) || pins_.any_lags());
+      if (may_let_go && collisions_->find_pressing_pins()) return "pins press cloth into cloth";
       const double before = solved ? energy(next_) : 0, strain = solved ? cloth_.max_strain(next_.particles()) : 0;
       if (collisions_->push_apart(h, false, false, now, next_)) {
         bends = kMostBends;  // and what is stuck shows once this is solved
