@@ -32,6 +32,7 @@ struct EngineParameters {
   SearchParameters search;
   ContactParameters contact;
   ResponseForm response = ResponseForm::springs;
+  double stick_speed = ContactSet::kStickSpeed;  ///< of springs [m/s]
 };
 
 class Engine {
