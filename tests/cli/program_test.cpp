@@ -476,20 +476,6 @@ TEST_F(Interrupted, ByCtrlCKeepsWholePictures) {
   EXPECT_GE(pictures, 2);
 }
 
-TEST_F(Interrupted, BySigtermDoesNotWaitForAFrameThatTakesLong) {
-  // Ten million steps for the first frame.
-  Subprocess weft(endless({"-o", "a.mp4", "--set", "time.step=1e-7", "--set", "time.fps=1"}), folder_);
-  ASSERT_TRUE(weft.wait_for_output("\"frame\":0,"));
-  weft.send(SIGTERM);
-  const Outcome outcome = weft.wait();
-  EXPECT_EQ(outcome.exit_code, 75) << outcome.err;
-  EXPECT_EQ(probe_video(folder_ / "a.mp4").frames, 1);
-  EXPECT_TRUE(contains(outcome.err,
-                       "interrupted within a time step; 1 frame is kept in a.mp4; the same command with "
-                       "--resume goes on from there"))
-      << outcome.err;
-}
-
 TEST_F(Interrupted, TwiceQuitsAtOnceAndRemovesWhatIsHalfWritten) {
   // Ten million steps for the first frame: it will not be finished in time.
   Subprocess weft(endless({"-o", "a.mp4", "--set", "time.step=1e-7", "--set", "time.fps=1"}), folder_);
