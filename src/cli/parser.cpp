@@ -53,7 +53,8 @@ void Parser::add_run() {
       "  weft run scenes/falling_band.toml -o band.mp4 --quality preview --size 640x360\n"
       "  weft run scenes/falling_band.toml --frames 0:50 -o 'out/{frame:05}.png' --overwrite\n"
       "  weft run scenes/falling_band.toml --set cloth.band.material.stretch=1e4 --stats band.json\n"
-      "\nCtrl-C or SIGTERM ends the run after the current frame with a playable video (exit code 75);\n"
+      "\nCtrl-C or SIGTERM ends the run after the current frame, or after three seconds within one that takes longer,\n"
+      "with a playable video (exit code 75);\n"
       "a second one quits at once. What was simulated is kept, also when the run is killed: --resume goes\n"
       "on from there, to the same frames as without the interruption. With a STEP the video keeps the true speed at "
       "fewer frames a second.");

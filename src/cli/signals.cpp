@@ -1,13 +1,13 @@
 #include "cli/signals.hpp"
 
 #include <signal.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <array>
 #include <string_view>
 
 #include "core/error.hpp"
+#include "core/stop.hpp"
 #include "core/temporary_file.hpp"
 
 namespace weft::cli {
@@ -17,9 +17,7 @@ constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
 constexpr long long kRepeatWindow = 1'000'000'000;  // [ns]
 
 std::atomic<bool> g_requested{false};
-std::atomic<long long> g_first{0};  // time of the first signal [ns]
-static_assert(std::atomic<bool>::is_always_lock_free && std::atomic<long long>::is_always_lock_free,
-              "a signal handler may only touch lock-free atomics");
+static_assert(std::atomic<bool>::is_always_lock_free, "a signal handler may only touch lock-free atomics");
 std::string_view g_promise;  // set before any handler is
 std::array<struct sigaction, kSignals.size()> g_previous;
 
@@ -29,15 +27,14 @@ void say(std::string_view text) {
 
 // Only async-signal-safe calls (POSIX.1-2017, 2.4.3): write, clock_gettime, unlink, _exit.
 void on_signal(int) {
-  timespec clock{};
-  clock_gettime(CLOCK_MONOTONIC, &clock);
-  const long long now = clock.tv_sec * 1'000'000'000LL + clock.tv_nsec;
-  if (!g_requested.exchange(true)) {
-    g_first = now;
+  const long long now = monotonic_ns();
+  long long first = 0;
+  if (stop_requested_at.compare_exchange_strong(first, now)) {
+    g_requested = true;
     say("\n");
     say(g_promise);
     say("; press again to quit at once\n");
-  } else if (now - g_first > kRepeatWindow) {
+  } else if (now - first > kRepeatWindow) {
     remove_temporary_files();
     say("\nquit at once; unfinished files are removed\n");
     ::_exit(static_cast<int>(ExitCode::interrupted));
@@ -49,6 +46,7 @@ void on_signal(int) {
 StopSignals::StopSignals(std::string_view promise) {
   g_promise = promise;
   g_requested = false;
+  stop_requested_at = 0;
   struct sigaction action {};
   action.sa_handler = on_signal;
   action.sa_flags = SA_RESTART;  // system calls of other threads go on as if nothing had happened
@@ -61,6 +59,7 @@ StopSignals::StopSignals(std::string_view promise) {
 }
 
 StopSignals::~StopSignals() {
+  stop_requested_at = 0;
   for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &g_previous[i], nullptr);
 }
 

@@ -6,7 +6,8 @@
 
 namespace weft::cli {
 
-/// While it lives, SIGINT, SIGTERM and SIGHUP only ask for an orderly end, which `requested()` tells. A second signal
+/// While it lives, SIGINT, SIGTERM and SIGHUP only ask for an orderly end, which `requested()` tells; a simulation step
+/// that takes longer than kStopGrace from then on throws Error(interrupted). A second signal
 /// removes temporary files and quits at once with exit code 75; repeats within a second count as one, since tools such
 /// as timeout(1) and terminals send a signal to the process and again to its group. Signals that the parent chose to
 /// ignore (nohup, background jobs) stay ignored. One object at a time.

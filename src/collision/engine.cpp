@@ -38,7 +38,7 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       separation_(bodies_.triangles(), meets_itself_ ? bodies_.deformable() : std::span<const Surface>()),
       finder_(bodies_.triangles(), bodies_.vertex_count()),
       builder_(bodies_, parameters.contact, masses),
-      response_(parameters.response, {masses.begin(), masses.end()}),
+      response_(parameters.response, {masses.begin(), masses.end()}, parameters.stick_speed),
       failures_(masses.size()),
       pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices(), bodies_.limb_of_vertices()),
       carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {

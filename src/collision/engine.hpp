@@ -33,6 +33,7 @@ struct EngineParameters {
   SearchParameters search;
   ContactParameters contact;
   ResponseForm response = ResponseForm::springs;
+  double stick_speed = ContactSet::kStickSpeed;  ///< of springs [m/s]
 };
 
 class Engine {
@@ -53,6 +54,8 @@ class Engine {
   /// slips in them still counts from where the step began. x takes the place of x_t0 in the calls that follow, and must
   /// outlive the step.
   void go_on_from(std::span<const Vec3> x);
+  /// Pairs that the last call of apart() found to meet.
+  std::span<const CornerPair> failing() const { return failing_; }
 
   /// Lets go, between two steps, of what only makes the search faster and does not follow from positions.
   void forget();

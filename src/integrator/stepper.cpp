@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/parallel_append.hpp"
+#include "core/stop.hpp"
 #include "integrator/momentum.hpp"
 
 namespace weft::integrator {
@@ -28,16 +29,13 @@ constexpr double kSolvedShare = 0.5;
 // Iterations of a solve from which all are solved for again: parts that press on each other and are solved in turns may
 // chase each other (three layers between plates that slide, steps of 40 ms: no solution in 60 iterations).
 constexpr int kTogether = 10;
-// What Newton leaves is a wrong velocity, the same way in step after step: it moves the cloth on. This is for how long
-// it counts [s]: the time of a swing of cloth of a metre, in which the method's own errors of velocity do as much as
-// those of position.
+// How long a velocity that Newton leaves counts [s], the same way in step after step: the time of a swing of a metre.
 constexpr double kSwingTime = 0.3;
 // And for so many steps at least: in long ones less would let in energy faster than they damp it.
 constexpr double kLastingSteps = 5;
 // Roundings of positions that no solver goes below.
 constexpr double kRoundings = 32;
-// An acceleration that nobody sees, times the tolerance: at 0.3 it moves cloth by a tenth of a millimetre in a swing
-// [m/s²].
+// An acceleration that nobody sees, times the tolerance [m/s²]: at 0.3 it moves cloth by 0.1 mm in a swing.
 constexpr double kUnseen = 0.01;
 // Iterations of a solve after which a velocity that nobody sees may be left too, times the tolerance [m/s]: at 0.3 it
 // moves cloth by a hundredth of a millimetre in a frame. So may this ratio of Euler's error of velocity. Friction of
@@ -48,7 +46,6 @@ constexpr double kUnseenSpeed = 1e-3, kVelocityRatio = 0.5;
 // Share of the velocity that may be left by which a whole cloth may slide wrongly. With 0.3 sheets that fall onto
 // slopes half a degree too steep lose 3 % of their way in two of nine cases.
 constexpr double kSlidingShare = 0.2;
-
 // Particles that a thread takes at once.
 constexpr std::size_t kParticlesAtOnce = 1024;
 
@@ -336,6 +333,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   times_ = {};
   bool solved_all = false;
   do {
+    end_if_stopped();
     linearise(system, now, stage, done + report.newton_iterations);
     // Groups stand for long waves, whose stiffness hardly changes within a step.
     {

@@ -86,6 +86,8 @@ class CollisionStage {
   /// From `next`, where push_apart() has led to, the way of the step goes on, in another direction: contacts are found
   /// there.
   void go_on_from(const Moment& next);
+  /// Whether pins hold particles of what apart() found to meet, cloth with cloth; these are in gave_way() then.
+  bool find_pressing_pins();
   /// Whether the way may do so: with springs.
   bool may_bend() const { return response().form() == collision::ResponseForm::springs; }
   /// The pinned particles that the last push_apart() told of.

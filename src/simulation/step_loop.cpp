@@ -37,6 +37,8 @@ constexpr double kUnfeltStrain = 0.05;
 // layers turn, of five to 5 and 4.5 times in two, and with this to at most 1.11 in all, for a sixth of the CPU. Wrung,
 // pulled and draped cloth never comes near (1.4 limits in a towel, slowly).
 constexpr double kTearingShare = 2;
+// Likewise in strain, for cloth without a limit: that doubles in length in a step only where the solve diverges.
+constexpr double kTearingStrain = 1;
 constexpr int kHalvingsBeforeTear = 6;
 // Of its limit to stretch, beyond which the run tells of it.
 constexpr double kOverstretch = 1.1;
@@ -265,7 +267,7 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last
   for (int tries = 1;; ++tries) {
     pins_.begin_step(t, h, progress_.now.x);
     Rejection rejection = attempt_with(t, h, retries, last_try, tries == kMostTries, report);
-    if (!rejection && collisions_ && !last_try && retries < kHalvingsBeforeTear) rejection = torn(h);
+    if (!rejection && collisions_) rejection = torn(h, retries, last_try);
     if (!collisions_ || collisions_->gave_way().empty() || tries == kMostTries) return rejection;
     if (!is_short_enough(retries, last_try) && !pins_.any_lags()) return rejection;
     for (const collision::GivenWay& given : collisions_->gave_way())
@@ -274,12 +276,15 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last
 }
 
 // Asks for a shorter step than the one to `next_` where that tears threads.
-StepLoop::Rejection StepLoop::torn(double h) {
-  const double share = cloth_.overstretch(next_.particles()).share;
-  if (share <= 1 + kTearingShare) return std::nullopt;
-  if (share <= cloth_.overstretch(progress_.now.particles()).share + kTearingShare) return std::nullopt;
+StepLoop::Rejection StepLoop::torn(double h, int retries, bool last_try) {
+  if (last_try || retries >= kHalvingsBeforeTear) return std::nullopt;
+  const auto start = progress_.now.particles(), end = next_.particles();
+  const double share = cloth_.overstretch(end).share, strain = cloth_.max_strain(end);
+  const bool tears = share > 1 + kTearingShare && share > cloth_.overstretch(start).share + kTearingShare;
+  if (!tears && (strain <= kTearingStrain || strain <= cloth_.max_strain(start) + kTearingStrain)) return std::nullopt;
   progress_.longest = 0.5 * h;
-  return fmt::format("threads are stretched to {:.2g} times their max_stretch at once", share);
+  return tears ? fmt::format("threads are stretched to {:.2g} times their max_stretch at once", share)
+               : fmt::format("threads are strained by {:.2g} at once", strain);
 }
 
 // The air at the stage of a step, and where unchanged velocities would take particles until then.
@@ -337,6 +342,10 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
     }
     const Stopwatch watch(report.collide);
     const bool solved = step.verdict == integrator::Verdict::solved;
+    // A solve that diverges scatters particles. All pairs of triangles may then meet, and to find and push them apart
+    // takes a hundred times what the step takes in halves.
+    if (!solved)
+      if (Rejection rejection = torn(h, retries, last_try)) return rejection;
     look = true;
     const bool may_adopt = bends == 0 && adoptions + 1 < response.most_solves();
     if (solved && response.revise(now.x, next_.x, force_on) > 0 && may_adopt) {
@@ -348,6 +357,9 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
       ++adoptions;
       if (solved) response.revise(now.x, next_.x, force_on);
     } else if (may_bend) {
+      // Where cloth that a pin presses on could be moved, the solve has not moved it.
+      const bool may_let_go = bends > 0 && !may_give_way && (is_short_enough(retries, last_try) || pins_.any_lags());
+      if (may_let_go && collisions_->find_pressing_pins()) return "pins press cloth into cloth";
       const double before = solved ? energy(next_) : 0, strain = solved ? cloth_.max_strain(next_.particles()) : 0;
       if (collisions_->push_apart(h, false, false, now, next_)) {
         bends = kMostBends;  // and what is stuck shows once this is solved

@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/stop.hpp"
+
 namespace weft::solver {
 namespace {
 
@@ -215,6 +217,7 @@ End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progre
   progress.nothing_left = rz <= (kSingle ? kRoundedEnergy * along_energy_ : 0);
   if (progress.nothing_left) return End::converged;
   while (progress.iterations < max_iterations) {
+    end_if_stopped();
     const double curvature = multiply();
     if (!(curvature > 0)) return kSingle ? End::needs_double : End::indefinite;
     advance(rz / curvature, progress);

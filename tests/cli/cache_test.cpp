@@ -341,6 +341,20 @@ TEST_F(CachedRun, InterruptedByCtrlCRunGoesOnToTheWholeVideo) {
   EXPECT_EQ(decoded("a.mp4"), decoded("whole.mp4"));
 }
 
+TEST_F(CachedRun, InterruptedWithinALongFrameSimulationKeepsTheFramesBefore) {
+  // Ten million steps for the second frame.
+  Subprocess process({"simulate", "s.toml", "--cache", "c", "--progress", "none", "--log-json", "-", "--set",
+                      "time.step=1e-7", "--set", "time.fps=1", "--set", "time.duration=3"},
+                     folder_);
+  ASSERT_TRUE(process.wait_for_output("\"frame\":0,"));
+  process.send(SIGTERM);
+  const Outcome interrupted = process.wait();
+  EXPECT_EQ(interrupted.exit_code, 75);
+  EXPECT_TRUE(contains(interrupted.err, "interrupted within a time step; 1 frame is kept in c; the same command with "))
+      << interrupted.err;
+  EXPECT_EQ(cache::Reader(folder_ / "c").frames().size(), 1u);
+}
+
 TEST_F(CachedRun, FullDiskEndsASimulationButOnlyTheCacheOfARun) {
   const Arguments common{"--size", "64x36", "--quality", "draft", "--progress", "none"};
   const auto limited = [&](Arguments arguments, std::size_t bytes) {

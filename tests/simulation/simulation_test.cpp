@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "core/parallel.hpp"
+#include "core/stop.hpp"
 #include "environment/track.hpp"
 #include "simulation/scenes.hpp"
 #include "support/intersections.hpp"
@@ -430,6 +431,32 @@ TEST(Preroll, IsSimulatedBeforeFrameZeroWhileKeysStand) {
   for (std::size_t i = 0; i < there.size(); ++i) EXPECT_LT((there[i] - here[i]).norm(), 1e-14);
   EXPECT_TRUE(shown.run_preroll()) << "and then there is none left";
   EXPECT_EQ(shown.snapshot()->frame, 4);
+}
+
+// A frame of one step: what is asked for in the middle of it need not wait for its end.
+TEST(Stop, EndsAStepAndLeavesTheLastFrame) {
+  scene::Scene scene = sheet_alone(0.6, 5, 2);
+  scene.time.step = 1;
+  Simulation simulation(scene);
+  simulation.advance();
+  const auto before = simulation.state();
+  const std::vector<Vec3> x(before.positions.begin(), before.positions.end());
+  const auto advance_after = [&](long long waited) {
+    stop_requested_at = monotonic_ns() - waited;
+    try {
+      simulation.advance();
+    } catch (const Error& error) {
+      stop_requested_at = 0;
+      return error.code();
+    }
+    stop_requested_at = 0;
+    return ExitCode::ok;
+  };
+  EXPECT_EQ(advance_after(2 * kStopGrace), ExitCode::interrupted);
+  EXPECT_EQ(simulation.snapshot()->frame, 1);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_EQ(simulation.state().positions[i], x[i]);
+  EXPECT_EQ(advance_after(0), ExitCode::ok) << "what is nearly done is finished";
+  EXPECT_EQ(simulation.snapshot()->frame, 2);
 }
 
 }  // namespace

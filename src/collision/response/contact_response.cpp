@@ -34,13 +34,14 @@ bool add_wall_of(const Contact& contact, std::span<const Vec3> x_t0, VelocityCon
 
 }  // namespace
 
-ContactResponse::ContactResponse(ResponseForm form, std::vector<double> masses) {
+ContactResponse::ContactResponse(ResponseForm form, std::vector<double> masses, double stick_speed)
+    : stick_speed_(stick_speed) {
   if (form == ResponseForm::velocity_constraints) walls_.emplace(std::move(masses));
 }
 
 void ContactResponse::begin_step(double h) {
   springs_.clear();
-  springs_.set_step(h);
+  springs_.set_step(h, stick_speed_);
   if (walls_) walls_->begin_step(h);
 }
 

@@ -20,7 +20,8 @@ enum class ResponseForm { springs, velocity_constraints };
 /// are set and released between solves of one step; all other contacts are springs in either form.
 class ContactResponse {
  public:
-  ContactResponse(ResponseForm form, std::vector<double> masses);  ///< of the particles [kg]
+  /// `masses`: of the particles [kg]; `stick_speed`: of springs [m/s].
+  ContactResponse(ResponseForm form, std::vector<double> masses, double stick_speed = ContactSet::kStickSpeed);
 
   ResponseForm form() const { return walls_ ? ResponseForm::velocity_constraints : ResponseForm::springs; }
 
@@ -71,6 +72,7 @@ class ContactResponse {
 
  private:
   ContactSet springs_;
+  double stick_speed_;
   std::optional<VelocityConstraints> walls_;
 };
 

@@ -74,8 +74,8 @@ class ContactSet {
 
   void clear() { contacts_.clear(); }
   void add(const Contact& contact);
-  /// Before the first solve of a step over h [s].
-  void set_step(double h) { stick_slip_ = kStickSpeed * h; }
+  /// Before the first solve of a step over h [s], with this slip speed in place of kStickSpeed [m/s].
+  void set_step(double h, double stick_speed = kStickSpeed) { stick_slip_ = stick_speed * h; }
   std::span<const Contact> contacts() const { return contacts_; }
 
   /// Before each linearisation, with the particles where the last one has led to. A contact is unknown by its force λ

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/parallel.hpp"
+#include "core/stop.hpp"
 
 namespace weft::collision {
 namespace {
@@ -64,6 +65,7 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
     looked_t0_.assign(x_t0.size(), Vec3::Constant(std::numeric_limits<double>::quiet_NaN()));
     looked_t1_ = looked_t0_;
   }
+  end_if_stopped();
   parallel_for(x_t0.size(), kVerticesMovedAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const double most_sq = std::max((x_t0[v] - reference_[v]).squaredNorm(), (x_t1[v] - reference_[v]).squaredNorm());
