@@ -133,8 +133,7 @@ std::string encode_test_video(const image::Image& image) {
   std::error_code error;
   const fs::path folder = fs::temp_directory_path(error);
   if (error)
-    throw Error(ExitCode::output_failed, "{}: is no folder for temporary files: {}; set TMPDIR to one", folder.string(),
-                error.message());
+    throw Error(ExitCode::output_failed, "no folder for temporary files: {}; set TMPDIR to one", error.message());
   const fs::path file = folder / fmt::format("weft_doctor_{}.mp4", ::getpid());
   video::Settings settings;
   settings.width = kWidth;

@@ -13,7 +13,7 @@ namespace weft {
 inline toml::table parse_toml(std::string_view text, std::string_view source = {}) {
   if (nests_too_deep(text))
     throw toml::parse_error("expected at most 128 levels of lists, tables and dotted keys, got more",
-                            toml::source_region{});
+                            toml::source_position{1, 1});
   return toml::parse(text, source);
 }
 

@@ -99,8 +99,11 @@ class Reader {
     if (!root.contains("properties") || !root["properties"].is_object()) return;
     const json& properties = root["properties"];
     if (const auto units = properties.find("units_in_meter"); units != properties.end()) {
-      if (!units->is_number() || !(units->get<double>() > 0))
-        return mistake("properties.units_in_meter", "expected a number > 0, got " + shown(*units));
+      constexpr double kLeast = 1e-3, kMost = 1e6;  // kilometres to micrometres
+      const double count = units->is_number() ? units->get<double>() : 0;
+      if (!(count >= kLeast && count <= kMost))
+        return mistake("properties.units_in_meter",
+                       fmt::format("expected a number from {:g} to {:g}, got {}", kLeast, kMost, shown(*units)));
       unit_ = 1 / units->get<double>();
     }
     absolute_ = properties.value("curvature_coords", json("relative")) == "absolute";

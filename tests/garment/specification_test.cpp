@@ -255,6 +255,10 @@ TEST_F(Specification, MistakesNameWhatTheyAreAbout) {
             "1:1: expected JSON, got what is none: expected at most 128 levels of lists and objects, got more");
   EXPECT_EQ(first("{}"), "1:1: expected \"pattern\" of a specification of GarmentCode, got none");
   EXPECT_EQ(first(R"({"pattern": {"panels": {}}})"), "1:1: pattern.panels: expected panels by name, got none");
+  for (const char* units : {"0", "1e-320", "1e308", "-1", "\"cm\"", "null"})
+    EXPECT_TRUE(first(changed(kSpecification, "\"units_in_meter\": 100", std::string("\"units_in_meter\": ") + units))
+                    .starts_with("1:1: properties.units_in_meter: expected a number from 0.001 to 1e+06, got "))
+        << units;
   // Each value of the wrong kind, wherever it stands: never an exception of the library.
   for (const char* value : {"\"q\"", "7", "null", "{}", "[]", "[7]", "[[]]", "true"}) {
     const std::string text = std::string("{\"pattern\": {\"panels\": {\"a\": ") + value + "}, \"stitches\": []}}";

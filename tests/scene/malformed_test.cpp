@@ -329,7 +329,8 @@ TEST(Mistakes, BeyondTheFirstTwoHundredAreCounted) {
 TEST(Mistakes, OfADeeplyDottedKeyDoNotExhaustTheStack) {
   std::string key = "a";
   for (int i = 0; i < 1'000'000; ++i) key += ".a";
-  const std::string told = "s.toml: not TOML: expected at most 128 levels of lists, tables and dotted keys, got more\n";
+  const std::string told =
+      "s.toml:1:1: not TOML: expected at most 128 levels of lists, tables and dotted keys, got more\n";
   EXPECT_EQ(load_text(key + " = 1\n", "s.toml").describe(), told);
   EXPECT_EQ(load_text("time = {" + key + " = 1}\n", "s.toml").describe(), told);
   EXPECT_NE(load_text(kFloor, "s.toml", {"time={" + key + "=1}"}).describe(), "");
