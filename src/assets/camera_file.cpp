@@ -175,8 +175,10 @@ LoadedCamera load_camera(const std::filesystem::path& file, const std::string& o
     return writer.bytes;
   });
   LoadedCamera camera;
-  ByteReader reader{bytes};
-  serialize(reader, camera);
+  source.checked([&] {
+    ByteReader reader{bytes};
+    serialize(reader, camera);
+  });
   if (!(camera.field_of_view >= 1 && camera.field_of_view <= 170))
     source.fail(fmt::format("expected a vertical field of view of 1 to 170 degrees, got {:g}", camera.field_of_view));
   return camera;

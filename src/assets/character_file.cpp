@@ -36,7 +36,7 @@ ReadCharacter read_isolated(const Source& source, bool with_mesh) {
     ReadCharacter read = read_file(source.file, with_mesh);
     return to_bytes(read);
   });
-  return character_from_bytes(bytes);
+  return source.checked([&] { return character_from_bytes(bytes); });
 }
 
 template <class Value, class Change>

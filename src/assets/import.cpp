@@ -1,33 +1,43 @@
 #include "assets/import.hpp"
 
+#include <assimp/DefaultIOSystem.h>
 #include <assimp/scene.h>
 
-#include <array>
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstddef>
-#include <fstream>
-#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <system_error>
+
+#include "core/input_file.hpp"
 
 namespace weft::assets {
 namespace {
+
+/// Opens regular files only, also those that a file names: materials, buffers. A pipe or a device may never end.
+class RegularFiles : public Assimp::DefaultIOSystem {
+ public:
+  bool Exists(const char* file) const override {
+    std::error_code ignored;
+    return std::filesystem::is_regular_file(file, ignored);
+  }
+  Assimp::IOStream* Open(const char* file, const char* mode) override {
+    return Exists(file) ? DefaultIOSystem::Open(file, mode) : nullptr;
+  }
+};
 
 /// Assimp 5.2 takes a line feed at the start of binary PLY data, a byte of some number, for a part of the header's end
 /// and loses it. Such a file with one more line feed, which is lost instead; nothing for all other files.
 std::optional<std::string> shielded_ply(const std::filesystem::path& file) {
   constexpr std::size_t kHeaderBytes = 1 << 16;
   constexpr std::string_view kBinary = "\nformat binary_", kEnd = "\nend_header\n";
-  std::ifstream in(file, std::ios::binary);
-  std::string bytes(kHeaderBytes, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  std::string bytes = read_start(file, kHeaderBytes);
   const std::size_t data = bytes.find(kEnd) + kEnd.size();
   const bool ply = bytes.starts_with("ply\n") && bytes.find(kBinary) < data;
   if (!ply || data < kEnd.size() || data >= bytes.size() || bytes[data] != '\n') return std::nullopt;
-  bytes.append(std::istreambuf_iterator<char>(in), {});
+  bytes = read_bytes(file);
   bytes.insert(data, 1, '\n');
   return bytes;
 }
@@ -35,23 +45,15 @@ std::optional<std::string> shielded_ply(const std::filesystem::path& file) {
 /// The bytes of a binary glTF file that has another ending, such as .vrm: assimp takes it for OBJ.
 std::optional<std::string> renamed_gltf(const std::filesystem::path& file) {
   constexpr std::string_view kStart = "glTF";
-  std::array<char, kStart.size()> start{};
-  std::ifstream in(file, std::ios::binary);
-  in.read(start.data(), start.size());
-  if (std::string_view(start.data(), start.size()) != kStart || file.extension() == ".glb") return std::nullopt;
-  std::string bytes(start.data(), start.size());
-  bytes.append(std::istreambuf_iterator<char>(in), {});
-  return bytes;
+  if (read_start(file, kStart.size()) != kStart || file.extension() == ".glb") return std::nullopt;
+  return read_bytes(file);
 }
 
 /// The compression that a glTF file cannot be read without; assimp 5.2 as packaged knows none, and takes what it finds
 /// in its place for vertices. Empty for all other files.
 std::string compression_of(const std::filesystem::path& file) {
   constexpr std::size_t kBeginning = 16 << 20;  // JSON comes first
-  std::ifstream in(file, std::ios::binary);
-  std::string bytes(kBeginning, '\0');
-  in.read(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  bytes.resize(static_cast<std::size_t>(in.gcount()));
+  const std::string bytes = read_start(file, kBeginning);
   const std::size_t begin = bytes.starts_with("glTF") || file.extension() == ".gltf"
                                 ? bytes.find("\"extensionsRequired\"")
                                 : std::string::npos;
@@ -68,6 +70,7 @@ const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& f
   if (const std::string compression = compression_of(file); !compression.empty())
     throw std::runtime_error("expected meshes without compression, got " + compression +
                              ", which is not read; export the file without it");
+  importer.SetIOHandler(new RegularFiles);  // which the importer owns
   const aiScene* scene = nullptr;
   if (const auto ply = shielded_ply(file))
     scene = importer.ReadFileFromMemory(ply->data(), ply->size(), steps, "ply");

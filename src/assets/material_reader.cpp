@@ -7,13 +7,13 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 
+#include "core/input_file.hpp"
 #include "image/picture.hpp"
 
 namespace weft::assets {
@@ -21,9 +21,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using character::Material;
-
-/// Larger files are refused.
-constexpr std::uintmax_t kMaxPictureBytes = std::uintmax_t{64} << 20;
 
 /// The one that gives a surface its colour: physically based where there is one.
 std::optional<aiTextureType> picture_type(const aiMaterial& material) {
@@ -104,17 +101,16 @@ std::string read_picture(const aiScene& scene, const aiString& named, const fs::
     return {};
   } else {
     const std::optional<fs::path> found = find_file(named.C_Str(), file);
-    std::error_code error;
     if (!found) {
       reason = "not there";
       return {};
     }
-    if (fs::file_size(*found, error) > kMaxPictureBytes) {
-      reason = fmt::format("expected at most {} bytes", kMaxPictureBytes);
+    try {
+      bytes = read_bytes(*found, image::kMaxPictureBytes);
+    } catch (const std::runtime_error& error) {
+      reason = error.what();
       return {};
     }
-    std::ifstream in(*found, std::ios::binary);
-    bytes.assign(std::istreambuf_iterator<char>(in), {});
   }
   if (is_picture(bytes)) return bytes;
   reason = "neither PNG, JPEG nor TGA";

@@ -161,10 +161,10 @@ Welded weld_borders(LoadedMesh& loaded, double share) {
   return welded;
 }
 
-LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& where,
-                     const std::string& object) {
-  const Source source{file, where};
-  Soup soup = from_bytes(source.read([&] { return to_bytes(read_soup(file, object)); }));
+namespace {
+
+LoadedMesh load(const Source& source, double scale, const std::string& object) {
+  Soup soup = from_bytes(source.read([&] { return to_bytes(read_soup(source.file, object)); }));
   if (soup.triangles.empty() && soup.quads.empty()) source.fail("expected faces, got none");
   for (Vec3& x : soup.positions) {
     x *= scale;
@@ -182,6 +182,14 @@ LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std:
   result.mesh.positions = std::move(soup.positions);
   take_vertices(soup, renamed, result);
   return result;
+}
+
+}  // namespace
+
+LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& where,
+                     const std::string& object) {
+  const Source source{file, where};
+  return source.checked([&] { return load(source, scale, object); });
 }
 
 }  // namespace weft::assets

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <map>
 #include <sstream>
 #include <utility>
 
 #include "assets/soup.hpp"
 #include "assets/source.hpp"
+#include "core/input_file.hpp"
 
 namespace weft::assets {
 namespace {
@@ -22,7 +22,7 @@ constexpr std::size_t kMaxBytes = std::size_t{8} << 30;
 std::string face_numbers(const std::filesystem::path& file) {
   std::string numbers;
   if (file.extension() != ".obj" && file.extension() != ".OBJ") return numbers;
-  std::ifstream in(file);
+  std::istringstream in(weft::read_file(file, kMaxMeshFileBytes));
   for (std::string line; std::getline(in, line);) {
     if (!line.starts_with("f ")) continue;
     std::istringstream corners(line.substr(2));
@@ -74,7 +74,7 @@ LoadedSequence load_sequence(std::span<const std::filesystem::path> files, const
   LoadedSequence loaded;
   for (const std::filesystem::path& file : files) {
     const Source source{file, where, "mesh"};
-    Soup soup = from_bytes(source.read([&] { return to_bytes(read_soup(file)); }));
+    Soup soup = source.checked([&] { return from_bytes(source.read([&] { return to_bytes(read_soup(file)); })); });
     for (Vec3& x : soup.positions) {
       x = turn * x;
       if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))

@@ -3,10 +3,10 @@
 #include <fmt/format.h>
 
 #include <exception>
-#include <fstream>
 #include <system_error>
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "core/isolated.hpp"
 
 namespace weft::assets {
@@ -18,10 +18,7 @@ constexpr std::uint64_t kMostAddresses = std::uint64_t{16} << 30;  // that readi
 /// limit.
 void check_ply_header(const Source& source) {
   constexpr std::size_t kHeaderBytes = 1 << 16;  // of which real headers take a hundredth
-  std::ifstream in(source.file, std::ios::binary);
-  std::string start(kHeaderBytes, '\0');
-  in.read(start.data(), static_cast<std::streamsize>(start.size()));
-  start.resize(static_cast<std::size_t>(in.gcount()));
+  const std::string start = read_start(source.file, kHeaderBytes);
   const bool ply = start.starts_with("ply") || start.starts_with("PLY");
   if (ply && start.find("\nend_header\n") == std::string::npos && start.find("\nend_header\r") == std::string::npos)
     source.fail("expected a line end_header in the first 64 kB of a PLY file, got none");
@@ -32,6 +29,9 @@ void check_ply_header(const Source& source) {
 unsigned time_limit(std::uintmax_t bytes) {
   return 5 + static_cast<unsigned>(bytes >> 20);
 }
+
+/// What is left of the time of a machine that many share.
+constexpr unsigned kWallFactor = 20;
 
 }  // namespace
 
@@ -59,7 +59,11 @@ void Source::check() const {
 std::string Source::read(const std::function<std::string()>& read) const {
   check();
   try {
-    return run_isolated(read, {"the reader", time_limit(std::filesystem::file_size(file)), kMostAddresses});
+    const unsigned seconds = time_limit(std::filesystem::file_size(file));
+    return run_isolated(read, {.name = "the reader",
+                               .cpu_seconds = seconds,
+                               .wall_seconds = kWallFactor * seconds,
+                               .addresses = kMostAddresses});
   } catch (const std::exception& error) {
     fail(error.what());
   }

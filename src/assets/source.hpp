@@ -2,9 +2,12 @@
 #pragma once
 
 #include <cstdint>
+#include <exception>
 #include <filesystem>
 #include <functional>
 #include <string>
+
+#include "core/error.hpp"
 
 namespace weft::assets {
 
@@ -29,6 +32,18 @@ struct Source {
   void check() const;
   /// Calls `read` in a process of its own and returns its bytes; throws as fail() does with its reason.
   std::string read(const std::function<std::string()>& read) const;
+  /// Returns what `work` returns; what it throws that is no Error becomes fail(): whatever a file holds, it is the
+  /// mistake of the file.
+  template <class Work>
+  auto checked(const Work& work) const {
+    try {
+      return work();
+    } catch (const Error&) {
+      throw;
+    } catch (const std::exception& error) {
+      fail(error.what());
+    }
+  }
 };
 
 }  // namespace weft::assets

@@ -10,8 +10,8 @@
 #include <type_traits>
 #include <utility>
 
-#include "cache/names.hpp"
 #include "core/archive.hpp"
+#include "core/names.hpp"
 
 namespace weft::cache {
 namespace {
@@ -33,8 +33,14 @@ void serialize_flag(Archive& archive, bool& flag) {
   serialize_byte(archive, flag, true);
 }
 
+// Products of four lengths are finite in single precision, with which pictures are drawn; what falls for an hour is
+// 6.4e7 m away.
+constexpr double kFarthest = 1e9;
+
+// Also of all else that a frame holds: angles, shares, intensities.
 void check_finite(double number) {
-  if (!std::isfinite(number)) throw std::runtime_error("a number is not finite");
+  if (!(std::abs(number) <= kFarthest))
+    throw std::runtime_error(fmt::format("a number is not finite, or beyond {:g}", kFarthest));
 }
 
 template <class Archive>
@@ -81,7 +87,8 @@ void serialize_planes(ByteReader& archive, std::vector<Entry>& list) {
 
 void check_finite(const std::vector<Vec3>& positions) {
   for (const Vec3& position : positions)
-    if (!position.allFinite()) throw std::runtime_error("a position is not finite");
+    if (!(position.cwiseAbs().maxCoeff() <= kFarthest))
+      throw std::runtime_error(fmt::format("a position is not finite, or beyond {:g} m", kFarthest));
 }
 
 void check_end(const ByteReader& reader) {
@@ -380,7 +387,8 @@ CachedFrame decode_frame(std::string_view payload, int frame, const Surfaces& su
     if (!heated) continue;
     state.heat.resize(start.size());
     serialize_planes(reader, state.heat);
-    for (const float heat : state.heat) check_finite(heat);
+    for (const float heat : state.heat)
+      if (!std::isfinite(heat)) throw std::runtime_error("heat is not finite");
   }
   check_end(reader);
   return {std::move(snapshot), std::move(head.report), 0};

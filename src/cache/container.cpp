@@ -9,6 +9,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "cache/names.hpp"
 #include "core/archive.hpp"
 
 namespace weft::cache {
@@ -17,7 +18,6 @@ namespace {
 static_assert(std::endian::native == std::endian::little && sizeof(std::size_t) == 8,
               "plain values are written as they are in memory");
 
-constexpr std::string_view kMagic = "\x89WEFT\r\n\x1A";
 constexpr std::size_t kCheckedSize = 48, kHeaderSize = 56;
 // The last mantissa bits of positions are noise to any level; 3 and more cost time and gain nothing.
 constexpr int kLevel = 1;

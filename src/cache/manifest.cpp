@@ -5,11 +5,11 @@
 #include <array>
 #include <charconv>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "cache/container.hpp"
-#include "cache/names.hpp"
+#include "core/json.hpp"
+#include "core/names.hpp"
 
 namespace weft::cache {
 namespace {
@@ -18,7 +18,8 @@ using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "weft frame cache";
 constexpr std::array kKinds{"cloth", "obstacle", "character"};
-constexpr int kMostFrames = 10'000'000;  // more than a day at 100 frames a second
+constexpr int kMostFrames = 100'001;  // of a scene
+constexpr int kMostPrerollFrames = 10'000'000;
 
 void require(bool good, const char* what) {
   if (!good) throw std::runtime_error(what);
@@ -73,7 +74,7 @@ Manifest parse(const Json& json) {
   manifest.fps = json.at("fps").get<double>();
   require(std::isfinite(manifest.fps) && manifest.fps > 0, "fps: expected > 0 frames a second");
   manifest.frame_count = parse_count(json, "frame_count", 1, kMostFrames);
-  manifest.preroll_frames = parse_count(json, "preroll_frames", 0, kMostFrames);
+  manifest.preroll_frames = parse_count(json, "preroll_frames", 0, kMostPrerollFrames);
   manifest.width = parse_count(json, "width", 16, 8192);
   manifest.height = parse_count(json, "height", 16, 8192);
   manifest.camera = json.at("camera").get<std::string>();
@@ -115,12 +116,12 @@ std::string manifest_text(const Manifest& manifest) {
                   {"cpu_target", manifest.cpu_target},
                   {"program", manifest.program},
                   {"objects", std::move(objects)}};
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return json_text(json, 2) + "\n";
 }
 
 Manifest parse_manifest(std::string_view text) {
   try {
-    return parse(Json::parse(text));
+    return parse(parse_json(text));
   } catch (const Json::exception& error) {
     throw std::runtime_error(error.what());
   }

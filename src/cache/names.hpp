@@ -15,6 +15,10 @@ inline constexpr const char *kManifestFile = "manifest.json", *kSceneFile = "sce
                             *kSurfacesFile = "surfaces.weft", *kStateFile = "state.weft", *kLockFile = "lock",
                             *kOutputsFile = "outputs.txt";  // of the run that fills it
 
+/// What all .weft files begin with, and the manifest.
+inline constexpr std::string_view kMagic = "\x89WEFT\r\n\x1A",
+                                  kManifestStart = "{\n  \"format\": \"weft frame cache\",";
+
 inline std::string frame_file(int frame) {
   return fmt::format("frame_{:05}.weft", frame);
 }
@@ -28,14 +32,6 @@ inline std::optional<int> frame_of(std::string_view name) {
   const auto [stop, error] = std::from_chars(name.data() + kBefore.size(), end, frame);
   if (error != std::errc() || stop != end || frame < 0 || frame_file(frame) != name) return std::nullopt;
   return frame;
-}
-
-/// May become part of a file's name. What a broken file holds must not lead into other folders.
-inline bool is_plain_name(std::string_view name) {
-  if (name.empty() || name == "." || name == "..") return false;
-  for (const char c : name)
-    if (c == '/' || static_cast<unsigned char>(c) < 0x20) return false;
-  return true;
 }
 
 }  // namespace weft::cache

@@ -1,46 +1,24 @@
 #include "cache/reader.hpp"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
-#include <new>
 #include <system_error>
 #include <utility>
 
 #include "cache/names.hpp"
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 
 namespace weft::cache {
-namespace {
 
 namespace fs = std::filesystem;
 
-std::string read_file(const fs::path& file) {
-  std::error_code error;
-  const std::uintmax_t size = fs::is_regular_file(file, error) ? fs::file_size(file, error) : 0;
-  std::ifstream in(file, std::ios::binary);
-  if (error || !in)
-    throw Error(ExitCode::asset_unreadable, "{}: cannot be read: {}", file.string(),
-                error ? error.message() : std::strerror(errno));
-  std::string bytes(size, '\0');
-  if (!in.read(bytes.data(), static_cast<std::streamsize>(size)))
-    throw Error(ExitCode::asset_unreadable, "{}: cannot be read", file.string());
-  return bytes;
-}
+namespace {
 
-// Names the file in what `read` finds wrong with it.
-template <class Read>
-auto blame(const fs::path& file, const Read& read) {
-  try {
-    return read();
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw Error(ExitCode::asset_unreadable, "{}: too large for the memory of this machine", file.string());
-  } catch (const std::exception& error) {
-    throw Error(ExitCode::asset_unreadable, "{}: broken: {}", file.string(), error.what());
-  }
+// All bytes, if it begins as it should: another file may be of any size.
+std::string read_container(const fs::path& file) {
+  const std::string start = read_start(file, kMagic.size());
+  if (start.size() == kMagic.size() && start != kMagic) throw std::runtime_error("it is no file of a frame cache");
+  return read_file(file);
 }
 
 }  // namespace
@@ -55,11 +33,11 @@ Reader::Reader(fs::path folder, Looks looks) : folder_(std::move(folder)), looks
     throw Error(ExitCode::asset_unreadable, "{}: expected a frame cache, a folder with a {}; weft simulate makes one",
                 folder_.string(), kManifestFile);
   const fs::path manifest = folder_ / kManifestFile, surfaces = folder_ / kSurfacesFile;
-  manifest_ = blame(manifest, [&] { return parse_manifest(read_file(manifest)); });
+  manifest_ = read_checked(manifest, [&] { return parse_manifest(read_file(manifest)); });
   std::error_code ignored;
   if (!fs::exists(surfaces, ignored)) return;
-  surfaces_ = blame(surfaces, [&] { return decode_surfaces(read_part(kSurfacesFile, Kind::surfaces, 0)); });
-  blame(surfaces, [&] { check_objects(); });
+  surfaces_ = read_checked(surfaces, [&] { return decode_surfaces(read_part(kSurfacesFile, Kind::surfaces, 0)); });
+  read_checked(surfaces, [&] { check_objects(); });
 }
 
 void Reader::check_objects() const {
@@ -87,8 +65,8 @@ void Reader::check_scene(std::uint64_t hash) const {
 
 std::string Reader::read_part(const char* name, Kind kind, std::optional<int> frame, Label* label) const {
   const fs::path file = folder_ / name;
-  return blame(file, [&] {
-    Content content = unpack(read_file(file));
+  return read_checked(file, [&] {
+    Content content = unpack(read_container(file));
     check_scene(content.label.scene_hash);
     if (content.label.kind != kind || (frame && content.label.frame != *frame))
       throw std::runtime_error("it is another file of the cache under this name");
@@ -123,15 +101,15 @@ CachedFrame Reader::read(int frame) const {
   if (!surfaces_) throw Error(ExitCode::asset_unreadable, "{}: holds no frame yet", folder_.string());
   Label label;
   const std::string payload = read_part(name.c_str(), Kind::frame, frame, &label);
-  CachedFrame cached = blame(folder_ / name, [&] { return decode_frame(payload, frame, *surfaces_); });
+  CachedFrame cached = read_checked(folder_ / name, [&] { return decode_frame(payload, frame, *surfaces_); });
   cached.scene_hash = label.scene_hash;
   return cached;
 }
 
 void Reader::verify(int frame) const {
   const fs::path file = folder_ / frame_file(frame);
-  blame(file, [&] {
-    const Label label = cache::verify(read_file(file));
+  read_checked(file, [&] {
+    const Label label = cache::verify(read_container(file));
     check_scene(label.scene_hash);
     if (label.kind != Kind::frame || label.frame != frame)
       throw std::runtime_error("it is another file under this name");

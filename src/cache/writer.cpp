@@ -16,6 +16,7 @@
 #include "cache/names.hpp"
 #include "cache/reader.hpp"
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "core/temporary_file.hpp"
 
 namespace weft::cache {
@@ -23,13 +24,36 @@ namespace {
 
 namespace fs = std::filesystem;
 
-bool is_temporary(const std::string& name) {
-  return name.starts_with('.') && name.ends_with(".tmp");
+bool is_name_of_cache(std::string_view name) {
+  return name == kManifestFile || name == kSceneFile || name == kSurfacesFile || name == kStateFile ||
+         name == kLockFile || name == kOutputsFile || frame_of(name);
 }
 
-bool is_ours(const std::string& name) {
-  return name == kManifestFile || name == kSceneFile || name == kSurfacesFile || name == kStateFile ||
-         name == kLockFile || name == kOutputsFile || frame_of(name) || is_temporary(name);
+/// What a file of this name begins with that Weft has written; nullopt for those that say nothing of themselves.
+std::optional<std::string_view> beginning_of(std::string_view name) {
+  if (name == kManifestFile) return kManifestStart;
+  if (name == kOutputsFile) return "-";
+  if (name.ends_with(".weft")) return kMagic;
+  return std::nullopt;
+}
+
+bool begins_as_written(const fs::path& file) {
+  const auto beginning = beginning_of(file.filename().string());
+  return beginning && read_start(file, beginning->size()) == *beginning;
+}
+
+/// Whether Weft has written what has this name in the folder: a cache's own manifest says so, or the file itself does.
+/// Nothing is lost with an empty file.
+bool is_ours(const fs::path& folder, const std::string& name) {
+  const std::string_view kept = final_name_of(name);
+  if (!kept.empty()) return is_name_of_cache(kept);
+  const fs::path file = folder / name;
+  std::error_code error;
+  if (!is_name_of_cache(name) || !fs::is_regular_file(fs::symlink_status(file, error))) return false;
+  const bool empty = fs::file_size(file, error) == 0;
+  return empty || begins_as_written(file) ||
+         (name != kManifestFile && name != kLockFile &&
+          (begins_as_written(folder / kManifestFile) || begins_as_written(folder / kSurfacesFile)));
 }
 
 std::vector<std::string> names_in(const fs::path& folder) {
@@ -48,7 +72,7 @@ void make_folder(const fs::path& folder) {
     throw Error(ExitCode::output_failed, "{}: cannot make the folder: {}", folder.string(),
                 error ? error.message() : "there is a file of this name");
   for (const std::string& name : names_in(folder))
-    if (!is_ours(name))
+    if (!is_ours(folder, name))
       throw Error(ExitCode::output_failed, "{}: holds {}, which is no part of a frame cache; give another folder",
                   folder.string(), name);
 }
@@ -80,8 +104,6 @@ Lock::Lock(fs::path folder) : folder_(std::move(folder)) {
     }
     // The one who had it may have taken the folder away in between.
   } while (!same_file(descriptor_, file));
-  for (const std::string& name : names_in(folder_))
-    if (is_temporary(name)) ::unlink((folder_ / name).c_str());  // of a process that was killed
 }
 
 Lock::~Lock() {
@@ -94,9 +116,11 @@ bool Lock::empty() const {
 }
 
 void Lock::clear() const {
-  ::unlink((folder_ / kManifestFile).c_str());
+  // First those that only the manifest tells from other files, last those that could be taken for a cache with it.
+  for (const char* name : {kSceneFile, kManifestFile})
+    if (is_ours(folder_, name)) ::unlink((folder_ / name).c_str());
   for (const std::string& name : names_in(folder_))
-    if (name != kLockFile && is_ours(name)) ::unlink((folder_ / name).c_str());
+    if (name != kLockFile && is_ours(folder_, name)) ::unlink((folder_ / name).c_str());
 }
 
 void Lock::remove() const {
@@ -107,8 +131,8 @@ void Lock::remove() const {
 
 Writer::Writer(const Lock& lock, Manifest manifest, std::string_view scene_text)
     : folder_(lock.folder()), manifest_(std::move(manifest)) {
-  write(kSceneFile, std::string(scene_text));
   write(kManifestFile, manifest_text(manifest_));
+  write(kSceneFile, std::string(scene_text));
 }
 
 void Writer::add(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report) {

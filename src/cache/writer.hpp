@@ -24,7 +24,7 @@ class Lock {
 
   const std::filesystem::path& folder() const { return folder_; }
 
-  /// Takes all files of a cache away, the manifest first, so that what is left of it can never be taken for one.
+  /// Takes all files of a cache away, the manifest before frames, so that what is left can never be taken for a cache.
   void clear() const;
   /// The same, and the folder.
   void remove() const;

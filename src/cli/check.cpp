@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/enclosed.hpp"
 #include "cli/estimate.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/standard_output.hpp"
@@ -80,12 +81,14 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
   }
   // All that a run does before its first step, and some steps where they are asked for.
   std::optional<Estimate> estimate;
+  std::vector<std::string> enclosed;
   if (options.estimate)
     estimate = estimate_run(loaded.scene, render_settings(loaded.scene, {}));
   else
-    const simulation::Simulation begun(loaded.scene);
+    enclosed = find_enclosed(loaded.scene, *simulation::Simulation(loaded.scene).snapshot());
   print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
   for (const std::string& doubt : simulation::doubts(loaded.scene)) print("{}: note: {}\n", file.string(), doubt);
+  for (const std::string& note : enclosed) print("{}: note: {}\n", file.string(), note);
   if (options.plan) print("{}", plan_table(loaded.scene));
   if (estimate) print("{}: {}\n", file.string(), describe(*estimate));
   return ExitCode::ok;

@@ -12,6 +12,7 @@
 #include "cli/standard_output.hpp"
 #include "compare/files.hpp"
 #include "compare/references.hpp"
+#include "core/json.hpp"
 #include "core/log.hpp"
 #include "core/temporary_file.hpp"
 #include "image/png.hpp"
@@ -184,7 +185,7 @@ ExitCode diff(const DiffOptions& options) {
     if (!results[i].good()) annotations += annotation(results[i], lines[i]) + "\n";
   if (options.json) {
     if (!annotations.empty()) log::info(annotations.substr(0, annotations.size() - 1));
-    print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    print("{}\n", json_text(json, 2));
   } else {
     print("{}{}", text, annotations);
   }

@@ -1,10 +1,12 @@
 #include "cli/diff_limits.hpp"
 
 #include <fnmatch.h>
-#include <toml++/toml.h>
 
 #include "cli/option_values.hpp"
 #include "core/error.hpp"
+#include "core/input_file.hpp"
+#include "core/toml.hpp"
+#include "scene/document.hpp"
 
 namespace weft::cli {
 namespace {
@@ -15,7 +17,7 @@ namespace {
 
 toml::table parse(const std::filesystem::path& file) {
   try {
-    return toml::parse_file(file.string());
+    return parse_toml(read_file(file, scene::kMaxFileSize), file.string());
   } catch (const toml::parse_error& error) {
     refuse(file, error.source(), std::string(error.description()));
   }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "core/json.hpp"
+
 namespace weft::cli {
 namespace {
 
@@ -52,7 +54,7 @@ const char* name_of(Outcome outcome) {
 
 std::string escaped(const std::string& text) {
   // File names need not be UTF-8; what is not becomes U+FFFD.
-  const std::string valid = Json::parse(Json(text).dump(-1, ' ', false, Json::error_handler_t::replace));
+  const std::string valid = parse_json(json_text(text));
   std::string safe;
   for (const char c : valid) {
     if (c == '<')

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <system_error>
 #include <thread>
 
 #include "cli/commands.hpp"
@@ -129,7 +130,11 @@ void draw_test_picture(const DoctorOptions& options, image::Image& image, Examin
 }
 
 std::string encode_test_video(const image::Image& image) {
-  const fs::path file = fs::temp_directory_path() / fmt::format("weft_doctor_{}.mp4", ::getpid());
+  std::error_code error;
+  const fs::path folder = fs::temp_directory_path(error);
+  if (error)
+    throw Error(ExitCode::output_failed, "no folder for temporary files: {}; set TMPDIR to one", error.message());
+  const fs::path file = folder / fmt::format("weft_doctor_{}.mp4", ::getpid());
   video::Settings settings;
   settings.width = kWidth;
   settings.height = kHeight;

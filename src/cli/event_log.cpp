@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/json.hpp"
 #include "core/temporary_file.hpp"
 
 namespace weft::cli {
@@ -17,8 +18,9 @@ EventLog::EventLog(std::string destination) : destination_(std::move(destination
     file_ = stdout;
     return;
   }
-  check_writable(destination_);       // makes the folder too
-  std::remove(destination_.c_str());  // not emptied: it may have another name, which keeps what is in it
+  check_writable(destination_);  // makes the folder too
+  // Not emptied: it may have another name, which keeps what is in it.
+  if (may_replace(destination_)) std::remove(destination_.c_str());
   file_ = std::fopen(destination_.c_str(), "wbxe");
   if (file_ == nullptr) {
     throw Error(ExitCode::output_failed, "{}: cannot be written: {}", destination_, std::strerror(errno));
@@ -34,7 +36,7 @@ void EventLog::write(const char* event, Json fields) {
   Json line{{"event", event}};
   line.update(fields);
   // Text from the outside, such as names of files, may not be UTF-8: replaced, since JSON cannot hold it.
-  const std::string text = line.dump(-1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string text = json_text(line) + "\n";
   const std::lock_guard lock(mutex_);
   if (error_ != 0) return;
   const bool good = std::fwrite(text.data(), 1, text.size(), file_) == text.size() && std::fflush(file_) == 0;

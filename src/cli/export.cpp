@@ -7,6 +7,7 @@
 #include "cli/cached_frames.hpp"
 #include "cli/commands.hpp"
 #include "cli/output_target.hpp"
+#include "cli/own_files.hpp"
 #include "cli/path_ledger.hpp"
 #include "cli/signals.hpp"
 #include "core/log.hpp"
@@ -23,7 +24,8 @@ void remove_stale(const exporter::Request& request, const cache::Manifest& scene
   if (request.format != exporter::Format::ply && request.format != exporter::Format::obj) return;
   const char* ending = request.format == exporter::Format::ply ? ".ply" : ".obj";
   for (const frame::ObjectInfo& object : scene.objects)
-    FramePattern((request.folder / (object.name + "_")).string(), 5, ending).remove_others(frames);
+    FramePattern((request.folder / (object.name + "_")).string(), 5, ending)
+        .remove_others(frames, [](const std::filesystem::path& file, int) { return is_own_mesh(file); });
 }
 
 bool places_cameras(exporter::Format format) {

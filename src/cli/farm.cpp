@@ -1,7 +1,6 @@
 // weft farm: runs and sweeps as jobs of a Slurm cluster. The tasks are weft commands that go on where they were
 // stopped; all that is known of them lies in the folder of the sweep, which the machines share.
 #include <algorithm>
-#include <fstream>
 #include <map>
 #include <sstream>
 
@@ -14,6 +13,8 @@
 #include "cli/standard_output.hpp"
 #include "cli/sweep_report.hpp"
 #include "cli/table.hpp"
+#include "core/input_file.hpp"
+#include "core/json.hpp"
 #include "core/log.hpp"
 #include "core/temporary_file.hpp"
 #include "review/find_runs.hpp"
@@ -40,7 +41,7 @@ void need_slurm(const char* program, const ProcessResult& result) {
 /// Numbers of jobs with their names, those handed in last at the end.
 std::vector<std::pair<std::string, std::string>> read_jobs(const fs::path& folder) {
   std::vector<std::pair<std::string, std::string>> jobs;
-  std::ifstream in(folder / "farm/jobs");
+  std::istringstream in(read_start(folder / "farm/jobs", kLargestText));
   for (std::string line; std::getline(in, line);)
     if (const auto tab = line.find('\t'); tab != std::string::npos)
       jobs.emplace_back(line.substr(0, tab), line.substr(tab + 1));
@@ -79,7 +80,7 @@ int count_files(const fs::path& folder, const char* ending) {
 
 State state_of(const fs::path& folder, const nlohmann::ordered_json& run) {
   const std::string scene = run.value("scene", "");
-  const nlohmann::ordered_json stats = read_json(folder / (scene + ".json"));
+  const nlohmann::ordered_json stats = read_json_or_null(folder / (scene + ".json"));
   const bool simulated = stats.is_object() && stats.value("exit_code", -1) == 0;
   if (simulated && fs::exists(folder / (scene + ".mp4"))) return {"done", true};
   const int frames = run.value("frames", 0);
@@ -166,7 +167,7 @@ class Farm {
 
  private:
   nlohmann::ordered_json read_index() const {
-    nlohmann::ordered_json index = read_json(folder_ / review::kSweepName);
+    nlohmann::ordered_json index = read_json_or_null(folder_ / review::kSweepName);
     if (!index.is_object() || !index.contains("runs"))
       throw Error(ExitCode::asset_unreadable, "{}: expected the folder that weft farm submit was given with -o",
                   folder_.string());
@@ -176,7 +177,7 @@ class Farm {
   /// What the program said last, on a line of its own; empty where it said nothing.
   static std::string last_error(const fs::path& log) {
     std::string last;
-    std::ifstream in(log);
+    std::istringstream in(read_start(log, kLargestText));
     for (std::string line; std::getline(in, line);)
       if (line.starts_with("weft: ")) last = "\n  " + line.substr(6);
     return last;
@@ -191,7 +192,7 @@ class Farm {
       const std::string task = entry.path().stem().string();
       const fs::path log = fs::path(entry.path()).replace_extension(".log");
       int code = 0;
-      std::ifstream(entry.path()) >> code;
+      std::istringstream(read_start(entry.path(), 16)) >> code;
       if (entry.file_size(none) == 0)
         lines.push_back(fmt::format("{} found no room for its exit code: is the disk full? {}", task, log.string()));
       else if (code != 0)

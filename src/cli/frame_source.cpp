@@ -3,7 +3,9 @@
 #include <utility>
 
 #include "cli/cached_frames.hpp"
+#include "cli/enclosed.hpp"
 #include "core/error.hpp"
+#include "core/log.hpp"
 
 namespace weft::cli {
 
@@ -39,6 +41,7 @@ MadeFrame SceneSource::simulate() {
   if (next_ == 0) {
     run_preroll();
     report = simulation_->initial_report();
+    for (const std::string& warning : find_enclosed(scene_, *simulation_->snapshot())) log::warn(warning);
   } else {
     report = simulation_->advance();
   }

@@ -102,6 +102,9 @@ FarmOptions checked(FarmOptions farm) {
 Command parse_command_line(const std::vector<std::string>& arguments) {
   Parser parser;
   check_command_name(parser, arguments);
+  if (std::ranges::find(arguments, std::string()) != arguments.end())
+    throw Error(ExitCode::usage, "weft {}: expected no empty argument, got one; is a variable of the shell empty?",
+                arguments.front());
   try {
     parser.app.parse(std::vector<std::string>(arguments.rbegin(), arguments.rend()));  // CLI11 takes them reversed
   } catch (const CLI::CallForHelp&) {

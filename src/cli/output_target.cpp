@@ -51,7 +51,8 @@ std::vector<fs::path> FramePattern::names(const FrameRange& frames) const {
   return names;
 }
 
-void FramePattern::remove_others(const FrameRange& frames) const {
+void FramePattern::remove_others(const FrameRange& frames,
+                                 const std::function<bool(const fs::path&, int)>& is_own) const {
   // The number may stand in the name of a folder.
   const std::size_t slash = before_.rfind('/');
   const std::string folder = slash == std::string::npos ? "." : before_.substr(0, slash + 1);
@@ -65,7 +66,7 @@ void FramePattern::remove_others(const FrameRange& frames) const {
     if (problem != std::errc() || frame < 0 || frames.contains(frame)) continue;
     std::error_code ignored;
     const fs::path file = name(frame);
-    if (fs::is_regular_file(fs::symlink_status(file, ignored))) fs::remove(file, ignored);
+    if (fs::is_regular_file(fs::symlink_status(file, ignored)) && is_own(file, frame)) fs::remove(file, ignored);
   }
 }
 

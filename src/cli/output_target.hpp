@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -34,8 +35,9 @@ class FramePattern {
 
   std::filesystem::path name(int frame) const;
   std::vector<std::filesystem::path> names(const FrameRange& frames) const;
-  /// Removes files that have the name of a frame, but none of these: a longer run has left them.
-  void remove_others(const FrameRange& frames) const;
+  /// Removes files that have the name of a frame, but none of these, and that `is_own` says a longer run has left.
+  void remove_others(const FrameRange& frames,
+                     const std::function<bool(const std::filesystem::path&, int frame)>& is_own) const;
 
  private:
   std::string before_, after_;

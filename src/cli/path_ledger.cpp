@@ -2,8 +2,6 @@
 
 #include <sys/stat.h>
 
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <system_error>
 
@@ -14,13 +12,6 @@ namespace weft::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-bool holds(const fs::path& file, const std::string& content) {
-  std::error_code error;
-  if (fs::file_size(file, error) != content.size() || error) return false;
-  std::ifstream in(file, std::ios::binary);
-  return std::string(std::istreambuf_iterator<char>(in), {}) == content;
-}
 
 // Without a slash at the end, which stands for the same.
 fs::path plain(const fs::path& path) {
@@ -101,16 +92,22 @@ void PathLedger::fills(const std::string& option, const fs::path& folder) {
   places_.emplace(resolved(folder), Place{"what " + option + " fills"});
 }
 
-void PathLedger::check_absent(bool overwrite, const std::set<std::string>& own) const {
+void PathLedger::check_absent(bool overwrite, const std::set<std::string>& own,
+                              const std::function<bool(const fs::path&)>& is_own) const {
   for (const Output& output : outputs_) {
-    const bool may_replace = overwrite || own.contains(output.name);
+    const bool is_gone_on_with = own.contains(output.name);
     for (const fs::path& file : output.files) {
       std::error_code ignored;  // what cannot be looked at is found when it is written
       if (fs::is_directory(file, ignored))
         throw Error(ExitCode::output_failed, "{}: is a folder, expected a file name", file.string());
       // A link counts, whether or not it leads anywhere.
-      if (may_replace || !fs::exists(fs::symlink_status(file, ignored))) continue;
+      if (overwrite) continue;
+      if (!fs::exists(fs::symlink_status(file, ignored))) {
+        keep_if_made_meanwhile(file);
+        continue;
+      }
       if (!output.content.empty() && holds(file, output.content)) continue;
+      if (is_gone_on_with && is_own(file)) continue;
       throw Error(ExitCode::output_failed, "{}: exists already; give --overwrite to replace it, or another name",
                   file.string());
     }

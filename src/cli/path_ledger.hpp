@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <set>
 #include <string>
@@ -30,9 +31,11 @@ class PathLedger {
   /// A folder that the command has for itself. Who makes it sees to what is there.
   void fills(const std::string& option, const std::filesystem::path& folder);
 
-  /// Throws Error(output_failed) where one of the files is there already, or a folder of its name. `own`: outputs() of
-  /// an interrupted run that is gone on with; those may be replaced.
-  void check_absent(bool overwrite, const std::set<std::string>& own = {}) const;
+  /// Throws Error(output_failed) where one of the files is there already, or a folder of its name. Those that are not
+  /// there are kept if somebody makes them meanwhile. `own`: outputs() of an interrupted run that is gone on with; of
+  /// those are replaced which `is_own`.
+  void check_absent(bool overwrite, const std::set<std::string>& own = {},
+                    const std::function<bool(const std::filesystem::path&)>& is_own = {}) const;
   /// Throws Error(output_failed) where the first file of an output cannot be written.
   void check_writable() const;
   /// What the outputs are: option and place.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 #include <signal.h>
 
+#include <filesystem>
+#include <system_error>
 #include <variant>
 
 #include "cli/commands.hpp"
@@ -46,6 +48,13 @@ struct Dispatch {
   ExitCode operator()(const PrintText& text) const { return print_all(text.text); }
 };
 
+// All relative paths start there.
+void check_working_folder() {
+  std::error_code error;
+  if (std::filesystem::current_path(error).empty())
+    throw Error(ExitCode::usage, "the working folder cannot be used: {}; go to one that exists", error.message());
+}
+
 void report(const Failure& failure) {
   // Mistakes of a scene name their file first, as compilers do, so that editors can jump there.
   log::info(failure.code == ExitCode::scene_invalid ? failure.text : "weft: " + failure.text);
@@ -60,7 +69,9 @@ int run_program(int argc, char** argv) noexcept {
     ::signal(SIGPIPE, SIG_IGN);
     ::signal(SIGXFSZ, SIG_IGN);
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
-    return static_cast<int>(std::visit(Dispatch{}, parse_command_line(arguments)));
+    const Command command = parse_command_line(arguments);
+    if (!std::holds_alternative<PrintText>(command)) check_working_folder();
+    return static_cast<int>(std::visit(Dispatch{}, command));
   } catch (...) {
     const Failure failure = describe_failure(std::current_exception());
     report(failure);

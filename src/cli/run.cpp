@@ -9,6 +9,7 @@
 #include "cli/commands.hpp"
 #include "cli/failure.hpp"
 #include "cli/film.hpp"
+#include "cli/own_files.hpp"
 #include "cli/path_ledger.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/signals.hpp"
@@ -16,6 +17,7 @@
 #include "cli/summary.hpp"
 #include "cli/system_info.hpp"
 #include "cli/whole_output.hpp"
+#include "core/json.hpp"
 #include "core/log.hpp"
 #include "core/memory.hpp"
 #include "core/parallel.hpp"
@@ -144,9 +146,11 @@ void add_outputs(PathLedger& paths, const FilmPlan& plan, const RunOptions& opti
 /// What a longer run has left under the names of this one.
 void remove_stale(const FilmPlan& plan, const RunOptions& options) {
   if (!options.common.overwrite || !plan.whole_film) return;
-  if (plan.target.kind == Kind::images) FramePattern(plan.target.text).remove_others(plan.wanted);
+  const auto is_picture = [&](const fs::path& file, int frame) { return is_picture_of(file, plan.scene.scene, frame); };
+  if (plan.target.kind == Kind::images) FramePattern(plan.target.text).remove_others(plan.wanted, is_picture);
   if (options.meshes.empty()) return;
-  for (const std::string& object : plan.objects) mesh_files(options.meshes, object).remove_others(plan.wanted);
+  const auto is_mesh = [](const fs::path& file, int) { return is_own_mesh(file); };
+  for (const std::string& object : plan.objects) mesh_files(options.meshes, object).remove_others(plan.wanted, is_mesh);
 }
 
 /// What all three commands have from their first moment to their last.
@@ -288,7 +292,7 @@ ExitCode Session::end(const FilmPlan& plan, const Store* store) {
     if (report_.written > 0 && plan.draws()) write_file(plan.effective_scene_file(), plan.scene_text);
   });
   try_side_file([&] {
-    if (!options_.stats.empty()) write_file(options_.stats, stats_json(report_).dump(2) + "\n");
+    if (!options_.stats.empty()) write_file(options_.stats, json_text(stats_json(report_), 2) + "\n");
   });
   log_->write("finished", {{"exit_code", static_cast<int>(report_.exit_code)},
                            {"message", report_.message},
@@ -372,7 +376,8 @@ ExitCode run(const RunOptions& options) {
   Store store(cache, plan.finds_camera ? Store::Need::required : Store::Need::helpful, plan.scene, plan.scene_text);
   if (options.resume) {
     store.find_start();
-    paths.check_absent(overwrite, store.outputs());
+    paths.check_absent(overwrite, store.outputs(),
+                       [&](const fs::path& file) { return is_output_of(file, scene.name); });
   } else if (store.has_leftover()) {
     log::info(fmt::format(
         "note: {} frames of a run that did not end well are thrown away; with --resume it would have gone on",
@@ -400,7 +405,8 @@ ExitCode simulate(const SimulateOptions& options) {
                 "{}: holds a cache already; give --resume to go on with it, --overwrite to start again, or another "
                 "name",
                 options.cache.string());
-  paths.check_absent(options.common.overwrite, options.resume ? store.outputs() : std::set<std::string>{});
+  paths.check_absent(options.common.overwrite, options.resume ? store.outputs() : std::set<std::string>{},
+                     [&](const fs::path& file) { return is_output_of(file, scene.name); });
   paths.check_writable();
   if (store.resumes() && store.holds(plan.wanted.last()))
     log::info(fmt::format("note: {} is whole already: frames 0:{}", options.cache.string(), plan.made.end));

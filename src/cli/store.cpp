@@ -1,11 +1,12 @@
 #include "cli/store.hpp"
 
-#include <fstream>
+#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "cache/names.hpp"
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "core/log.hpp"
 #include "core/temporary_file.hpp"
 
@@ -82,7 +83,7 @@ bool Store::holds(int frame) const {
 
 std::set<std::string> Store::outputs() const {
   std::set<std::string> outputs;
-  std::ifstream in(folder() / cache::kOutputsFile);
+  std::istringstream in(read_start(folder() / cache::kOutputsFile, kLargestText));
   for (std::string line; std::getline(in, line);) outputs.insert(line);
   return outputs;
 }
@@ -112,7 +113,9 @@ void Store::attempt(const Write& write) {
   try {
     write();
   } catch (const Error& error) {
-    if (need_ == Need::required) throw;
+    // Whoever has removed the folder of the output does not want the rest of the run.
+    std::error_code ignored;
+    if (need_ == Need::required || !std::filesystem::exists(folder().parent_path(), ignored)) throw;
     give_up(error.what());
   }
   time_ += {wall.seconds(), thread_cpu_seconds() - cpu};

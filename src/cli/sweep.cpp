@@ -5,13 +5,15 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <fstream>
+#include <sstream>
 
 #include "cli/child_process.hpp"
 #include "cli/commands.hpp"
 #include "cli/signals.hpp"
 #include "cli/sweep_jobs.hpp"
 #include "cli/sweep_report.hpp"
+#include "core/input_file.hpp"
+#include "core/json.hpp"
 #include "core/log.hpp"
 #include "core/progress.hpp"
 #include "core/temporary_file.hpp"
@@ -36,14 +38,14 @@ struct Job : SweepJob {
   /// By what it has left.
   ExitCode outcome() const {
     if (is_done()) return ExitCode::ok;
-    const nlohmann::ordered_json json = read_json(stats());
+    const nlohmann::ordered_json json = read_json_or_null(stats());
     const int told = json.is_object() ? json.value("exit_code", 0) : 0;
     return told == 0 ? ExitCode::not_whole : static_cast<ExitCode>(told);
   }
 
   std::string last_words() const {
     std::string last;
-    std::ifstream in(log());
+    std::istringstream in(read_start(log(), kLargestText));
     for (std::string line; std::getline(in, line);)
       if (!line.empty()) last = line;
     return last;
@@ -126,7 +128,7 @@ class Sweep {
     for (const Job& job : jobs_) {
       const Job& made = job.twin ? jobs_[*job.twin] : job;
       const ExitCode code = options_.gather ? made.outcome() : made.tried ? made.code : ExitCode::interrupted;
-      results.push_back({job.run, made.video(), read_json(made.stats()), code});
+      results.push_back({job.run, made.video(), read_json_or_null(made.stats()), code});
     }
     return results;
   }

@@ -3,14 +3,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <fstream>
-#include <iterator>
 #include <map>
 
 #include "cli/scene_input.hpp"
 #include "core/error.hpp"
+#include "core/json.hpp"
 #include "core/temporary_file.hpp"
 #include "review/find_runs.hpp"
+#include "review/output_folder.hpp"
 
 namespace weft::cli {
 
@@ -24,7 +24,7 @@ std::vector<std::string> SweepJob::overrides() const {
 }
 
 bool SweepJob::is_done() const {
-  const Json json = read_json(stats());
+  const Json json = read_json_or_null(stats());
   return fs::exists(video()) && json.is_object() && json.value("exit_code", -1) == 0 &&
          json.value("scene_hash", "") == fmt::format("{:016x}", scene_hash);
 }
@@ -59,9 +59,12 @@ std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths)
 void check_sweep_folder(const SweepOptions& options, PathLedger& paths) {
   paths.fills("-o", options.output);
   const fs::path& folder = options.output;
+  review::check_replaceable(folder / "page", true);
+  for (const char* name : {"table.csv", "table.md", "sheet.png", review::kSweepName})
+    if (!fs::exists(fs::symlink_status(folder / name))) keep_if_made_meanwhile(folder / name);
   if (!fs::exists(folder) || fs::is_empty(folder)) return;
-  const Json before = read_json(folder / review::kSweepName);
-  if (!before.is_object())
+  const Json before = read_json_or_null(folder / review::kSweepName);
+  if (!before.is_object() || !before.contains("runs") || !before.contains("options"))
     throw Error(ExitCode::output_failed, "{}: is no folder of a sweep, and not empty; give another name",
                 folder.string());
   if (!options.overwrite && before["options"] != Json(options.passed_on))
@@ -81,13 +84,7 @@ void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>&
                     {"set", std::move(set)}});
   }
   const Json index{{"scene", options.scene.string()}, {"options", options.passed_on}, {"runs", std::move(runs)}};
-  write_file(options.output / review::kSweepName, index.dump(2) + "\n");
-}
-
-Json read_json(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  Json json = Json::parse(std::string(std::istreambuf_iterator<char>(in), {}), nullptr, false);
-  return json.is_discarded() ? Json() : json;
+  write_file(options.output / review::kSweepName, json_text(index, 2) + "\n");
 }
 
 }  // namespace weft::cli

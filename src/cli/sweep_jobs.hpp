@@ -41,7 +41,4 @@ void check_sweep_folder(const SweepOptions& options, PathLedger& paths);
 /// Writes what the folder holds: also the mark of a folder that sweeps fill.
 void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>& jobs);
 
-/// The content of a JSON file; null where there is none.
-nlohmann::ordered_json read_json(const std::filesystem::path& file);
-
 }  // namespace weft::cli

@@ -1,17 +1,16 @@
 #include "cli/sweep_plan.hpp"
 
-#include <toml++/toml.h>
-
 #include <algorithm>
 #include <cctype>
-#include <fstream>
-#include <iterator>
 #include <optional>
 #include <set>
 #include <sstream>
 
 #include "cli/option_values.hpp"
 #include "core/error.hpp"
+#include "core/input_file.hpp"
+#include "core/toml.hpp"
+#include "scene/document.hpp"
 
 namespace weft::cli {
 namespace {
@@ -19,6 +18,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMostRuns = 10'000;  // more is a slip: a day of runs of ten seconds
+constexpr std::size_t kMostKeys = 200;     // of a run; scenes have fewer that make sense together
 constexpr std::size_t kLongestName = 120;  // bytes; file systems take 255 for a name
 
 std::string trimmed(const std::string& text) {
@@ -70,9 +70,10 @@ std::vector<std::string> csv_fields(const std::string& line) {
   return fields;
 }
 
-std::vector<Changes> read_csv(const fs::path& file, std::istream& in) {
+std::vector<Changes> read_csv(const fs::path& file, const std::string& text) {
   std::vector<std::string> keys;
   std::vector<Changes> rows;
+  std::istringstream in(text);
   int number = 0;
   for (std::string line; std::getline(in, line);) {
     ++number;
@@ -109,9 +110,9 @@ void flatten(const toml::table& table, const std::string& above, Changes& change
   }
 }
 
-std::vector<Changes> read_toml(const fs::path& file, std::istream& in) {
+std::vector<Changes> read_toml(const fs::path& file, const std::string& text) {
   try {
-    const toml::table table = toml::parse(in, file.string());
+    const toml::table table = parse_toml(text, file.string());
     std::vector<Changes> rows;
     const toml::array* runs = table["run"].as_array();
     if (runs == nullptr || table.size() != 1 || !runs->is_array_of_tables())
@@ -186,10 +187,16 @@ Axis parse_axis(const std::string& text) {
 }
 
 std::vector<Changes> read_list(const fs::path& file) {
-  std::ifstream in(file);
-  if (!in) throw Error(ExitCode::asset_unreadable, "{}: cannot be read", file.string());
-  std::vector<Changes> rows = file.extension() == ".toml" ? read_toml(file, in) : read_csv(file, in);
+  const std::string text = read_file(file, scene::kMaxFileSize);
+  std::vector<Changes> rows = file.extension() == ".toml" ? read_toml(file, text) : read_csv(file, text);
   if (rows.empty()) throw Error(ExitCode::asset_unreadable, "{}: names no run", file.string());
+  if (rows.size() > kMostRuns)
+    throw Error(ExitCode::asset_unreadable, "{}: expected at most {} runs, got {}", file.string(), kMostRuns,
+                rows.size());
+  for (const Changes& row : rows)
+    if (row.size() > kMostKeys)
+      throw Error(ExitCode::asset_unreadable, "{}: expected at most {} keys of a run, got {}", file.string(), kMostKeys,
+                  row.size());
   return rows;
 }
 
@@ -213,10 +220,12 @@ std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::ve
     };
     if (those.size() > 1 || runs.size() == 1 || !std::ranges::all_of(runs, has_it)) differing.insert(key);
   }
+  std::map<std::string, std::string> short_names;
+  for (const std::string& key : differing) short_names[key] = short_name(key, differing);
   std::set<std::string> names;
   for (SweepRun& run : runs) {
     for (const auto& [key, value] : run.changes)
-      if (differing.contains(key)) run.difference.emplace_back(short_name(key, differing), value);
+      if (differing.contains(key)) run.difference.emplace_back(short_names[key], value);
     const std::string name = run.difference.empty() ? "as_it_is" : file_name(run.difference);
     run.name = name;
     for (int n = 2; !names.insert(run.name).second; ++n) run.name = fmt::format("{}~{}", name, n);

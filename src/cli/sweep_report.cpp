@@ -97,9 +97,11 @@ int columns_of(const std::vector<SweepResult>& results) {
 }  // namespace
 
 std::string label_of(const SweepRun& run) {
+  constexpr std::size_t kLongest = 200;  // letters; the table has the whole values
   std::string label;
   for (const auto& [key, value] : run.difference)
     label += fmt::format("{}{}={}", label.empty() ? "" : "  ", key, value);
+  if (label.size() > kLongest) label = label.substr(0, kLongest) + " ...";
   return label.empty() ? "as it is" : label;
 }
 

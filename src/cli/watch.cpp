@@ -4,13 +4,16 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <map>
 
 #include "cli/child_process.hpp"
 #include "cli/commands.hpp"
+#include "cli/own_files.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/signals.hpp"
+#include "core/error.hpp"
 #include "core/log.hpp"
 
 namespace weft::cli {
@@ -35,7 +38,18 @@ Stamps stamps_of(const std::vector<fs::path>& files) {
 
 class Watch {
  public:
-  explicit Watch(const WatchOptions& options) : options_(options) {}
+  explicit Watch(const WatchOptions& options) : options_(options) {
+    // What is drawn takes the place of what was drawn before, and of nothing else.
+    const auto option = std::ranges::find(options.passed_on, "--output");
+    const std::string scene = options.scene.stem().string();
+    const fs::path output = option != options.passed_on.end()
+                                ? fs::path(*(option + 1))
+                                : fs::path("output") / (scene + (options.film ? ".mp4" : ".png"));
+    std::error_code ignored;
+    if (fs::exists(fs::symlink_status(output, ignored)) && !is_output_of(output, scene))
+      throw Error(ExitCode::output_failed, "{}: exists already, and is no picture of {}; give another name",
+                  output.string(), scene);
+  }
 
   ExitCode look() {
     for (int times = 0; !stop_.requested() && (options_.times == 0 || times < options_.times); ++times) {

@@ -9,13 +9,12 @@ extern "C" {
 #include <cerrno>
 #include <cstring>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <memory>
 
 #include "compare/files.hpp"
 #include "compare/references.hpp"
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "core/temporary_file.hpp"
 #include "image/png.hpp"
 #include "video/decoder.hpp"
@@ -33,13 +32,6 @@ constexpr const char* kLogHead =
     "\n"
     "| date (UTC) | reference | old | new | difference | reason | by |\n"
     "|---|---|---|---|---|---|---|\n";
-
-std::string read_file(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  std::string bytes{std::istreambuf_iterator<char>(in), {}};
-  if (!in) throw Error(ExitCode::asset_unreadable, "{}: cannot be read: {}", file.string(), std::strerror(errno));
-  return bytes;
-}
 
 // A reference must be whole: read to its end.
 void check_readable(const fs::path& file) {

@@ -10,6 +10,7 @@
 
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstring>
 #include <exception>
@@ -106,14 +107,19 @@ void send(int descriptor, std::string_view bytes) {
 }
 
 // Until the end, or until it is to stop.
-std::string receive(int descriptor, const std::atomic<bool>* stop) {
+std::string receive(int descriptor, const Isolation& isolation) {
+  using Clock = std::chrono::steady_clock;
   constexpr int kLookEvery = 100;  // [ms]
+  const auto deadline = Clock::now() + std::chrono::seconds(isolation.wall_seconds);
   std::string bytes;
   std::array<char, 1 << 16> buffer{};
   for (;;) {
     pollfd wait{descriptor, POLLIN, 0};
-    while (stop != nullptr && ::poll(&wait, 1, kLookEvery) <= 0)
-      if (*stop) throw_interrupted();
+    while (::poll(&wait, 1, kLookEvery) <= 0) {
+      if (isolation.stop != nullptr && *isolation.stop) throw_interrupted();
+      if (isolation.wall_seconds > 0 && Clock::now() > deadline)
+        throw std::runtime_error(fmt::format("{} was stopped after {} s", isolation.name, isolation.wall_seconds));
+    }
     const ssize_t got = ::read(descriptor, buffer.data(), buffer.size());
     if (got < 0 && errno == EINTR) continue;
     if (got < 0) fail("reading from a child process");
@@ -155,7 +161,7 @@ std::string run_isolated(const std::function<std::string()>& work, const Isolati
   if (process == 0) run_child(work, isolation, pipe.write_end());
   Child child(process);
   pipe.close_write_end();
-  std::string answer = receive(pipe.read_end(), isolation.stop);
+  std::string answer = receive(pipe.read_end(), isolation);
   const int status = child.wait();
   // Whoever asked for an end may have asked the child too.
   if (isolation.stop != nullptr && *isolation.stop) throw_interrupted();

@@ -11,6 +11,7 @@ namespace weft {
 struct Isolation {
   std::string name = "the process";         ///< as messages call it
   unsigned cpu_seconds = 0;                 ///< that it may use; 0: no limit
+  unsigned wall_seconds = 0;                ///< after which it is killed, as where it waits for ever; 0: no limit
   std::uint64_t addresses = 0;              ///< [bytes] that it may ask for; 0: no limit
   const std::atomic<bool>* stop = nullptr;  ///< once true, it is killed; nullptr: never
 };

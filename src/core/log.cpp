@@ -29,7 +29,21 @@ void write(std::string_view text) {
   (void)std::fwrite(text.data(), 1, text.size(), stderr);
 }
 
-void print(State& s, std::string_view line) {
+// What a terminal would take for commands, as in the name of a file.
+std::string without_controls(std::string_view text) {
+  std::string plain;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    if ((byte < 0x20 && c != '\n' && c != '\t') || byte == 0x7F)
+      plain += fmt::format("\\x{:02x}", byte);
+    else
+      plain += c;
+  }
+  return plain;
+}
+
+void print(State& s, std::string_view text) {
+  const std::string line = without_controls(text);
   if (s.status.empty()) {
     write(fmt::format("{}\n", line));
   } else {

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 
 namespace weft {
 namespace {
@@ -52,15 +53,6 @@ std::string reason(int error) {
   throw Error(ExitCode::output_failed, "{}: {}: {}", file.string(), what, why);
 }
 
-// `.<name>.weft-<digits>.tmp`
-bool is_temporary(const std::string& name) {
-  constexpr std::string_view kMark = ".weft-", kEnding = ".tmp";
-  const std::size_t mark = name.rfind(kMark);
-  if (!name.starts_with('.') || !name.ends_with(kEnding) || mark == std::string::npos) return false;
-  const std::size_t first = mark + kMark.size(), last = name.size() - kEnding.size();
-  return first < last && name.find_first_not_of("0123456789", first) == last;
-}
-
 bool is_called(const fs::path& path, int descriptor) {
   struct stat open {
   }, named{};
@@ -81,15 +73,43 @@ void remove_abandoned(const fs::path& path) {
   ::close(descriptor);
 }
 
-// Once for each folder: with every file of thousands it would take its time.
-void clean_once(const fs::path& folder) {
+// Makes a folder and removes what killed processes have left in it, once for each folder: somebody who removes it later
+// does not want what is still written there. False, with the reason, where it cannot be made.
+bool prepare_once(const fs::path& folder, std::error_code& error) {
   static std::mutex mutex;
-  static std::set<fs::path> clean;
+  static std::set<fs::path> prepared;
   const std::lock_guard lock(mutex);
-  if (!clean.insert(folder).second) return;
+  if (prepared.contains(folder)) return true;
+  fs::create_directories(folder, error);
+  if (error) return false;
+  prepared.insert(folder);
+  std::error_code ignored;
+  for (fs::directory_iterator entry(folder, ignored), end; !ignored && entry != end; entry.increment(ignored))
+    if (!final_name_of(entry->path().filename().string()).empty()) remove_abandoned(entry->path());
+  return true;
+}
+
+std::mutex g_kept_mutex;
+std::set<fs::path> g_kept;  // absolute; see keep_if_made_meanwhile()
+
+fs::path plain(const fs::path& file) {
   std::error_code error;
-  for (fs::directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
-    if (is_temporary(entry->path().filename().string())) remove_abandoned(entry->path());
+  return fs::absolute(file, error).lexically_normal();
+}
+
+// Gives a file a name that is free: what has the name stays, with errno EEXIST.
+bool rename_to_free_name(const fs::path& from, const fs::path& to) {
+  if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return true;
+  if (errno != EINVAL && errno != ENOSYS) return false;
+  // Such a file system may still have hard links.
+  if (::link(from.c_str(), to.c_str()) == 0) return ::unlink(from.c_str()) == 0;
+  if (errno == EEXIST) return false;
+  struct stat status {};
+  if (::lstat(to.c_str(), &status) == 0) {
+    errno = EEXIST;
+    return false;
+  }
+  return std::rename(from.c_str(), to.c_str()) == 0;
 }
 
 // Makes what the name stands for and locks it. A cleaning process may take it away before it is locked: then again.
@@ -115,9 +135,8 @@ TemporaryName::TemporaryName(const fs::path& final_name, Kind kind) {
   // Absolute, so that the name stays right whatever happens to the working folder.
   std::error_code error;
   const fs::path absolute = fs::absolute(final_name, error);
-  if (!error) fs::create_directories(absolute.parent_path(), error);
-  if (error) fail(final_name, "cannot make the folder", error.message());
-  clean_once(absolute.parent_path());
+  if (error || !prepare_once(absolute.parent_path(), error))
+    fail(final_name, "cannot make the folder", error.message());
   path_ = absolute.parent_path() / fmt::format(".{}.weft-{}.tmp", absolute.filename().string(), ::getpid());
   descriptor_ = hold(path_, kind);
   if (descriptor_ < 0) fail(final_name, "cannot be written", reason(errno));
@@ -155,17 +174,50 @@ TemporaryFile::TemporaryFile(fs::path final_name)
     : final_name_(std::move(final_name)), temporary_(checked(final_name_), TemporaryName::Kind::file) {}
 
 void TemporaryFile::commit(Flush flush) {
+  const bool replaces = may_replace(final_name_);
   // Without the flush a crash of the machine soon after the rename can leave an empty file under the final name.
-  const bool good = (flush == Flush::no || ::fsync(temporary_.descriptor()) == 0 || errno == EINVAL) &&
-                    std::rename(path().c_str(), final_name_.c_str()) == 0;
+  const bool good =
+      (flush == Flush::no || ::fsync(temporary_.descriptor()) == 0 || errno == EINVAL) &&
+      (replaces ? std::rename(path().c_str(), final_name_.c_str()) == 0 : rename_to_free_name(path(), final_name_));
+  if (!good && !replaces && errno == EEXIST)
+    throw Error(ExitCode::output_failed,
+                "{}: was made by somebody else while this command worked, and is kept; give --overwrite to replace it, "
+                "or another name",
+                final_name_.string());
   if (!good) fail(final_name_, "cannot be written", reason(errno));
   temporary_.release();
+  const std::lock_guard lock(g_kept_mutex);
+  g_kept.erase(plain(final_name_));
+}
+
+void keep_if_made_meanwhile(const fs::path& file) {
+  const std::lock_guard lock(g_kept_mutex);
+  g_kept.insert(plain(file));
+}
+
+bool may_replace(const fs::path& file) {
+  const std::lock_guard lock(g_kept_mutex);
+  return !g_kept.contains(plain(file));
+}
+
+std::string_view final_name_of(std::string_view name) {
+  constexpr std::string_view kMark = ".weft-", kEnding = ".tmp";
+  const std::size_t mark = name.rfind(kMark);
+  if (!name.starts_with('.') || !name.ends_with(kEnding) || mark == std::string_view::npos || mark == 0) return {};
+  const std::size_t first = mark + kMark.size(), last = name.size() - kEnding.size();
+  const bool is_number = first < last && name.find_first_not_of("0123456789", first) == last;
+  return is_number ? name.substr(1, mark - 1) : std::string_view();
 }
 
 void remove_temporary_files() noexcept {
   for (Slot& slot : g_slots) {
     if (slot.state.load() == Slot::active) ::unlink(slot.path.data());
   }
+}
+
+bool holds(const fs::path& file, std::string_view content) {
+  std::error_code error;
+  return fs::file_size(file, error) == content.size() && !error && read_start(file, content.size()) == content;
 }
 
 void write_file(const fs::path& file, std::string_view content, Flush flush) {
@@ -175,6 +227,8 @@ void write_file(const fs::path& file, std::string_view content, Flush flush) {
   bool good = out && std::fwrite(content.data(), 1, content.size(), out.get()) == content.size();
   good = good && std::fflush(out.get()) == 0;
   if (!good) fail(file, "cannot be written", reason(errno));
+  // Machines that draw parts of one film write the same scene beside it.
+  if (!may_replace(file) && holds(file, content)) return;
   temporary.commit(flush);
 }
 

@@ -18,7 +18,8 @@ class TemporaryName {
  public:
   enum class Kind { file, folder };
 
-  /// Makes missing folders and the file or folder itself, empty. Throws Error(output_failed) with the system's reason.
+  /// Makes missing folders, unless this process has used them before: then somebody has removed them. Makes the file or
+  /// folder itself, empty. Throws Error(output_failed) with the system's reason.
   TemporaryName(const std::filesystem::path& final_name, Kind kind);
   /// Removes what is still there under the temporary name.
   ~TemporaryName();
@@ -44,13 +45,25 @@ class TemporaryFile {
 
   const std::filesystem::path& path() const { return temporary_.path(); }
 
-  /// Gives the closed file its final name, replacing what was there. Throws Error(output_failed).
+  /// Gives the closed file its final name, replacing what was there if may_replace(). Throws Error(output_failed).
   void commit(Flush flush = Flush::yes);
 
  private:
   std::filesystem::path final_name_;
   TemporaryName temporary_;
 };
+
+/// For a file that was not there when the command began and that it may not replace: if somebody makes one meanwhile,
+/// that file stays, and what was to get the name is refused at the end. Ends when this process has written the file.
+void keep_if_made_meanwhile(const std::filesystem::path& file);
+/// Not so.
+bool may_replace(const std::filesystem::path& file);
+
+/// The final name in a temporary one; empty for other names.
+std::string_view final_name_of(std::string_view temporary_name);
+
+/// Whether a file has exactly this content.
+bool holds(const std::filesystem::path& file, std::string_view content);
 
 /// Removes every temporary file of this process. Async-signal-safe: for the moment before _exit().
 void remove_temporary_files() noexcept;

@@ -114,9 +114,9 @@ void BlenderScript::add(int frame, const std::vector<View>& views) {
 
 std::string BlenderScript::text() const {
   // JSON in ASCII has no three quotes in a row, so it ends where it should.
-  const std::string data = film_.dump(-1, ' ', true);
+  const std::string data = film_.dump(-1, ' ', true, Json::error_handler_t::replace);
   std::string text = fmt::format("# {}, by Weft {}.\nFILM_TEXT = r\"\"\"{}\"\"\"\n\n",
-                                 film_["name"].dump(-1, ' ', true), kVersion, data);
+                                 film_["name"].dump(-1, ' ', true, Json::error_handler_t::replace), kVersion, data);
   for (const EmbeddedFile& file : kEmbeddedExport)
     if (file.name == "blender.py") text += file.text;
   return text;

@@ -361,7 +361,7 @@ void GltfFile::write(const std::filesystem::path& file, const std::string& anima
     if (document_[list].empty()) document_.erase(list);
   document_["buffers"] = {{{"byteLength", bytes_.size()}}};
 
-  const std::string text = document_.dump();
+  const std::string text = document_.dump(-1, ' ', false, json::error_handler_t::replace);
   const std::size_t most = text.size() + bytes_.size() + 64;  // with heads and fillers
   if (most > std::numeric_limits<std::uint32_t>::max())
     throw Error(ExitCode::output_failed,

@@ -8,6 +8,7 @@
 #include <sstream>
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "garment/specification.hpp"
 #include "garment/svg.hpp"
 #include "garment/triangulation.hpp"
@@ -403,7 +404,9 @@ std::pair<std::size_t, std::size_t> Pattern::find(const std::string& name) const
   throw Error(ExitCode::internal, "pattern {}: no edge {}", file.string(), name);
 }
 
-ReadPattern read_pattern(const std::filesystem::path& file) {
+namespace {
+
+ReadPattern read_mistakes(const std::filesystem::path& file) {
   Findings findings;
   ReadPattern read;
   std::vector<std::string> in_drawings;
@@ -426,6 +429,12 @@ ReadPattern read_pattern(const std::filesystem::path& file) {
   read.only_in_drawings = read.mistakes.empty() && !in_drawings.empty();
   read.mistakes.insert(read.mistakes.end(), in_drawings.begin(), in_drawings.end());
   return read;
+}
+
+}  // namespace
+
+ReadPattern read_pattern(const std::filesystem::path& file) {
+  return read_checked(file, [&] { return read_mistakes(file); });
 }
 
 Pattern load_pattern(const std::filesystem::path& file, const std::string& where) {

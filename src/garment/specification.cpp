@@ -6,12 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <numeric>
 #include <optional>
 #include <set>
 
+#include "core/json.hpp"
 #include "garment/specification_panels.hpp"
 
 namespace weft::garment {
@@ -32,6 +32,11 @@ constexpr double kBelowFloor = -0.2;
 // Least height above the floor that they start at [m].
 constexpr double kClear = 0.02;
 
+/// A value, as messages show it.
+std::string shown(const json& value) {
+  return value.dump().substr(0, 40);
+}
+
 class Reader {
  public:
   Reader(const std::string& text, Findings& findings) : text_(text), findings_(findings) {}
@@ -39,11 +44,14 @@ class Reader {
   bool read(Pattern& pattern) {
     json root;
     try {
-      root = json::parse(text_);
+      root = parse_json<json>(text_);
     } catch (const json::parse_error& error) {
       const auto end = text_.begin() + static_cast<std::ptrdiff_t>(std::min(error.byte, text_.size()));
       const int line = 1 + static_cast<int>(std::count(text_.begin(), end, '\n'));
       findings_.report("", {line, 1, {}}, "expected JSON, got what is none near here");
+      return false;
+    } catch (const std::exception& error) {  // of numbers that no double holds, and of depth
+      findings_.report("", {}, fmt::format("expected JSON, got what is none: {}", error.what()));
       return false;
     }
     const json* panels = member(member(&root, "pattern", ""), "panels", "pattern");
@@ -83,7 +91,7 @@ class Reader {
       for (const json& each : value)
         if (each.is_number() && std::abs(each.get<double>()) < kFarthest) list.push_back(each.get<double>());
     if (value.is_array() && list.size() == count && value.size() == count) return list;
-    mistake(key, fmt::format("expected {} numbers below {:g}, got {}", count, kFarthest, value.dump().substr(0, 40)));
+    mistake(key, fmt::format("expected {} numbers below {:g}, got {}", count, kFarthest, shown(value)));
     return std::nullopt;
   }
 
@@ -91,8 +99,11 @@ class Reader {
     if (!root.contains("properties") || !root["properties"].is_object()) return;
     const json& properties = root["properties"];
     if (const auto units = properties.find("units_in_meter"); units != properties.end()) {
-      if (!units->is_number() || !(units->get<double>() > 0))
-        return mistake("properties.units_in_meter", "expected a number > 0, got " + units->dump().substr(0, 40));
+      constexpr double kLeast = 1e-3, kMost = 1e6;  // kilometres to micrometres
+      const double count = units->is_number() ? units->get<double>() : 0;
+      if (!(count >= kLeast && count <= kMost))
+        return mistake("properties.units_in_meter",
+                       fmt::format("expected a number from {:g} to {:g}, got {}", kLeast, kMost, shown(*units)));
       unit_ = 1 / units->get<double>();
     }
     absolute_ = properties.value("curvature_coords", json("relative")) == "absolute";
@@ -178,10 +189,10 @@ class Reader {
       edge.large = (*p)[1] != 0, edge.right = (*p)[2] != 0;
       if (!(edge.radius > 0)) mistake(key + ".params", fmt::format("expected a radius > 0, got {:g}", (*p)[0]));
     } else if (count == 0) {
-      mistake(key + ".type", "expected quadratic, cubic or circle, got " + type->dump().substr(0, 40));
+      mistake(key + ".type", "expected quadratic, cubic or circle, got " + shown(*type));
     } else if (!params->is_array() || params->size() != count) {
-      mistake(key + ".params", fmt::format("expected {} control point{}, got {}", count, count == 1 ? "" : "s",
-                                           params->dump().substr(0, 40)));
+      mistake(key + ".params",
+              fmt::format("expected {} control point{}, got {}", count, count == 1 ? "" : "s", shown(*params)));
     } else {
       for (const json& each : *params)
         if (const auto p = numbers(each, 2, key + ".params")) edge.control.push_back(beside(edge, *p));
@@ -191,11 +202,13 @@ class Reader {
   void read_stitches(const json& pattern) {
     if (!pattern.contains("stitches")) return;
     const json& stitches = pattern["stitches"];
+    if (!stitches.is_array())
+      return mistake("pattern.stitches", "expected a list of pairs of edges, got " + shown(stitches));
     for (std::size_t i = 0; i < stitches.size(); ++i) {
       const std::string key = fmt::format("pattern.stitches.{}", i);
       const json& value = stitches[i];
       if (!value.is_array() || value.size() < 2) {
-        mistake(key, "expected two edges, got " + value.dump().substr(0, 40));
+        mistake(key, "expected two edges, got " + shown(value));
         continue;
       }
       SpecStitch stitch;
@@ -209,7 +222,7 @@ class Reader {
     const bool named = side.is_object() && side.contains("panel") && side["panel"].is_string() &&
                        side.contains("edge") && side["edge"].is_number_unsigned();
     if (!named) {
-      mistake(key, "expected panel and edge, got " + side.dump().substr(0, 40));
+      mistake(key, "expected panel and edge, got " + shown(side));
       return false;
     }
     const auto name = side["panel"].get<std::string>();

@@ -6,17 +6,19 @@
 #include <cctype>
 #include <charconv>
 #include <cmath>
-#include <fstream>
 #include <iterator>
 #include <limits>
 #include <numbers>
 #include <optional>
 #include <pugixml.hpp>
 #include <sstream>
+#include <stdexcept>
 #include <string_view>
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
+#include "core/nesting.hpp"
 
 namespace weft::garment {
 namespace {
@@ -29,18 +31,24 @@ constexpr double kCorner = 25 * std::numbers::pi / 180;
 constexpr std::size_t kMaxNumbers = 20000;
 using Affine = Eigen::Affine2d;
 
+/// Stops a walk, which pugixml makes without recursion, at elements that functions here could not recurse into.
+struct DepthLimit : pugi::xml_tree_walker {
+  bool for_each(pugi::xml_node&) override { return depth() < kMaxDepth; }
+};
+
 /// A drawing, and what its errors say.
 class Drawing {
  public:
   explicit Drawing(const std::filesystem::path& file) : file_(file) {
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(file, error);
-    if (error || !std::filesystem::is_regular_file(file)) refuse(0, "expected a file, got none that can be read");
-    if (size > kMaxSvgBytes) refuse(0, fmt::format("expected at most {} MB, got more", kMaxSvgBytes >> 20));
-    std::ifstream stream(file, std::ios::binary);
-    text_.assign(std::istreambuf_iterator<char>(stream), {});
+    try {
+      text_ = read_bytes(file, kMaxSvgBytes);
+    } catch (const std::runtime_error& error) {
+      refuse(0, fmt::format("expected a file, got none that can be read: {}", error.what()));
+    }
     const pugi::xml_parse_result result = document_.load_buffer(text_.data(), text_.size());
     if (!result) refuse(result.offset, fmt::format("expected XML, got what is none: {}", result.description()));
+    DepthLimit limit;
+    if (!document_.traverse(limit)) refuse(0, fmt::format("expected at most {} nested elements, got more", kMaxDepth));
   }
 
   [[noreturn]] void refuse(std::ptrdiff_t offset, const std::string& text) const {

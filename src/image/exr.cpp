@@ -12,6 +12,7 @@
 #include <exception>
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "core/temporary_file.hpp"
 
 namespace weft::image {
@@ -64,6 +65,7 @@ void write_exr(const std::filesystem::path& file, const Layers& layers, const Me
 
 ExrHeader read_exr_header(const std::filesystem::path& file) {
   try {
+    check_is_file(file);
     Imf::InputFile in(file.c_str());
     const Imath::Box2i& area = in.header().dataWindow();
     ExrHeader found{area.max.x - area.min.x + 1, area.max.y - area.min.y + 1, {}};

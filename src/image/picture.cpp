@@ -11,11 +11,11 @@ extern "C" {
 
 #include <array>
 #include <cstring>
-#include <fstream>
-#include <iterator>
 #include <memory>
 #include <stdexcept>
 #include <string>
+
+#include "core/input_file.hpp"
 
 namespace weft::image {
 namespace {
@@ -148,10 +148,7 @@ Picture decode_picture(std::string_view bytes) {
 }
 
 Picture read_picture(const std::filesystem::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  if (!in) fail(std::strerror(errno));
-  const std::string bytes(std::istreambuf_iterator<char>(in), {});
-  return decode_picture(bytes);
+  return read_checked(file, [&] { return decode_picture(read_bytes(file, kMaxPictureBytes)); });
 }
 
 }  // namespace weft::image

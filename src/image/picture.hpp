@@ -17,6 +17,9 @@ struct Picture {
 /// Pixels along one side that a picture may have: what every OpenGL takes.
 inline constexpr int kMaxPictureSide = 16384;
 
+/// Bytes that the file of a picture may have.
+inline constexpr std::uintmax_t kMaxPictureBytes = std::uintmax_t{64} << 20;
+
 /// Whether bytes begin like a TGA file, which has no mark of its own: by all of its header that is not free.
 bool is_targa(std::string_view bytes);
 
@@ -24,7 +27,7 @@ bool is_targa(std::string_view bytes);
 /// says what is wrong.
 Picture decode_picture(std::string_view bytes);
 
-/// The same of a file, likewise.
+/// The same of a file. Throws Error(asset_unreadable), which names it.
 Picture read_picture(const std::filesystem::path& file);
 
 }  // namespace weft::image

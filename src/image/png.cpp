@@ -12,12 +12,14 @@
 #include <cstdlib>
 #include <cstring>
 #include <memory>
+#include <stdexcept>
 #include <string_view>
 #include <system_error>
 #include <utility>
 #include <vector>
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "core/temporary_file.hpp"
 
 // libpng reports errors by longjmp, which skips destructors. So each function that calls setjmp below holds plain data
@@ -286,25 +288,49 @@ std::string png_bytes(const Picture& picture) {
   return bytes_of({picture.width, picture.height, 8, picture.rgba.data(), 4}, picture.rgba.size());
 }
 
-Image read_png(const std::filesystem::path& file, Metadata* metadata) {
-  const File in(std::fopen(file.c_str(), "rbe"), std::fclose);
-  if (!in) fail_to_read(file, std::strerror(errno));
-  std::error_code error;
-  const std::uintmax_t file_size = std::filesystem::file_size(file, error);
-  if (error) fail_to_read(file, error.message());
-  check_chunks(file, in.get(), file_size);
+namespace {
 
+/// A file up to its pixels.
+struct Opened {
+  File in{nullptr, std::fclose};
+  std::uintmax_t size = 0;  // [bytes]
   Complaint complaint;
-  const Reader reader(&complaint);
-  if (!reader.info) fail_to_read(file, "libpng could not start");
-  if (!read_header(reader, in.get())) fail_to_read(file, complaint.text.data());
+  Reader reader{&complaint};
+
+  explicit Opened(const std::filesystem::path& file) {
+    try {
+      check_is_file(file);
+    } catch (const std::runtime_error& error) {
+      fail_to_read(file, error.what());
+    }
+    in.reset(std::fopen(file.c_str(), "rbe"));
+    if (!in) fail_to_read(file, std::strerror(errno));
+    std::error_code error;
+    size = std::filesystem::file_size(file, error);
+    if (error) fail_to_read(file, error.message());
+    check_chunks(file, in.get(), size);
+    if (!reader.info) fail_to_read(file, "libpng could not start");
+    if (!read_header(reader, in.get())) fail_to_read(file, complaint.text.data());
+  }
+};
+
+}  // namespace
+
+Metadata read_png_metadata(const std::filesystem::path& file) {
+  return metadata_of(Opened(file).reader);
+}
+
+Image read_png(const std::filesystem::path& file, Metadata* metadata) {
+  const Opened opened(file);
+  const Reader& reader = opened.reader;
+  const Complaint& complaint = opened.complaint;
 
   // Hold the claimed size against the size of the file before asking for memory.
   const png_uint_32 width = png_get_image_width(reader.png, reader.info);
   const png_uint_32 height = png_get_image_height(reader.png, reader.info);
   const std::uintmax_t packed_size = std::uintmax_t{height} * png_get_rowbytes(reader.png, reader.info);
-  if (packed_size > kMaxDeflateRatio * file_size) {
-    fail_to_read(file, fmt::format("{} bytes cannot hold {}x{} pixels", file_size, width, height));
+  if (packed_size > kMaxDeflateRatio * opened.size) {
+    fail_to_read(file, fmt::format("{} bytes cannot hold {}x{} pixels", opened.size, width, height));
   }
 
   if (!ask_for_rgb(reader)) fail_to_read(file, complaint.text.data());

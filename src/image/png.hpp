@@ -28,4 +28,7 @@ std::string png_bytes(const Picture& picture);
 /// Reads an 8-bit PNG (gray, palette and alpha are converted to RGB over white). Throws Error(asset_unreadable).
 Image read_png(const std::filesystem::path& file, Metadata* metadata = nullptr);
 
+/// What stands before its pixels, which are not looked at. Throws Error(asset_unreadable).
+Metadata read_png_metadata(const std::filesystem::path& file);
+
 }  // namespace weft::image

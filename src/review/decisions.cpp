@@ -5,12 +5,12 @@
 #include <algorithm>
 #include <array>
 #include <ctime>
-#include <fstream>
-#include <iterator>
 #include <set>
+#include <system_error>
 
 #include "compare/acceptance.hpp"
 #include "core/error.hpp"
+#include "core/json.hpp"
 
 namespace weft::review {
 namespace {
@@ -55,9 +55,9 @@ std::string mistake_of_decision(const Json& entry) {
 const Decisions::File& Decisions::read(const fs::path& folder) {
   const auto [place, is_new] = files_.try_emplace(folder);
   File& file = place->second;
-  std::ifstream in(folder / kDecisionsName, std::ios::binary);
-  if (!is_new || !in) return file;
-  const Json json = Json::parse(std::string{std::istreambuf_iterator<char>(in), {}}, nullptr, false);
+  std::error_code ignored;
+  if (!is_new || !fs::exists(folder / kDecisionsName, ignored)) return file;
+  const Json json = read_json_or_null(folder / kDecisionsName);
   if (json.is_object() && json.value("format", Json()) == "weft review 1" && json.contains("runs") &&
       json["runs"].is_object()) {
     file.runs = json["runs"];

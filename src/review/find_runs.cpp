@@ -2,8 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,6 +10,8 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
+#include "core/json.hpp"
 
 namespace weft::review {
 namespace {
@@ -20,16 +20,11 @@ namespace fs = std::filesystem;
 
 constexpr std::string_view kEffectiveEnding = ".effective.toml";
 
-std::string read_text(const fs::path& file) {
-  std::ifstream in(file, std::ios::binary);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
 bool is_hidden(const fs::path& path) {
   return path.filename().string().starts_with('.');
 }
 
-// Every regular file below the folder, in order of the paths.
+// Every regular file below the folder, in order of the paths. Links could lead to anything, which the page would show.
 std::vector<fs::path> list_files(const fs::path& folder) {
   std::error_code error;
   if (!fs::is_directory(folder, error))
@@ -40,7 +35,7 @@ std::vector<fs::path> list_files(const fs::path& folder) {
     std::error_code ignored;  // a file that went away in between is none
     if (entry->is_directory(ignored)) {
       if (is_hidden(entry->path()) || is_review_page(entry->path())) entry.disable_recursion_pending();
-    } else if (entry->is_regular_file(ignored) && !is_hidden(entry->path())) {
+    } else if (fs::is_regular_file(entry->symlink_status(ignored)) && !is_hidden(entry->path())) {
       files.push_back(entry->path());
     }
   }
@@ -60,6 +55,49 @@ bool is_statistics(const Json& json) {
   const auto frames = json.find("frames");
   return frames != json.end() && frames->is_array() &&
          std::all_of(frames->begin(), frames->end(), [](const Json& frame) { return frame.is_object(); });
+}
+
+bool is_positive(const Json& value) {
+  return value.is_number() && value >= 0;
+}
+
+bool is_list_of(const Json& value, const std::function<bool(const Json&)>& fits) {
+  return value.is_array() && std::all_of(value.begin(), value.end(), fits);
+}
+
+bool is_object_entry(const Json& entry) {
+  const auto text = [&](const char* key) { return entry.contains(key) && entry[key].is_string(); };
+  const auto count = [&](const char* key) { return !entry.contains(key) || is_positive(entry[key]); };
+  return entry.is_object() && text("name") && text("kind") && count("vertices") && count("faces");
+}
+
+/// What the page shows of statistics, and how it has to look. Each that does not is left out and named, so that nothing
+/// of one file keeps the page from showing the rest.
+void drop_odd_values(Json& stats, const std::string& file, std::vector<std::string>& problems) {
+  const auto drop = [&](const char* key, const char* expected, const auto& fits) {
+    const auto found = stats.find(key);
+    if (found == stats.end() || fits(*found)) return;
+    problems.push_back(fmt::format("{}: {}: expected {}", file, key, expected));
+    stats.erase(key);
+  };
+  const auto is_text = [](const Json& value) { return value.is_string(); };
+  for (const char* key : {"scene_file", "scene_hash", "version", "cpu", "gl", "message", "output"})
+    drop(key, "a text", is_text);
+  for (const char* key : {"threads", "exit_code", "width", "height", "fps", "particles", "peak_memory_bytes"})
+    drop(key, "a number, 0 or more", is_positive);
+  drop("totals", "numbers by name", [](const Json& value) {
+    return value.is_object() && std::all_of(value.begin(), value.end(), [](const Json& v) { return v.is_number(); });
+  });
+  drop("warnings", "a list of texts", [&](const Json& value) { return is_list_of(value, is_text); });
+  drop("objects", "a list of objects with name, kind, vertices and faces",
+       [](const Json& value) { return is_list_of(value, is_object_entry); });
+}
+
+/// What a sweep has set for a run: texts by key; null where it tells anything else.
+Json set_of(const Json& run) {
+  const auto set = run.find("set");
+  const auto is_text = [](const Json& value) { return value.is_string(); };
+  return set != run.end() && set->is_object() && std::all_of(set->begin(), set->end(), is_text) ? *set : Json();
 }
 
 // The files below one folder while runs are put together from them.
@@ -114,13 +152,13 @@ class Search {
   };
 
   void add_sweep(const fs::path& file) {
-    const Json json = Json::parse(read_text(file), nullptr, false);
+    const Json json = read_json_or_null(file);
     if (!json.is_object() || !json.contains("runs") || !json["runs"].is_array()) return;
     const fs::path beside = file.parent_path().lexically_relative(folder_);
     for (const Json& run : json["runs"])
       if (run.is_object() && run.contains("folder") && run["folder"].is_string())
         swept_.try_emplace((beside / run["folder"].get<std::string>()).lexically_normal(),
-                           Swept{beside.generic_string(), swept_.size(), run.value("set", Json())});
+                           Swept{beside.generic_string(), swept_.size(), set_of(run)});
   }
 
   std::tuple<std::string, std::size_t, std::string> place_of(const RunFiles& run) const {
@@ -138,18 +176,18 @@ class Search {
   void add_with_statistics(const fs::path& file) {
     RunFiles run = named(file);
     try {
-      run.stats_json = Json::parse(read_text(file));
-    } catch (const Json::parse_error& error) {
+      run.stats_json = parse_json(read_file(file, kLargestText));
+    } catch (const std::exception& error) {
       // Any program may leave JSON here; it is missed only where a video of this name is.
       unusable_[run.name] = fmt::format("{}: not readable as JSON: {}", file.filename().string(), error.what());
       return;
     }
-    if (!is_statistics(run.stats_json)) {
+    run.stats = file;
+    if (!take_statistics(run)) {
       unusable_[run.name] =
           fmt::format("{}: expected the statistics that weft run --stats writes", file.filename().string());
       return;
     }
-    run.stats = file;
     take_pictures(run);
     runs_.push_back(std::move(run));
   }
@@ -233,6 +271,12 @@ class Search {
 
 }  // namespace
 
+bool take_statistics(RunFiles& run) {
+  if (!is_statistics(run.stats_json)) return false;
+  drop_odd_values(run.stats_json, run.stats.filename().string(), run.problems);
+  return true;
+}
+
 std::vector<RunFiles> find_runs(const fs::path& folder) {
   return Search(folder).runs();
 }
@@ -245,10 +289,7 @@ long long picture_number(const fs::path& picture) {
 }
 
 bool is_review_page(const fs::path& folder) {
-  std::ifstream in(folder / "index.html", std::ios::binary);
-  std::string head(1024, '\0');
-  in.read(head.data(), static_cast<std::streamsize>(head.size()));
-  return head.find(kPageMark) != std::string::npos;
+  return read_start(folder / "index.html", 1024).find(kPageMark) != std::string::npos;
 }
 
 }  // namespace weft::review

@@ -32,6 +32,10 @@ inline constexpr const char* kSweepName = "sweep.json";
 /// passed over. Throws Error(asset_unreadable) where `folder` is none or cannot be listed.
 std::vector<RunFiles> find_runs(const std::filesystem::path& folder);
 
+/// Whether `run.stats_json` holds the statistics of a run. What the page could not show of them is left out of it, and
+/// named in the problems of the run.
+bool take_statistics(RunFiles& run);
+
 /// The file with decisions about runs; see decisions.hpp.
 inline constexpr const char* kDecisionsName = "review.json";
 

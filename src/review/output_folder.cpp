@@ -6,15 +6,35 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <fstream>
+#include <set>
+#include <sstream>
+#include <string>
 #include <system_error>
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "review/find_runs.hpp"
 
 namespace weft::review {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// The first file in the folder that its list of files does not name; empty where there is none.
+fs::path foreign_file(const fs::path& folder) {
+  std::set<std::string> own{kFileList};
+  std::istringstream lines(read_start(folder / kFileList, kLargestText));
+  for (std::string line; std::getline(lines, line);) own.insert(line);
+  std::error_code error;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error))
+    if (!fs::is_directory(entry->symlink_status()) &&
+        !own.contains(entry->path().lexically_relative(folder).generic_string()))
+      return entry->path();
+  return {};
+}
+
+}  // namespace
 
 void check_replaceable(const fs::path& folder, bool overwrite) {
   std::error_code error;
@@ -29,6 +49,27 @@ void check_replaceable(const fs::path& folder, bool overwrite) {
     throw Error(ExitCode::output_failed, "{}: exists already; give --overwrite to replace it, or another name",
                 folder.string());
   }
+  if (!fs::exists(folder / kFileList, error))
+    throw Error(
+        ExitCode::output_failed,
+        "{}: is a review page without its {}, so that nothing tells which files are its own; remove it, or give "
+        "another name",
+        folder.string(), kFileList);
+  if (const fs::path other = foreign_file(folder); !other.empty())
+    throw Error(ExitCode::output_failed, "{}: is no file of the review page in this folder; move it to another place",
+                other.string());
+}
+
+namespace {
+
+/// Names all files of a page below `folder` in a list beside them.
+void write_file_list(const fs::path& folder) {
+  std::string list;
+  for (const auto& entry : fs::recursive_directory_iterator(folder))
+    if (entry.is_regular_file()) list += entry.path().lexically_relative(folder).generic_string() + "\n";
+  std::ofstream out(folder / kFileList, std::ios::binary);
+  if (!(out << list).flush())
+    throw Error(ExitCode::output_failed, "{}: cannot be written", (folder / kFileList).string());
 }
 
 // One step where the file system can exchange two names; else the former page is gone for a moment, never half.
@@ -43,7 +84,7 @@ bool exchange(const fs::path& fresh, const fs::path& former) {
 
 }  // namespace
 
-OutputFolder::OutputFolder(const fs::path& final_name, bool overwrite) {
+OutputFolder::OutputFolder(const fs::path& final_name, bool overwrite) : overwrite_(overwrite) {
   std::error_code error;
   final_name_ = fs::absolute(final_name, error).lexically_normal();
   if (!final_name_.has_filename()) final_name_ = final_name_.parent_path();  // "review/"
@@ -52,6 +93,8 @@ OutputFolder::OutputFolder(const fs::path& final_name, bool overwrite) {
 }
 
 void OutputFolder::commit() {
+  write_file_list(path());
+  check_replaceable(final_name_, overwrite_);  // somebody may have put something there meanwhile
   // Without the flush a crash of the machine soon after the rename can leave empty files under the final name.
   int error = ::syncfs(temporary_->descriptor()) != 0 ? errno : 0;
   if (error == 0 && std::rename(path().c_str(), final_name_.c_str()) == 0) {  // takes the place of an empty folder, too

@@ -8,11 +8,17 @@
 
 namespace weft::review {
 
+/// The files of a page, one a line: what a later page may remove.
+inline constexpr const char* kFileList = "files.txt";
+
+/// Throws Error(output_failed) where a page in place of `folder` would lose something: a page that exists, unless
+/// `overwrite` is set, and in any case a file that no page has put there.
+void check_replaceable(const std::filesystem::path& folder, bool overwrite);
+
 /// A hidden folder beside the final one to write into first. Unless committed, it is removed by the destructor.
 class OutputFolder {
  public:
-  /// Refuses what would lose something: a page that exists, unless `overwrite` is set, and in any case a folder that
-  /// holds anything else. Throws Error(output_failed).
+  /// Throws as check_replaceable().
   OutputFolder(const std::filesystem::path& final_name, bool overwrite);
 
   const std::filesystem::path& path() const { return temporary_->path(); }
@@ -23,6 +29,7 @@ class OutputFolder {
 
  private:
   std::filesystem::path final_name_;
+  bool overwrite_ = false;
   std::unique_ptr<TemporaryName> temporary_;
 };
 

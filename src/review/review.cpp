@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/json.hpp"
 #include "core/version.hpp"
 #include "embedded_review.hpp"
 #include "image/png.hpp"
@@ -317,7 +318,7 @@ void replace_once(std::string& text, const std::string& mark, const std::string&
 
 std::string script_json(const Json& data) {
   // A scene may be called "</script>": no tag can begin where every < is written as an escape.
-  const std::string json = data.dump(-1, ' ', false, Json::error_handler_t::replace);
+  const std::string json = json_text(data);
   std::string safe;
   safe.reserve(json.size());
   for (const char c : json) c == '<' ? safe += "\\u003c" : safe += c;

@@ -1,13 +1,13 @@
 #include "review/run_data.hpp"
 
-#include <toml++/toml.h>
-
+#include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
+#include <cstdlib>
 #include <set>
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
+#include "core/toml.hpp"
 
 namespace weft::review {
 namespace {
@@ -17,7 +17,8 @@ Json rounded(const Json& value) {
   if (!value.is_number_float()) return value.is_number() || value.is_boolean() ? value : Json(nullptr);
   const auto number = value.get<double>();
   if (number == 0 || !std::isfinite(number)) return number == 0 ? Json(0) : Json(nullptr);
-  return std::stod(fmt::format("{:.6g}", number));
+  // Not by std::stod(), which throws for numbers below 2.2e-308.
+  return std::strtod(fmt::format("{:.6g}", number).c_str(), nullptr);
 }
 
 // An entry of a list by its name where it has one, as in --set.
@@ -65,11 +66,11 @@ Json effective_json(const RunFiles& run, std::vector<std::string>& problems) {
     problems.push_back("no effective scene: expected an .effective.toml of this name beside the video");
     return nullptr;
   }
-  std::ifstream in(run.effective, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(in), {}};
-  Json effective{{"text", text}, {"values", Json::object()}};
+  Json effective{{"text", ""}, {"values", Json::object()}};
   try {
-    effective["values"] = scene_values(text, run.effective.filename().string());
+    effective["text"] = read_file(run.effective, kLargestText);
+    effective["values"] =
+        scene_values(effective["text"].get_ref<const std::string&>(), run.effective.filename().string());
   } catch (const Error& error) {
     problems.push_back(error.what());
   }
@@ -84,9 +85,11 @@ double number_or_zero(const Json& object, const char* key) {
 }  // namespace
 
 Json frame_columns(const Json& frames) {
+  constexpr std::size_t kMostColumns = 200;  // Weft writes 27
   Json columns = Json::object();
   for (const Json& frame : frames) {
-    for (const auto& [key, value] : frame.items()) columns.emplace(key, Json::array());
+    for (const auto& [key, value] : frame.items())
+      if (columns.size() < kMostColumns) columns.emplace(key, Json::array());
   }
   for (auto& [key, column] : columns.items()) {
     for (const Json& frame : frames) {
@@ -125,7 +128,8 @@ PictureTimes picture_times(const RunFiles& run) {
   } else if (!run.stats.empty()) {
     for (const Json& frame : run.stats_json["frames"]) {
       if (frame.value("written", Json(true)) == true) {
-        shown.push_back(static_cast<long long>(number_or_zero(frame, "frame")));
+        constexpr double kMost = 1e9;  // frames
+        shown.push_back(static_cast<long long>(std::clamp(number_or_zero(frame, "frame"), 0.0, kMost)));
       }
     }
   }
@@ -140,7 +144,7 @@ PictureTimes picture_times(const RunFiles& run) {
 Json scene_values(const std::string& toml, const std::string& file) {
   try {
     Json values = Json::object();
-    add_values(toml::parse(toml), "", values);
+    add_values(parse_toml(toml), "", values);
     return values;
   } catch (const toml::parse_error& error) {
     throw Error(ExitCode::asset_unreadable, "{}:{}: not readable as TOML: {}", file, error.source().begin.line,

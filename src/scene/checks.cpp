@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/grading.hpp"
+#include "core/input_file.hpp"
 #include "image/picture.hpp"
 #include "scene/layers.hpp"
 #include "scene/reader.hpp"
@@ -17,6 +18,7 @@ namespace weft::scene {
 namespace {
 
 constexpr double kMaxFrames = 100000;
+constexpr double kLeastGap = 1e-7;         // between keys [s], as the shortest time step
 constexpr long kMaxParticles = 4'000'000;  // of all cloths; their solver state fits a large workstation
 
 template <class Entries>
@@ -49,6 +51,9 @@ void check_times(const std::vector<Key>& keys, const std::string& path, Findings
     if (!findings.has(key) || findings.faulty(key)) continue;
     if (keys[i].time <= latest) {
       findings.report(key, fmt::format("expected > {} s, later than the keys before, got {}", latest, keys[i].time));
+    } else if (keys[i].time - latest < kLeastGap) {
+      findings.report(key, fmt::format("expected at least {:g} s after the key before, at {} s, got {}", kLeastGap,
+                                       latest, keys[i].time));
     }
     latest = std::max(latest, keys[i].time);
   }
@@ -72,7 +77,7 @@ void check_turns(const std::vector<Key>& keys, const std::string& path, Findings
 void check_image(const std::optional<std::filesystem::path>& image, const std::string& key, Findings& findings) {
   if (!image || !findings.has(key) || findings.faulty(key)) return;
   try {
-    image::read_picture(*image);
+    image::decode_picture(read_bytes(*image, image::kMaxPictureBytes));
   } catch (const std::exception& error) {
     findings.report(key, fmt::format("expected a picture (PNG, JPEG or TGA), got {}: {}", in_quotes(image->string()),
                                      error.what()));
@@ -142,11 +147,20 @@ void check_wearer(const Scene& scene, const Cloth& cloth, const std::string& pat
 
 void check_friction_pairs(const Scene& scene, Findings& findings) {
   const std::vector<std::string> names = names_of_all(scene);
+  std::vector<std::string> names_of_bodies = names_of(scene.obstacles);
+  for (const std::string& name : names_of(scene.characters)) names_of_bodies.push_back(name);
   for (std::size_t i = 0; i < scene.contact.pairs.size(); ++i) {
     const FrictionPair& pair = scene.contact.pairs[i];
     const std::string path = fmt::format("contact.pair.{}", i);
     check_reference(pair.first, names, "a cloth, obstacle or character", path + ".first", findings);
     check_reference(pair.second, names, "a cloth, obstacle or character", path + ".second", findings);
+    const auto is_cloth = [&](const std::string& name) { return !std::ranges::count(names_of_bodies, name); };
+    if (!findings.faulty(path + ".first") && !findings.faulty(path + ".second") && !is_cloth(pair.first) &&
+        !is_cloth(pair.second))
+      findings.report(path + ".second",
+                      fmt::format("expected a cloth as one of the two, since obstacles and characters "
+                                  "do not meet one another; got {} and {}",
+                                  in_quotes(pair.first), in_quotes(pair.second)));
     if (pair.static_friction && *pair.static_friction < pair.friction)
       findings.report(path + ".static_friction",
                       fmt::format("expected >= {}, that of sliding, got {}", pair.friction, *pair.static_friction));

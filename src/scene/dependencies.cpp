@@ -4,13 +4,13 @@
 #include <cctype>
 #include <charconv>
 #include <cstdint>
-#include <fstream>
-#include <iterator>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <system_error>
 #include <vector>
 
+#include "core/input_file.hpp"
 #include "scene/sequence_files.hpp"
 
 namespace weft::scene {
@@ -92,8 +92,12 @@ class Walk {
     std::error_code error;
     if (!fs::is_regular_file(file, error) || !visited_.insert(fs::weakly_canonical(file, error)).second) return;
     if (fs::file_size(file, error) > kLargestFile) return;
-    std::ifstream in(file, std::ios::binary);
-    const std::string content(std::istreambuf_iterator<char>(in), {});
+    std::string content;
+    try {
+      content = read_bytes(file, kLargestFile);
+    } catch (const std::runtime_error&) {
+      return;  // its reader says so
+    }
     each_(file, content);
     for (const std::string& name : possible_names(content)) visit(file.parent_path() / name);
     // The one format whose readers find the motion by the name of the mesh.

@@ -3,32 +3,15 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <cstring>
-#include <fstream>
 #include <system_error>
 
+#include "core/input_file.hpp"
+#include "core/toml.hpp"
 #include "scene/reader.hpp"
 
 namespace weft::scene {
 
 namespace {
-
-/// toml++ limits how deep values nest, but not dotted keys, and takes the stack to free what is nested too deep.
-constexpr int kMaxDots = 128;
-
-/// Whether some key may be dotted deeper than kMaxDots: counts the dots between characters that end a key.
-bool has_deep_key(std::string_view text) {
-  int dots = 0;
-  for (const char c : text) {
-    if (c == '.') {
-      if (++dots > kMaxDots) return true;
-    } else if (std::strchr(",=[]{}\n#", c) != nullptr && c != '\0') {
-      dots = 0;
-    }
-  }
-  return false;
-}
 
 /// The parser's words; what it says of a key that is there twice, in ours.
 std::string explain(std::string_view description) {
@@ -59,13 +42,11 @@ std::optional<std::string> read_file(const std::filesystem::path& file, Findings
     findings.report("", {}, fmt::format("expected at most {} MB, got {} MB", kMaxFileSize >> 20, size >> 20));
     return std::nullopt;
   }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) return refuse(std::string("a file that cannot be opened: ") + std::strerror(errno));
-  std::string text(size, '\0');
-  stream.read(text.data(), static_cast<std::streamsize>(size));
-  if (stream.bad()) return refuse("a file that cannot be read");
-  text.resize(static_cast<std::size_t>(stream.gcount()));
-  return text;
+  try {
+    return read_bytes(file, kMaxFileSize);
+  } catch (const std::exception& problem) {
+    return refuse(std::string("a file that cannot be read: ") + problem.what());
+  }
 }
 
 std::optional<toml::table> parse(std::string_view text, Findings& findings) {
@@ -77,12 +58,8 @@ std::optional<toml::table> parse(std::string_view text, Findings& findings) {
     findings.report("", {}, fmt::format("expected text, got binary data (byte 0 at offset {})", zero));
     return std::nullopt;
   }
-  if (has_deep_key(text)) {
-    findings.report("", {}, fmt::format("expected at most {} dots in a key, got more", kMaxDots));
-    return std::nullopt;
-  }
   try {
-    return toml::parse(text, std::string_view{});
+    return parse_toml(text);
   } catch (const toml::parse_error& error) {
     findings.report("", place_of(error.source()), explain(error.description()));
     return std::nullopt;

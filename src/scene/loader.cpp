@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/names.hpp"
 #include "scene/checks.hpp"
 #include "scene/document.hpp"
 #include "scene/effective.hpp"
@@ -51,6 +52,10 @@ LoadResult load_from(const std::optional<std::string_view>& text, const std::fil
   result.file = file;
   result.scene.file = std::filesystem::absolute(file);
   result.scene.name = file.stem().string();
+  if (!is_plain_name(result.scene.name))
+    findings.report("", {},
+                    fmt::format("expected a file whose name without its ending can name outputs, got {}; rename it",
+                                in_quotes(result.scene.name)));
   if (text) {
     if (auto document = parse(*text, findings)) {
       read_document(std::move(*document), overrides, result.scene, findings);

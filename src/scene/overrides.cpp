@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cstring>
 
+#include "core/toml.hpp"
 #include "scene/document.hpp"
 #include "scene/reader.hpp"
 
@@ -35,7 +36,7 @@ bool is_plain_word(std::string_view text) {
 std::optional<toml::table> parse_value(std::string_view text, const std::string& source) {
   const auto parse = [&](const std::string& value) -> std::optional<toml::table> {
     try {
-      toml::table table = toml::parse("value = " + value, std::string_view(source));
+      toml::table table = parse_toml("value = " + value, source);
       // A line break in the text could bring further keys.
       if (table.size() != 1) return std::nullopt;
       return table;

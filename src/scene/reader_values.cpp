@@ -3,9 +3,10 @@
 
 #include <cerrno>
 #include <cmath>
-#include <fstream>
+#include <stdexcept>
 #include <system_error>
 
+#include "core/input_file.hpp"
 #include "scene/reader.hpp"
 
 namespace weft::scene {
@@ -128,7 +129,11 @@ Value Reader::check_file(const toml::node& node, const std::string& text, const 
   const auto status = std::filesystem::status(full, error);
   if (!std::filesystem::exists(status)) return missing(fmt::format("there is no {}", full.string()));
   if (!std::filesystem::is_regular_file(status)) return missing(fmt::format("{} is not a file", full.string()));
-  if (!std::ifstream(full)) return missing(fmt::format("{} cannot be opened", full.string()));
+  try {
+    check_is_file(full);
+  } catch (const std::runtime_error& problem) {
+    return missing(fmt::format("{} cannot be opened: {}", full.string(), problem.what()));
+  }
   return full.string();
 }
 

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <stdexcept>
 
 extern "C" {
 #include <libavutil/pixdesc.h>
 }
 
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "video/libav.hpp"
 
 namespace weft::video {
@@ -62,8 +64,18 @@ struct Decoder::Impl {
   explicit Impl(const std::filesystem::path& name) : file(name) {
     collect_log();
     AVFormatContext* opened = nullptr;
+    try {
+      check_is_file(file);
+    } catch (const std::runtime_error& error) {
+      fail_to_read(file, error.what());
+    }
+    // Playlists, which libav knows by their content, would open other files.
+    AVDictionary* options = nullptr;
+    av_dict_set(&options, "format_whitelist", "mov,mp4,m4a,3gp,3g2,mj2,matroska,webm,avi", 0);
     // Absolute: libav takes what comes before a colon for a protocol.
-    check_read(avformat_open_input(&opened, std::filesystem::absolute(file).c_str(), nullptr, nullptr), file);
+    const int code = avformat_open_input(&opened, std::filesystem::absolute(file).c_str(), nullptr, &options);
+    av_dict_free(&options);
+    check_read(code, file);
     input.reset(opened);
     check_read(avformat_find_stream_info(opened, nullptr), file);
     const AVCodec* decoder = nullptr;

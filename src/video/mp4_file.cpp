@@ -89,6 +89,8 @@ Mp4Writer::Mp4Writer(const std::filesystem::path& file, std::filesystem::path re
 
   // Each packet reaches the system at once, so that a kill loses the encoder's look-ahead and no more.
   output_->flags |= AVFMT_FLAG_FLUSH_PACKETS;
+  // Matroska files have random numbers otherwise, and equal runs would not give equal bytes.
+  if (is_matroska(reported_file_)) output_->flags |= AVFMT_FLAG_BITEXACT;
   check(avio_open(&output_->pb, output_->url, AVIO_FLAG_WRITE), reported_file_, "create the file");
   Dictionary options;
   const char* flags = layout == Mp4Layout::fragmented ? kFragmentedFlags : kFastStartFlags;

@@ -164,19 +164,38 @@ TEST_F(CacheFolder, ForeignFilesAreNeverTouched) {
   expect_error(ExitCode::output_failed, "holds thesis.tex, which is no part of a frame cache",
                [&] { Lock lock(cache()); });
   EXPECT_EQ(support::read_bytes(cache() / "thesis.tex"), "precious");
+  fs::remove(cache() / "thesis.tex");
+  // Under names of a cache too, unless it says itself that it is a part of one.
+  for (const char* name : {".notes.tmp", ".notes.weft-12.tmp", "outputs.txt", "lock", "manifest.json", "state.weft",
+                           "frame_00007.weft", "scene.effective.toml"}) {
+    support::write_bytes(cache() / name, "precious");
+    expect_error(ExitCode::output_failed, std::string("holds ") + name, [&] { Lock(cache()).clear(); });
+    EXPECT_EQ(support::read_bytes(cache() / name), "precious");
+    fs::remove(cache() / name);
+  }
   support::write_bytes(folder_ / "file", "precious");
   expect_error(ExitCode::output_failed, "cannot make the folder", [&] { Lock lock(folder_ / "file"); });
 }
 
 TEST_F(CacheFolder, ClearingLeavesNothingOfIt) {
   fill(3);
-  support::write_bytes(cache() / ".frame_00003.weft.1234.tmp", "half a frame of a process that was killed");
+  support::write_bytes(cache() / ".frame_00003.weft.weft-1234.tmp", "half a frame of a process that was killed");
   const Lock lock(cache());
-  EXPECT_FALSE(fs::exists(cache() / ".frame_00003.weft.1234.tmp"));
   EXPECT_FALSE(lock.empty());
   lock.clear();
   EXPECT_TRUE(lock.empty());
   EXPECT_FALSE(is_cache(cache()));
+  EXPECT_FALSE(fs::exists(cache() / ".frame_00003.weft.weft-1234.tmp"));
+}
+
+// As a kill may leave it in between: without its manifest, nobody else's files either.
+TEST_F(CacheFolder, ThatWasClearedInPartIsClearedToTheEnd) {
+  fill(3);
+  fs::remove(cache() / kSceneFile);
+  fs::remove(cache() / kManifestFile);
+  support::write_bytes(cache() / "frame_00009.weft", "");
+  Lock(cache()).remove();
+  EXPECT_FALSE(fs::exists(cache()));
 }
 
 TEST_F(CacheFolder, FullDiskIsAnErrorAndLeavesNoHalfFile) {

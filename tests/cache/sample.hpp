@@ -68,7 +68,7 @@ struct Sample {
     std::uniform_real_distribution<double> uniform(-1, 1);
     frame::SurfaceState cloth, floor;
     for (int i = 0; i < 4; ++i) cloth.positions.emplace_back(uniform(random), uniform(random), uniform(random));
-    if (k == 1) cloth.positions[3] = {-0.0, 5e-324, 1.7976931348623157e308};
+    if (k == 1) cloth.positions[3] = {-0.0, 5e-324, 999'999'999.9999999};
     for (int i = 0; i < 4; ++i) cloth.heat.push_back(static_cast<float>(uniform(random)));
     floor.positions = {{0, 0, 0}, {1, 0, 0}, {0, 0, 1}};
     snapshot->states = {cloth, floor};

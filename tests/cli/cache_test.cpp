@@ -282,7 +282,7 @@ TEST_F(KilledRun, WithNothingThereResumeStartsAtTheBeginning) {
   EXPECT_TRUE(contains(outcome.err, "nothing to resume; starting at the beginning")) << outcome.err;
   const auto written = fs::last_write_time(folder_ / "a.mp4");
   fs::create_directory(folder_ / ".a.weft-cache");  // killed while it took the cache away
-  support::write_bytes(folder_ / ".a.weft-cache/frame_00003.weft", "-");
+  support::write_bytes(folder_ / ".a.weft-cache/frame_00003.weft", "\x89WEFT\r\n\x1A-");
   const Outcome again = resume();
   EXPECT_EQ(again.exit_code, 0);
   EXPECT_EQ(again.err, "note: a.mp4 is whole already: frames 0:21\n");

@@ -45,6 +45,29 @@ TEST_F(UnevenCells, AreNamedByCheckAndRunWhereObstaclesAreMet) {
   EXPECT_EQ(check(graded + "[50, 1]\n" + ball).exit_code, 0);
 }
 
+class EnclosedCloth : public support::TestFolder {};
+
+TEST_F(EnclosedCloth, IsNamedByCheckAndByTheRun) {
+  const auto said = [&](const std::string& change) {
+    support::write_bytes(folder_ / "s.toml",
+                         "time = { duration = 0.1, fps = 10, step = 0.1 }\n[[cloth]]\nname = 'c'\nsize = 0.2\n"
+                         "particles = 4\n[[obstacle]]\nname = 'b'\n" +
+                             change + "\n");
+    const Outcome check = run_weft({"check", "s.toml"}, folder_);
+    EXPECT_EQ(check.exit_code, 0) << check.err;
+    const Outcome run = run_weft({"simulate", "s.toml", "--cache", "c", "--overwrite", "--progress", "none"}, folder_);
+    const std::string words = "cloth.c: starts wholly inside obstacle.b";
+    EXPECT_EQ(contains(check.out, words), contains(run.err, words)) << change;
+    return contains(check.out, words);
+  };
+  EXPECT_TRUE(said("shape = 'sphere'\nradius = 0.5"));
+  EXPECT_TRUE(said("shape = 'box'\nsize = 1"));
+  EXPECT_FALSE(said("shape = 'sphere'\nradius = 0.5\nposition = [0, 0, -0.6]"));
+  EXPECT_FALSE(said("shape = 'sphere'\nradius = 0.5\ncollide = false"));
+  EXPECT_FALSE(said("shape = 'plane'\nposition = [0, 0, -0.1]"));
+  EXPECT_FALSE(said("shape = 'half_pipe'\nradius = 0.5")) << "open";
+}
+
 class MidpointContact : public support::TestFolder {};
 
 TEST_F(MidpointContact, IsSaidToBeDampedByThePlan) {

@@ -25,6 +25,8 @@ TEST(FramePattern, RefusesNamesThatAllFramesWouldShareOrThatMeanSomethingElse) {
 
 class FramesOnDisk : public support::TestFolder {};
 
+const auto kAny = [](const std::filesystem::path&, int) { return true; };
+
 TEST_F(FramesOnDisk, OfALongerRunAreRemovedByTheirExactNamesOnly) {
   std::filesystem::create_directories(folder_ / "a_00009.png");
   const std::vector<std::string> stays{"a_00002.png",  "a_00004.png", "a_3.png",     "a_000003.png", "a_-0003.png",
@@ -32,10 +34,19 @@ TEST_F(FramesOnDisk, OfALongerRunAreRemovedByTheirExactNamesOnly) {
   const std::vector<std::string> goes{"a_00000.png", "a_00003.png", "a_00005.png", "a_123456.png"};
   for (const auto& names : {stays, goes})
     for (const std::string& name : names) support::write_bytes(folder_ / name, "x");
-  FramePattern((folder_ / "a_{frame:05}.png").string()).remove_others({2, 5, 2});
+  FramePattern((folder_ / "a_{frame:05}.png").string()).remove_others({2, 5, 2}, kAny);
   for (const std::string& name : stays) EXPECT_TRUE(std::filesystem::exists(folder_ / name)) << name;
   for (const std::string& name : goes) EXPECT_FALSE(std::filesystem::exists(folder_ / name)) << name;
   EXPECT_TRUE(std::filesystem::is_directory(folder_ / "a_00009.png"));
+}
+
+TEST_F(FramesOnDisk, OfSomebodyElseStay) {
+  for (const char* name : {"a_00001.png", "a_00003.png"}) support::write_bytes(folder_ / name, "x");
+  FramePattern((folder_ / "a_{frame:05}.png").string()).remove_others({0, 1, 1}, [](const auto& file, int frame) {
+    EXPECT_EQ(file.filename(), fmt::format("a_{:05}.png", frame));
+    return frame == 3;
+  });
+  EXPECT_EQ(files(), std::vector<std::string>{"a_00001.png"});
 }
 
 TEST_F(FramesOnDisk, InFoldersOfTheirOwnAreFoundToo) {
@@ -43,7 +54,7 @@ TEST_F(FramesOnDisk, InFoldersOfTheirOwnAreFoundToo) {
     std::filesystem::create_directories((folder_ / name).parent_path());
     support::write_bytes(folder_ / name, "x");
   }
-  FramePattern((folder_ / "{frame:05}/a.png").string()).remove_others({0, 2, 1});
+  FramePattern((folder_ / "{frame:05}/a.png").string()).remove_others({0, 2, 1}, kAny);
   EXPECT_TRUE(std::filesystem::exists(folder_ / "00001/a.png"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "00002/a.png"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "00002/b.png"));

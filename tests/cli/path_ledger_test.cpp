@@ -63,7 +63,10 @@ TEST_F(Ledger, RefusesWhatExistsUnlessItMayBeReplaced) {
   support::expect_error(ExitCode::output_failed, "exists already; give --overwrite",
                         [&] { paths_.check_absent(false); });
   EXPECT_NO_THROW(paths_.check_absent(true));
-  EXPECT_NO_THROW(paths_.check_absent(false, {"-o " + fs::canonical(folder_ / "out").string()}));
+  const std::set<std::string> own{"-o " + fs::canonical(folder_ / "out").string()};
+  EXPECT_NO_THROW(paths_.check_absent(false, own, [](const fs::path&) { return true; }));
+  support::expect_error(ExitCode::output_failed, "exists already",
+                        [&] { paths_.check_absent(false, own, [](const fs::path&) { return false; }); });
   support::expect_error(ExitCode::output_failed, "exists already", [&] { paths_.check_absent(false, {"-o other"}); });
   fs::remove(folder_ / "out");
   fs::create_symlink("nothing", folder_ / "out");

@@ -17,7 +17,7 @@ namespace {
 
 std::string reason(const std::function<std::string()>& work, unsigned cpu_seconds = 60) {
   try {
-    run_isolated(work, {"the reader", cpu_seconds, std::uint64_t{16} << 30});
+    run_isolated(work, {.name = "the reader", .cpu_seconds = cpu_seconds, .addresses = std::uint64_t{16} << 30});
   } catch (const std::runtime_error& error) {
     return error.what();
   }
@@ -61,6 +61,18 @@ TEST(Isolated, WorkWithoutEndIsStopped) {
     return "";
   };
   EXPECT_EQ(reason(endless, 1), "the reader was stopped after 1 s of processor time");
+}
+
+TEST(Isolated, WorkThatWaitsForEverIsStopped) {
+  const auto waiting = []() -> std::string {
+    for (;;) ::pause();
+  };
+  try {
+    run_isolated(waiting, {.name = "the reader", .cpu_seconds = 60, .wall_seconds = 1});
+    FAIL() << "came back";
+  } catch (const std::runtime_error& error) {
+    EXPECT_STREQ(error.what(), "the reader was stopped after 1 s");
+  }
 }
 
 TEST(Isolated, WorkIsKilledOnceItIsToStop) {

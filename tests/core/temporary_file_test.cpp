@@ -87,6 +87,50 @@ TEST_F(TemporaryFileTest, ReplacesAnOlderFileInOneGo) {
   EXPECT_EQ(entries(), 1u);
 }
 
+TEST_F(TemporaryFileTest, AFileThatSomebodyMakesMeanwhileStays) {
+  const fs::path file = folder_ / "a.txt";
+  keep_if_made_meanwhile(file);
+  EXPECT_FALSE(may_replace(folder_ / "sub" / ".." / "a.txt")) << "the same by another name";
+  {
+    TemporaryFile temporary(file);
+    std::ofstream(temporary.path()) << "new";
+    std::ofstream(file) << "precious";
+    try {
+      temporary.commit();
+      ADD_FAILURE() << "replaced";
+    } catch (const Error& error) {
+      EXPECT_EQ(error.code(), ExitCode::output_failed);
+      EXPECT_EQ(error.what(),
+                file.string() +
+                    ": was made by somebody else while this command worked, and is kept; give --overwrite "
+                    "to replace it, or another name");
+    }
+  }
+  EXPECT_EQ(content(file), "precious");
+  EXPECT_EQ(entries(), 1u) << "nothing half is left";
+  EXPECT_THROW(write_file(file, "new"), Error);
+  EXPECT_NO_THROW(write_file(file, "precious")) << "nothing is lost where it holds the same";
+  fs::remove(file);
+  // What this process has written is its own.
+  write_file(file, "first");
+  write_file(file, "second");
+  EXPECT_EQ(content(file), "second");
+}
+
+TEST_F(TemporaryFileTest, AFolderThatWasRemovedIsNotMadeAnew) {
+  const fs::path folder = folder_ / "frames";
+  write_file(folder / "1.txt", "1");
+  fs::remove_all(folder);
+  try {
+    write_file(folder / "2.txt", "2");
+    ADD_FAILURE() << "made anew";
+  } catch (const Error& error) {
+    EXPECT_EQ(error.code(), ExitCode::output_failed);
+    EXPECT_EQ(error.what(), (folder / "2.txt").string() + ": cannot be written: No such file or directory");
+  }
+  EXPECT_EQ(entries(), 0u);
+}
+
 TEST_F(TemporaryFileTest, SaysWhyAFolderCannotBeMade) {
   write_file(folder_ / "plain", "");
   try {

@@ -6,6 +6,7 @@
 #include <xxhash.h>
 #include <zlib.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -21,10 +22,17 @@
 #include "cache/manifest.hpp"
 #include "cache/sample.hpp"
 #include "core/error.hpp"
+#include "core/json.hpp"
+#include "core/toml.hpp"
 #include "garment/outline.hpp"
 #include "garment/pattern.hpp"
+#include "garment/specification.hpp"
 #include "garment/svg.hpp"
 #include "image/png.hpp"
+#include "review/decisions.hpp"
+#include "review/review.hpp"
+#include "review/run_data.hpp"
+#include "scene/findings.hpp"
 #include "scene/loader.hpp"
 
 namespace weft::fuzz {
@@ -87,6 +95,71 @@ void read_scene(Bytes bytes) {
 void read_pattern(Bytes bytes) {
   may_refuse({ExitCode::scene_invalid, ExitCode::asset_unreadable},
              [&] { (void)garment::load_pattern(MemoryFile(bytes).path(), "fuzz"); });
+}
+
+/// Patterns of GarmentCode.
+void read_specification(Bytes bytes) {
+  may_refuse({ExitCode::scene_invalid, ExitCode::asset_unreadable}, [&] {
+    scene::Findings findings;
+    garment::Pattern pattern;
+    const bool read = garment::read_specification(std::string(text_of(bytes)), findings, pattern);
+    require(read || !findings.take_mistakes().empty(), "what is refused is said");
+    for (const garment::Panel& panel : pattern.panels)
+      if (!garment::parse_path(panel.path).mistake.empty()) throw std::logic_error("no path: " + panel.path);
+  });
+}
+
+int depth_of(const toml::node& node) {
+  int deepest = 0;
+  if (const auto* table = node.as_table()) {
+    for (const auto& [key, value] : *table) deepest = std::max(deepest, 1 + depth_of(value));
+  } else if (const auto* list = node.as_array()) {
+    for (const toml::node& value : *list) deepest = std::max(deepest, 1 + depth_of(value));
+  }
+  return deepest;
+}
+
+int depth_of(const nlohmann::ordered_json& json) {
+  int deepest = 0;
+  if (json.is_structured())
+    for (const auto& value : json) deepest = std::max(deepest, 1 + depth_of(value));
+  return deepest;
+}
+
+// Headers and the keys below them are counted apart, and each header of a list of tables is two levels.
+void read_toml(Bytes bytes) {
+  try {
+    require(depth_of(parse_toml(text_of(bytes))) <= 3 * kMaxDepth + 3, "TOML nests as deep as it may");
+  } catch (const toml::parse_error&) {
+  }
+}
+
+void read_json(Bytes bytes) {
+  try {
+    const auto json = parse_json(text_of(bytes));
+    require(depth_of(json) <= kMaxDepth, "JSON nests as deep as it may");
+    (void)json_text(json);
+    (void)review::mistake_of_decision(json);
+  } catch (const std::logic_error&) {
+    throw;
+  } catch (const std::exception&) {
+  }
+}
+
+/// What a page is told about a run, whatever its statistics are.
+void read_statistics(Bytes bytes) {
+  review::RunFiles run;
+  run.stats = "s.json";
+  try {
+    run.stats_json = parse_json(text_of(bytes));
+  } catch (const std::exception&) {
+    return;
+  }
+  if (!review::take_statistics(run)) return;
+  const review::Json data = review::run_data(run);
+  require(data.at("digest").is_object() && data.at("columns").size() <= 200, "columns are bounded");
+  require(review::picture_times(run).count >= 0, "pictures are counted");
+  (void)review::script_json(data);
 }
 
 void check_outline(const garment::Outline& outline) {
@@ -191,6 +264,10 @@ void read_manifest(Bytes bytes) {
 
 constexpr std::array kTargets{Target{"scene", read_scene},
                               Target{"pattern", read_pattern},
+                              Target{"specification", read_specification},
+                              Target{"toml", read_toml},
+                              Target{"json", read_json},
+                              Target{"statistics", read_statistics},
                               Target{"svg", read_svg},
                               Target{"outline", read_outline},
                               Target{"image", read_image},

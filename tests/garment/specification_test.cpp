@@ -250,8 +250,26 @@ TEST_F(Specification, MistakesNameWhatTheyAreAbout) {
     return at == std::string::npos ? line : line.substr(at + 6);
   };
   EXPECT_EQ(first("{\n\"pattern\": }"), "2:1: expected JSON, got what is none near here");
+  EXPECT_TRUE(first("{\"pattern\": 1e999}").starts_with("1:1: expected JSON, got what is none: "));
+  EXPECT_EQ(first(std::string(200'000, '[')),
+            "1:1: expected JSON, got what is none: expected at most 128 levels of lists and objects, got more");
   EXPECT_EQ(first("{}"), "1:1: expected \"pattern\" of a specification of GarmentCode, got none");
   EXPECT_EQ(first(R"({"pattern": {"panels": {}}})"), "1:1: pattern.panels: expected panels by name, got none");
+  for (const char* units : {"0", "1e-320", "1e308", "-1", "\"cm\"", "null"})
+    EXPECT_TRUE(first(changed(kSpecification, "\"units_in_meter\": 100", std::string("\"units_in_meter\": ") + units))
+                    .starts_with("1:1: properties.units_in_meter: expected a number from 0.001 to 1e+06, got "))
+        << units;
+  // Each value of the wrong kind, wherever it stands: never an exception of the library.
+  for (const char* value : {"\"q\"", "7", "null", "{}", "[]", "[7]", "[[]]", "true"}) {
+    const std::string text = std::string("{\"pattern\": {\"panels\": {\"a\": ") + value + "}, \"stitches\": []}}";
+    EXPECT_NE(first(text), "none") << text;
+    EXPECT_NE(first(std::string("{\"pattern\": ") + value + "}"), "none") << value;
+    EXPECT_NE(first(value), "none");
+    const std::string stitches =
+        changed(kSpecification, "\"stitches\": [", std::string("\"stitches\": ") + value + ", \"x\": [");
+    const bool is_list = value[0] == '[' && value[1] == ']';
+    EXPECT_EQ(first(stitches) == "none", is_list) << value << ": " << first(stitches);
+  }
   EXPECT_EQ(first(changed(kSpecification, "[60, 0]", "[60, \"0\"]")),
             "4:7: pattern.panels.skirt_front.vertices.1: expected 2 numbers below 100000, got [60,\"0\"]");
   EXPECT_EQ(first(changed(kSpecification, "\"endpoints\": [1, 2]", "\"endpoints\": [1, 7]")),

@@ -244,6 +244,74 @@ TEST_F(Review, FolderOfSomethingElseIsNeverReplaced) {
   EXPECT_EQ(files(), (std::vector<std::string>{"in", "page"}));
 }
 
+TEST_F(Review, FormerPageIsKeptWithAFileOfSomebodyElseInIt) {
+  write_review(request());
+  Request again = request();
+  again.overwrite = true;
+  for (const char* file : {"page/notes.txt", "page/runs/a/mine.png", "page/deep/er/x"}) {
+    write(file);
+    support::expect_error(ExitCode::output_failed, (folder_ / file).string() + ": is no file of the review page",
+                          [&] { write_review(again); });
+    EXPECT_EQ(support::read_bytes(folder_ / file), "-");
+    fs::remove(folder_ / file);
+  }
+  // Put there while the page is made.
+  again.stop = [&] {
+    write("page/notes.txt");
+    return false;
+  };
+  support::expect_error(ExitCode::output_failed, "notes.txt", [&] { write_review(again); });
+  EXPECT_EQ(support::read_bytes(folder_ / "page/notes.txt"), "-");
+  EXPECT_EQ(data().at("runs").size(), 1u);
+}
+
+TEST_F(Review, FolderThatAppearsMeanwhileStays) {
+  Request first = request();
+  first.stop = [&] {
+    write("page/thesis.txt");
+    return false;
+  };
+  support::expect_error(ExitCode::output_failed, "expected a new folder", [&] { write_review(first); });
+  EXPECT_EQ(support::read_bytes(folder_ / "page/thesis.txt"), "-");
+}
+
+TEST_F(Review, LinksInFoldersOfRunsAreNotFollowed) {
+  write("secret.png");
+  write("in/q_1.png");
+  fs::create_symlink("../secret.png", folder_ / "in/q_2.png");
+  fs::create_symlink("../secret.png", folder_ / "in/c.mp4");
+  fs::create_symlink("../secret.png", folder_ / "in/c.json");
+  write_review(request());
+  EXPECT_EQ(data().at("runs").size(), 1u);
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "page"))
+    EXPECT_TRUE(!entry.is_regular_file() || support::read_bytes(entry.path()) != "-") << entry.path();
+}
+
+// Each in the place of every value: the page names it and shows what is right, and the other runs.
+TEST_F(Review, NoValueOfStatisticsKeepsThePageFromTheRest) {
+  int k = 0;
+  for (const char* value :
+       {"null", "7", "-1", "\"x\"", "[]", "{}", "[null]", "{\"x\": null}", "[[]]", "1e308", "1e-310"})
+    for (const char* key : {"scene_file", "threads", "cpu", "gl", "exit_code", "message", "warnings", "output", "width",
+                            "fps", "objects", "particles", "totals", "peak_memory_bytes", "error", "new"})
+      write(fmt::format("odd/{:04}.json", ++k),
+            fmt::format(R"({{"scene": "s", "{}": {}, "frames": [{{"frame": {}, "written": {}, "max_strain": {}}}]}})",
+                        key, value, value, value, value));
+  write("odd/b.json", statistics("b.mp4"));
+  Request odd = request();
+  odd.folders.push_back(folder_ / "odd");
+  EXPECT_EQ(write_review(odd).runs, k + 2);
+  for (const Json& run : data().at("runs")) {
+    const Json& stats = run.at("stats");
+    for (const char* key : {"scene_file", "cpu", "gl", "message", "output"})
+      EXPECT_TRUE(!stats.contains(key) || stats[key].is_string()) << run.at("name") << key;
+    for (const char* key : {"threads", "exit_code", "width", "fps", "particles", "peak_memory_bytes"})
+      EXPECT_TRUE(!stats.contains(key) || stats[key].is_number()) << run.at("name") << key;
+    EXPECT_TRUE(!stats.contains("warnings") || stats["warnings"].is_array()) << run.at("name");
+  }
+  EXPECT_EQ(data().at("runs")[1].at("problems")[0], "0001.json: scene_file: expected a text");
+}
+
 TEST_F(Review, EmptyFolderIsTaken) {
   fs::create_directories(folder_ / "page");
   write_review(request());

@@ -19,6 +19,20 @@ TEST(FrameColumns, KeepSixDigits) {
   EXPECT_EQ(frame_columns(frames).dump(), R"({"a":[0.0123457],"b":[123456789],"c":[-1.23457e-30],"d":[0]})");
 }
 
+// Whatever size numbers have: std::stod() would throw for those below 2.2e-308.
+TEST(FrameColumns, TakeNumbersOfAllSizes) {
+  const Json columns = frame_columns(Json::parse(R"([{"v": 5e-324}, {"v": 1e-310}, {"v": 1.7e308}, {"v": -1e-320}])"));
+  EXPECT_DOUBLE_EQ(columns.at("v")[0].get<double>(), 5e-324);
+  EXPECT_DOUBLE_EQ(columns.at("v")[1].get<double>(), 1e-310);
+  EXPECT_DOUBLE_EQ(columns.at("v")[2].get<double>(), 1.7e308);
+}
+
+TEST(FrameColumns, OfAnOddFileAreBounded) {
+  Json frames = Json::array();
+  for (int i = 0; i < 5000; ++i) frames.push_back({{fmt::format("k{}", i), 1}});
+  EXPECT_EQ(frame_columns(frames).size(), 200u);
+}
+
 TEST(ColumnDigest, TellsWhatTheFiguresNeed) {
   const Json columns = Json::parse(
       R"({"frame": [5, 6, 7, 8], "a": [null, 2.5, -1, 2.5], "b": [true, false, true, true], "c": [null, null, null, null]})");

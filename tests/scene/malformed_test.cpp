@@ -305,7 +305,7 @@ TEST_F(SceneFile, ThatCannotBeOpenedSaysWhy) {
   std::ofstream(file) << kFloor;
   std::filesystem::permissions(file, std::filesystem::perms::none);
   EXPECT_EQ(messages(file),
-            file.string() + ": expected a scene file, got a file that cannot be opened: Permission denied\n");
+            file.string() + ": expected a scene file, got a file that cannot be read: Permission denied\n");
 }
 
 TEST_F(SceneFile, IsPrintedTheWayItWasGiven) {
@@ -329,7 +329,39 @@ TEST(Mistakes, BeyondTheFirstTwoHundredAreCounted) {
 TEST(Mistakes, OfADeeplyDottedKeyDoNotExhaustTheStack) {
   std::string key = "a";
   for (int i = 0; i < 1'000'000; ++i) key += ".a";
-  EXPECT_EQ(load_text(key + " = 1\n", "s.toml").describe(), "s.toml: expected at most 128 dots in a key, got more\n");
+  const std::string told =
+      "s.toml:1:1: not TOML: expected at most 128 levels of lists, tables and dotted keys, got more\n";
+  EXPECT_EQ(load_text(key + " = 1\n", "s.toml").describe(), told);
+  EXPECT_EQ(load_text("time = {" + key + " = 1}\n", "s.toml").describe(), told);
+  EXPECT_NE(load_text(kFloor, "s.toml", {"time={" + key + "=1}"}).describe(), "");
+}
+
+TEST(Mistakes, OfANameThatCannotNameOutputsAreSaidBeforeAnythingElse) {
+  for (const char* name : {"a\nb.toml", "a\x1b[2J.toml", "...toml", "a\x7f.toml", "\t.toml"})
+    EXPECT_NE(load_text(kFloor, name).describe().find("expected a file whose name without its ending can name outputs"),
+              std::string::npos)
+        << name;
+  for (const char* name : {"a.toml", "a b.toml", "..a.toml", "ä.toml", "a"})
+    EXPECT_EQ(load_text(kFloor, name).describe(), "") << name;
+}
+
+TEST(Mistakes, OfKeysThatAreTooNearAndOfPairsThatNeverMeetAreSaid) {
+  const auto told = [](const std::string& text) { return load_text(kFloor + text, "s.toml").describe(); };
+  const std::string ball = "\n[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\n";
+  const auto keys = [&](const char* time) {
+    return told(ball + "keys = [{time = 0, position = [0,0,0]}, {time = " + time + ", position = [0,0,1]}]\n");
+  };
+  EXPECT_EQ(keys("1e-6"), "");
+  EXPECT_NE(keys("1e-300").find("expected at least 1e-07 s after the key before, at 0 s, got 1e-300"),
+            std::string::npos)
+      << keys("1e-300");
+  const auto pair = [&](const char* a, const char* b) {
+    return told(ball + "[[cloth]]\nname = \"c\"\n[[contact.pair]]\nfirst = \"" + a + "\"\nsecond = \"" + b +
+                "\"\nfriction = 0.1\n");
+  };
+  EXPECT_EQ(pair("c", "ball"), "");
+  EXPECT_EQ(pair("c", "c"), "");
+  EXPECT_NE(pair("ball", "ball").find("expected a cloth as one of the two"), std::string::npos) << pair("ball", "ball");
 }
 
 }  // namespace

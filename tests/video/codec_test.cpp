@@ -69,6 +69,19 @@ TEST_F(CodecTest, LosslessOnesKeepEveryByte) {
 }
 
 // 10 bits and half of the colours' columns: a ramp comes back to within 3 levels, seen is 2.
+TEST_F(CodecTest, SamePicturesGiveTheSameBytesInEveryKindOfFile) {
+  const std::vector<image::Image> pictures{ramp(), ramp()};
+  for (const auto& [codec, ending] : {std::pair{Codec::automatic, ".mkv"},
+                                      {Codec::h264, ".mkv"},
+                                      {Codec::automatic, ".mov"},
+                                      {Codec::automatic, ".mp4"}}) {
+    for (const char* name : {"a", "b"}) write((folder_ / name).replace_extension(ending), codec, pictures);
+    EXPECT_EQ(support::read_bytes((folder_ / "a").replace_extension(ending)),
+              support::read_bytes((folder_ / "b").replace_extension(ending)))
+        << ending;
+  }
+}
+
 TEST_F(CodecTest, ProResKeepsRamps) {
   write((folder_ / "cut.mov"), Codec::automatic, {ramp()});
   Decoder decoder((folder_ / "cut.mov"));

@@ -36,7 +36,13 @@
     constructor(address) {
       this.chosen = new Set(address.getAll("chosen"));
       this.sortKey = address.get("sort");
-      this.rows = review.model.runs.map((run) => this.buildRow(run));
+      this.rows = review.model.runs.map((run) => {
+        try {
+          return this.buildRow(run);
+        } catch (error) { // of one run: the others are shown all the same
+          return this.buildBrokenRow(run, error);
+        }
+      });
       this.filter = h("input", { type: "search", placeholder: "Filter by name, scene, verdict", "aria-label": "Filter the runs", oninput: () => this.applyFilter() });
       this.state = h("select", { "aria-label": "Filter by decision", onchange: () => this.applyFilter() }, SHOWN.map(([value, text]) => h("option", { value, selected: value === (address.get("state") ?? "") }, text)));
       this.newest = h("input", { type: "checkbox", checked: address.has("newest"), onchange: () => this.applyFilter() });
@@ -100,6 +106,15 @@
           notes.length > 0 && h("small", { title: notes.join("\n") }, notes[0].replace(/^\S*\//, ""))),
         review.model.swept.map(({ label, text }) => h("td.figure", { "data-label": label }, text(run))),
         h("td.figure", { "data-label": "Written" }, date(run.date)), figures);
+      return { run, box, element };
+    }
+
+    buildBrokenRow(run, error) {
+      const box = h("input", { type: "checkbox", disabled: true, "aria-label": `Choose ${run.name}` });
+      const element = h("tr", { "data-run": run.id },
+        h("td.choose", {}, h("label", {}, box)), h("td.poster"),
+        h("td.name", {}, h("a", { href: `#run=${encodeURIComponent(run.id)}` }, String(run.name))),
+        h("td.verdict", {}, review.chip({ level: "unknown", text: "cannot be shown" }), h("small", {}, String(error))));
       return { run, box, element };
     }
 
