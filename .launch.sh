@@ -51,11 +51,31 @@ configure() {
   quietly cmake -S "$root" --preset "$preset" "$@" || die 1 "the build could not be configured"
 }
 
+# report_progress: says every 15 s how much of ninja's output is there; returns ninja's exit status, the last line.
+report_progress() {
+  due=15
+  while read -r count seconds rest; do
+    seconds=${seconds%%.*}
+    case $count in
+      exit) return "$seconds" ;;
+      "["*/*"]") [ "$seconds" -ge "$due" ] || continue ;;
+      *) continue ;;
+    esac
+    finished=${count%/*} all=${count#*/} due=$((seconds + 15))
+    finished=${finished#?} all=${all%?}
+    say "$finished of $all files, about $(((seconds * (all - finished) / finished + 59) / 60)) min left"
+  done
+}
+
 # build TARGET: with as many compilers at once as there are processors and 1.5 GB of free memory for each.
 build() {
   jobs=$(awk -v jobs="$(nproc)" '/^MemAvailable:/ { fit = int($2 / 1500000) }
                                  END { print fit < 1 ? 1 : fit < jobs ? fit : jobs }' /proc/meminfo)
   say "building"
-  if [ -t 2 ]; then ninja -C "$folder" -j "$jobs" "$1" >&2; else quietly ninja -C "$folder" -j "$jobs" "$1"; fi ||
-    die 1 "the build failed"
+  if [ -t 2 ]; then
+    ninja -C "$folder" -j "$jobs" "$1" >&2
+  else
+    { NINJA_STATUS="[%f/%t] %e s: " ninja -C "$folder" -j "$jobs" "$1" </dev/null 2>&1; echo "exit $?"; } |
+      tee "$folder/launch.log" | report_progress || { sed '$d' "$folder/launch.log" >&2; false; }
+  fi || die 1 "the build failed"
 }

@@ -18,7 +18,7 @@ constexpr double kTargets[] = {1e-2, 1e-3, 1e-4};
 // Largest share of a target that the reference itself may be uncertain by.
 constexpr double kKnown = 0.3;
 // Below this nothing has moved [m].
-constexpr double kRounding = 1e-12;
+constexpr double kNegligibleMotion = 1e-12;
 // Runs of a series, from the finest on, through which the cost of a digit is drawn.
 constexpr std::size_t kLast = 4;
 
@@ -172,8 +172,9 @@ std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
 
 std::string conclusion(const Accuracy& accuracy) {
   const Quantity quantity = deciding_quantity(accuracy);
-  if (std::all_of(accuracy.runs.begin(), accuracy.runs.end(),
-                  [&](const Run& run) { return run.failed() || bound_of(accuracy, run, quantity) < kRounding; }))
+  if (std::all_of(accuracy.runs.begin(), accuracy.runs.end(), [&](const Run& run) {
+        return run.failed() || bound_of(accuracy, run, quantity) < kNegligibleMotion;
+      }))
     return "Nothing moves: there is no error to measure.\n";
   return which_setting(accuracy, quantity) + " " + cost_of_a_digit(accuracy, quantity) + " " +
          what_is_left(accuracy, quantity) + "\n";

@@ -12,7 +12,7 @@ namespace weft::bench {
 namespace {
 
 // Share of the energies in play that may come up because steps are solved to a tolerance; and what is rounding [J].
-constexpr double kSolverShare = 0.1, kRounding = 1e-9;
+constexpr double kSolverShare = 0.1, kEnergyRounding = 1e-9;
 
 double mechanical_energy(const simulation::FrameReport& report) {
   return report.kinetic_energy + report.potential_energy + report.elastic_energy;
@@ -47,7 +47,7 @@ class Watch {
     potential_low_ = std::min(potential_low_, report.potential_energy);
     potential_high_ = std::max(potential_high_, report.potential_energy);
     const double allowed =
-        limit_.driven + kRounding + kSolverShare * (largest_energy_ + potential_high_ - potential_low_);
+        limit_.driven + kEnergyRounding + kSolverShare * (largest_energy_ + potential_high_ - potential_low_);
     outcome.energy_gain = std::max(outcome.energy_gain, (energy - start_energy_) / allowed);
     return true;
   }

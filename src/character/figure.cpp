@@ -5,10 +5,12 @@
 #include <functional>
 #include <span>
 
+#include "character/mannequin_shape.hpp"
+
 namespace weft::character {
 namespace {
 
-constexpr double kTableHeight = 175;  // cm, as of the mannequin's sections; all places below are in these
+// All places below are in cm, for a height of kTableHeight.
 
 /// A colour (sRGB, 0 to 1) laid over what is there by a share.
 struct Ink {

@@ -16,9 +16,6 @@ constexpr double kHipSwing = 1.6;  ///< share of the recorded turn of the pelvis
 // control of body center of mass, head and body reorientation", 1999) [s].
 constexpr double kChestLead = 0.12, kHeadLead = 0.28;
 
-std::size_t z(Joint joint) {
-  return static_cast<std::size_t>(joint);
-}
 Quat turned(double angle, const Vec3& axis) {
   return Quat(Eigen::AngleAxisd(angle, axis));
 }
@@ -79,7 +76,7 @@ class Walker {
 
   Vec3 hip_offset(int k, int side) const {
     const Joint hip = side == 0 ? Joint::left_upper_leg : Joint::right_upper_leg;
-    return pelvis_rotation(k) * (body_.joints[z(hip)] - body_.joints[z(Joint::hips)]);
+    return pelvis_rotation(k) * (body_.joints[place_of(hip)] - body_.joints[place_of(Joint::hips)]);
   }
 
   /// Rotations of all joints against the world.
@@ -90,11 +87,11 @@ class Walker {
     const Quat chest =
         heading(k, kChestLead) * leaning(size * walking::chest_yaw.at(phase), size * walking::chest_roll.at(phase), 0);
     const Quat head = heading(k, kHeadLead) * leaning(size * walking::head_yaw.at(phase), 0, 0);
-    global[z(Joint::hips)] = hips;
-    global[z(Joint::spine)] = hips.slerp(0.5, chest);
-    global[z(Joint::chest)] = chest;
-    global[z(Joint::neck)] = chest.slerp(0.5, head);
-    global[z(Joint::head)] = head;
+    global[place_of(Joint::hips)] = hips;
+    global[place_of(Joint::spine)] = hips.slerp(0.5, chest);
+    global[place_of(Joint::chest)] = chest;
+    global[place_of(Joint::neck)] = chest.slerp(0.5, head);
+    global[place_of(Joint::head)] = head;
     for (int side = 0; side < 2; ++side) {
       arm(global, side, phase + 0.5 * side, size, chest);
       leg(global, feet.at(side, k), side, pelvis + hip_offset(k, side));
@@ -103,7 +100,7 @@ class Walker {
   }
 
   static Joint of_side(Joint left, int side) {
-    return static_cast<Joint>(z(left) + static_cast<std::size_t>(side) * kSideJointCount);
+    return static_cast<Joint>(place_of(left) + static_cast<std::size_t>(side) * kSideJointCount);
   }
 
   void arm(std::array<Quat, kJointCount>& global, int side, double phase, double size, const Quat& chest) const {
@@ -116,10 +113,10 @@ class Walker {
         chest * turned(-forward * kDegree, Vec3::UnitX()) * turned(sign * (45 - out) * kDegree, Vec3::UnitY());
     const Vec3 along(sign * std::sqrt(0.5), 0, -std::sqrt(0.5));
     const Quat lower = upper * turned(bend * kDegree, along.cross(-Vec3::UnitY()));
-    global[z(of_side(Joint::left_shoulder, side))] = chest;
-    global[z(of_side(Joint::left_upper_arm, side))] = upper;
-    global[z(of_side(Joint::left_lower_arm, side))] = lower;
-    global[z(of_side(Joint::left_hand, side))] = lower;
+    global[place_of(of_side(Joint::left_shoulder, side))] = chest;
+    global[place_of(of_side(Joint::left_upper_arm, side))] = upper;
+    global[place_of(of_side(Joint::left_lower_arm, side))] = lower;
+    global[place_of(of_side(Joint::left_hand, side))] = lower;
   }
 
   /// The rotation that takes one pair of directions to another, the first exactly.
@@ -137,26 +134,26 @@ class Walker {
   /// Two bones reach from the hip to the ankle; the knee bends about an axis between those of pelvis and foot.
   void leg(std::array<Quat, kJointCount>& global, const FootState& foot, int side, const Vec3& hip) const {
     const double sign = side == 0 ? 1 : -1;
-    const Vec3 hip0 = body_.joints[z(of_side(Joint::left_upper_leg, side))],
-               knee0 = body_.joints[z(of_side(Joint::left_lower_leg, side))],
-               ankle0 = body_.joints[z(of_side(Joint::left_foot, side))];
+    const Vec3 hip0 = body_.joints[place_of(of_side(Joint::left_upper_leg, side))],
+               knee0 = body_.joints[place_of(of_side(Joint::left_lower_leg, side))],
+               ankle0 = body_.joints[place_of(of_side(Joint::left_foot, side))];
     const double a = (knee0 - hip0).norm(), b = (ankle0 - knee0).norm();
     const Vec3 reach = foot.ankle - hip;
     const double d = std::min(reach.norm(), 0.9999 * (a + b));
     const Quat foot_yaw = turned(foot.yaw, Vec3::UnitZ());
     const Vec3 along = reach.normalized();
-    Vec3 axis = global[z(Joint::hips)].slerp(0.5, foot_yaw) * Vec3::UnitX();
+    Vec3 axis = global[place_of(Joint::hips)].slerp(0.5, foot_yaw) * Vec3::UnitX();
     axis = (axis - axis.dot(along) * along).normalized();
     // Cosine rule; the knee is in front.
     const double cosine = (a * a + d * d - b * b) / (2 * a * d);
     const double sine = std::sqrt(std::max(1 - cosine * cosine, 0.0));
     const Vec3 thigh = a * (cosine * along + sine * along.cross(axis).normalized());
     const Vec3 shin = reach - thigh;
-    global[z(of_side(Joint::left_upper_leg, side))] = carrying(knee0 - hip0, Vec3::UnitX(), thigh, axis);
-    global[z(of_side(Joint::left_lower_leg, side))] = carrying(ankle0 - knee0, Vec3::UnitX(), shin, axis);
+    global[place_of(of_side(Joint::left_upper_leg, side))] = carrying(knee0 - hip0, Vec3::UnitX(), thigh, axis);
+    global[place_of(of_side(Joint::left_lower_leg, side))] = carrying(ankle0 - knee0, Vec3::UnitX(), shin, axis);
     const Vec3 across = turned(foot.yaw + sign * body_.foot_yaw, Vec3::UnitZ()) * Vec3::UnitX();
-    global[z(of_side(Joint::left_foot, side))] = turned(-foot.pitch, across) * foot_yaw;
-    global[z(of_side(Joint::left_toes, side))] = turned(-foot.pitch - foot.toes, across) * foot_yaw;
+    global[place_of(of_side(Joint::left_foot, side))] = turned(-foot.pitch, across) * foot_yaw;
+    global[place_of(of_side(Joint::left_toes, side))] = turned(-foot.pitch - foot.toes, across) * foot_yaw;
   }
 
   void add_key(Clip& clip, const Feet& feet, int key) const {
@@ -166,7 +163,7 @@ class Walker {
     const double t = key * plan_.key_time;
     for (std::size_t j = 0; j < kJointCount; ++j) {
       const auto joint = static_cast<Joint>(j);
-      const Quat local = joint == Joint::hips ? global[j] : global[z(parent(joint))].conjugate() * global[j];
+      const Quat local = joint == Joint::hips ? global[j] : global[place_of(parent(joint))].conjugate() * global[j];
       clip.channels[j].rotation.times.push_back(t);
       clip.channels[j].rotation.values.push_back(local.normalized());
     }

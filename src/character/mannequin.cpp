@@ -13,13 +13,9 @@
 namespace weft::character {
 namespace {
 
-constexpr int kRounds = 8;  ///< of remeshing; more change the smallest angle by less than a degree
+constexpr int kRemeshings = 8;  ///< more change the smallest angle by less than a degree
 
 constexpr std::size_t kFirstLeft = 5, kFirstRight = kFirstLeft + kSideJointCount;
-
-std::size_t z(Joint joint) {
-  return static_cast<std::size_t>(joint);
-}
 
 constexpr double kRim = 0.012;  ///< rounding between sole and side of a foot [m], for a height of 1.75 m
 
@@ -37,7 +33,7 @@ mesh::Field standing_on_floor(const BlendedBody& body, double height) {
 /// the arms.
 mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJointCount>& joints) {
   const double unit = build.height / 1.75;
-  const double wrist = joints[z(Joint::left_hand)].x(), shoulder = joints[z(Joint::left_upper_arm)].x();
+  const double wrist = joints[place_of(Joint::left_hand)].x(), shoulder = joints[place_of(Joint::left_upper_arm)].x();
   const Vec3 crotch(0, 0, 0.78 * unit), armpit(0.82 * shoulder, 0, 1.31 * unit);
   return [=](const Vec3& p) {
     const double arm =
@@ -58,7 +54,7 @@ mesh::MirroredMesh make_skin(const MannequinBuild& build, const std::array<Vec3,
   // Fine enough for fingers and for the room between the thighs.
   const double cell = std::min(0.7 * build.edge_length, 0.012 * build.height / 1.75);
   mesh::Mesh half = mesh::march_half_space(field, Box3(bounds.min() - spare, bounds.max() + spare), cell);
-  mesh::remesh(half, field, edge_lengths(build, joints), kRounds);
+  mesh::remesh(half, field, edge_lengths(build, joints), kRemeshings);
   return mesh::join_mirror_image(half);
 }
 
@@ -90,7 +86,9 @@ std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
   const double h = build.height, cm = h / 175;
   const double wide = 1 + 0.2 * build.masculinity;
   std::array<Vec3, kJointCount> at{};
-  const auto set = [&](Joint joint, double x, double forward, double up) { at[z(joint)] = Vec3(x, -forward, up); };
+  const auto set = [&](Joint joint, double x, double forward, double up) {
+    at[place_of(joint)] = Vec3(x, -forward, up);
+  };
   set(Joint::hips, 0, 0, 0.545 * h);
   set(Joint::spine, 0, -1.5 * cm, 106 * cm);
   set(Joint::chest, 0, -2.0 * cm, 119 * cm);
@@ -99,8 +97,8 @@ std::array<Vec3, kJointCount> mannequin_joints(const MannequinBuild& build) {
   set(Joint::left_shoulder, 3 * cm, -1.5 * cm, 141 * cm);
   set(Joint::left_upper_arm, 16.4 * wide * cm, -1.4 * cm, 139 * cm);
   const Vec3 down(std::sqrt(0.5), 0, -std::sqrt(0.5));
-  at[z(Joint::left_lower_arm)] = at[z(Joint::left_upper_arm)] + 0.186 * h * down;
-  at[z(Joint::left_hand)] = at[z(Joint::left_lower_arm)] + 0.146 * h * down;
+  at[place_of(Joint::left_lower_arm)] = at[place_of(Joint::left_upper_arm)] + 0.186 * h * down;
+  at[place_of(Joint::left_hand)] = at[place_of(Joint::left_lower_arm)] + 0.146 * h * down;
   set(Joint::left_upper_leg, 8.7 * cm, 0, 0.530 * h);
   set(Joint::left_lower_leg, 10.2 * cm, 0.1 * cm, 0.285 * h);
   set(Joint::left_foot, 11.0 * cm, -1.3 * cm, 0.039 * h);
@@ -116,8 +114,9 @@ Character make_mannequin(const MannequinBuild& build) {
   Character character;
   for (std::size_t j = 0; j < kJointCount; ++j) {
     const auto joint = static_cast<Joint>(j);
-    Node node{std::string(name(joint)), joint == Joint::hips ? -1 : static_cast<Index>(z(parent(joint)))};
-    node.local = Eigen::Translation3d(joint == Joint::hips ? joints[j] : Vec3(joints[j] - joints[z(parent(joint))]));
+    Node node{std::string(name(joint)), joint == Joint::hips ? -1 : static_cast<Index>(place_of(parent(joint)))};
+    node.local =
+        Eigen::Translation3d(joint == Joint::hips ? joints[j] : Vec3(joints[j] - joints[place_of(parent(joint))]));
     character.nodes.push_back(node);
     character.bones.push_back({static_cast<Index>(j), Affine(Eigen::Translation3d(-joints[j]))});
   }

@@ -12,8 +12,6 @@
 namespace weft::character {
 namespace {
 
-constexpr double kTableHeight = 175;  // cm
-
 /// What turns table values into metres for one build.
 struct Scale {
   double length = 0.01;  ///< along the body

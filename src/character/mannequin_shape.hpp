@@ -6,6 +6,9 @@
 
 namespace weft::character {
 
+/// Height that the tables of the body are given for [cm].
+inline constexpr double kTableHeight = 175;
+
 /// Negative inside [m].
 BlendedBody mannequin_body(const MannequinBuild& build);
 

@@ -36,7 +36,7 @@ constexpr double kToesBack = 150 * kDegree;
 constexpr double kFloorMissed = 0.05;
 
 /// Rounds in which hands come to what they touch, which may be the other hand or its elbow.
-constexpr int kRounds = 3;
+constexpr int kTouchingRounds = 3;
 /// Hands that are off by less are left where they are [m].
 constexpr double kTouching = 1e-4;
 
@@ -342,7 +342,7 @@ class Retargeter {
     for (std::size_t k = 0; k < frames.size(); ++k) {
       Places theirs, ours;
       for (std::size_t j = 0; j < kJointCount; ++j) theirs[j] = face_ * postures_[k].places[j];
-      for (int round = 0; round < kRounds; ++round) {
+      for (int round = 0; round < kTouchingRounds; ++round) {
         const std::vector<Affine> nodes = globals(frames[k]);
         for (std::size_t j = 0; j < kJointCount; ++j)
           ours[j] = both[j] ? Vec3(nodes[body_.joints[j]].translation()) : Vec3(Vec3::Zero());

@@ -23,10 +23,10 @@ constexpr std::size_t kLinesPerTask = 512;
 constexpr double kCells = 60;
 
 /// Rounds of giving way. One is enough where both sides see each other straight; each halves what is left elsewhere.
-constexpr int kRounds = 8;
+constexpr int kYieldingRounds = 8;
 
 /// Of the room, what may be missing in the end.
-constexpr double kEnough = 0.02;
+constexpr double kLeastMissing = 0.02;
 
 /// Smoothings in each round: dents end over so many edges and more.
 constexpr int kSmoothings = 3;
@@ -172,13 +172,13 @@ void Room::make(const Pose& pose, std::span<Vec3> x) const {
     for (std::size_t v = 0; v < shares.size(); ++v)
       if (shares[v] < 1) x[v] = from[v] + shares[v] * (whole[v] - from[v]);
   };
-  for (int round = 0; round < kRounds; ++round) {
+  for (int round = 0; round < kYieldingRounds; ++round) {
     find_missing(from, whole, x, missing);
     bool changed = false;
     for (std::size_t v = 0; v < shares.size(); ++v) {
       if (missing[v] <= 0) continue;
       shares[v] = std::max(kLeast, shares[v] - 0.5 * missing[v] / (whole[v] - from[v]).norm());
-      changed |= missing[v] > kEnough * room_;
+      changed |= missing[v] > kLeastMissing * room_;
     }
     // In each round: what gives way alone leaves its neighbours in what it went out of.
     smooth(shares);

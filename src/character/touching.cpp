@@ -10,7 +10,7 @@ namespace {
 // Distances of the wrist, in lengths of the arm (0.55 m in an adult), up to which a hand is taken to touch; from twice
 // these on it does not. Of hands that are together wrists are 5 to 12 cm apart, so half of that from their middle; a
 // hand that holds an elbow has its wrist 8 to 13 cm from the joint, one on a hip 17 to 22 cm from between the hips.
-constexpr double kHands = 0.12, kElbow = 0.2, kHips = 0.4;
+constexpr double kHandsReach = 0.12, kElbowReach = 0.2, kHipsReach = 0.4;
 // Arms that are bent by less hang [radians], and by more reach for something.
 constexpr double kHanging = 40 * std::numbers::pi / 180, kReaching = 70 * std::numbers::pi / 180;
 
@@ -35,9 +35,10 @@ class Puller {
     const Vec3 upper = theirs_[elbow] - theirs_[shoulder], lower = theirs_[hand_] - theirs_[elbow];
     const double bend = std::atan2(upper.cross(lower).norm(), upper.dot(lower));
     const double bent = ease((bend - kHanging) / (kReaching - kHanging));
-    between(hand_, across(Joint::left_hand), 0.5, kHands, proportions_.arm);
-    between(across(Joint::left_lower_arm), across(Joint::left_lower_arm), 0, kElbow, proportions_.arm);
-    between(at(Joint::left_upper_leg), across(Joint::left_upper_leg), 0.5, kHips * bent, proportions_.trunk, rests);
+    between(hand_, across(Joint::left_hand), 0.5, kHandsReach, proportions_.arm);
+    between(across(Joint::left_lower_arm), across(Joint::left_lower_arm), 0, kElbowReach, proportions_.arm);
+    between(at(Joint::left_upper_leg), across(Joint::left_upper_leg), 0.5, kHipsReach * bent, proportions_.trunk,
+            rests);
     return sum_ / std::max(1.0, weights_);
   }
 

@@ -56,7 +56,7 @@ void check_patterns(const scene::Scene& scene, Mistakes& mistakes) {
 }
 
 /// Particles of all cloths; those that a file holds or a pattern gives are counted by making them.
-std::size_t count_particles(const scene::Scene& scene, Mistakes& mistakes) {
+std::size_t count_scene_particles(const scene::Scene& scene, Mistakes& mistakes) {
   std::size_t particles = 0;
   environment::Wearers wearers(scene);
   for (const scene::Cloth& cloth : scene.cloths) try {
@@ -74,7 +74,7 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
   Mistakes mistakes;
   if (!loaded.ok()) mistakes.add(ExitCode::scene_invalid, mistakes_text(loaded));
   check_patterns(loaded.scene, mistakes);
-  const std::size_t particles = mistakes.lines.empty() ? count_particles(loaded.scene, mistakes) : 0;
+  const std::size_t particles = mistakes.lines.empty() ? count_scene_particles(loaded.scene, mistakes) : 0;
   if (!mistakes.lines.empty()) {
     log::info(mistakes.lines);
     return mistakes.code;

@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kPause = 20'000;  // between looks at the processes [microseconds]
+constexpr auto kProcessPollPause = 20'000;  // [microseconds]
 
 /// A run and its process.
 struct Job : SweepJob {
@@ -119,7 +119,7 @@ class Sweep {
         log::info(fmt::format("[{}/{}] {}: {}", ++ended, jobs_.size(), label_of(job->run), how));
         return true;
       });
-      if (!running.empty()) ::usleep(kPause);
+      if (!running.empty()) ::usleep(kProcessPollPause);
     }
   }
 

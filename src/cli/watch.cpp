@@ -21,7 +21,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr auto kPause = 100'000;  // between looks at files and process [microseconds]
+constexpr auto kFilePollPause = 100'000;  // also of the process [microseconds]
 
 /// When which files were changed; those that are not there have no time.
 using Stamps = std::map<fs::path, fs::file_time_type>;
@@ -60,7 +60,7 @@ class Watch {
       drawn_ = stamps_of(files_);
       draw();
       if (options_.times != 0 && times + 1 == options_.times) break;
-      while (!stop_.requested() && !changed()) ::usleep(kPause);
+      while (!stop_.requested() && !changed()) ::usleep(kFilePollPause);
     }
     return ExitCode::ok;
   }
@@ -86,7 +86,7 @@ class Watch {
         ::kill(process, SIGKILL);  // what it writes gets its name when it is whole
         told = true;
       }
-      ::usleep(kPause);
+      ::usleep(kFilePollPause);
     }
   }
 

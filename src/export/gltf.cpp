@@ -30,9 +30,6 @@ using nlohmann::json;
 // Numbers that the specification gives to things.
 constexpr int kFloat = 5126, kUnsignedInt = 5125, kVertices = 34962, kIndices = 34963, kTriangles = 4;
 
-// Before and behind what is seen [m].
-constexpr double kNear = 0.01, kFar = 1000;
-
 constexpr int kRepeat = 10497, kMirror = 33648, kClamp = 33071, kLinear = 9729, kLinearOfSizes = 9987;
 
 int wrap_number(frame::Paint::Wrap wrap) {
@@ -323,8 +320,8 @@ void GltfFile::add_cameras(json& animation, double aspect) {
                                     {"perspective",
                                      {{"yfov", eye.field_of_view * std::numbers::pi / 180},
                                       {"aspectRatio", aspect},
-                                      {"znear", kNear},
-                                      {"zfar", kFar}}}});
+                                      {"znear", kNearPlane},
+                                      {"zfar", kFarPlane}}}});
     for (const auto& [path, type, values] :
          {std::tuple("translation", "VEC3", &eye.positions), std::tuple("rotation", "VEC4", &eye.turns)}) {
       const std::ptrdiff_t each = type[3] - '0';

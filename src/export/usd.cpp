@@ -25,9 +25,6 @@ namespace {
 // of the stage's unit, which is a metre.
 constexpr double kFilmWidth = 0.36;
 
-// Room behind and before what is seen [m].
-constexpr double kNear = 0.01, kFar = 1000;
-
 // Names of primitives: letters, digits and underscores, no digit first.
 std::string prim_name(const std::string& name) {
   std::string prim;
@@ -291,7 +288,7 @@ void UsdFile::write_camera(std::ostream& out, const Camera& camera) const {
              "\n    def Camera \"{}\"\n    {{\n        float2 clippingRange = ({}, {})\n"
              "        float horizontalAperture = {}\n        float verticalAperture = {:.9g}\n"
              "        token projection = \"perspective\"\n",
-             camera.prim, kNear, kFar, kFilmWidth, kFilmWidth / aspect_);
+             camera.prim, kNearPlane, kFarPlane, kFilmWidth, kFilmWidth / aspect_);
   camera.focal_length.write(out, "float focalLength");
   camera.transform.write(out, "matrix4d xformOp:transform");
   out << "        uniform token[] xformOpOrder = [\"xformOp:transform\"]\n    }\n";

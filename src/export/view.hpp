@@ -9,6 +9,9 @@
 
 namespace weft::exporter {
 
+/// Clipping planes of exported cameras, before and behind all that is seen [m].
+inline constexpr double kNearPlane = 0.01, kFarPlane = 1000;
+
 /// A camera that stands somewhere, whether the scene placed it there or it was found.
 struct View {
   std::string name;

@@ -53,7 +53,7 @@ const Table& panel_rules() {
           .by_default("front")
           .excludes("angle")
           .choice_by(
-              "around", {kAroundNames.begin() + 1, kAroundNames.end()},
+              "around", std::vector<std::string>(kAroundNames.begin() + 1, kAroundNames.end()),
               "part of the wearer that it starts bent around; where panels of a pattern have it, torso is the part of "
               "those without",
               [](Panel& p) { return static_cast<std::size_t>(p.around) - 1; },

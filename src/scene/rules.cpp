@@ -15,13 +15,6 @@
 
 namespace weft::scene {
 
-void assign(Quat& target, const Value& value) {
-  const std::vector<double>& wxyz = numbers_of(value);
-  target = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
-  // Already of unit length up to rounding: left as it is, so that writing and reading again changes no bit.
-  if (std::abs(target.squaredNorm() - 1) > 1e-14) target.normalize();
-}
-
 namespace {
 
 /// Turns a vector that is meant for z up the way that the scene's up axis has it.

@@ -1,10 +1,12 @@
-// Writes rows of the rule table: binds a key to the member of a struct it fills.
+// Writes rows of the rule table: binds a key to the member of a struct it fills. What does not depend on the struct is
+// compiled once, in table_builder.cpp: there are hundreds of rows.
 #pragma once
 
-#include <algorithm>
 #include <functional>
+#include <initializer_list>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -13,198 +15,187 @@
 
 namespace weft::scene {
 
-// Struct member -> Value. Adding 0.0 turns -0 into 0, which TOML would write and read back differently.
-inline Value to_value(double number) {
-  return std::vector<double>{number + 0.0};
-}
-inline Value to_value(int number) {
-  return std::vector<double>{static_cast<double>(number)};
-}
-inline Value to_value(bool flag) {
-  return flag;
-}
-inline Value to_value(const std::string& text) {
-  return text;
-}
-inline Value to_value(const std::vector<std::string>& texts) {
-  return texts.empty() ? Value{} : texts;
-}
-inline Value to_value(const std::filesystem::path& path) {
-  return path.string();
-}
-inline Value to_value(const Vec2& v) {
-  return std::vector<double>{v.x() + 0.0, v.y() + 0.0};
-}
-inline Value to_value(const Vec3& v) {
-  return std::vector<double>{v.x() + 0.0, v.y() + 0.0, v.z() + 0.0};
-}
-inline Value to_value(const Quat& q) {
-  return std::vector<double>{q.w() + 0.0, q.x() + 0.0, q.y() + 0.0, q.z() + 0.0};
-}
+// Struct member -> Value.
+Value to_value(double number);
+Value to_value(int number);
+Value to_value(bool flag);
+Value to_value(const std::string& text);
+Value to_value(const std::vector<std::string>& texts);
+Value to_value(const std::filesystem::path& path);
+Value to_value(const Vec2& v);
+Value to_value(const Vec3& v);
+Value to_value(const Quat& q);
 template <class T>
 Value to_value(const std::optional<T>& value) {
   return value ? to_value(*value) : Value{};
 }
 
 // Value -> struct member. The reader has checked type, range and number of components.
-inline const std::vector<double>& numbers_of(const Value& value) {
-  return std::get<std::vector<double>>(value);
-}
-inline void assign(double& target, const Value& value) {
-  target = numbers_of(value)[0];
-}
-inline void assign(int& target, const Value& value) {
-  target = static_cast<int>(numbers_of(value)[0]);
-}
-inline void assign(bool& target, const Value& value) {
-  target = std::get<bool>(value);
-}
-inline void assign(std::string& target, const Value& value) {
-  target = std::get<std::string>(value);
-}
-inline void assign(std::vector<std::string>& target, const Value& value) {
-  target = std::get<std::vector<std::string>>(value);
-}
-inline void assign(std::filesystem::path& target, const Value& value) {
-  target = std::get<std::string>(value);
-}
-inline void assign(Vec2& target, const Value& value) {
-  target = Vec2(numbers_of(value).data());
-}
-inline void assign(Vec3& target, const Value& value) {
-  target = Vec3(numbers_of(value).data());
-}
+void assign(double& target, const Value& value);
+void assign(int& target, const Value& value);
+void assign(bool& target, const Value& value);
+void assign(std::string& target, const Value& value);
+void assign(std::vector<std::string>& target, const Value& value);
+void assign(std::filesystem::path& target, const Value& value);
+void assign(Vec2& target, const Value& value);
+void assign(Vec3& target, const Value& value);
 void assign(Quat& target, const Value& value);
 template <class T>
 void assign(std::optional<T>& target, const Value& value) {
   assign(target.emplace(), value);
 }
 
+/// Choices, or names of components.
+struct Words {
+  Words(std::initializer_list<std::string_view> words);
+  Words(const std::vector<std::string>& words);
+  ~Words();
+  std::vector<std::string> list;
+};
+
+/// Rows of a table, whichever struct they fill.
+class RowBuilder {
+ public:
+  Table build() { return std::move(table_); }
+
+ protected:
+  using Flag = std::function<bool(void*)>;
+
+  explicit RowBuilder(std::string_view documentation);
+  RowBuilder(const RowBuilder&) = delete;
+  ~RowBuilder();
+
+  Rule& last() { return table_.rules.back(); }
+  void add(std::string_view key, Type type, std::string_view documentation);
+  void add_number(std::string_view key, Range range, std::string_view unit, std::string_view documentation);
+  void add_table(std::string_view key, Type type, const Table& inner);
+  void set_components(const Words& components);
+  void bind(std::function<Value(void*)> get, std::function<void(void*, const Value&)> set);
+  /// One array of two numbers for two members, which the functions give and take one by one.
+  void bind_pair(std::function<Value(void*, bool second)> get,
+                 std::function<void(void*, bool second, const Value&)> set);
+  /// The functions give and take the index of the choice.
+  void bind_choice(const Words& choices, std::function<std::size_t(void*)> get,
+                   std::function<void(void*, std::size_t)> set);
+  void add_variant(std::string_view name, const RowBuilder& rows);
+  void write_if(Flag when);
+  void do_when_given(std::function<void(void*)> then);
+
+  Table table_;
+};
+
 /// Rows of the table that describes struct S. A member is a member pointer or a generic lambda S& -> member&.
 template <class S>
-class TableBuilder {
+class TableBuilder : public RowBuilder {
  public:
-  explicit TableBuilder(std::string documentation = {}) {
-    table_.documentation = std::move(documentation);
+  explicit TableBuilder(std::string_view documentation = {}) : RowBuilder(documentation) {
     table_.make = [] { return std::make_shared<S>(); };
   }
 
   template <class Member>
-  TableBuilder& number(std::string key, Member member, Range range, std::string unit, std::string documentation) {
-    Rule& rule = bind(std::move(key), Type::number, member, std::move(documentation));
-    rule.range = range;
-    rule.unit = std::move(unit);
+  TableBuilder& number(std::string_view key, Member member, Range range, std::string_view unit,
+                       std::string_view documentation) {
+    add_number(key, range, unit, documentation);
+    return bind_member(member);
+  }
+  template <class Member>
+  TableBuilder& whole_number(std::string_view key, Member member, Range range, std::string_view documentation) {
+    return number(key, member, range, "", documentation).whole();
+  }
+  template <class Member>
+  TableBuilder& vector(std::string_view key, Member member, const Words& components, Range range, std::string_view unit,
+                       std::string_view documentation) {
+    number(key, member, range, unit, documentation);
+    set_components(components);
     return *this;
   }
   template <class Member>
-  TableBuilder& whole_number(std::string key, Member member, Range range, std::string documentation) {
-    return number(std::move(key), member, range, "", std::move(documentation)).whole();
-  }
-  template <class Member>
-  TableBuilder& vector(std::string key, Member member, std::vector<std::string> components, Range range,
-                       std::string unit, std::string documentation) {
-    number(std::move(key), member, range, std::move(unit), std::move(documentation));
-    last().components = std::move(components);
-    return *this;
-  }
-  template <class Member>
-  TableBuilder& color(std::string key, Member member, std::string documentation) {
-    Rule& rule = bind(std::move(key), Type::color, member, std::move(documentation));
-    rule.components = {"r", "g", "b"};
-    rule.range = within(0, 1);
+  TableBuilder& color(std::string_view key, Member member, std::string_view documentation) {
+    vector(key, member, {"r", "g", "b"}, within(0, 1), "", documentation);
+    last().type = Type::color;
     return *this;
   }
   /// A flag, text, list of texts, name or file.
   template <class Member>
-  TableBuilder& plain(Type type, std::string key, Member member, std::string documentation) {
-    bind(std::move(key), type, member, std::move(documentation));
-    return *this;
+  TableBuilder& plain(Type type, std::string_view key, Member member, std::string_view documentation) {
+    add(key, type, documentation);
+    return bind_member(member);
   }
   /// An enumeration (or a bool: false is the first); the choices in the order of its values.
   template <class Member>
-  TableBuilder& choice(std::string key, Member member, std::vector<std::string> choices, std::string documentation) {
+  TableBuilder& choice(std::string_view key, Member member, const Words& choices, std::string_view documentation) {
     using Field = std::remove_reference_t<std::invoke_result_t<Member, S&>>;
     return choice_by(
-        std::move(key), std::move(choices), std::move(documentation),
-        [member](S& s) { return static_cast<std::size_t>(std::invoke(member, s)); },
+        key, choices, documentation, [member](S& s) { return static_cast<std::size_t>(std::invoke(member, s)); },
         [member](S& s, std::size_t index) { std::invoke(member, s) = static_cast<Field>(index); });
   }
-  /// A choice kept in some other way: the functions give and take its index.
-  TableBuilder& choice_by(std::string key, std::vector<std::string> choices, std::string documentation,
-                          std::function<std::size_t(S&)> get, std::function<void(S&, std::size_t)> set) {
-    Rule& rule = add(std::move(key), Type::choice, std::move(documentation));
-    rule.get = [get, choices](void* s) { return Value(choices.at(get(*static_cast<S*>(s)))); };
-    rule.set = [set, choices](void* s, const Value& value) {
-      const auto found = std::find(choices.begin(), choices.end(), std::get<std::string>(value));
-      set(*static_cast<S*>(s), static_cast<std::size_t>(found - choices.begin()));
-    };
-    rule.choices = std::move(choices);
+  /// A choice kept in some other way: the functions give (S&) and take (S&, std::size_t) its index.
+  template <class Get, class Set>
+  TableBuilder& choice_by(std::string_view key, const Words& choices, std::string_view documentation, Get get,
+                          Set set) {
+    add(key, Type::choice, documentation);
+    bind_choice(
+        choices, [get](void* s) { return get(*static_cast<S*>(s)); },
+        [set](void* s, std::size_t index) { set(*static_cast<S*>(s), index); });
     return *this;
   }
-  /// A number, or a word in its place; the functions give and take either.
-  TableBuilder& number_or(std::string key, std::vector<std::string> words, Range range, std::string unit,
-                          std::string documentation, std::function<Value(S&)> get,
-                          std::function<void(S&, const Value&)> set) {
-    Rule& rule = add(std::move(key), Type::number, std::move(documentation));
-    rule.choices = std::move(words);
-    rule.range = range;
-    rule.unit = std::move(unit);
-    rule.get = [get](void* s) { return get(*static_cast<S*>(s)); };
-    rule.set = [set](void* s, const Value& value) { set(*static_cast<S*>(s), value); };
+  /// A number, or a word in its place; the functions give (S&) and take (S&, const Value&) either.
+  template <class Get, class Set>
+  TableBuilder& number_or(std::string_view key, const Words& words, Range range, std::string_view unit,
+                          std::string_view documentation, Get get, Set set) {
+    add_number(key, range, unit, documentation);
+    last().choices = words.list;
+    bind([get](void* s) -> Value { return get(*static_cast<S*>(s)); },
+         [set](void* s, const Value& value) { set(*static_cast<S*>(s), value); });
     return *this;
   }
   /// One array for two members; a single number sets both.
   template <class First, class Second>
-  TableBuilder& pair(std::string key, First first, Second second, Range range, std::string unit,
-                     std::string documentation) {
-    Rule& rule = add(std::move(key), Type::number, std::move(documentation));
-    rule.get = [first, second](void* p) {
-      S& s = *static_cast<S*>(p);
-      return Value(std::vector<double>{numbers_of(to_value(std::invoke(first, s)))[0],
-                                       numbers_of(to_value(std::invoke(second, s)))[0]});
-    };
-    rule.set = [first, second](void* p, const Value& value) {
-      S& s = *static_cast<S*>(p);
-      assign(std::invoke(first, s), Value(std::vector<double>{numbers_of(value)[0]}));
-      assign(std::invoke(second, s), Value(std::vector<double>{numbers_of(value)[1]}));
-    };
-    rule.components = {"weft", "warp"};
-    rule.single_fills_all = true;
-    rule.range = range;
-    rule.unit = std::move(unit);
-    return *this;
+  TableBuilder& pair(std::string_view key, First first, Second second, Range range, std::string_view unit,
+                     std::string_view documentation) {
+    add_number(key, range, unit, documentation);
+    set_components({"weft", "warp"});
+    bind_pair(
+        [first, second](void* p, bool wanted) {
+          S& s = *static_cast<S*>(p);
+          return wanted ? to_value(std::invoke(second, s)) : to_value(std::invoke(first, s));
+        },
+        [first, second](void* p, bool wanted, const Value& value) {
+          S& s = *static_cast<S*>(p);
+          wanted ? assign(std::invoke(second, s), value) : assign(std::invoke(first, s), value);
+        });
+    return single_fills_all();
   }
 
   template <class Member>
-  TableBuilder& table(std::string key, Member member, const Table& inner) {
-    Rule& rule = add(std::move(key), Type::table, inner.documentation);
-    rule.table = &inner;
-    rule.inner = [member](void* s) -> void* { return &std::invoke(member, *static_cast<S*>(s)); };
+  TableBuilder& table(std::string_view key, Member member, const Table& inner) {
+    add_table(key, Type::table, inner);
+    last().inner = [member](void* s) -> void* { return &std::invoke(member, *static_cast<S*>(s)); };
     return *this;
   }
-  /// A list of tables kept in a vector; `make_entry` puts entry i, filled with its defaults, at the end of the vector.
+  /// A list of tables kept in a vector.
   template <class Member>
-  TableBuilder& list(Type type, std::string key, Member member, const Table& entries,
-                     std::function<void(S&, std::size_t)> make_entry = {}) {
-    Rule& rule = add(std::move(key), type, entries.documentation);
+  TableBuilder& list(Type type, std::string_view key, Member member, const Table& entries) {
+    return list(type, key, member, entries, [member](S& s, std::size_t) { std::invoke(member, s).emplace_back(); });
+  }
+  /// `make_entry` (S&, std::size_t) puts entry i, filled with its defaults, at the end of the vector.
+  template <class Member, class Make>
+  TableBuilder& list(Type type, std::string_view key, Member member, const Table& entries, Make make_entry) {
+    add_table(key, type, entries);
+    Rule& rule = last();
     rule.range = within(0, type == Type::keys ? 100000 : 1000);
-    rule.table = &entries;
     rule.count = [member](void* s) { return std::invoke(member, *static_cast<S*>(s)).size(); };
     rule.entry = [member](void* s, std::size_t i) -> void* { return &std::invoke(member, *static_cast<S*>(s))[i]; };
     rule.append = [member, make_entry](void* p, std::size_t i) -> void* {
       S& s = *static_cast<S*>(p);
-      if (make_entry) {
-        make_entry(s, i);
-      } else {
-        std::invoke(member, s).emplace_back();
-      }
+      make_entry(s, i);
       return &std::invoke(member, s).back();
     };
     return *this;
   }
   /// Rows that apply only where the selector has this name.
-  TableBuilder& variant(std::string name, TableBuilder rows) {
-    table_.variants.push_back({std::move(name), std::move(rows.table_.rules)});
+  TableBuilder& variant(std::string_view name, const RowBuilder& rows) {
+    add_variant(name, rows);
     return *this;
   }
 
@@ -213,8 +204,8 @@ class TableBuilder {
     last().need = need;
     return *this;
   }
-  TableBuilder& by_default(std::string note) {
-    last().default_note = std::move(note);
+  TableBuilder& by_default(std::string_view note) {
+    last().default_note = note;
     return *this;
   }
   TableBuilder& whole() {
@@ -229,17 +220,14 @@ class TableBuilder {
     last().nonzero = true;
     return *this;
   }
-  TableBuilder& excludes(std::string key) {
-    last().excludes = std::move(key);
+  TableBuilder& excludes(std::string_view key) {
+    last().excludes = key;
     return *this;
   }
-  /// What more is to be done where the key is given.
-  TableBuilder& when_given(std::function<void(S&)> then) {
-    Rule& rule = last();
-    rule.set = [then, set = rule.set](void* s, const Value& value) {
-      set(s, value);
-      then(*static_cast<S*>(s));
-    };
+  /// What more is to be done (S&) where the key is given.
+  template <class Then>
+  TableBuilder& when_given(Then then) {
+    do_when_given([then](void* s) { then(*static_cast<S*>(s)); });
     return *this;
   }
   TableBuilder& not_simulated() {
@@ -250,13 +238,10 @@ class TableBuilder {
     table_.selector = last().key;
     return *this;
   }
-  TableBuilder& written_if(std::function<bool(S&)> when) {
-    Rule& rule = last();
-    if (rule.count) {
-      rule.count = [when, count = rule.count](void* s) { return when(*static_cast<S*>(s)) ? count(s) : 0; };
-    } else {
-      rule.get = [when, get = rule.get](void* s) { return when(*static_cast<S*>(s)) ? get(s) : Value{}; };
-    }
+  /// Whether (S&) the row is written.
+  template <class When>
+  TableBuilder& written_if(When when) {
+    write_if([when](void* s) { return when(*static_cast<S*>(s)); });
     return *this;
   }
 
@@ -266,31 +251,19 @@ class TableBuilder {
     return *this;
   }
   /// Adds rows that other tables have too.
-  TableBuilder& with(const std::function<void(TableBuilder&)>& rows) {
+  template <class Rows>
+  TableBuilder& with(const Rows& rows) {
     rows(*this);
     return *this;
   }
-  Table build() { return std::move(table_); }
 
  private:
-  Rule& last() { return table_.rules.back(); }
-  Rule& add(std::string key, Type type, std::string documentation) {
-    Rule rule;
-    rule.key = std::move(key);
-    rule.type = type;
-    rule.documentation = std::move(documentation);
-    table_.rules.push_back(std::move(rule));
-    return last();
-  }
   template <class Member>
-  Rule& bind(std::string key, Type type, Member member, std::string documentation) {
-    Rule& rule = add(std::move(key), type, std::move(documentation));
-    rule.get = [member](void* s) { return to_value(std::invoke(member, *static_cast<S*>(s))); };
-    rule.set = [member](void* s, const Value& value) { assign(std::invoke(member, *static_cast<S*>(s)), value); };
-    return rule;
+  TableBuilder& bind_member(Member member) {
+    bind([member](void* s) { return to_value(std::invoke(member, *static_cast<S*>(s))); },
+         [member](void* s, const Value& value) { assign(std::invoke(member, *static_cast<S*>(s)), value); });
+    return *this;
   }
-
-  Table table_;
 };
 
 }  // namespace weft::scene

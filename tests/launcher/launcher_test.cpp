@@ -151,6 +151,23 @@ TEST_F(Launcher, OthersAreToldThePackagesAndTheCommand) {
             "  sudo apt-get update && sudo apt-get install --no-install-recommends g++ libx-dev\n");
 }
 
+TEST_F(Launcher, SaysHowFarTheBuildIsEvery15SecondsWhereNoTerminalShowsIt) {
+  write_script(folder_ / "fakes/ninja",
+               "for at in '1/96 2.9' '24/96 30.2' '25/96 44.9' '36/96 45.0' '96/96 150.0'; do\n"
+               "  echo \"[${at% *}] ${at#* } s: Building src/a.o\"\n"
+               "done\n"
+               "echo \"$NINJA_STATUS\" >\"$FAKES/status\"; cp \"$FAKES/program\" \"$2/bin/weft\"\n");
+  const Outcome outcome = launch();
+  EXPECT_EQ(outcome.status, 7);
+  EXPECT_EQ(read_bytes(folder_ / "fakes/status"), "[%f/%t] %e s: \n");
+  // 30 s of 24 files: 90 s for 72 more. 45 s of 36: 75 s for 60 more.
+  EXPECT_EQ(outcome.err,
+            "weft: building\n"
+            "weft: 24 of 96 files, about 2 min left\n"
+            "weft: 36 of 96 files, about 2 min left\n"
+            "weft: 96 of 96 files, about 0 min left\n");
+}
+
 TEST_F(Launcher, FailedBuildShowsWhatTheCompilerSaidAndIsTriedAgain) {
   write(folder_ / "fakes/broken", "");
   const Outcome outcome = launch();

@@ -15,8 +15,9 @@ const char* text(const Gl& gl, GLenum name) {
   return found ? found : "unknown";
 }
 
-/// llvmpipe reads these once, when the first context of the process is made.
+/// Mesa reads these once, when the first context of the process is made.
 void set_rasteriser_environment(int threads) {
+  setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);  // EGL would choose a graphics card: other pictures, and no such threads
   // 512-bit vectors together with 4x multisampling crash llvmpipe of Mesa 22.3; its own choice is right everywhere.
   const char* width = std::getenv("LP_NATIVE_VECTOR_WIDTH");
   if (width && std::string_view(width) == "512") unsetenv("LP_NATIVE_VECTOR_WIDTH");
@@ -71,7 +72,7 @@ std::unique_ptr<Context> make_context(Backend backend, int threads) {
   } catch (const Error& error) {
     throw Error(
         ExitCode::internal,
-        "no OpenGL without a window on this machine: install libosmesa6, or libegl1 and libegl-mesa0\n  {}\n  {}",
+        "no OpenGL without a window on this machine: install libosmesa6, or libegl1 and libgl1-mesa-dri\n  {}\n  {}",
         osmesa_said, error.what());
   }
 }

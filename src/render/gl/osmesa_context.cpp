@@ -1,4 +1,4 @@
-// Off-screen Mesa: draws into memory, needs neither display nor device.
+// Off-screen Mesa: draws into memory, needs neither display nor device. Mesa 25.1 and later ship none.
 #include <array>
 #include <cstdint>
 
@@ -6,29 +6,31 @@
 #include "render/gl/context.hpp"
 #include "render/gl/shared_library.hpp"
 
-// After glad, whose guard keeps the GL 1.x declarations out that this header would bring.
-#include <GL/osmesa.h>
-
 namespace weft::render {
 namespace {
 
 constexpr const char* kOsMesa = "libOSMesa.so.8";
 
+// The names of OSMesa 8 used here, so that building needs no OSMesa headers. Values: GL/osmesa.h.
+using OsmesaHandle = void*;
+constexpr int kOsmesaFormat = 0x22, kOsmesaDepthBits = 0x30, kOsmesaProfile = 0x33, kOsmesaCoreProfile = 0x34;
+constexpr int kOsmesaMajorVersion = 0x36, kOsmesaMinorVersion = 0x37;
+
 class OsmesaContext : public Context {
  public:
   OsmesaContext() {
-    const int attributes[] = {OSMESA_FORMAT,
-                              OSMESA_RGBA,
-                              OSMESA_DEPTH_BITS,
-                              0,
-                              OSMESA_PROFILE,
-                              OSMESA_CORE_PROFILE,
-                              OSMESA_CONTEXT_MAJOR_VERSION,
-                              4,
-                              OSMESA_CONTEXT_MINOR_VERSION,
-                              5,
-                              0};
-    context_ = create_(attributes, nullptr);
+    const std::array<int, 11> attributes{kOsmesaFormat,
+                                         GL_RGBA,
+                                         kOsmesaDepthBits,
+                                         0,
+                                         kOsmesaProfile,
+                                         kOsmesaCoreProfile,
+                                         kOsmesaMajorVersion,
+                                         4,
+                                         kOsmesaMinorVersion,
+                                         5,
+                                         0};
+    context_ = create_(attributes.data(), nullptr);
     if (!context_) throw Error(ExitCode::internal, "{}: makes no OpenGL 4.5 core context", kOsMesa);
     make_current();
     load_functions(get_proc_, std::string("OSMesa (") + kOsMesa + ")");
@@ -52,12 +54,14 @@ class OsmesaContext : public Context {
   std::array<std::uint8_t, kSide * kSide * 4> pixels_{};
 
   SharedLibrary library_{kOsMesa};
-  decltype(&OSMesaCreateContextAttribs) create_ =
-      library_.function<decltype(&OSMesaCreateContextAttribs)>("OSMesaCreateContextAttribs");
-  decltype(&OSMesaDestroyContext) destroy_ = library_.function<decltype(&OSMesaDestroyContext)>("OSMesaDestroyContext");
-  decltype(&OSMesaMakeCurrent) make_current_ = library_.function<decltype(&OSMesaMakeCurrent)>("OSMesaMakeCurrent");
+  using CreateContext = OsmesaHandle (*)(const int*, OsmesaHandle);
+  using DestroyContext = void (*)(OsmesaHandle);
+  using MakeCurrent = GLboolean (*)(OsmesaHandle, void*, GLenum, GLsizei, GLsizei);
+  CreateContext create_ = library_.function<CreateContext>("OSMesaCreateContextAttribs");
+  DestroyContext destroy_ = library_.function<DestroyContext>("OSMesaDestroyContext");
+  MakeCurrent make_current_ = library_.function<MakeCurrent>("OSMesaMakeCurrent");
   Loader get_proc_ = library_.function<Loader>("OSMesaGetProcAddress");
-  OSMesaContext context_ = nullptr;
+  OsmesaHandle context_ = nullptr;
 };
 
 }  // namespace
