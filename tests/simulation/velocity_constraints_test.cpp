@@ -158,8 +158,8 @@ TEST(VelocityConstraintsInScenes, ClothOnATrayThatStartsLagsAsABlockDoes) {
     double way = 0;
     for (const Vec3& x : frames.back().cloths[0]) way += x.x() / static_cast<double>(frames.back().cloths[0].size());
     const double expected = 0.5 * std::min(acceleration, kMu * kGravity) * 0.8 * 0.8;
-    // Implicit Euler is ahead by half a step's speed, 1.25 % after 80 steps.
-    EXPECT_NEAR(way, expected, 0.015 * expected) << acceleration << " m/s²";
+    // Euler's own way is longer by half of the last step's, and of the tray's first, 1.25 and 2.5 %.
+    EXPECT_NEAR(way, expected, 0.04 * expected) << acceleration << " m/s²";
   }
 }
 

@@ -249,11 +249,10 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
     if (slips) {
       memory.state = State::sliding;
       particle.friction_load = memory.load;
+      particle.overloaded = left.norm() - limit > negligible;
     }
     hold(particle, held_at, next);
-    // A step of little too much friction does no harm. Of more it does: where half of a patch slid and half stuck, and
-    // both changed places in each step, the sticking half held all of it, at any angle.
-    return passes || left.norm() - limit > negligible;
+    return passes;  // a step of too much friction does no harm
   }
 
   const bool other_walls = !next.same_walls(particle.held);
@@ -268,12 +267,17 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
 }
 
 void VelocityConstraints::accept() {
+  // Nothing sticks anew while something is let go that was overloaded: it may have held what slides slowly. Where half
+  // of a patch slid and half stuck, and both changed places in each step, the sticking half held all of it, at any
+  // angle.
+  const bool any_overloaded =
+      std::ranges::any_of(touched_, [](const Touched& particle) { return particle.overloaded; });
   for (Index particle : remembered_) memory_[particle] = {};
   remembered_.clear();
   for (const Touched& particle : touched_) {
     if (particle.memory.state == State::away) continue;
     Memory& memory = memory_[particle.particle] = particle.memory;
-    if (particle.slow) memory.state = State::sticking;
+    if (particle.slow && !any_overloaded) memory.state = State::sticking;
     remembered_.push_back(particle.particle);
   }
 }

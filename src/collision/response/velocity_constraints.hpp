@@ -126,6 +126,7 @@ class VelocityConstraints {
     Vec3 drag = Vec3::Zero();    // friction against its limit at unchanged velocity, where the step begins its search
     int flips = 0;               // changes of what holds it, in this step
     bool slow = false;           // slides so slowly that it might stick
+    bool overloaded = false;     // stuck in this step by far more than friction allows
   };
 
   Vec3 project(const Touched& particle, const Vec3& u, bool of_force, Held& held) const;
