@@ -11,6 +11,7 @@
 #include "cli/failure.hpp"
 #include "cli/options.hpp"
 #include "cli/standard_output.hpp"
+#include "core/input_file.hpp"
 #include "core/log.hpp"
 #include "garment/pattern.hpp"
 #include "scene/loader.hpp"
@@ -44,7 +45,9 @@ struct Dispatch {
   ExitCode operator()(const DiffOptions& options) const { return diff(options); }
   ExitCode operator()(const AcceptOptions& options) const { return accept(options); }
   ExitCode operator()(const ReviewOptions& options) const { return review(options); }
-  ExitCode operator()(const ExportOptions& options) const { return export_frames(options); }
+  ExitCode operator()(const ExportOptions& options) const {
+    return read_checked(options.cache, [&] { return export_frames(options); });
+  }
   ExitCode operator()(const PrintText& text) const { return print_all(text.text); }
 };
 

@@ -255,7 +255,11 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
     report_.output_bytes = error ? 0 : bytes;
   }
   if (result.failure) {
-    const Failure failure = describe_failure(result.failure);
+    Failure failure = describe_failure(result.failure);
+    // What is only read and drawn fails by what was read.
+    if (report_.replayed && failure.code == ExitCode::internal)
+      failure = {ExitCode::asset_unreadable,
+                 fmt::format("{}: broken: {}", options_.common.scene.string(), failure.text)};
     report_.exit_code = failure.code;
     report_.message =
         failure.code == ExitCode::simulation_failed ? "the simulation failed: " + failure.text : failure.text;
