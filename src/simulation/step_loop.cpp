@@ -37,8 +37,8 @@ constexpr double kUnfeltStrain = 0.05;
 // layers turn, of five to 5 and 4.5 times in two, and with this to at most 1.11 in all, for a sixth of the CPU. Wrung,
 // pulled and draped cloth never comes near (1.4 limits in a towel, slowly).
 constexpr double kTearingShare = 2;
-// Likewise in strain, for cloth without a limit: that doubles in length in a step only where the solve diverges.
-constexpr double kTearingStrain = 1;
+// What a step that is not solved may add to the largest strain; beyond, its solve diverges.
+constexpr double kDivergedStrain = 0.5;
 constexpr int kHalvingsBeforeTear = 6;
 // Of its limit to stretch, beyond which the run tells of it.
 constexpr double kOverstretch = 1.1;
@@ -267,7 +267,7 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last
   for (int tries = 1;; ++tries) {
     pins_.begin_step(t, h, progress_.now.x);
     Rejection rejection = attempt_with(t, h, retries, last_try, tries == kMostTries, report);
-    if (!rejection && collisions_) rejection = torn(h, retries, last_try);
+    if (!rejection && collisions_ && !last_try && retries < kHalvingsBeforeTear) rejection = torn(h, true);
     if (!collisions_ || collisions_->gave_way().empty() || tries == kMostTries) return rejection;
     if (!is_short_enough(retries, last_try) && !pins_.any_lags()) return rejection;
     for (const collision::GivenWay& given : collisions_->gave_way())
@@ -275,16 +275,19 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last
   }
 }
 
-// Asks for a shorter step than the one to `next_` where that tears threads.
-StepLoop::Rejection StepLoop::torn(double h, int retries, bool last_try) {
-  if (last_try || retries >= kHalvingsBeforeTear) return std::nullopt;
+// Asks for a shorter step than the one to `next_` where that tears threads; one that is not solved, where it diverges.
+StepLoop::Rejection StepLoop::torn(double h, bool solved) {
   const auto start = progress_.now.particles(), end = next_.particles();
-  const double share = cloth_.overstretch(end).share, strain = cloth_.max_strain(end);
-  const bool tears = share > 1 + kTearingShare && share > cloth_.overstretch(start).share + kTearingShare;
-  if (!tears && (strain <= kTearingStrain || strain <= cloth_.max_strain(start) + kTearingStrain)) return std::nullopt;
+  if (!solved) {
+    const double strain = cloth_.max_strain(end);
+    if (strain <= kDivergedStrain || strain <= cloth_.max_strain(start) + kDivergedStrain) return std::nullopt;
+    progress_.longest = 0.5 * h;
+    return fmt::format("the solve diverges, to a strain of {:.2g}", strain);
+  }
+  const double share = cloth_.overstretch(end).share;
+  if (share <= 1 + kTearingShare || share <= cloth_.overstretch(start).share + kTearingShare) return std::nullopt;
   progress_.longest = 0.5 * h;
-  return tears ? fmt::format("threads are stretched to {:.2g} times their max_stretch at once", share)
-               : fmt::format("threads are strained by {:.2g} at once", strain);
+  return fmt::format("threads are stretched to {:.2g} times their max_stretch at once", share);
 }
 
 // The air at the stage of a step, and where unchanged velocities would take particles until then.
@@ -344,8 +347,8 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
     const bool solved = step.verdict == integrator::Verdict::solved;
     // A solve that diverges scatters particles. All pairs of triangles may then meet, and to find and push them apart
     // takes a hundred times what the step takes in halves.
-    if (!solved)
-      if (Rejection rejection = torn(h, retries, last_try)) return rejection;
+    if (!solved && !last_try && retries < kHalvingsBeforeTear)
+      if (Rejection rejection = torn(h, false)) return rejection;
     look = true;
     const bool may_adopt = bends == 0 && adoptions + 1 < response.most_solves();
     if (solved && response.revise(now.x, next_.x, force_on) > 0 && may_adopt) {

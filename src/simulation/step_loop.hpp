@@ -102,7 +102,7 @@ class StepLoop {
   bool is_short_enough(int retries, bool last_try) const;
   void blow(double t, double h);
   Rejection correct(double h, int retries, bool last_try, bool may_give_way);
-  Rejection torn(double h, int retries, bool last_try);
+  Rejection torn(double h, bool solved);
   double energy(const Moment& moment) const;
   double added_share(double before, double h) const;
   integrator::Method method() const;
