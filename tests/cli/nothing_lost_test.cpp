@@ -3,9 +3,13 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cstdlib>
+#include <cstring>
+#include <functional>
 
 #include "cache/container.hpp"
 #include "cli/cached_run.hpp"
@@ -199,41 +203,41 @@ TEST_F(AnyInput, ThatIsNoPathIsNoFaultOfOurs) {
   const std::string longest(5000, 'x');
   for (const std::string& path : {std::string(), longest, longest + ".toml", longest + ".png", longest + "/x.mp4"}) {
     for (const Arguments& arguments : {Arguments{"check", path},
-                                       {"run", path},
-                                       {"run", "s.toml", "-o", path},
-                                       {"simulate", "s.toml", "--cache", path},
-                                       {"run", "s.toml", "-o", "a.mp4", "--stats", path},
-                                       {"run", "s.toml", "-o", "a.mp4", "--meshes", path},
-                                       {"run", "s.toml", "-o", "a.mp4", "--log-json", path},
-                                       {"render", path},
-                                       {"render", "c", "-o", path},
-                                       {"thumbnail", path},
-                                       {"thumbnail", "s.toml", "-o", path},
-                                       {"sheet", path},
-                                       {"sheet", "s.toml", "-o", path},
-                                       {"join", path, "-o", "x.mp4"},
-                                       {"join", "a.png", "-o", path},
-                                       {"sweep", path, "--set", "time.fps=1,2"},
-                                       {"sweep", "s.toml", "--list", path},
-                                       {"sweep", "s.toml", "--set", "time.fps=1,2", "-o", path},
-                                       {"farm", "status", path},
-                                       {"farm", "submit", "s.toml", "-o", path, "--dry-run"},
-                                       {"new", path},
-                                       {"watch", path, "--times", "0"},
-                                       {"diff", path, "a.png"},
-                                       {"diff", "a.png", path},
-                                       {"diff", "a.png", "a.png", "--limits", path},
-                                       {"diff", "a.png", "a.png", "--heatmap", path},
-                                       {"diff", "a.png", "a.png", "--html", path},
-                                       {"accept", path, "a.png", "--reason", "why"},
-                                       {"accept", "a.png", path, "--reason", "why"},
-                                       {"review", path},
-                                       {"review", "c", "-o", path},
-                                       {"review", "c", "--reference", path},
-                                       {"export", path, "-o", "x"},
-                                       {"export", "c", "-o", path},
-                                       {"bench", "accuracy", path},
-                                       {"bench", "accuracy", "s.toml", "-o", path}})
+                                       Arguments{"run", path},
+                                       Arguments{"run", "s.toml", "-o", path},
+                                       Arguments{"simulate", "s.toml", "--cache", path},
+                                       Arguments{"run", "s.toml", "-o", "a.mp4", "--stats", path},
+                                       Arguments{"run", "s.toml", "-o", "a.mp4", "--meshes", path},
+                                       Arguments{"run", "s.toml", "-o", "a.mp4", "--log-json", path},
+                                       Arguments{"render", path},
+                                       Arguments{"render", "c", "-o", path},
+                                       Arguments{"thumbnail", path},
+                                       Arguments{"thumbnail", "s.toml", "-o", path},
+                                       Arguments{"sheet", path},
+                                       Arguments{"sheet", "s.toml", "-o", path},
+                                       Arguments{"join", path, "-o", "x.mp4"},
+                                       Arguments{"join", "a.png", "-o", path},
+                                       Arguments{"sweep", path, "--set", "time.fps=1,2"},
+                                       Arguments{"sweep", "s.toml", "--list", path},
+                                       Arguments{"sweep", "s.toml", "--set", "time.fps=1,2", "-o", path},
+                                       Arguments{"farm", "status", path},
+                                       Arguments{"farm", "submit", "s.toml", "-o", path, "--dry-run"},
+                                       Arguments{"new", path},
+                                       Arguments{"watch", path, "--times", "0"},
+                                       Arguments{"diff", path, "a.png"},
+                                       Arguments{"diff", "a.png", path},
+                                       Arguments{"diff", "a.png", "a.png", "--limits", path},
+                                       Arguments{"diff", "a.png", "a.png", "--heatmap", path},
+                                       Arguments{"diff", "a.png", "a.png", "--html", path},
+                                       Arguments{"accept", path, "a.png", "--reason", "why"},
+                                       Arguments{"accept", "a.png", path, "--reason", "why"},
+                                       Arguments{"review", path},
+                                       Arguments{"review", "c", "-o", path},
+                                       Arguments{"review", "c", "--reference", path},
+                                       Arguments{"export", path, "-o", "x"},
+                                       Arguments{"export", "c", "-o", path},
+                                       Arguments{"bench", "accuracy", path},
+                                       Arguments{"bench", "accuracy", "s.toml", "-o", path}})
       expect_refused(arguments);
   }
 }
@@ -241,19 +245,12 @@ TEST_F(AnyInput, ThatIsNoPathIsNoFaultOfOurs) {
 TEST_F(AnyInput, InAFolderThatIsGoneIsNoFaultOfOurs) {
   const fs::path gone = folder_ / "gone";
   const std::string scene = (folder_ / "s.toml").string(), cache = (folder_ / "c").string();
-  for (const Arguments& arguments : {Arguments{"check", "s.toml"},
-                                     {"run", "s.toml"},
-                                     {"run", scene, "-o", "a.mp4"},
-                                     {"simulate", scene, "--cache", "c"},
-                                     {"render", cache},
-                                     {"thumbnail", scene},
-                                     {"sheet", scene},
-                                     {"sweep", scene, "--set", "time.fps=1,2"},
-                                     {"new", "x"},
-                                     {"diff", "a.png", "b.png"},
-                                     {"review", "."},
-                                     {"export", cache, "-o", "x"},
-                                     {"doctor"}}) {
+  for (const Arguments& arguments :
+       {Arguments{"check", "s.toml"}, Arguments{"run", "s.toml"}, Arguments{"run", scene, "-o", "a.mp4"},
+        Arguments{"simulate", scene, "--cache", "c"}, Arguments{"render", cache}, Arguments{"thumbnail", scene},
+        Arguments{"sheet", scene}, Arguments{"sweep", scene, "--set", "time.fps=1,2"}, Arguments{"new", "x"},
+        Arguments{"diff", "a.png", "b.png"}, Arguments{"review", "."}, Arguments{"export", cache, "-o", "x"},
+        Arguments{"doctor"}}) {
     fs::create_directories(gone);
     std::string command = std::string("rmdir ../gone && exec ") + WEFT_PROGRAM;
     for (const std::string& word : arguments) command += " " + word;
