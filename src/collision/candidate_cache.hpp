@@ -62,6 +62,9 @@ class CandidateCache {
   /// Whether features that are within the reach at x, an end of the way, are listed.
   bool lists_near(std::span<const Vec3> x) const;
 
+  /// Whether x is where all vertices of this one's body are out of the way of all cloth.
+  bool is_kept_clear(std::size_t vertex, const Vec3& x) const;
+
   /// For who collects by other means: pairs hold for ways within `margin` [m] of the one from x_t0 to x_t1.
   void cover(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double margin) {
     find_clear_bodies(Motion(x_t0, x_t1));
@@ -92,7 +95,6 @@ class CandidateCache {
   void cover(const Motion& motion, double margin);
   void refit(const Motion& motion, double margin);
   void find_clear_bodies(const Motion& motion);
-  bool is_kept_clear(std::size_t vertex, const Vec3& x) const;
   bool is_at_end(std::size_t vertex, const Vec3& x, double margin) const;
 
   const Bodies& bodies_;

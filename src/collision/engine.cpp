@@ -87,7 +87,7 @@ void Engine::gather(std::span<const Vec3> x) {
   const double skin = kGatherSkin * candidates_.reach();
   const auto is_near = [&] {
     for (std::size_t v = 0; v < x.size(); ++v)
-      if (!((x[v] - gathered_at_[v]).squaredNorm() <= skin * skin)) return false;
+      if (!((x[v] - gathered_at_[v]).squaredNorm() <= skin * skin) && !candidates_.is_kept_clear(v, x[v])) return false;
     return true;
   };
   if (!gathered_at_.empty() && is_near()) return;

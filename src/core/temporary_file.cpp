@@ -228,8 +228,13 @@ void write_file(const fs::path& file, std::string_view content, Flush flush) {
   good = good && std::fflush(out.get()) == 0;
   if (!good) fail(file, "cannot be written", reason(errno));
   // Machines that draw parts of one film write the same scene beside it.
-  if (!may_replace(file) && holds(file, content)) return;
-  temporary.commit(flush);
+  const auto is_there = [&] { return !may_replace(file) && holds(file, content); };
+  if (is_there()) return;
+  try {
+    temporary.commit(flush);
+  } catch (const Error&) {
+    if (!is_there()) throw;  // else another machine was first
+  }
 }
 
 void check_writable(const fs::path& file) {

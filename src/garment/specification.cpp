@@ -51,7 +51,7 @@ class Reader {
       findings_.report("", {line, 1, {}}, "expected JSON, got what is none near here");
       return false;
     } catch (const std::exception& error) {  // of numbers that no double holds, and of depth
-      findings_.report("", {}, fmt::format("expected JSON, got what is none: {}", error.what()));
+      findings_.report("", {1, 1, {}}, fmt::format("expected JSON, got what is none: {}", error.what()));
       return false;
     }
     const json* panels = member(member(&root, "pattern", ""), "panels", "pattern");

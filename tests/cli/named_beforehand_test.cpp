@@ -61,7 +61,7 @@ TEST_F(EnclosedCloth, IsNamedByCheckAndByTheRun) {
     return contains(check.out, words);
   };
   EXPECT_TRUE(said("shape = 'sphere'\nradius = 0.5"));
-  EXPECT_TRUE(said("shape = 'box'\nsize = 1"));
+  EXPECT_TRUE(said("shape = 'box'\nsize = [1, 1, 1]"));
   EXPECT_FALSE(said("shape = 'sphere'\nradius = 0.5\nposition = [0, 0, -0.6]"));
   EXPECT_FALSE(said("shape = 'sphere'\nradius = 0.5\ncollide = false"));
   EXPECT_FALSE(said("shape = 'plane'\nposition = [0, 0, -0.1]"));

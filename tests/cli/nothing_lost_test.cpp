@@ -131,7 +131,8 @@ class AnyInput : public NothingLost {
     EXPECT_TRUE(outcome.exit_code > 1 && outcome.exit_code < 128)
         << fmt::format("{}", fmt::join(arguments, " ")).substr(0, 200) << ": exit code " << outcome.exit_code << "\n"
         << outcome.err.substr(0, 2000);
-    EXPECT_TRUE(about.empty() || contains(outcome.err, about)) << about << ": " << outcome.err.substr(0, 2000);
+    EXPECT_TRUE(about.empty() || contains(outcome.err + outcome.out, about))
+        << about << ": " << outcome.err.substr(0, 2000);
   }
 };
 

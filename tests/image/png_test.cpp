@@ -175,7 +175,7 @@ TEST_F(PngTest, PromisedLengthOfAChunkIsRefusedBeforeMemoryIsTaken) {
 TEST_F(PngTest, ReadingSaysWhatTheSystemSaid) {
   expect_error(ExitCode::asset_unreadable, "none.png: cannot be read as PNG: No such file",
                [&] { read_png(folder_ / "none.png"); });
-  expect_error(ExitCode::asset_unreadable, "Is a directory", [&] { read_png(folder_); });
+  expect_error(ExitCode::asset_unreadable, "expected a file, got a folder", [&] { read_png(folder_); });
   write_bytes(folder_ / "text.png", "This is not a picture at all.");
   expect_error(ExitCode::asset_unreadable, "Not a PNG file", [&] { read_png(folder_ / "text.png"); });
 }
