@@ -278,7 +278,7 @@ TEST(Proximities, OpenTrianglesAreFartherFromTheirNeighbours) {
         for (std::size_t t = 0; t < open.size(); ++t)
           for (const auto& [one, other] : {std::pair(key.first, key.second), std::pair(key.second, key.first)})
             if (open[t] && has_all(mesh.triangles[t], one) &&
-                std::ranges::any_of(mesh.triangles, [&](const Triangle& s) {
+                std::ranges::any_of(mesh.triangles, [&, &other = other](const Triangle& s) {
                   return has_all(s, other) && has_one(s, mesh.triangles[t]);
                 }))
               return true;
