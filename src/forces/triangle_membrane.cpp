@@ -136,7 +136,7 @@ void TriangleMembrane::add(const Evaluation& at) const {
     if (viscous) {
       const auto by_velocity = [&]() -> VecLanes {
         const GradientLanes rate = gradient(t, at.v);
-        return {dot(s.u, rate.u) / length_u, dot(s.v, rate.v) / length_v, dot(rate.u, s.v) + dot(s.u, rate.v)};
+        return {dot(s.u, rate.u) / strains.x, dot(s.v, rate.v) / strains.y, dot(rate.u, s.v) + dot(s.u, rate.v)};
       };
       const VecLanes rate = at.rate_of(
           strains, [&](std::span<const Vec3> x) { return strains_of(gradient(t, x)); }, by_velocity);

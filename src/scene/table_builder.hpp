@@ -56,13 +56,13 @@ struct Words {
 /// Rows of a table, whichever struct they fill.
 class RowBuilder {
  public:
+  RowBuilder(const RowBuilder&) = delete;
   Table build() { return std::move(table_); }
 
  protected:
   using Flag = std::function<bool(void*)>;
 
   explicit RowBuilder(std::string_view documentation);
-  RowBuilder(const RowBuilder&) = delete;
   ~RowBuilder();
 
   Rule& last() { return table_.rules.back(); }
