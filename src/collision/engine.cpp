@@ -130,10 +130,9 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   response_.prepare(x_t0, x_t1);
 }
 
-// Finds near pairs at the expected end of the step; but of pairs that fail to be separated on the way there at its
-// start, which alone tells on which side they are. Directions of the start point backwards where cloth slides on a
-// curved surface: a patch in a half pipe without friction kept 38 to 59 % of its energy at steps of 10 ms, and keeps
-// what implicit Euler leaves it so (91 to 93 %; 97 to 98 with BDF2).
+// Finds near pairs at the expected end of the step. Directions of its start point against the motion if cloth slides on
+// a curved surface, and take energy. A pair that no plane separates on the way there is found at the start, which alone
+// tells on which side its features are.
 void Engine::look_ahead(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
   std::vector<FeatureKey> failing;
   for (const auto& [a, b] : failing_)
