@@ -48,11 +48,21 @@ double median_after_contact_ms(const std::vector<MeasuredFrame>& frames) {
 // Sums and worst values; heights of the last frame.
 void print_summary(const std::vector<MeasuredFrame>& frames) {
   double simulate = 0, collide = 0, stretch = 0;
+  double forces = 0, preconditioner = 0, linear = 0, of_steps = 0, of_solver = 0;
+  int taken = 0, newton = 0, linear_iterations = 0;
   std::size_t pairs = 0, worst = 0;
   int rejected = 0, with_pairs = 0, pinched = 0, lagging = 0;
   for (const MeasuredFrame& frame : frames) {
     simulate += frame.report.simulate.cpu_s;
     collide += frame.report.collide.cpu_s;
+    forces += frame.report.forces.cpu_s;
+    preconditioner += frame.report.preconditioner.cpu_s;
+    linear += frame.report.linear.cpu_s;
+    of_steps += frame.report.error_estimate;
+    of_solver += frame.report.solver_error;
+    taken += frame.report.steps;
+    newton += frame.report.newton_iterations;
+    linear_iterations += frame.report.linear_iterations;
     stretch = std::max(stretch, frame.max_stretch);
     pairs += frame.pairs;
     with_pairs += frame.pairs > 0;
@@ -68,6 +78,11 @@ void print_summary(const std::vector<MeasuredFrame>& frames) {
       "%d frames\n",
       frames.size(), 1e3 * simulate / steps, median_after_contact_ms(frames), 1e3 * collide / steps, rejected, stretch,
       pairs, with_pairs, worst, pinched, lagging);
+  std::printf(
+      "%d steps: %.2f Newton, %.1f linear iterations each; CPU ms a frame: forces %.1f, preconditioner %.1f, linear %.1f; "
+      "solver error over that of the steps %.2f\n",
+      taken, static_cast<double>(newton) / taken, static_cast<double>(linear_iterations) / taken,
+      1e3 * forces / steps, 1e3 * preconditioner / steps, 1e3 * linear / steps, of_solver / of_steps);
   for (const auto& x : frames.back().cloths) {
     double mean = 0, lowest = x.front().z(), highest = lowest;
     for (const weft::Vec3& p : x) {
