@@ -102,7 +102,7 @@ void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotio
 }
 
 bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
-                                 ContactResponse& response, bool again) {
+                                 ContactResponse& response) {
   const double distance = std::sqrt(features.points.distance_sq);
   const FeaturePair closest{features.vertices, features.points.weights, features.points.difference / distance, distance,
                             features.kind};
@@ -113,7 +113,7 @@ bool ContactBuilder::add_failing(const CornerPair& pair, const ClosestFeatures& 
     add_walls(pair, closest, motion, response);
     return is_new;
   }
-  const double range = motion.is_straight() && !again ? distance : kNoLimit;
+  const double range = motion.is_straight() ? distance : kNoLimit;
   if (is_new)
     if (const auto contact = build(closest, 1, range, motion)) response.add(*contact, motion.x_t0);
   if (!motion.is_straight()) add_corners(pair, closest, motion, response);

@@ -68,12 +68,11 @@ class ContactBuilder {
 
   /// Adds contacts of the closest features of two triangles that would meet; false if these push with all their
   /// stiffness already. On the first piece of a way what is closer than the range without being pushed is only kept
-  /// from coming closer, but pushed away where a step before met it too (`again`). On those that follow it is pushed
-  /// away, and every corner is kept on its own side of the plane between the triangles: what slides past the features
-  /// that were closest meets there.
-  /// `features`: the closest ones at x_from.
+  /// from coming closer. On those that follow it is pushed away, and every corner is kept on its own side of the plane
+  /// between the triangles: what slides past the features that were closest meets there. `features`: the closest ones
+  /// at x_from.
   bool add_failing(const CornerPair& pair, const ClosestFeatures& features, const StepMotion& motion,
-                   ContactResponse& response, bool again = false);
+                   ContactResponse& response);
 
   /// Of two skins.
   const Friction& friction_of(std::size_t a, std::size_t b) const { return friction_[a * bodies_.skins().size() + b]; }

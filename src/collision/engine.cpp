@@ -101,19 +101,20 @@ void Engine::gather(std::span<const Vec3> x) {
   gathered_at_.assign(x.begin(), x.end());
 }
 
-void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h,
-                        std::span<const RigidMotion> motions) {
+bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable,
+                        double h, std::span<const RigidMotion> motions) {
   step_ = h;
   x_t0_ = x_t0;
-  pushed_.clear();
   pinched_pushes_.clear();
-  std::ranges::fill(failures_, 0);
   carried_.begin_step(x_t0, x_t1, motions);
   begin_contacts(x_t0, x_t1);
   if (!pinched_.empty()) {
     pinched_.renew(bodies_.triangles(), candidates_.hierarchies(), x_t0);
     pinched_pushes_ = pinched_.find_pushes(candidates_.hierarchies(), x_t0, candidates_.reach());
   }
+  const bool is_moved = separate_guess(x_t0, x_t1, movable);
+  pushed_.clear();
+  std::ranges::fill(failures_, 0);
   // What might meet on the expected trajectory. Only planes of constant direction count here: what they cannot separate
   // comes near.
   const StepMotion motion{x_t0, x_t0, x_t1, h};
@@ -123,11 +124,21 @@ void Engine::begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
   else
     find_near(x_t0, proximities_);
   add_contacts(proximities_, motion);
-  add_late_contacts(motion);
   add_failing(failing_, motion);
   if (response_.lean(x_t1, 0.5 * candidates_.reach(), leaning_) && find_failing(x_t0, leaning_, Certificates::constant))
     add_failing(failing_, {x_t0, x_t0, leaning_, h});
   response_.prepare(x_t0, x_t1);
+  return is_moved;
+}
+
+// Contacts of a guess in which surfaces intersect have directions that say nothing, and layers that are pushed one by
+// the other are found one in each iteration.
+bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
+  if (movable.empty() || response_.form() != ResponseForm::springs || apart(x_t0, x_t1)) return false;
+  const std::vector<Vec3> expected(x_t1.begin(), x_t1.end());
+  const bool is_apart = push_apart(x_t0, x_t1, movable, false, false).separated;
+  if (!is_apart) std::ranges::copy(expected, x_t1.begin());
+  return is_apart;
 }
 
 // Finds near pairs at the expected end of the step. Directions of its start point against the motion if cloth slides on
@@ -154,22 +165,15 @@ void Engine::look_ahead(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) 
   std::ranges::copy_if(at_start, std::back_inserter(proximities_), fails);
 }
 
-// What only a solve shows, the next one would show again: sheets that lay on each other were solved twice in each step
-// (multi_sheet at rest, 76 frames: 3,551 iterations for 1,103). Features that are near have their contact without this.
-void Engine::add_late_contacts(const StepMotion& motion) {
-  std::erase_if(late_, [&](const CornerPair& pair) { return pinched_.exempts(pair); });
-  late_ = add_failing(late_, motion, true);
-}
-
-// Adds their contacts; returns for which pairs they are new.
-std::vector<CornerPair> Engine::add_failing(std::span<const CornerPair> pairs, const StepMotion& motion, bool again) {
+// Adds contacts of these pairs; returns how many are new.
+int Engine::add_failing(std::span<const CornerPair> pairs, const StepMotion& motion) {
   std::vector<ClosestFeatures> closest(pairs.size());
   parallel_for(pairs.size(), kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) closest[p] = closest_features(pairs[p], motion.x_from);
   });
-  std::vector<CornerPair> fresh;
+  int fresh = 0;
   for (std::size_t p = 0; p < pairs.size(); ++p)
-    if (builder_.add_failing(pairs[p], closest[p], motion, response_, again)) fresh.push_back(pairs[p]);
+    fresh += builder_.add_failing(pairs[p], closest[p], motion, response_) ? 1 : 0;
   return fresh;
 }
 
@@ -220,18 +224,7 @@ bool Engine::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1
 }
 
 int Engine::adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  const std::vector<CornerPair> fresh = add_failing(failing_, {x_t0, x_t0, x_t1, step_});
-  append(late_, fresh);
-  return static_cast<int>(fresh.size());
-}
-
-void Engine::accept(std::span<const Vec3> x) {
-  response_.accept();
-  const double range = candidates_.reach() / kReachOfRange;
-  std::erase_if(late_, [&](const CornerPair& pair) {
-    const double distance_sq = closest_features(pair, x).points.distance_sq;
-    return distance_sq == 0 || distance_sq >= range * range;  // crossed where pinched
-  });
+  return add_failing(failing_, {x_t0, x_t0, x_t1, step_});
 }
 
 std::span<const CornerPair> Engine::find_meetings(std::span<const Vec3> x) {
@@ -303,14 +296,6 @@ template <class Archive>
 void Engine::serialize(Archive& archive, std::span<const Vec3> x) {
   pinched_.serialize(archive);
   response_.serialize(archive);
-  serialize_each(archive, late_, [&](CornerPair& pair) {
-    for (Triangle* corners : {&pair.a, &pair.b}) {
-      archive.value(*corners);
-      if constexpr (Archive::kReads)
-        require(std::ranges::all_of(*corners, [&](Index v) { return v >= 0 && v < bodies_.vertex_count(); }),
-                "vertices of these bodies");
-    }
-  });
   bool kept = candidates_.covers_start(x);
   archive.value(kept);
   if (kept)

@@ -45,8 +45,9 @@ class Engine {
 
   /// Finds the contacts of a step over h [s] from x_t0, with x_t1 the expected end: obstacles exactly, particles by
   /// guess. `motions`: of each body, as far as it keeps its shape; of none where nothing moves so. Both positions must
-  /// outlive the step.
-  void begin_step(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, double h,
+  /// outlive the step. With springs, a guess at which surfaces have met is pushed apart in x_t1; `movable` says which
+  /// vertices (see Separation; empty: none). Returns whether x_t1 has changed.
+  bool begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable, double h,
                   std::span<const RigidMotion> motions = {});
 
   /// The way of the step bends: it has come to x [m] without meeting anything, with obstacles where they end, and goes
@@ -72,12 +73,11 @@ class Engine {
   /// Whether every pair of triangles stays apart on the way to x_t1.
   bool apart(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// Makes contacts of the pairs for which the last call of apart() said no; returns how many are new. Steps that
-  /// follow begin with these, as long as they push.
+  /// Makes contacts of the pairs for which the last call of apart() said no; returns how many are new.
   int adopt_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
-  /// The step is done and has led to x [m].
-  void accept(std::span<const Vec3> x);
+  /// The step is done.
+  void accept() { response_.accept(); }
 
   /// Corrects the ends x_t1 of movable particles so that no triangles meet during the step. Cloth that obstacles leave
   /// no room is exempted from that: `may_pinch` allows it; without, only where the obstacle pinches this cloth already.
@@ -118,10 +118,10 @@ class Engine {
   void collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs);
   void gather(std::span<const Vec3> x);
   void count_failures();
-  void add_late_contacts(const StepMotion& motion);
+  bool separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable);
   bool find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, Certificates which);
   void look_ahead(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
-  std::vector<CornerPair> add_failing(std::span<const CornerPair> pairs, const StepMotion& motion, bool again = false);
+  int add_failing(std::span<const CornerPair> pairs, const StepMotion& motion);
   void add_contacts(std::span<const Proximity> near, const StepMotion& motion);
   void begin_contacts(std::span<const Vec3> x_from, std::span<const Vec3> x_t1);
   void find_near(std::span<const Vec3> x, std::vector<Proximity>& near);
@@ -147,7 +147,6 @@ class Engine {
   std::span<const Vec3> x_t0_;                      // where the step began
   std::vector<PinchedPairs::Push> pinched_pushes_;  // back out of obstacles, of the step
   std::vector<CornerPair> pushed_;                  // pairs that were pushed apart in it
-  std::vector<CornerPair> late_;                    // pairs in contact that a solve had to show
   std::vector<Proximity> proximities_;              // at the start of the step, or its expected end
   std::vector<Proximity> near_bend_;                // where its way last bent
   std::span<const CornerPair> failing_;             // of the last call of apart()

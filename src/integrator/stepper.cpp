@@ -346,7 +346,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
       allow_velocities(h, done);
     }
     measure(precondition(residual_), masses, foreseen_);
-    const bool first = report.newton_iterations == 0 && start == Start::unchanged_velocity;
+    const bool first = done + report.newton_iterations == 0;
     const solver::LinearReport solved =
         solve_linear(report.newton_iterations, first ? likely_change(masses, now) : std::span<const Vec3>());
     ++report.newton_iterations;

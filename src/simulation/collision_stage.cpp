@@ -177,7 +177,7 @@ std::string CollisionStage::describe(const collision::CornerPair& pair, const Mo
                      bodies.triangle_of(pair.b), at.x(), at.y(), at.z());
 }
 
-void CollisionStage::begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now,
+bool CollisionStage::begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now,
                                 Moment& next) {
   place_bodies(t, now);
   place_bodies(t + h, next);
@@ -192,7 +192,7 @@ void CollisionStage::begin_step(double t, double h, std::span<const integrator::
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     motions_[environment_.cloths.size() + b] = motion_of(bodies_[b], t, h);
-  engine_.begin_step(now.x, next.x, h, motions_);
+  return engine_.begin_step(now.x, next.x, movable_, h, motions_);
 }
 
 bool CollisionStage::turns_too_far(double t, double h, const Moment& now) const {

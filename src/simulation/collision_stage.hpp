@@ -52,8 +52,9 @@ class CollisionStage {
   void take_over(const CollisionStage& before, std::span<const std::size_t> cloths);
 
   /// Before the solve: bodies go from where they are at t in `now` to where they are at t + h in `next`; contacts are
-  /// found for the particles as they are now and would be, in `next`, with unchanged velocity.
-  void begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now, Moment& next);
+  /// found for the particles as they are now and would be with unchanged velocity. `next` has the latter then, moved
+  /// apart where something would meet on the way there. Returns whether anything was moved.
+  bool begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now, Moment& next);
 
   /// Whether an obstacle with cloth near it turns so far between t and t + h that its way is no longer the straight one
   /// that the search takes it for.
@@ -102,8 +103,8 @@ class CollisionStage {
   };
   Pinches take_pinches(const Moment& last_start);  ///< where the last step began
 
-  /// The step that led to `next` is done.
-  void accept(const Moment& next) { engine_.accept(next.x); }
+  /// The step is done.
+  void accept() { engine_.accept(); }
 
   /// Before a frame: see Engine::forget.
   void forget() { engine_.forget(); }

@@ -6,9 +6,6 @@
 namespace weft::collision {
 namespace {
 
-// With springs a second solve replaces nearly all corrections where something fast arrives; a third found nothing more
-// to do.
-constexpr int kSpringSolves = 2;
 constexpr int kWallSolves = 6;
 
 // The place of the only particle of a contact with an obstacle; −1 for all other contacts.
@@ -58,7 +55,7 @@ void ContactResponse::prepare(std::span<const Vec3> x_t0, std::span<const Vec3> 
 }
 
 int ContactResponse::most_solves() const {
-  return walls_ ? kWallSolves : kSpringSolves;
+  return walls_ ? kWallSolves : 1;
 }
 
 std::span<const PrescribedParticle> ContactResponse::prescribed() const {
