@@ -35,7 +35,7 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
     : bodies_(std::move(bodies)),
       candidates_(bodies_, parameters.search, x, reach_of(bodies_)),
       meets_itself_(parameters.search.self),
-      separation_(bodies_.triangles(), meets_itself_ ? bodies_.deformable() : std::span<const Surface>()),
+      separation_(bodies_.triangles(), meets_itself_ ? bodies_.deformable() : std::span<const Surface>(), masses),
       finder_(bodies_.triangles(), bodies_.vertex_count()),
       builder_(bodies_, parameters.contact, masses),
       response_(parameters.response, {masses.begin(), masses.end()}, parameters.stick_speed),

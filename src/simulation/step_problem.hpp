@@ -55,7 +55,7 @@ class StepProblem final : public integrator::System {
   void blow(SolveMemory::Quads air);
 
   /// Within a step, where its contacts are others now.
-  void forget_contacts() { memory_.contacts = {{}, {}, {}, memory_.contacts.updates}; }
+  void forget_contacts() { memory_.contacts = {}; }
 
   /// Before a step is solved anew: friction goes by the loads of its start, whatever they become.
   void keep_loads() { memory_.contacts = {{}, {}, {}, collision::ContactSet::kLoadUpdates}; }

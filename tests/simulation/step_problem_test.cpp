@@ -190,6 +190,9 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
       linearise(problem, moved(0, 0.01 * iteration), kRate, iteration);
   EXPECT_EQ(problem.memory().contacts.updates, 6);
   EXPECT_EQ(problem.memory().contacts.loads.size(), 1U);
+  problem.forget_contacts();
+  EXPECT_EQ(problem.memory().contacts.updates, 0);  // of contacts that are others now, loads are followed anew
+  linearise(problem, moved(0, 0.02));
   const double lagging = problem.memory().contacts.loads[0];
   problem.begin_step(0, x_, {});
   EXPECT_EQ(problem.memory().contacts.updates, 0);

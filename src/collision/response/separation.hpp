@@ -49,7 +49,9 @@ class Separation {
  public:
   Separation() = default;
   /// `triangles`: of all surfaces, by global number; `deformable`: those that can meet themselves.
-  Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable);
+  /// `masses`: of the particles [kg], all the same if empty; must outlive it.
+  Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable,
+             std::span<const double> masses = {});
 
   /// From now on looks after these pairs without a common vertex, and after all fans, with x [m] as the positions that
   /// motion is measured from. The pairs must hold all that can meet; where motion or a correction carries a vertex out
@@ -99,6 +101,7 @@ class Separation {
     SeparationReport report = {};
     std::span<const Vec3> start_of(const CornerPair& pair) const { return carried ? carried->of(pair, x_t0) : x_t0; }
   };
+  double balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const;
   bool push_apart(const CornerPair& pair, Step& step) const;
   bool give_way(const CornerPair& pair, Step& step);
   bool choose_homes(const CornerPair& pair, const Step& step);
@@ -110,6 +113,7 @@ class Separation {
   void look_again(const Step& step);
 
   std::span<const Triangle> triangles_;
+  std::span<const double> masses_;  // of the particles
   std::vector<Vec3> reference_;
   Planes planes_;
   Fans fans_;
