@@ -439,10 +439,14 @@ Environment::Environment(const scene::Scene& scene) {
     bodies.push_back(make_obstacle(scene, obstacle));
     movers_.push_back(std::make_shared<const Mover>(Track(obstacle.motion, obstacle.pose)));
   }
+  std::vector<ClothAtStart> at_start;
+  for (const ClothObject& cloth : cloths)
+    at_start.push_back({cloth.start, cloth.mesh.topology.triangles, cloth.put_on});
   for (const scene::Character& character : scene.characters) {
     std::vector<BodyObject::Follower> followers;
-    Actor actor = make_actor(scene, character, following_pins(scene, cloths, character.name, followers));
+    Actor actor = make_actor(scene, character, following_pins(scene, cloths, character.name, followers), at_start);
     for (const std::string& warning : actor.warnings) log::warn(warning);
+    for (const std::string& note : actor.notes) log::note(note);
     bodies.push_back(make_character(character, actor));
     const bool has_bones = scene::acting_of(character) != nullptr;
     for (BodyObject::Follower& follower : followers) follower.first_vertex += actor.mesh.positions.size();

@@ -155,8 +155,9 @@ const Table& character_rules() {
               "in which it grows from its bones to its size at the beginning of its dressing, into clothes that are "
               "narrower than it is but hold its bones")
           .number("room", &Character::room, within(0, 0.1), "m",
-                  "between its limbs for cloth: where they come closer, or go into each other or into the floor, its "
-                  "skin gives way; 0 leaves it as it is")
+                  "between its limbs for cloth: where a motion closes them on cloth that is put on there, or presses "
+                  "it to the floor, its skin moves back, each limb by at most half of what is missing; 0 leaves it as "
+                  "it is")
           .by_default("that of eight layers of the thickest cloth; 0 where the mannequin walks by itself")
           .number("start", &Character::start, within(0, 86400), "s", "time of the clip that it gets going from")
           .number("speed", &Character::speed, above(0, 100), "", "of the clip; 1 as it is")
