@@ -75,19 +75,24 @@ using Weights = std::vector<character::Influence>;
 
 class CharacterReader {
  public:
-  CharacterReader(const aiScene& scene, const std::filesystem::path& file) : scene_(scene), file_(file) {}
+  CharacterReader(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice)
+      : scene_(scene), file_(file), choice_(choice) {}
 
   ReadCharacter read() {
     read_nodes();
     for (const aiMaterial* material : std::span(scene_.mMaterials, scene_.mNumMaterials))
       character_.materials.emplace_back(material->GetName().C_Str());
+    std::set<std::string> names;
     for (std::size_t n = 0; n < nodes_.size(); ++n)
       for (const unsigned m : std::span(nodes_[n]->mMeshes, nodes_[n]->mNumMeshes)) {
         if (m >= scene_.mNumMeshes)
           throw std::runtime_error(fmt::format("node \"{}\": expected one of {} meshes, got number {}",
                                                character_.nodes[n].name, scene_.mNumMeshes, m));
-        read_mesh(*scene_.mMeshes[m], static_cast<Index>(n));
+        const aiMesh& mesh = *scene_.mMeshes[m];
+        names.insert({character_.nodes[n].name, mesh.mName.C_Str()});
+        if (is_chosen(character_.nodes[n].name, mesh.mName.C_Str())) read_mesh(mesh, static_cast<Index>(n));
       }
+    check_choice(names);
     const Soup unjoined = soup_;
     join_vertices();
     make_faces();
@@ -100,6 +105,24 @@ class CharacterReader {
   }
 
  private:
+  bool is_chosen(const std::string& node, const std::string& mesh) const {
+    const auto names_it = [&](const std::vector<std::string>& list) {
+      return std::ranges::any_of(list, [&](const std::string& name) { return name == node || name == mesh; });
+    };
+    return (choice_.only.empty() || names_it(choice_.only)) && !names_it(choice_.without) &&
+           !names_it(choice_.elsewhere);
+  }
+
+  void check_choice(std::set<std::string> names) const {
+    names.erase("");
+    for (const auto& [key, list] : {std::pair{"meshes", &choice_.only}, {"without", &choice_.without}})
+      for (const std::string& name : *list)
+        if (!names.contains(name))
+          throw std::runtime_error(
+              fmt::format("{}: expected names of meshes or of their nodes, such as \"{}\", got \"{}\"", key,
+                          fmt::join(names, "\", \""), name));
+  }
+
   void read_nodes() {
     for (const auto& [node, parent] : nodes_with_parents(*scene_.mRootNode)) {
       const std::string name = node->mName.C_Str();
@@ -375,6 +398,7 @@ class CharacterReader {
 
   const aiScene& scene_;
   const std::filesystem::path& file_;
+  const MeshChoice& choice_;
   ReadCharacter read_;
   character::Character& character_ = read_.character;
   std::vector<const aiNode*> nodes_;
@@ -390,8 +414,8 @@ class CharacterReader {
 
 }  // namespace
 
-ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file) {
-  return CharacterReader(scene, file).read();
+ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice) {
+  return CharacterReader(scene, file, choice).read();
 }
 
 }  // namespace weft::assets

@@ -83,7 +83,7 @@ assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acti
     return assets::load_motion(*acting.motion, {{}, up, cast.scene.up}, cast.where);
   };
   assets::LoadedCharacter motion = load(acting.motion_up);
-  if (acting.motion_up != scene::FileUp::as_file || acting.motion->extension() != ".bvh") return motion;
+  if (acting.motion_up != scene::FileUp::as_file || !assets::is_bvh(*acting.motion)) return motion;
   const auto joints =
       joints_of(cast, acting.joints, &scene::JointNames::motion, motion.character, acting.motion->string());
   const character::Clip& clip = choose_clip(cast, acting.clip, motion.character.clips, acting.motion->string());
@@ -163,9 +163,21 @@ character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& b
   return std::move(result.clip);
 }
 
-/// The body as its file has it.
+/// What cloths of the scene are in the same file: that is no part of the body.
+std::vector<std::string> taken_by_cloths(const Cast& cast, const std::filesystem::path& file) {
+  std::vector<std::string> taken;
+  std::error_code ignored;
+  for (const scene::Cloth& cloth : cast.scene.cloths)
+    if (cloth.shape == scene::ClothShape::mesh && !cloth.object.empty() &&
+        std::filesystem::equivalent(cloth.file, file, ignored))
+      taken.push_back(cloth.object);
+  return taken;
+}
+
+/// The body as its file has it, without what cloths take from that.
 Body make_body(const Cast& cast, const scene::CharacterFile& source) {
-  assets::LoadedCharacter loaded = assets::load_character(source.path, cast.axes(), cast.where);
+  assets::LoadedCharacter loaded = assets::load_character(
+      source.path, cast.axes(), cast.where, {source.meshes, source.without, taken_by_cloths(cast, source.path)});
   return {source.path.string(), std::move(loaded.character), {}, std::move(loaded.warnings), loaded.scale};
 }
 

@@ -97,6 +97,12 @@ void source_rows(TableBuilder<Character>& rows) {
                            .plain(Type::file, "file", of_source<CharacterFile>(&CharacterFile::path),
                                   "with skeleton, skin and animations; relative paths start at the scene's folder")
                            .need(Need::required)
+                           .plain(Type::texts, "meshes", of_source<CharacterFile>(&CharacterFile::meshes),
+                                  "that it consists of, by their names or those of their nodes")
+                           .by_default("all that the file holds")
+                           .plain(Type::texts, "without", of_source<CharacterFile>(&CharacterFile::without),
+                                  "meshes that it does not have, likewise")
+                           .by_default("what cloths take from the same file by object")
                            .with(acting_rows<CharacterFile>));
   rows.variant("mannequin",
                Rows()
