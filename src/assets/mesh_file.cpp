@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <utility>
@@ -186,6 +187,10 @@ LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& o
   result.mesh.topology = make_topology(soup, result.removed_triangles);
   if (result.mesh.topology.triangles.empty()) source.fail("expected faces with an area, got none");
   result.mesh.positions = std::move(soup.positions);
+  std::vector<std::uint8_t> used(result.mesh.positions.size(), 0);
+  for (const mesh::Triangle& t : result.mesh.topology.triangles)
+    for (const Index v : t) used[at(v)] = 1;
+  result.lost_vertices = static_cast<std::size_t>(std::ranges::count(used, 0));
   take_vertices(soup, renamed, result);
   return result;
 }

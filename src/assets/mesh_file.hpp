@@ -25,6 +25,7 @@ struct LoadedMesh {
   /// the channels of colours are the largest.
   std::map<std::string, std::vector<double>> groups;
   std::size_t removed_triangles = 0;  ///< without area: a corner named twice, or all corners on a line
+  std::size_t lost_vertices = 0;      ///< that only such triangles have
   std::size_t joined_vertices = 0;    ///< copies at the same place, as made by seams of texture or normals
 };
 

@@ -155,7 +155,7 @@ void append_face(Soup& soup, std::span<const Index> corners) {
   if (corners.size() == 4) {
     soup.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
   } else {
-    mesh::triangulate_polygon(corners, soup.positions, soup.triangles);
+    mesh::triangulate_face(corners, soup.positions, soup.triangles);
   }
 }
 

@@ -159,6 +159,11 @@ assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& clo
       assets::load_mesh(cloth.file, axes_of(scene, cloth.file, cloth.scale, cloth.up), where, cloth.object);
   mesh::Mesh& mesh = loaded.mesh;
   mesh.topology.quads.clear();
+  if (loaded.lost_vertices > 0)
+    object.warnings.push_back(
+        fmt::format("{}: mesh file {}: {} of {} vertices are in no triangle that has an area; faces there cross "
+                    "themselves or have all corners on a line",
+                    where, cloth.file.string(), loaded.lost_vertices, mesh.positions.size()));
   if (const assets::Mended mended = assets::mend_sheet(loaded, 1 / kLargestUnevenness); mended.any())
     object.warnings.push_back(
         fmt::format("{}: mesh file {}: made a sheet: {}", where, cloth.file.string(), mended.describe()));
