@@ -26,6 +26,9 @@ using character::Affine;
 /// Vertices of all parts with all their copies, before joining: many times what cloth can collide with in use.
 constexpr std::size_t kMaxVertices = 4'000'000;
 
+/// Skin that the rest pose of the nodes moves farther from where it was bound is warned about [m].
+constexpr double kOffBind = 0.05;
+
 /// Sums of weights that are off by more than rounding and the few bits that some formats store.
 constexpr double kWeightSlack = 0.02;
 
@@ -158,6 +161,7 @@ class CharacterReader {
       materials_.push_back(mesh.mMaterialIndex < scene_.mNumMaterials ? static_cast<Index>(mesh.mMaterialIndex) : -1);
       uv_.push_back(uv_of(mesh, v));
     }
+    check_bind(mesh, placing, weights, node);
     std::move(weights.begin(), weights.end(), std::back_inserter(weights_));
     read_faces(mesh, base, placing.linear().determinant() < 0);
     read_morphs(mesh, node, base, placing);
@@ -209,6 +213,36 @@ class CharacterReader {
     if (!std::isfinite(weight.mWeight) || weight.mWeight < 0)
       fail(fmt::format("expected a weight >= 0, got {:g} at vertex {}", weight.mWeight, weight.mVertexId));
     return weight.mWeight;
+  }
+
+  /// Warns where the rest pose of the nodes does not hold the skin as it was bound, as after pivots that the reader of
+  /// assimp does not follow. FBX binds a mesh where its node is; other formats say only how its bones are to each
+  /// other.
+  void check_bind(const aiMesh& mesh, const Affine& placing, const std::vector<Weights>& weights, Index node) {
+    if (mesh.mNumBones == 0) return;
+    const std::optional<double> metres = metres_per_unit(scene_);
+    const Affine& bound = metres ? globals_[node] : placing;
+    double farthest = 0;
+    unsigned worst = 0;
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const Vec3 x(mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z);
+      Vec3 held = Vec3::Zero();
+      for (const character::Influence& influence : weights[v]) {
+        const character::Bone& bone = character_.bones[influence.bone];
+        held += influence.weight * (globals_[bone.node] * (bone.offset * (placing * x)));
+      }
+      const double distance = metres.value_or(1) * (held - bound * x).norm();
+      if (distance > farthest) farthest = distance, worst = v;
+    }
+    if (farthest <= kOffBind) return;
+    Index holder = 0;
+    double most = 0;
+    for (const character::Influence& influence : weights[worst])
+      if (influence.weight > most) most = influence.weight, holder = character_.bones[influence.bone].node;
+    read_.warnings.push_back(
+        fmt::format("mesh \"{}\": the rest pose of the nodes holds its skin up to {:.3g} m from where it was bound, at "
+                    "node \"{}\"; if the body looks wrong, export it in its bind pose, or as glTF",
+                    mesh.mName.C_Str(), farthest, character_.nodes[holder].name));
   }
 
   /// Makes weights add up to 1. Vertices without any go with the node of the mesh.
