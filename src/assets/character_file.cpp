@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <assimp/Importer.hpp>
+#include <cctype>
 #include <utility>
 
 #include "assets/character_reader.hpp"
@@ -16,24 +17,45 @@ namespace {
 /// Assimp's readers turn their formats to y up.
 constexpr int kUsualUp = 1;
 
-ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh) {
+ReadCharacter read_file(const std::filesystem::path& file, bool with_mesh, const MeshChoice& choice) {
   Assimp::Importer importer;
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, !with_mesh);
-  return to_character(import(importer, file, 0), with_mesh ? file : std::filesystem::path());
+  return to_character(import(importer, file, 0), with_mesh ? file : std::filesystem::path(), choice);
+}
+
+/// BVH does not say whether the translations of a joint are its place or come on top of its offset; programs write
+/// both, assimp takes them for places. Bones keep their lengths: if the translations of most joints below the root are
+/// nearer to nothing than to the offset, they come on top.
+void add_bvh_offsets(character::Character& character) {
+  int on_top = 0, places = 0;
+  for (const character::Clip& clip : character.clips)
+    for (const character::Channel& channel : clip.channels) {
+      if (character.nodes[channel.node].parent < 0) continue;
+      const Vec3 offset = character.nodes[channel.node].local.translation();
+      double from_nothing = 0, from_offset = 0;
+      for (const Vec3& x : channel.position.values) from_nothing += x.norm(), from_offset += (x - offset).norm();
+      on_top += from_nothing < from_offset ? 1 : 0;
+      places += from_offset < from_nothing ? 1 : 0;
+    }
+  if (on_top <= places) return;
+  for (character::Clip& clip : character.clips)
+    for (character::Channel& channel : clip.channels)
+      for (Vec3& x : channel.position.values) x += character.nodes[channel.node].local.translation();
 }
 
 /// Warnings of a file get its name; it is turned to the scene's axes and scaled to metres.
 LoadedCharacter finish(const Source& source, ReadCharacter read, const FileAxes& axes) {
   LoadedCharacter loaded{std::move(read.character), {}, axes.scale.value_or(read.metres_per_unit.value_or(1))};
   for (const std::string& warning : read.warnings) loaded.warnings.push_back(source.describe(warning));
+  if (is_bvh(source.file)) add_bvh_offsets(loaded.character);
   const int up = axes.up == scene::FileUp::as_file ? read.up.value_or(kUsualUp) : static_cast<int>(axes.up) - 1;
   transform(loaded.character, loaded.scale, turn_up(up, axes.scene_up));
   return loaded;
 }
 
-ReadCharacter read_isolated(const Source& source, bool with_mesh) {
+ReadCharacter read_isolated(const Source& source, bool with_mesh, const MeshChoice& choice = {}) {
   const std::string bytes = source.read([&] {
-    ReadCharacter read = read_file(source.file, with_mesh);
+    ReadCharacter read = read_file(source.file, with_mesh, choice);
     return to_bytes(read);
   });
   return source.checked([&] { return character_from_bytes(bytes); });
@@ -45,6 +67,12 @@ void change(character::Curve<Value>& curve, const Change& change) {
 }
 
 }  // namespace
+
+bool is_bvh(const std::filesystem::path& file) {
+  std::string ending = file.extension().string();
+  for (char& c : ending) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return ending == ".bvh";
+}
 
 Mat3 turn_up(int up, scene::UpAxis scene_up) {
   const int to = scene_up == scene::UpAxis::z ? 2 : 1;
@@ -77,9 +105,10 @@ void transform(character::Character& character, double scale, const Mat3& axes) 
     }
 }
 
-LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where) {
+LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where,
+                               const MeshChoice& choice) {
   const Source source{file, where, "character"};
-  LoadedCharacter loaded = finish(source, read_isolated(source, true), axes);
+  LoadedCharacter loaded = finish(source, read_isolated(source, true, choice), axes);
   if (loaded.character.mesh.topology.triangles.empty())
     source.fail("expected a mesh with faces that have an area, got none");
   for (const Vec3& x : loaded.character.mesh.positions)

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "assets/character_reader.hpp"
 #include "character/character.hpp"
 #include "scene/scene.hpp"
 
@@ -27,10 +28,14 @@ struct LoadedCharacter {
 /// Reads hierarchy, skin, morph targets and clips of glTF, FBX, Collada, X, B3D, BVH and what else assimp knows, in a
 /// process of its own. A skeleton without a mesh gets one of sticks. `where` names what refers to the file. Throws
 /// Error(asset_unreadable) with `where`, file and part.
-LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where);
+LoadedCharacter load_character(const std::filesystem::path& file, const FileAxes& axes, const std::string& where,
+                               const MeshChoice& choice = {});
 
 /// The same of a file that is only there for its skeleton and clips, at least one; its mesh is left out.
 LoadedCharacter load_motion(const std::filesystem::path& file, const FileAxes& axes, const std::string& where);
+
+/// Whether a file is a BVH file by its name, in any case.
+bool is_bvh(const std::filesystem::path& file);
 
 /// Turns and scales a character: every length by `scale`, every direction by `axes`, which sends axes to axes.
 void transform(character::Character& character, double scale, const Mat3& axes);

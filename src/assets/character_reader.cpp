@@ -26,6 +26,9 @@ using character::Affine;
 /// Vertices of all parts with all their copies, before joining: many times what cloth can collide with in use.
 constexpr std::size_t kMaxVertices = 4'000'000;
 
+/// Skin that the rest pose of the nodes moves farther from where it was bound is warned about [m].
+constexpr double kOffBind = 0.05;
+
 /// Sums of weights that are off by more than rounding and the few bits that some formats store.
 constexpr double kWeightSlack = 0.02;
 
@@ -75,19 +78,24 @@ using Weights = std::vector<character::Influence>;
 
 class CharacterReader {
  public:
-  CharacterReader(const aiScene& scene, const std::filesystem::path& file) : scene_(scene), file_(file) {}
+  CharacterReader(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice)
+      : scene_(scene), file_(file), choice_(choice) {}
 
   ReadCharacter read() {
     read_nodes();
     for (const aiMaterial* material : std::span(scene_.mMaterials, scene_.mNumMaterials))
       character_.materials.emplace_back(material->GetName().C_Str());
+    std::set<std::string> names;
     for (std::size_t n = 0; n < nodes_.size(); ++n)
       for (const unsigned m : std::span(nodes_[n]->mMeshes, nodes_[n]->mNumMeshes)) {
         if (m >= scene_.mNumMeshes)
           throw std::runtime_error(fmt::format("node \"{}\": expected one of {} meshes, got number {}",
                                                character_.nodes[n].name, scene_.mNumMeshes, m));
-        read_mesh(*scene_.mMeshes[m], static_cast<Index>(n));
+        const aiMesh& mesh = *scene_.mMeshes[m];
+        names.insert({character_.nodes[n].name, mesh.mName.C_Str()});
+        if (is_chosen(character_.nodes[n].name, mesh.mName.C_Str())) read_mesh(mesh, static_cast<Index>(n));
       }
+    check_choice(names);
     const Soup unjoined = soup_;
     join_vertices();
     make_faces();
@@ -100,6 +108,24 @@ class CharacterReader {
   }
 
  private:
+  bool is_chosen(const std::string& node, const std::string& mesh) const {
+    const auto names_it = [&](const std::vector<std::string>& list) {
+      return std::ranges::any_of(list, [&](const std::string& name) { return name == node || name == mesh; });
+    };
+    return (choice_.only.empty() || names_it(choice_.only)) && !names_it(choice_.without) &&
+           !names_it(choice_.elsewhere);
+  }
+
+  void check_choice(std::set<std::string> names) const {
+    names.erase("");
+    for (const auto& [key, list] : {std::pair{"meshes", &choice_.only}, {"without", &choice_.without}})
+      for (const std::string& name : *list)
+        if (!names.contains(name))
+          throw std::runtime_error(
+              fmt::format("{}: expected names of meshes or of their nodes, such as \"{}\", got \"{}\"", key,
+                          fmt::join(names, "\", \""), name));
+  }
+
   void read_nodes() {
     for (const auto& [node, parent] : nodes_with_parents(*scene_.mRootNode)) {
       const std::string name = node->mName.C_Str();
@@ -135,6 +161,7 @@ class CharacterReader {
       materials_.push_back(mesh.mMaterialIndex < scene_.mNumMaterials ? static_cast<Index>(mesh.mMaterialIndex) : -1);
       uv_.push_back(uv_of(mesh, v));
     }
+    check_bind(mesh, placing, weights, node);
     std::move(weights.begin(), weights.end(), std::back_inserter(weights_));
     read_faces(mesh, base, placing.linear().determinant() < 0);
     read_morphs(mesh, node, base, placing);
@@ -186,6 +213,36 @@ class CharacterReader {
     if (!std::isfinite(weight.mWeight) || weight.mWeight < 0)
       fail(fmt::format("expected a weight >= 0, got {:g} at vertex {}", weight.mWeight, weight.mVertexId));
     return weight.mWeight;
+  }
+
+  /// Warns where the rest pose of the nodes does not hold the skin as it was bound, as after pivots that the reader of
+  /// assimp does not follow. FBX binds a mesh where its node is; other formats say only how its bones are to each
+  /// other.
+  void check_bind(const aiMesh& mesh, const Affine& placing, const std::vector<Weights>& weights, Index node) {
+    if (mesh.mNumBones == 0) return;
+    const std::optional<double> metres = metres_per_unit(scene_);
+    const Affine& bound = metres ? globals_[node] : placing;
+    double farthest = 0;
+    unsigned worst = 0;
+    for (unsigned v = 0; v < mesh.mNumVertices; ++v) {
+      const Vec3 x(mesh.mVertices[v].x, mesh.mVertices[v].y, mesh.mVertices[v].z);
+      Vec3 held = Vec3::Zero();
+      for (const character::Influence& influence : weights[v]) {
+        const character::Bone& bone = character_.bones[influence.bone];
+        held += influence.weight * (globals_[bone.node] * (bone.offset * (placing * x)));
+      }
+      const double distance = metres.value_or(1) * (held - bound * x).norm();
+      if (distance > farthest) farthest = distance, worst = v;
+    }
+    if (farthest <= kOffBind) return;
+    Index holder = 0;
+    double most = 0;
+    for (const character::Influence& influence : weights[worst])
+      if (influence.weight > most) most = influence.weight, holder = character_.bones[influence.bone].node;
+    read_.warnings.push_back(
+        fmt::format("mesh \"{}\": the rest pose of the nodes holds its skin up to {:.3g} m from where it was bound, at "
+                    "node \"{}\"; if the body looks wrong, export it in its bind pose, or as glTF",
+                    mesh.mName.C_Str(), farthest, character_.nodes[holder].name));
   }
 
   /// Makes weights add up to 1. Vertices without any go with the node of the mesh.
@@ -375,6 +432,7 @@ class CharacterReader {
 
   const aiScene& scene_;
   const std::filesystem::path& file_;
+  const MeshChoice& choice_;
   ReadCharacter read_;
   character::Character& character_ = read_.character;
   std::vector<const aiNode*> nodes_;
@@ -390,8 +448,8 @@ class CharacterReader {
 
 }  // namespace
 
-ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file) {
-  return CharacterReader(scene, file).read();
+ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice) {
+  return CharacterReader(scene, file, choice).read();
 }
 
 }  // namespace weft::assets

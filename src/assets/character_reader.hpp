@@ -21,12 +21,19 @@ struct ReadCharacter {
   std::vector<std::string> warnings;  ///< what was mended or left out, by the names of the parts
 };
 
+/// Which meshes of a file a character has, by their names or those of their nodes.
+struct MeshChoice {
+  std::vector<std::string> only;       ///< empty: all
+  std::vector<std::string> without;    ///< not these
+  std::vector<std::string> elsewhere;  ///< nor these, which may be missing: cloths have them
+};
+
 /// Takes over nodes, meshes with their weights and morph targets, and animations. Bones of all meshes are merged into
 /// one list; a mesh without bones becomes one that a bone at its own node holds, once for each node that shows it.
 /// Throws std::runtime_error naming the part that cannot be used: indices out of range, numbers that are not finite,
-/// bones that no node belongs to, key times that run backwards. Pictures are looked for
-/// beside `file`; none where that is empty.
-ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file);
+/// bones that no node belongs to, key times that run backwards, names of the choice that nothing has. Pictures are
+/// looked for beside `file`; none where that is empty.
+ReadCharacter to_character(const aiScene& scene, const std::filesystem::path& file, const MeshChoice& choice = {});
 
 /// The same as plain bytes, for the way between two processes of the same program, and back.
 std::string to_bytes(ReadCharacter& read);

@@ -1,6 +1,7 @@
 #include "assets/import.hpp"
 
 #include <assimp/DefaultIOSystem.h>
+#include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
@@ -93,6 +94,19 @@ std::optional<double> metres_per_unit(const aiScene& scene) {
     return std::nullopt;
   if (!std::isfinite(centimetres) || !(centimetres > 0)) return std::nullopt;
   return 0.01 * centimetres;
+}
+
+std::optional<int> up_axis(const Assimp::Importer& importer, const aiScene& scene) {
+  std::int32_t up = 0;
+  if (scene.mMetaData != nullptr && scene.mMetaData->Get("UpAxis", up) && up >= 0 && up <= 2) return up;
+  const int reader = importer.GetPropertyInteger("importerIndex", -1);
+  const aiImporterDesc* format = reader < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(reader));
+  if (format == nullptr) return std::nullopt;
+  const std::string_view endings = format->mFileExtensions;
+  constexpr int kY = 1;
+  for (const char* says_y : {"gltf", "dae"})
+    if (endings.find(says_y) != std::string_view::npos) return kY;
+  return std::nullopt;
 }
 
 }  // namespace weft::assets

@@ -18,4 +18,8 @@ const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& f
 /// What FBX says that it measures in [m]; the readers of other formats turn them to metres where they know.
 std::optional<double> metres_per_unit(const aiScene& scene);
 
+/// Which axis points up (0 x, 1 y, 2 z) as the file says (FBX) or its format has it: glTF, and Collada after its reader
+/// has turned it. None of formats that do not say.
+std::optional<int> up_axis(const Assimp::Importer& importer, const aiScene& scene);
+
 }  // namespace weft::assets

@@ -6,11 +6,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <numeric>
 #include <utility>
 #include <vector>
 
+#include "assets/character_file.hpp"
 #include "assets/soup.hpp"
 #include "core/disjoint_sets.hpp"
 #include "mesh/topology.hpp"
@@ -163,11 +165,16 @@ Welded weld_borders(LoadedMesh& loaded, double share) {
 
 namespace {
 
-LoadedMesh load(const Source& source, double scale, const std::string& object) {
+LoadedMesh load(const Source& source, const MeshAxes& axes, const std::string& object) {
   Soup soup = from_bytes(source.read([&] { return to_bytes(read_soup(source.file, object)); }));
   if (soup.triangles.empty() && soup.quads.empty()) source.fail("expected faces, got none");
+  scene::FileUp up = axes.up;
+  if (up == scene::FileUp::as_file)
+    up = soup.up.empty() ? axes.unsaid : static_cast<scene::FileUp>(soup.up.front() + 1);
+  Mat3 turn = Mat3::Identity();
+  if (up != scene::FileUp::as_file) turn = turn_up(static_cast<int>(up) - 1, axes.scene_up);
   for (Vec3& x : soup.positions) {
-    x *= scale;
+    x = axes.scale * (turn * x);
     // Squares of lengths and their products must stay finite too.
     if (!(x.cwiseAbs().maxCoeff() < kMaxCoordinate))
       source.fail(fmt::format("expected coordinates below {:g} m, got ({:g}, {:g}, {:g})", kMaxCoordinate, x.x(), x.y(),
@@ -180,16 +187,20 @@ LoadedMesh load(const Source& source, double scale, const std::string& object) {
   result.mesh.topology = make_topology(soup, result.removed_triangles);
   if (result.mesh.topology.triangles.empty()) source.fail("expected faces with an area, got none");
   result.mesh.positions = std::move(soup.positions);
+  std::vector<std::uint8_t> used(result.mesh.positions.size(), 0);
+  for (const mesh::Triangle& t : result.mesh.topology.triangles)
+    for (const Index v : t) used[at(v)] = 1;
+  result.lost_vertices = static_cast<std::size_t>(std::ranges::count(used, 0));
   take_vertices(soup, renamed, result);
   return result;
 }
 
 }  // namespace
 
-LoadedMesh load_mesh(const std::filesystem::path& file, double scale, const std::string& where,
+LoadedMesh load_mesh(const std::filesystem::path& file, const MeshAxes& axes, const std::string& where,
                      const std::string& object) {
   const Source source{file, where};
-  return source.checked([&] { return load(source, scale, object); });
+  return source.checked([&] { return load(source, axes, object); });
 }
 
 }  // namespace weft::assets

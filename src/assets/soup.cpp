@@ -12,6 +12,7 @@
 #include <set>
 #include <span>
 #include <stdexcept>
+#include <unordered_map>
 #include <utility>
 
 #include "assets/import.hpp"
@@ -88,6 +89,47 @@ void append_mesh(Soup& soup, const aiMesh& part, const Transform& to_world) {
   }
 }
 
+/// A node and its map to the world.
+using PlacedNode = std::pair<const aiNode*, Transform>;
+
+std::vector<PlacedNode> placed_nodes(const aiNode& root) {
+  std::vector<PlacedNode> nodes;
+  // The walk keeps its own stack: files can nest nodes deeper than ours is.
+  std::vector<PlacedNode> stack{{&root, to_eigen(root.mTransformation)}};
+  while (!stack.empty()) {
+    const auto [node, to_world] = stack.back();
+    stack.pop_back();
+    nodes.emplace_back(node, to_world);
+    for (unsigned c = node->mNumChildren; c-- > 0;) {
+      const aiNode* child = node->mChildren[c];
+      // The reader of RAW files leaves gaps.
+      if (child != nullptr) stack.emplace_back(child, to_world * to_eigen(child->mTransformation));
+    }
+  }
+  return nodes;
+}
+
+/// Where a mesh is: at its node, or, of one with bones, where the bone that holds most of it has it at rest, as
+/// characters are read (character_reader.cpp). glTF shows skinned meshes there, whichever node names them.
+Transform placing_of(const aiMesh& part, const Transform& of_node,
+                     const std::unordered_map<std::string, Transform>& placed) {
+  Transform placing = of_node;
+  double most = 0;
+  for (const aiBone* bone : std::span(part.mBones, part.mNumBones)) {
+    double total = 0;
+    for (const aiVertexWeight& w : std::span(bone->mWeights, bone->mNumWeights)) total += w.mWeight;
+    const auto found = placed.find(bone->mName.C_Str());
+    if (!(total > most) || found == placed.end()) continue;
+    const Transform held = found->second * to_eigen(bone->mOffsetMatrix);
+    const double size = held.topLeftCorner<3, 3>().norm();
+    constexpr double kLeastVolume = 1e-9;  // of that of a map that keeps shapes: flatter ones place nothing
+    if (!held.allFinite() || !(std::abs(held.topLeftCorner<3, 3>().determinant()) > kLeastVolume * size * size * size))
+      continue;
+    most = total, placing = held;
+  }
+  return placing;
+}
+
 template <class T>
 void put(std::string& bytes, const std::vector<T>& list) {
   const std::size_t count = list.size();
@@ -113,7 +155,7 @@ void append_face(Soup& soup, std::span<const Index> corners) {
   if (corners.size() == 4) {
     soup.quads.push_back({corners[0], corners[1], corners[2], corners[3]});
   } else {
-    mesh::triangulate_polygon(corners, soup.positions, soup.triangles);
+    mesh::triangulate_face(corners, soup.positions, soup.triangles);
   }
 }
 
@@ -122,24 +164,16 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   const aiScene* scene = &import(importer, file, aiProcess_ValidateDataStructure);
   Soup soup;
   std::set<std::string> names;
-  // The walk keeps its own stack: files can nest nodes deeper than ours is.
-  const aiNode* root = scene->mRootNode;
-  std::vector<std::pair<const aiNode*, Transform>> stack{{root, to_eigen(root->mTransformation)}};
-  while (!stack.empty()) {
-    const auto [node, to_world] = stack.back();
-    stack.pop_back();
+  const std::vector<PlacedNode> nodes = placed_nodes(*scene->mRootNode);
+  std::unordered_map<std::string, Transform> placed;  // by name: the first of each counts
+  for (const auto& [node, to_world] : nodes) placed.emplace(node->mName.C_Str(), to_world);
+  for (const auto& [node, to_world] : nodes)
     for (const unsigned m : std::span(node->mMeshes, node->mNumMeshes)) {
       const aiMesh& part = *scene->mMeshes[m];
       names.insert({node->mName.C_Str(), part.mName.C_Str()});
       if (object.empty() || object == node->mName.C_Str() || object == part.mName.C_Str())
-        append_mesh(soup, part, to_world);
+        append_mesh(soup, part, placing_of(part, to_world, placed));
     }
-    for (unsigned c = node->mNumChildren; c-- > 0;) {
-      const aiNode* child = node->mChildren[c];
-      // The reader of RAW files leaves gaps.
-      if (child != nullptr) stack.emplace_back(child, to_world * to_eigen(child->mTransformation));
-    }
-  }
   if (!object.empty() && soup.positions.empty()) {
     names.erase("");
     throw std::runtime_error(
@@ -148,6 +182,7 @@ Soup read_soup(const std::filesystem::path& file, const std::string& object) {
   }
   if (const auto metres = metres_per_unit(*scene))
     for (Vec3& x : soup.positions) x *= *metres;
+  if (const auto up = up_axis(importer, *scene)) soup.up = {*up};
   return soup;
 }
 
@@ -176,6 +211,7 @@ std::string to_bytes(const Soup& soup) {
   put(bytes, names);
   put(bytes, soup.triangles);
   put(bytes, soup.quads);
+  put(bytes, soup.up);
   return bytes;
 }
 
@@ -194,6 +230,7 @@ Soup from_bytes(std::string_view bytes) {
   }
   take(bytes, soup.triangles);
   take(bytes, soup.quads);
+  take(bytes, soup.up);
   return soup;
 }
 

@@ -27,6 +27,7 @@ struct Soup {
   std::vector<std::string> group_names;
   std::vector<mesh::Triangle> triangles;
   std::vector<mesh::Quad> quads;
+  std::vector<int> up;  ///< axis that points up as the file or its format says: 0 x, 1 y, 2 z; none: it does not say
 };
 
 /// Reads the meshes of a file with the transforms of their nodes, those that are named `object`, or whose node is, or

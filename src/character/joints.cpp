@@ -142,6 +142,9 @@ bool is_whole(const std::vector<Index>& joints) {
 /// What names of this many nodes begin with may be the name of a rig: of a body and nothing else.
 constexpr std::size_t kRig = 15;
 
+/// Shorter beginnings without a mark are chance, or the sides of a body.
+constexpr std::size_t kLeastName = 3;
+
 /// Beginnings of names up to a mark, which so many nodes share, the longest first.
 std::vector<std::string> shared_beginnings(std::span<const Node> nodes) {
   std::map<std::string, std::size_t> counts;
@@ -153,6 +156,55 @@ std::vector<std::string> shared_beginnings(std::span<const Node> nodes) {
     if (count >= kRig) beginnings.push_back(text);
   std::ranges::stable_sort(beginnings, std::greater(), &std::string::size);
   return beginnings;
+}
+
+/// Beginnings without a mark ("EthanHips", "EthanLeftArm"), which so many nodes share and no longer one does, the
+/// longest first.
+std::vector<std::string> unmarked_beginnings(const std::vector<std::string>& names) {
+  std::map<std::string, std::size_t> counts;
+  for (const std::string& name : names)
+    for (std::size_t i = 1; i < name.size(); ++i) ++counts[name.substr(0, i)];
+  std::vector<std::string> beginnings;
+  for (const auto& [text, count] : counts) {
+    if (text.size() < kLeastName || count < kRig) continue;
+    // The next texts in order that begin with it are one letter longer, or more.
+    bool ends_here = true;
+    for (auto next = counts.upper_bound(text); next != counts.end() && next->first.starts_with(text); ++next)
+      ends_here = ends_here && next->second < count;
+    if (ends_here) beginnings.push_back(text);
+  }
+  std::ranges::stable_sort(beginnings, std::greater(), &std::string::size);
+  return beginnings;
+}
+
+/// What stands around the parts of the body in the names of a rig: its name at the beginning, at the end, or both.
+struct Affixes {
+  std::string beginning, end;
+
+  /// What is between both; empty where a name has not both.
+  std::string strip(const std::string& name) const {
+    if (name.size() <= beginning.size() + end.size() || !name.starts_with(beginning) || !name.ends_with(end)) return {};
+    return name.substr(beginning.size(), name.size() - beginning.size() - end.size());
+  }
+};
+
+/// Beginnings up to a mark come first, then those without one, then ends.
+std::vector<Affixes> shared_affixes(std::span<const Node> nodes) {
+  std::vector<std::string> names, reversed;
+  for (const Node& node : nodes) {
+    names.push_back(node.name);
+    reversed.emplace_back(node.name.rbegin(), node.name.rend());
+  }
+  std::vector<std::string> beginnings = shared_beginnings(nodes);
+  for (std::string& text : unmarked_beginnings(names))
+    if (std::ranges::find(beginnings, text) == beginnings.end()) beginnings.push_back(std::move(text));
+  std::vector<Affixes> affixes;
+  for (const std::string& beginning : beginnings) affixes.push_back({beginning, {}});
+  beginnings.insert(beginnings.begin(), std::string());
+  for (const std::string& end : unmarked_beginnings(reversed))
+    for (const std::string& beginning : beginnings)
+      affixes.push_back({beginning, std::string(end.rbegin(), end.rend())});
+  return affixes;
 }
 
 }  // namespace
@@ -249,8 +301,8 @@ std::vector<Node> without_numbers(std::vector<Node> nodes) {
   return nodes;
 }
 
-/// Joints by name; where these do not say all, by what follows the name of a rig ("UnityChan_LeftArm",
-/// "rig_DEF-thigh_L"), of several rigs that of which most joints hold skin or move.
+/// Joints by name; where these do not say all, by what is left without the name of a rig ("UnityChan_LeftArm",
+/// "rig_DEF-thigh_L", "EthanLeftArm", "LeftArm_jnt"), of several rigs that of which most joints hold skin or move.
 std::vector<Index> find_prefixed_joints(const Character& character) {
   std::vector<Index> best = find_named_joints(character.nodes);
   if (is_whole(best)) return best;
@@ -261,10 +313,9 @@ std::vector<Index> find_prefixed_joints(const Character& character) {
   for (const Clip& clip : character.clips)
     for (const Channel& channel : clip.channels) acts[channel.node] = true;
   std::size_t most = 0;
-  for (const std::string& beginning : shared_beginnings(plain)) {
+  for (const Affixes& affixes : shared_affixes(plain)) {
     std::vector<Node> nodes = plain;
-    for (Node& node : nodes)
-      node.name = node.name.starts_with(beginning) ? node.name.substr(beginning.size()) : std::string();
+    for (Node& node : nodes) node.name = affixes.strip(node.name);
     std::vector<Index> joints = find_named_joints(nodes);
     const auto count =
         static_cast<std::size_t>(std::ranges::count_if(joints, [&](Index node) { return node >= 0 && acts[node]; }));

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "character/footing.hpp"
+#include "character/four_legs.hpp"
 #include "character/parts.hpp"
 #include "character/pose.hpp"
 #include "character/touching.hpp"
@@ -130,6 +131,8 @@ class Retargeter {
     if (!same_) touch(frames);
     if (!same_) check_joints(result.doubts);
     if (!same_) check_rest(result.doubts);
+    if (!same_)
+      if (auto doubt = doubt_of_two_legs(theirs_, postures_, up_)) result.doubts.push_back(*std::move(doubt));
     result.clip = {clip_.name, clip_.duration, {}, {}};
     for (std::size_t n = 0; n < joint_of_.size(); ++n)
       if (joint_of_[n] >= 0) result.clip.channels.push_back({static_cast<Index>(n), {}, {}, {}});

@@ -34,14 +34,37 @@ constexpr int kSmoothings = 3;
 /// Of the room, what is left between the body and the ground.
 constexpr double kAboveGround = 0.5;
 
-/// Least share of the way from bone to skin that is left of a limb.
-constexpr double kLeast = 0.15;
+/// Each of two limbs gives at most this fraction of what is missing between them.
+constexpr double kGivenByEach = 0.5;
 
-/// Of a limb, by joints in their order: the trunk with neck, head and shoulders is one, hands go with lower arms and
-/// toes with feet, as a fist has no inside.
-constexpr std::array<std::uint8_t, kJointCount> kLimbOf = {0, 0, 0, 0, 0, 0, 1, 2, 2,  3, 4,
-                                                           5, 5, 0, 6, 7, 7, 8, 9, 10, 10};
-constexpr std::uint8_t kLeftFoot = 5, kRightFoot = 10;
+/// Least fraction of the way from bone to skin that is left of a limb: with less it looks deflated.
+constexpr double kLeast = 0.5;
+
+/// Skin without cloth nearby moves by at most so much along with its neighbours [m]; 5 mm are seen.
+constexpr double kUnseen = 0.004;
+
+/// Skin near cloth moves by at most so much, or twice the room [m]: what goes deeper into another limb is not opened
+/// up, for that would be seen.
+constexpr double kMostMove = 0.03;
+
+/// Skin without cloth of its own that is deeper in the other limb than this has no cloth near it [m].
+constexpr double kNearDepth = 0.05;
+
+/// Over edges up to this length skin takes its neighbours along whole; over longer ones by less, so that a dent in a
+/// body of few triangles stays as narrow [m].
+constexpr double kWholeEdge = 0.02;
+
+/// The limb of each joint, in the order of joints: the trunk with neck, head and shoulders is one limb, hands belong to
+/// lower arms, feet to lower legs. What moves at a wrist or an ankle is too thin to lose anything.
+constexpr std::array<std::uint8_t, kJointCount> kLimbOf = {0, 0, 0, 0, 0, 0, 1, 2, 2, 3, 4,
+                                                           4, 4, 0, 5, 6, 6, 7, 8, 8, 8};
+constexpr std::array<const char*, 9> kLimbNames = {"trunk",           "left upper arm",  "left lower arm",
+                                                   "left upper leg",  "left lower leg",  "right upper arm",
+                                                   "right lower arm", "right upper leg", "right lower leg"};
+
+const char* name_of(const Room::Shares& shares) {
+  return kLimbNames[static_cast<std::size_t>(std::ranges::max_element(shares) - shares.begin())];
+}
 
 std::vector<Room::Shares> shares_of_limbs(const Rig& rig) {
   const Character& body = rig.character;
@@ -90,16 +113,18 @@ Character hung_on_bones(const Character& body, const std::vector<Vec3>& places) 
 
 }  // namespace
 
-Room::Room(const Rig& rig, const VertexMask& touched, double room, std::vector<Ground> grounds)
+Room::Room(const Rig& rig, const VertexMask& touched, std::vector<float> near_cloth, double room,
+           std::vector<Ground> grounds)
     : room_(room),
       grounds_(std::move(grounds)),
       shares_(shares_of_limbs(rig)),
+      near_(std::move(near_cloth)),
       touched_(touched),
-      foot_(touched.size()) {
-  for (std::size_t v = 0; v < foot_.size(); ++v) foot_[v] = shares_[v][kLeftFoot] + shares_[v][kRightFoot] > 0.5F;
+      foot_(vertices_of(rig.character, rig.joints, joints_of_part("feet"))) {
   for (const mesh::Triangle& t : rig.character.mesh.topology.triangles) {
     if (std::ranges::any_of(t, [&](Index v) { return touched_[v] == 0; })) continue;
     triangles_.push_back(t);
+    near_of_triangle_.push_back(std::min({near_[t[0]], near_[t[1]], near_[t[2]]}));
     Shares& mean = shares_of_triangle_.emplace_back();
     for (std::size_t l = 0; l < mean.size(); ++l)
       mean[l] = (shares_[t[0]][l] + shares_[t[1]][l] + shares_[t[2]][l]) / 3;
@@ -111,44 +136,52 @@ Room::Room(const Rig& rig, const VertexMask& touched, double room, std::vector<G
   std::vector<Vec3> skinned(rig.character.mesh.positions.size());
   skin(rig.character, rest, skinned);
   missing_at_rest_.assign(touched_.size(), 0);
-  std::vector<double> missing(touched_.size());
+  std::vector<Missing> missing(touched_.size());
   find_missing(places, skinned, skinned, missing);
-  missing_at_rest_ = std::move(missing);
+  for (std::size_t v = 0; v < missing.size(); ++v) missing_at_rest_[v] = missing[v].distance;
 }
 
 // How much of the way from the bone through the skin, to the room beyond it, is in another limb. `skin`: where the
 // lines go, x: where the skin is now.
 void Room::find_missing(std::span<const Vec3> from, std::span<const Vec3> skin, std::span<const Vec3> x,
-                        std::vector<double>& missing) const {
+                        std::vector<Missing>& missing) const {
   Box3 box;
   for (const mesh::Triangle& t : triangles_) box.extend(x[t[0]]);
   if (triangles_.empty()) return;
   const mesh::TriangleGrid grid(triangles_, x, box.diagonal().maxCoeff() / kCells);
   parallel_for(touched_.size(), kLinesPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      missing[v] = 0;
+      missing[v] = {};
       const double length = (skin[v] - from[v]).norm();
-      if (touched_[v] == 0 || !(length > 0)) continue;
+      // More than the room is missing at rest where limbs cross there, as plates of armour do by design.
+      if (touched_[v] == 0 || !(length > 0) || missing_at_rest_[v] > room_) continue;
       const Vec3 to = x[v] + room_ / length * (skin[v] - from[v]);
       const mesh::Entry entry = grid.first_entry(
           from[v], to, [&](Index t) { return difference(shares_of_triangle_[t], shares_[v]) > kOther; });
-      if (entry.triangle >= 0) missing[v] = std::max(0.0, (1 - entry.t) * (to - from[v]).norm() - missing_at_rest_[v]);
+      if (entry.triangle < 0) continue;
+      const double all = (1 - entry.t) * (to - from[v]).norm();
+      const double shallow = std::clamp(2 - 2 * (all - room_) / kNearDepth, 0.0, 1.0);
+      missing[v] = {std::max(0.0, all - missing_at_rest_[v]),
+                    std::max(near_[v], static_cast<float>(shallow) * near_of_triangle_[entry.triangle]),
+                    entry.triangle};
     }
   });
 }
 
-// Each vertex gives way at least as far as its neighbours in the mean.
-void Room::smooth(std::vector<double>& shares) const {
+// Each vertex gives way at least as far as its neighbours in the mean, but hardly where no cloth is near.
+void Room::smooth(std::span<const double> lengths, std::vector<double>& shares) const {
   std::vector<double> sums(shares.size()), counts(shares.size());
   for (int round = 0; round < kSmoothings; ++round) {
     std::ranges::fill(sums, 0);
     std::ranges::fill(counts, 0);
-    for (const auto& [a, b] : edges_) {
-      sums[a] += shares[b], sums[b] += shares[a];
+    for (std::size_t e = 0; e < edges_.size(); ++e) {
+      const auto [a, b] = edges_[e];
+      const double along = std::min(1.0, kWholeEdge / lengths[e]);
+      sums[a] += along * (1 - shares[b]), sums[b] += along * (1 - shares[a]);
       ++counts[a], ++counts[b];
     }
     for (std::size_t v = 0; v < shares.size(); ++v)
-      if (counts[v] > 0) shares[v] = std::min(shares[v], sums[v] / counts[v]);
+      if (counts[v] > 0) shares[v] = std::min(shares[v], 1 - sums[v] / counts[v]);
   }
 }
 
@@ -156,36 +189,62 @@ void Room::smooth(std::vector<double>& shares) const {
 void Room::lift(std::span<const Vec3> from, std::span<Vec3> x) const {
   for (const Ground& ground : grounds_)
     for (std::size_t v = 0; v < touched_.size(); ++v) {
-      if (touched_[v] == 0 || foot_[v] != 0) continue;
+      if (touched_[v] == 0 || foot_[v] != 0 || near_[v] <= 0) continue;
       const double missing = ground.height + kAboveGround * room_ - ground.up.dot(x[v]);
       const double held = std::clamp((ground.up.dot(from[v]) - ground.height) / room_, 0.0, 1.0);
-      if (missing > 0) x[v] += held * missing * ground.up;
+      if (missing > 0) x[v] += static_cast<double>(near_[v]) * held * missing * ground.up;
     }
 }
 
-void Room::make(const Pose& pose, std::span<Vec3> x) const {
+Moved Room::farthest(std::span<const Vec3> before, std::span<const Vec3> x, std::span<const Index> other) const {
+  Moved moved;
+  for (std::size_t v = 0; v < before.size(); ++v) {
+    const double distance = (x[v] - before[v]).norm();
+    if (distance > moved.distance) moved.distance = distance, moved.vertex = static_cast<Index>(v);
+  }
+  if (moved.vertex < 0) return moved;
+  moved.limb = name_of(shares_[moved.vertex]);
+  const Index triangle = other[moved.vertex];
+  moved.away_from = triangle < 0 ? "the ground" : name_of(shares_of_triangle_[triangle]);
+  return moved;
+}
+
+Moved Room::make(const Pose& pose, std::span<Vec3> x) const {
   const std::vector<Vec3> whole(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(touched_.size()));
   std::vector<Vec3> from(touched_.size());
   skin(bones_, {pose.nodes, {}}, from);
-  std::vector<double> shares(touched_.size(), 1), missing(touched_.size());
-  const auto move = [&] {
-    for (std::size_t v = 0; v < shares.size(); ++v)
-      if (shares[v] < 1) x[v] = from[v] + shares[v] * (whole[v] - from[v]);
-  };
+  std::vector<double> lengths;
+  for (const auto& [a, b] : edges_) lengths.push_back((whole[a] - whole[b]).norm());
+  std::vector<double> shares(touched_.size(), 1);
+  std::vector<double> given(touched_.size(), 0);  // most that each vertex may give of its own [m]
+  std::vector<float> near = near_;
+  std::vector<Index> other(touched_.size(), -1);
+  std::vector<Missing> missing(touched_.size());
   for (int round = 0; round < kYieldingRounds; ++round) {
     find_missing(from, whole, x, missing);
     bool changed = false;
     for (std::size_t v = 0; v < shares.size(); ++v) {
-      if (missing[v] <= 0) continue;
-      shares[v] = std::max(kLeast, shares[v] - 0.5 * missing[v] / (whole[v] - from[v]).norm());
-      changed |= missing[v] > kLeastMissing * room_;
+      if (missing[v].distance <= 0 || missing[v].near <= 0) continue;
+      if (other[v] < 0) other[v] = missing[v].triangle;
+      near[v] = std::max(near[v], missing[v].near);
+      given[v] = std::max(given[v], kGivenByEach * static_cast<double>(missing[v].near) * missing[v].distance);
+      const double length = (whole[v] - from[v]).norm(), before = shares[v];
+      const double least = std::max(kLeast, 1 - given[v] / length);
+      shares[v] = std::min(before, std::max(least, before - kGivenByEach * missing[v].distance / length));
+      changed |= (before - shares[v]) * length > kLeastMissing * room_;
     }
     // In each round: what gives way alone leaves its neighbours in what it went out of.
-    smooth(shares);
-    move();
+    smooth(lengths, shares);
+    for (std::size_t v = 0; v < shares.size(); ++v) {
+      if (!(shares[v] < 1)) continue;
+      const double most = std::lerp(kUnseen, std::max(kMostMove, 2 * room_), static_cast<double>(near[v]));
+      shares[v] = std::max({shares[v], kLeast, 1 - most / (whole[v] - from[v]).norm()});
+      x[v] = from[v] + shares[v] * (whole[v] - from[v]);
+    }
     if (!changed) break;
   }
   lift(from, x);
+  return farthest(whole, x, other);
 }
 
 }  // namespace weft::character

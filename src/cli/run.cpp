@@ -288,6 +288,7 @@ ExitCode Session::end(const FilmPlan& plan, const Store* store) {
     report_.cache_bytes = store->bytes();
   }
   report_.warnings = log::warnings();
+  report_.notes = log::notes();
   for (std::string& warning : find_warnings(report_.frames)) report_.warnings.push_back(std::move(warning));
   report_.wall_s = wall_.seconds();
   report_.cpu_s = process_cpu_seconds();

@@ -46,6 +46,7 @@ struct RunReport {
   double wall_s = 0, cpu_s = 0;    ///< of the whole process, all threads
   std::int64_t peak_memory = 0;    ///< [bytes]
   std::vector<std::string> warnings;
+  std::vector<std::string> notes;  ///< what was done and is not wrong, such as skin moved for cloth
   ExitCode exit_code = ExitCode::ok;
   std::string message;                        ///< why it ended early; empty if it did not
   std::optional<bench::ErrorEstimate> error;  ///< where it was asked for

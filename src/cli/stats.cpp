@@ -149,6 +149,7 @@ Json stats_json(const RunReport& report) {
             {"exit_code", static_cast<int>(report.exit_code)},
             {"message", report.message},
             {"warnings", report.warnings},
+            {"notes", report.notes},
             {"output", report.output},
             {"cache_bytes", report.cache_bytes},
             {"width", report.width},

@@ -114,6 +114,7 @@ std::string summary(const RunReport& report) {
   std::string text = headline(report) + "\n" + times_table(report);
   if (!report.frames.empty()) text += figures_table(report);
   if (report.error) text += error_summary(*report.error) + "\n";
+  for (const std::string& note : report.notes) text += fmt::format("  note: {}\n", note);
   for (const std::string& warning : report.warnings) text += fmt::format("  warning: {}\n", warning);
   text.pop_back();
   return text;

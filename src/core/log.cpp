@@ -12,7 +12,7 @@ namespace {
 struct State {
   std::mutex mutex;
   std::string status;
-  std::vector<std::string> warnings;
+  std::vector<std::string> warnings, notes;
 };
 
 State& state() {
@@ -51,6 +51,15 @@ void print(State& s, std::string_view text) {
   }
 }
 
+/// Prints a text that is new to the list, and keeps it there.
+void keep(std::string_view text, const char* kind, std::vector<std::string> State::*list) {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  if (std::find((s.*list).begin(), (s.*list).end(), text) != (s.*list).end()) return;
+  (s.*list).emplace_back(text);
+  print(s, fmt::format("{}: {}", kind, text));
+}
+
 }  // namespace
 
 void info(std::string_view line) {
@@ -60,17 +69,23 @@ void info(std::string_view line) {
 }
 
 void warn(std::string_view text) {
-  State& s = state();
-  const std::lock_guard lock(s.mutex);
-  if (std::find(s.warnings.begin(), s.warnings.end(), text) != s.warnings.end()) return;
-  s.warnings.emplace_back(text);
-  print(s, fmt::format("warning: {}", text));
+  keep(text, "warning", &State::warnings);
+}
+
+void note(std::string_view text) {
+  keep(text, "note", &State::notes);
 }
 
 std::vector<std::string> warnings() {
   State& s = state();
   const std::lock_guard lock(s.mutex);
   return s.warnings;
+}
+
+std::vector<std::string> notes() {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  return s.notes;
 }
 
 void status(std::string_view line) {

@@ -13,8 +13,15 @@ void info(std::string_view line);
 /// Prints `warning: text` and keeps the text for the summary at the end; the same text again is ignored.
 void warn(std::string_view text);
 
+/// Prints `note: text` and keeps the text for the summary at the end; the same text again is ignored. For what was done
+/// and is not wrong.
+void note(std::string_view text);
+
 /// All warnings so far, in order.
 std::vector<std::string> warnings();
+
+/// All notes so far, in order.
+std::vector<std::string> notes();
 
 /// Shows `line` in place below the other lines, for a progress bar; an empty one takes it away. For terminals only.
 void status(std::string_view line);

@@ -23,6 +23,7 @@
 #include "core/error.hpp"
 #include "environment/body_parts.hpp"
 #include "environment/cast.hpp"
+#include "environment/clearance.hpp"
 #include "environment/plausibility.hpp"
 #include "mesh/topology.hpp"
 #include "scene/sequence_files.hpp"
@@ -82,7 +83,7 @@ assets::LoadedCharacter load_upright(const Cast& cast, const scene::Acting& acti
     return assets::load_motion(*acting.motion, {{}, up, cast.scene.up}, cast.where);
   };
   assets::LoadedCharacter motion = load(acting.motion_up);
-  if (acting.motion_up != scene::FileUp::as_file || acting.motion->extension() != ".bvh") return motion;
+  if (acting.motion_up != scene::FileUp::as_file || !assets::is_bvh(*acting.motion)) return motion;
   const auto joints =
       joints_of(cast, acting.joints, &scene::JointNames::motion, motion.character, acting.motion->string());
   const character::Clip& clip = choose_clip(cast, acting.clip, motion.character.clips, acting.motion->string());
@@ -162,9 +163,21 @@ character::Clip take_over(const Cast& cast, const scene::Acting& acting, Body& b
   return std::move(result.clip);
 }
 
-/// The body as its file has it.
+/// What cloths of the scene are in the same file: that is no part of the body.
+std::vector<std::string> taken_by_cloths(const Cast& cast, const std::filesystem::path& file) {
+  std::vector<std::string> taken;
+  std::error_code ignored;
+  for (const scene::Cloth& cloth : cast.scene.cloths)
+    if (cloth.shape == scene::ClothShape::mesh && !cloth.object.empty() &&
+        std::filesystem::equivalent(cloth.file, file, ignored))
+      taken.push_back(cloth.object);
+  return taken;
+}
+
+/// The body as its file has it, without what cloths take from that.
 Body make_body(const Cast& cast, const scene::CharacterFile& source) {
-  assets::LoadedCharacter loaded = assets::load_character(source.path, cast.axes(), cast.where);
+  assets::LoadedCharacter loaded = assets::load_character(
+      source.path, cast.axes(), cast.where, {source.meshes, source.without, taken_by_cloths(cast, source.path)});
   return {source.path.string(), std::move(loaded.character), {}, std::move(loaded.warnings), loaded.scale};
 }
 
@@ -330,56 +343,50 @@ Standing stand_as(const Cast& cast, const scene::MeshSequence& /*source*/, const
               where, cast.settings.name);
 }
 
-/// Layers of cloth for which there is room between two limbs: two folds, as of a shirt that an arm comes down on. For
-/// four, frames of such a shirt were pinched (13 of 51).
-constexpr double kLayers = 8;
-
-/// What a body can lie on: planes without end that stand still, as the body has them.
-std::vector<character::Ground> grounds_below(const Cast& cast) {
-  const scene::Pose& pose = cast.settings.pose;
-  std::vector<character::Ground> grounds;
-  for (const scene::Obstacle& obstacle : cast.scene.obstacles) {
-    const auto* plane = std::get_if<scene::Plane>(&obstacle.shape);
-    if (plane == nullptr || !plane->infinite || !obstacle.collide || !obstacle.motion.keys.empty()) continue;
-    const Vec3 up = obstacle.pose.rotation * cast.up();
-    grounds.push_back({pose.rotation.conjugate() * up, up.dot(obstacle.pose.position - pose.position)});
-  }
-  return grounds;
-}
-
-/// Of the lowest of some vertices [m].
-double height_over(const character::Ground& ground, std::span<const Vec3> x) {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Vec3& v : x) least = std::min(least, ground.up.dot(v) - ground.height);
-  return least;
-}
-
-/// What the scene says, else what its cloths need. The walk of the mannequin keeps its arms off by itself.
-double room_between_limbs(const Cast& cast) {
-  if (cast.settings.room) return *cast.settings.room;
-  const auto* mannequin = std::get_if<scene::Mannequin>(&cast.settings.source);
-  if (!cast.settings.collide || (mannequin != nullptr && !mannequin->motion)) return 0;
-  double thickest = 0;
-  for (const scene::Cloth& cloth : cast.scene.cloths) thickest = std::max(thickest, cloth.material.thickness);
-  return kLayers * thickest;
-}
-
-/// Room for cloth between its limbs and under it, if there is to be any.
+/// Room for cloth between its limbs and under it, if cloth is there.
 template <class Source>
 std::optional<character::Room> room_of(const Cast& cast, const Source& source, const Body& body,
-                                       const std::vector<Part>& parts) {
+                                       const character::Performance& performance, const std::vector<Part>& parts,
+                                       std::span<const ClothAtStart> cloths) {
   const double room = room_between_limbs(cast);
   if (room == 0 || !body.clip) return std::nullopt;
+  std::vector<float> near_cloth = nearness_of_cloths(cast, body.character, performance, cloths);
+  if (std::ranges::all_of(near_cloth, [](float near) { return near <= 0; })) return std::nullopt;
   character::VertexMask touched(body.character.mesh.positions.size(), 1);
   for (const Part& part : parts)
     for (std::size_t v = 0; v < part.vertices.size(); ++v)
       if (!part.collide && part.vertices[v] != 0) touched[v] = 0;
   const auto joints = joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source);
-  return character::Room({body.character, joints}, touched, room, grounds_below(cast));
+  return character::Room({body.character, joints}, touched, std::move(near_cloth), room, grounds_below(cast));
+}
+
+/// Where and how far the skin of a body gave way most, over its keys.
+struct MostMoved {
+  character::Moved moved;
+  double time = 0;  // [s]
+  Vec3 place{0, 0, 0};
+
+  void add(const character::Moved& now, double t, std::span<const Vec3> x) {
+    if (now.distance <= moved.distance) return;
+    moved = now, time = t, place = x[now.vertex];
+  }
+};
+
+/// Displacements of skin that nobody sees are not reported [m].
+constexpr double kReportedMove = 1e-3;
+
+std::optional<std::string> describe(const Cast& cast, const MostMoved& most) {
+  if (most.moved.distance < kReportedMove) return std::nullopt;
+  const Vec3 x = cast.settings.pose.position + cast.settings.pose.rotation * most.place;
+  return fmt::format(
+      "{}: room: skin of the {} moves by up to {:.3g} mm, at ({:.3g}, {:.3g}, {:.3g}) m and {:.3g} s, to leave cloth "
+      "room from the {}; room = 0 leaves it as it is",
+      cast.where, most.moved.limb, 1e3 * most.moved.distance, x.x(), x.y(), x.z(), most.time, most.moved.away_from);
 }
 
 template <class Source>
-Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> following) {
+Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> following,
+          std::span<const ClothAtStart> cloths) {
   Body body = cast_body(cast, source);
   check_size(cast, source, body);
   const character::Clip still;
@@ -392,7 +399,8 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
                     cast.where, clip.name, gap));
   std::vector<Part> parts = parts_of(cast, source, following, body);
   const std::size_t vertices = body.character.mesh.positions.size();
-  const std::optional<character::Room> room = room_of(cast, source, body, parts);
+  const std::optional<character::Room> room = room_of(cast, source, body, performance, parts, cloths);
+  MostMoved moved;
   std::vector<Index> limbs;
   for (const character::Limb limb : character::limbs_of(
            body.character, joints_of(cast, source.joints, &scene::JointNames::body, body.character, body.source)))
@@ -409,7 +417,7 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
     const character::Pose pose = performance.at(t);
     character::skin(body.character, pose, x);
     if (grounds.size() == 1) lowest.push_back(height_over(grounds[0], std::span(x).first(vertices)));
-    if (room) room->make(pose, x);
+    if (room) moved.add(room->make(pose, x), t, x);
     const double since = t - begin_of(cast.scene);
     if (since >= cast.settings.grow) return;
     for (std::size_t v = 0; v < bones.size(); ++v)
@@ -420,17 +428,20 @@ Actor act(const Cast& cast, const Source& source, std::span<const FollowingPin> 
     body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
   if (const auto doubt = doubt_of_floor(std::move(lowest), cast.scene.obstacles.size() == 1))
     body.warnings.push_back(fmt::format("{}: {}", cast.where, *doubt));
+  std::vector<std::string> notes;
+  if (auto note = describe(cast, moved)) notes.push_back(*std::move(note));
   mesh::Mesh mesh = std::move(body.character.mesh);
   mesh.positions.resize(vertices);
   keys.at(0, mesh.positions);
   std::shared_ptr<const character::Coloring> coloring;
   if (!body.character.coloring.material_of_triangle.empty())
     coloring = std::make_shared<const character::Coloring>(std::move(body.character.coloring));
-  return {std::move(mesh),  std::move(keys),          std::move(parts),
-          std::move(limbs), std::move(body.warnings), std::move(coloring)};
+  return {std::move(mesh),          std::move(keys),  std::move(parts),   std::move(limbs),
+          std::move(body.warnings), std::move(notes), std::move(coloring)};
 }
 
-Actor act(const Cast& cast, const scene::MeshSequence& source, std::span<const FollowingPin> following) {
+Actor act(const Cast& cast, const scene::MeshSequence& source, std::span<const FollowingPin> following,
+          std::span<const ClothAtStart> /*cloths*/) {
   assets::LoadedSequence loaded = assets::load_sequence(scene::sequence_files(source.files), cast.axes(), cast.where);
   const std::size_t vertices = loaded.mesh.positions.size();
   if (!cast.settings.parts.empty() || !std::ranges::all_of(following, [](const auto& pin) { return pin.part.empty(); }))
@@ -441,7 +452,7 @@ Actor act(const Cast& cast, const scene::MeshSequence& source, std::span<const F
                           [&](double t, std::vector<Vec3>& x) { files.at(character::clip_time(cast.timing(), t), x); });
   keys.at(0, loaded.mesh.positions);
   std::vector<Index> limbs = mesh::components(loaded.mesh.topology.triangles, vertices);
-  return {std::move(loaded.mesh), std::move(keys), {}, std::move(limbs), {}};
+  return {std::move(loaded.mesh), std::move(keys), {}, std::move(limbs), {}, {}};
 }
 
 KeyFrameCount count(const Cast& cast, const KeyTimes& times, std::size_t vertices) {
@@ -467,10 +478,10 @@ KeyFrameCount count(const Cast& cast, const scene::MeshSequence& source) {
 
 }  // namespace
 
-Actor make_actor(const scene::Scene& scene, const scene::Character& character,
-                 std::span<const FollowingPin> following) {
+Actor make_actor(const scene::Scene& scene, const scene::Character& character, std::span<const FollowingPin> following,
+                 std::span<const ClothAtStart> cloths) {
   const Cast cast = make_cast(scene, character);
-  return std::visit([&](const auto& source) { return act(cast, source, following); }, character.source);
+  return std::visit([&](const auto& source) { return act(cast, source, following, cloths); }, character.source);
 }
 
 Standing stand(const scene::Scene& scene, const scene::Character& character, const std::string& where) {

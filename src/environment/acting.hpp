@@ -11,6 +11,7 @@
 #include "character/parts.hpp"
 #include "environment/key_frames.hpp"
 #include "mesh/mesh.hpp"
+#include "mesh/topology.hpp"
 #include "scene/scene.hpp"
 
 namespace weft::environment {
@@ -32,6 +33,13 @@ struct FollowingPin {
   std::vector<Vec3> places;
 };
 
+/// A cloth as it is when it is put on.
+struct ClothAtStart {
+  std::span<const Vec3> x;  ///< places of its particles [m]
+  std::span<const mesh::Triangle> triangles;
+  double put_on = 0;  ///< time after the start of the run at which it comes [s]
+};
+
 /// A body that moves by key frames of its vertices, made before the simulation starts.
 struct Actor {
   mesh::Mesh mesh;           ///< in the world at time 0
@@ -39,13 +47,15 @@ struct Actor {
   std::vector<Part> parts;   ///< those of the scene, and those that its pins follow
   std::vector<Index> limbs;  ///< that each vertex of the mesh is of, from 0
   std::vector<std::string> warnings;
+  std::vector<std::string> notes;                                 ///< for the summary: what was done to the body
   std::shared_ptr<const character::Coloring> coloring = nullptr;  ///< of its file, where that has some
 };
 
-/// Reads the files of a character and stores its key frames from time 0 to the end of the scene. Throws
+/// Reads the files of a character and stores its key frames from time 0 to the end of the scene. Its skin leaves room
+/// for the `cloths` that are on it. Throws
 /// Error(asset_unreadable, scene_invalid) with scene line, file and part.
 Actor make_actor(const scene::Scene& scene, const scene::Character& character,
-                 std::span<const FollowingPin> following = {});
+                 std::span<const FollowingPin> following = {}, std::span<const ClothAtStart> cloths = {});
 
 /// A body with bones as it stands at the start of a scene, before its preroll.
 struct Standing {

@@ -210,6 +210,22 @@ class Ways {
   std::vector<std::vector<std::pair<Index, double>>> to_;  // per particle: others, and how far they are [m]
 };
 
+/// What to write instead of bounds that lie between two rows of particles; nothing of parts that are given otherwise.
+std::string nearest_row(const scene::ClothPart& part, const ClothObject& object) {
+  if (!part.panel.empty() || !part.edge.empty() || part.mask || part.vertex_color != scene::VertexColor::none ||
+      !part.vertex_group.empty() || object.fractions.empty())
+    return {};
+  const auto distance = [&](const Vec2& at) { return (at - at.cwiseMax(part.low).cwiseMin(part.high)).norm(); };
+  const Vec2& nearest = *std::ranges::min_element(object.fractions, {}, distance);
+  const Vec2 low = part.low.cwiseMin(nearest), high = part.high.cwiseMax(nearest);
+  return fmt::format(
+      " between low = [{:.4g}, {:.4g}] and high = [{:.4g}, {:.4g}]; the nearest particle is at [{:.4g}, {:.4g}]: low = "
+      "[{:.4g}, {:.4g}], high = [{:.4g}, {:.4g}] hold it",
+      part.low.x(), part.low.y(), part.high.x(), part.high.y(), nearest.x(), nearest.y(),
+      std::floor(1e4 * low.x()) / 1e4, std::floor(1e4 * low.y()) / 1e4, std::ceil(1e4 * high.x()) / 1e4,
+      std::ceil(1e4 * high.y()) / 1e4);
+}
+
 }  // namespace
 
 void choose_particles(const scene::Cloth& cloth, const assets::LoadedMesh& file, const std::string& where,
@@ -221,7 +237,8 @@ void choose_particles(const scene::Cloth& cloth, const assets::LoadedMesh& file,
     std::erase_if(chosen, [&](const Chosen& one) { return one.share < least; });
     if (chosen.empty())
       throw Error(ExitCode::scene_invalid,
-                  "{}: expected a part that holds at least one particle, got one that holds none", key);
+                  "{}: expected a part that holds at least one particle, got one that holds none{}", key,
+                  nearest_row(part, object));
     return chosen;
   };
   for (std::size_t p = 0; p < cloth.pins.size(); ++p) {

@@ -139,11 +139,31 @@ void use_pattern(const scene::Scene& scene, const scene::Cloth& cloth, const std
 // nine runs but one were solved, with 141 none of nine; of rectangles, graded by 50 all, by 100 none.
 constexpr double kLargestUnevenness = 80;
 
+/// The axes of a mesh file. One that a character comes from too has its axes, also where the file does not say them.
+assets::MeshAxes axes_of(const scene::Scene& scene, const std::filesystem::path& file, double scale, scene::FileUp up) {
+  assets::MeshAxes axes{scale, up, scene.up};
+  std::error_code ignored;
+  for (const scene::Character& character : scene.characters) {
+    const auto* source = std::get_if<scene::CharacterFile>(&character.source);
+    if (source == nullptr || !std::filesystem::equivalent(source->path, file, ignored)) continue;
+    if (up == scene::FileUp::as_file) axes.up = character.up;
+    axes.unsaid = scene::FileUp::y;
+  }
+  return axes;
+}
+
 /// The triangles of a cloth's file, made a sheet where they are none. Throws Error(asset_unreadable) where that fails.
-assets::LoadedMesh load_sheet(const scene::Cloth& cloth, const std::string& where, ClothObject& object) {
-  assets::LoadedMesh loaded = assets::load_mesh(cloth.file, cloth.scale, where, cloth.object);
+assets::LoadedMesh load_sheet(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
+                              ClothObject& object) {
+  assets::LoadedMesh loaded =
+      assets::load_mesh(cloth.file, axes_of(scene, cloth.file, cloth.scale, cloth.up), where, cloth.object);
   mesh::Mesh& mesh = loaded.mesh;
   mesh.topology.quads.clear();
+  if (loaded.lost_vertices > 0)
+    object.warnings.push_back(
+        fmt::format("{}: mesh file {}: {} of {} vertices are in no triangle that has an area; faces there cross "
+                    "themselves or have all corners on a line",
+                    where, cloth.file.string(), loaded.lost_vertices, mesh.positions.size()));
   if (const assets::Mended mended = assets::mend_sheet(loaded, 1 / kLargestUnevenness); mended.any())
     object.warnings.push_back(
         fmt::format("{}: mesh file {}: made a sheet: {}", where, cloth.file.string(), mended.describe()));
@@ -198,8 +218,9 @@ bool takes_uv(const scene::Cloth& cloth, const garment::UvRest& rest, const std:
 
 /// Cloth from a file: its start is the mesh, its shape at rest that too, or the flat panels that its UVs are. Returns
 /// what else the file says of its vertices.
-assets::LoadedMesh use_mesh_file(const scene::Cloth& cloth, const std::string& where, ClothObject& object) {
-  assets::LoadedMesh loaded = load_sheet(cloth, where, object);
+assets::LoadedMesh use_mesh_file(const scene::Scene& scene, const scene::Cloth& cloth, const std::string& where,
+                                 ClothObject& object) {
+  assets::LoadedMesh loaded = load_sheet(scene, cloth, where, object);
   garment::UvRest rest;
   if (cloth.rest != scene::ClothRest::mesh)
     rest = garment::rest_from_uv(loaded.mesh, loaded.uv, cloth.uv_scale, 1 / kLargestUnevenness);
@@ -289,7 +310,7 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wea
       use_triangles(mesh::make_triangle_sheet(grid, mesh::Pattern::crossed), object);
       break;
     case scene::ClothShape::mesh:
-      file = use_mesh_file(cloth, where, object);
+      file = use_mesh_file(scene, cloth, where, object);
       break;
     case scene::ClothShape::pattern:
       use_pattern(scene, cloth, where, wearers, object);
@@ -331,7 +352,7 @@ struct MakeMesh {
   mesh::Mesh operator()(const scene::MeshFile& s) const {
     const std::string where =
         fmt::format("{}:{}:{}: obstacle.{}", scene.file.string(), obstacle.line, obstacle.column, obstacle.name);
-    return assets::load_mesh(s.path, s.scale, where).mesh;
+    return assets::load_mesh(s.path, axes_of(scene, s.path, s.scale, s.up), where).mesh;
   }
 };
 
@@ -439,10 +460,14 @@ Environment::Environment(const scene::Scene& scene) {
     bodies.push_back(make_obstacle(scene, obstacle));
     movers_.push_back(std::make_shared<const Mover>(Track(obstacle.motion, obstacle.pose)));
   }
+  std::vector<ClothAtStart> at_start;
+  for (const ClothObject& cloth : cloths)
+    at_start.push_back({cloth.start, cloth.mesh.topology.triangles, cloth.put_on});
   for (const scene::Character& character : scene.characters) {
     std::vector<BodyObject::Follower> followers;
-    Actor actor = make_actor(scene, character, following_pins(scene, cloths, character.name, followers));
+    Actor actor = make_actor(scene, character, following_pins(scene, cloths, character.name, followers), at_start);
     for (const std::string& warning : actor.warnings) log::warn(warning);
+    for (const std::string& note : actor.notes) log::note(note);
     bodies.push_back(make_character(character, actor));
     const bool has_bones = scene::acting_of(character) != nullptr;
     for (BodyObject::Follower& follower : followers) follower.first_vertex += actor.mesh.positions.size();

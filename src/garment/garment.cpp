@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 
@@ -19,6 +21,8 @@ namespace {
 constexpr double kClearance = 0.6;
 // Longest edge that becomes a point, by the spacing.
 constexpr double kPoint = 0.25;
+// Least area of a triangle beside an edge that is turned, by that of a square of the mesh: flatter ones are needles.
+constexpr double kLeastTurnedArea = 0.02;
 // Particles of one garment at most.
 constexpr double kMaxParticles = 1e6;
 
@@ -32,6 +36,7 @@ class Sewing {
     count_segments();
     mesh_panels();
     join_seams();
+    part_shared_edges();
     number_vertices();
     make_triangles();
     if (wearer_ != nullptr)
@@ -136,6 +141,60 @@ class Sewing {
     }
   }
 
+  /// An edge inside of a panel, between joined vertices that another edge joins as well: where two panels are sewn
+  /// around a corner, a triangle in the corner of each has such an edge. The edge is turned in the last panel that has
+  /// it so.
+  void part_shared_edges() {
+    constexpr int kMostRounds = 8;  // a turned edge hardly ever meets another; what is left is refused
+    for (int round = 0; round < kMostRounds; ++round) {
+      std::map<JoinedEdge, int> triangles_at;
+      for (std::size_t p = 0; p < meshes_.size(); ++p)
+        for (const mesh::Triangle& t : meshes_[p].triangles)
+          for (std::size_t k = 0; k < 3; ++k) ++triangles_at[joined_edge(p, t[k], t[(k + 1) % 3])];
+      bool turned = false;
+      for (std::size_t p = meshes_.size(); p-- > 0;) turned = turn_shared_edges(p, triangles_at) || turned;
+      if (!turned) return;
+    }
+  }
+  using JoinedEdge = std::array<Index, 2>;
+  JoinedEdge joined_edge(std::size_t panel, Index a, Index b) {
+    const Index u = sewn_together_.root(first_[panel] + a), v = sewn_together_.root(first_[panel] + b);
+    return {std::min(u, v), std::max(u, v)};
+  }
+  // `triangles_at`: how many triangles of all panels each edge has.
+  bool turn_shared_edges(std::size_t panel, std::map<JoinedEdge, int>& triangles_at) {
+    std::vector<mesh::Triangle>& triangles = meshes_[panel].triangles;
+    const std::vector<Vec2>& points = meshes_[panel].points;
+    const double least = kLeastTurnedArea * spacing_ * spacing_;
+    const auto area = [&](Index a, Index b, Index c) {
+      return polygon_area(std::array{points[at(a)], points[at(b)], points[at(c)]});
+    };
+    bool turned = false;
+    const mesh::EdgeSet table = mesh::collect_edges(triangles);
+    std::vector<char> changed(triangles.size(), 0);
+    for (const mesh::Edge& edge : table.edges) {
+      if (edge.triangles[1] < 0) continue;
+      const Index a = edge.vertices[0], b = edge.vertices[1];
+      int& count = triangles_at[joined_edge(panel, a, b)];
+      const std::size_t first = at(edge.triangles[0]), second = at(edge.triangles[1]);
+      if (count <= 2 || changed[first] || changed[second]) continue;
+      const auto opposite = [&](const mesh::Triangle& t) {
+        return *std::ranges::find_if(t, [&](Index v) { return v != a && v != b; });
+      };
+      // Counter-clockwise from, left, to, right, whichever of both triangles came first.
+      const mesh::Triangle& one = triangles[first];
+      const std::size_t k = at(static_cast<Index>(std::ranges::find(one, opposite(one)) - one.begin()));
+      const Index left = one[k], from = one[(k + 1) % 3], to = one[(k + 2) % 3], right = opposite(triangles[second]);
+      int& there = triangles_at[joined_edge(panel, left, right)];
+      if (there > 0 || !(area(from, right, left) > least) || !(area(right, to, left) > least)) continue;
+      triangles[first] = {from, right, left}, triangles[second] = {right, to, left};
+      changed[first] = changed[second] = 1;
+      count -= 2, there += 2;
+      turned = true;
+    }
+    return turned;
+  }
+
   void number_vertices() {
     number_.assign(at(total_), -1);
     for (Index v = 0; v < total_; ++v) {
@@ -228,10 +287,12 @@ class Sewing {
   void check_surface() const {
     const mesh::TopologyReport report = mesh::inspect(garment_.sheet.triangles, at(vertices_));
     if (!report.manifold())
-      refuse(
-          fmt::format("expected seams that make a surface, got {} edges of more than two triangles, {} whose "
-                      "triangles face both ways and {} triangles that a seam folds; a smaller edge_length may help",
-                      report.non_manifold.size(), report.misoriented.size(), report.degenerate.size()));
+      refuse(fmt::format(
+          "expected seams that make a surface, got {} edges of more than two triangles, {} whose "
+          "triangles face both ways and {} triangles that a seam folds; {}",
+          report.non_manifold.size(), report.misoriented.size(), report.degenerate.size(),
+          report.misoriented.empty() ? "a smaller edge_length may help"
+                                     : "panels that lie one on the other need side = \"front\" and side = \"back\""));
   }
   void check_plane(const std::vector<LaidPanel>& laid) const {
     for (std::size_t p = 0; p < laid.size(); ++p)

@@ -11,6 +11,7 @@
 #include <numbers>
 #include <optional>
 #include <pugixml.hpp>
+#include <span>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -18,6 +19,7 @@
 
 #include "core/error.hpp"
 #include "core/input_file.hpp"
+#include "core/nearest.hpp"
 #include "core/nesting.hpp"
 
 namespace weft::garment {
@@ -66,10 +68,50 @@ class Drawing {
     for (const char* key : {"id", "inkscape:label"})
       if (const auto found = document_.find_node([&](const auto& n) { return id == n.attribute(key).value(); }))
         return found;
-    refuse(0, fmt::format("expected an element with the id or label \"{}\", got none", id));
+    if (const auto numbered = find_numbered(id)) return numbered;
+    refuse(0, fmt::format("expected an element with the id or label \"{}\", got none; {}", id, ids_instead(id)));
   }
 
  private:
+  static bool is_shape(const pugi::xml_node& node) {
+    const std::string_view name = node.name();
+    return name == "path" || name == "polygon" || name == "rect" || name == "g";
+  }
+
+  /// "path:2" is the second path of the drawing, in its order: programs such as Valentina write no ids.
+  pugi::xml_node find_numbered(const std::string& id) const {
+    const std::size_t colon = id.find(':');
+    if (colon == std::string::npos) return {};
+    std::size_t number = 0, seen = 0;
+    const auto [end, error] = std::from_chars(id.data() + colon + 1, id.data() + id.size(), number);
+    if (error != std::errc() || end != id.data() + id.size()) return {};
+    return document_.find_node([&](const pugi::xml_node& node) {
+      return is_shape(node) && id.compare(0, colon, node.name()) == 0 && ++seen == number;
+    });
+  }
+
+  /// What could be written in place of an id that nothing has.
+  std::string ids_instead(const std::string& id) const {
+    std::vector<std::string> known;
+    std::size_t paths = 0;
+    document_.find_node([&](const pugi::xml_node& node) {
+      paths += std::string_view(node.name()) == "path" ? 1 : 0;
+      for (const char* key : {"id", "inkscape:label"})
+        if (const std::string text = node.attribute(key).value(); is_shape(node) && !text.empty())
+          known.push_back(text);
+      return false;
+    });
+    if (known.empty())
+      return fmt::format("none of its {} paths has one: \"path:1\" is the first of them, in the order of the file",
+                         paths);
+    const std::string nearest = nearest_name(id, known);
+    if (!nearest.empty()) return fmt::format("did you mean \"{}\"?", nearest);
+    constexpr std::size_t kMostNamed = 12;
+    const std::size_t named = std::min(known.size(), kMostNamed);
+    return fmt::format("it has \"{}\"{}", fmt::join(std::span(known).first(named), "\", \""),
+                       named < known.size() ? ", ..." : "");
+  }
+
   static std::string id_of(const pugi::xml_node& node) {
     const std::string id = node.attribute("id").value();
     return id.empty() ? "" : fmt::format(" \"{}\"", id.substr(0, 40));
@@ -182,7 +224,7 @@ Outline outline_of(const Drawing& drawing, const pugi::xml_node& node) {
     data = fmt::format("M {} {} h {} v {} h {} Z", x->empty() ? 0 : (*x)[0], y->empty() ? 0 : (*y)[0], (*width)[0],
                        (*height)[0], -(*width)[0]);
   } else if (kind != "path") {
-    drawing.refuse(node, "expected a path, polygon or rect, got another element");
+    drawing.refuse(node, "expected a path, polygon or rect, got another element; id names the outline itself");
   }
   ParsedPath parsed = parse_path(data);
   if (!parsed.mistake.empty()) drawing.refuse(node, parsed.mistake);

@@ -14,4 +14,9 @@ namespace weft::mesh {
 void triangulate_polygon(std::span<const Index> corners, std::span<const Vec3> positions,
                          std::vector<Triangle>& triangles);
 
+/// The same of a face of a file, whose coordinates are of single precision: corners along a straight side stay corners
+/// of triangles with an area, and where needles remain edges are turned until the triangles are as even as they can be.
+void triangulate_face(std::span<const Index> corners, std::span<const Vec3> positions,
+                      std::vector<Triangle>& triangles);
+
 }  // namespace weft::mesh

@@ -97,6 +97,12 @@ void source_rows(TableBuilder<Character>& rows) {
                            .plain(Type::file, "file", of_source<CharacterFile>(&CharacterFile::path),
                                   "with skeleton, skin and animations; relative paths start at the scene's folder")
                            .need(Need::required)
+                           .plain(Type::texts, "meshes", of_source<CharacterFile>(&CharacterFile::meshes),
+                                  "that it consists of, by their names or those of their nodes")
+                           .by_default("all that the file holds")
+                           .plain(Type::texts, "without", of_source<CharacterFile>(&CharacterFile::without),
+                                  "meshes that it does not have, likewise")
+                           .by_default("what cloths take from the same file by object")
                            .with(acting_rows<CharacterFile>));
   rows.variant("mannequin",
                Rows()
@@ -155,8 +161,9 @@ const Table& character_rules() {
               "in which it grows from its bones to its size at the beginning of its dressing, into clothes that are "
               "narrower than it is but hold its bones")
           .number("room", &Character::room, within(0, 0.1), "m",
-                  "between its limbs for cloth: where they come closer, or go into each other or into the floor, its "
-                  "skin gives way; 0 leaves it as it is")
+                  "between its limbs for cloth: where a motion closes them on cloth that is put on there, or presses "
+                  "it to the floor, its skin moves back, each limb by at most half of what is missing; 0 leaves it as "
+                  "it is")
           .by_default("that of eight layers of the thickest cloth; 0 where the mannequin walks by itself")
           .number("start", &Character::start, within(0, 86400), "s", "time of the clip that it gets going from")
           .number("speed", &Character::speed, above(0, 100), "", "of the clip; 1 as it is")

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <exception>
 #include <limits>
+#include <optional>
+#include <string>
 
 #include "core/grading.hpp"
 #include "core/input_file.hpp"
@@ -105,21 +107,28 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
                       "expected none of a cloth that is not shape = \"mesh\", got " + in_quotes(part.vertex_group));
   }
   if (rectangle_particles(cloth) == 0) return;  // what it holds shows when the file is read
-  // A part between two rows of particles would hold nothing, silently.
-  const auto holds_some = [](double low, double high, int count, double grading) {
+  // A part between two rows of particles would hold nothing, silently. Nothing, or the nearest row to name.
+  const auto missed_row = [](double low, double high, int count, double grading) {
+    std::optional<double> nearest;
+    const auto distance = [&](double at) { return std::max({low - at, at - high, 0.0}); };
     for (int i = 0; i < count; ++i) {
       const double at = graded_fraction(i, count, grading);
       ClothPart along;
       along.low.x() = low;
       along.high.x() = high;
-      if (along.holds(at, 0)) return true;
+      if (along.holds(at, 0)) return std::optional<double>();
+      if (!nearest || distance(at) < distance(*nearest)) nearest = at;
     }
-    return false;
+    return nearest;
   };
-  if (!holds_some(part.low.x(), part.high.x(), cloth.particles_weft, cloth.grading.x()) ||
-      !holds_some(part.low.y(), part.high.y(), cloth.particles_warp, cloth.grading.y())) {
-    findings.report(path, "expected a part that holds at least one particle, got one between two rows");
-  }
+  std::string rows;
+  const auto look_along = [&](const char* axis, const std::optional<double>& row) {
+    if (row) rows += fmt::format("; the nearest along {} is at {:.6g}", axis, *row);
+  };
+  look_along("weft", missed_row(part.low.x(), part.high.x(), cloth.particles_weft, cloth.grading.x()));
+  look_along("warp", missed_row(part.low.y(), part.high.y(), cloth.particles_warp, cloth.grading.y()));
+  if (!rows.empty())
+    findings.report(path, "expected a part that holds at least one particle, got one between two rows" + rows);
 }
 
 void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std::string& path, Findings& findings) {

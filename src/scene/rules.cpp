@@ -182,6 +182,9 @@ void cloth_shape_rows(TableBuilder<Cloth>& rows) {
                    .need(Need::required)
                    .number("scale", &Cloth::scale, above(0, 1e6), "",
                            "factor on all lengths of the file, which are metres where it says its unit")
+                   .choice("up", &Cloth::up, {"as_file", "x", "y", "z"},
+                           "axis of the file that points up; glTF, FBX and Collada say it, other formats are taken to "
+                           "have the axes of the scene")
                    .plain(Type::text, "object", &Cloth::object, "name of the mesh, or its node, in the file")
                    .by_default("all that the file holds")
                    .choice("rest", &Cloth::rest, {"auto", "mesh", "uv"},
@@ -300,7 +303,10 @@ void shape_rows(TableBuilder<Obstacle>& rows) {
                                   "mesh file; relative paths start at the scene's folder")
                            .need(Need::required)
                            .number("scale", of_shape(&MeshFile::scale), above(0, 1e6), "",
-                                   "factor on all lengths of the file, which are metres where it says its unit"));
+                                   "factor on all lengths of the file, which are metres where it says its unit")
+                           .choice("up", of_shape(&MeshFile::up), {"as_file", "x", "y", "z"},
+                                   "axis of the file that points up; glTF, FBX and Collada say it, other formats are "
+                                   "taken to have the axes of the scene"));
 }
 
 const Table& obstacle_rules() {

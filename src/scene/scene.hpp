@@ -227,6 +227,7 @@ struct Weight : ClothPart {
 enum class ClothStart { as_given, untangle };
 enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern };
 enum class ClothRest { automatic, mesh, uv };
+enum class FileUp { as_file, x, y, z };
 
 struct Cloth {
   std::string name;
@@ -235,8 +236,9 @@ struct Cloth {
   int particles_weft = 41, particles_warp = 41;  ///< likewise; crossed triangles have one more in each cell
   Vec2 grading{1, 1};                            ///< likewise: last spacing of particles over the first
   std::filesystem::path file;                    ///< of a mesh or sewing pattern; absolute after checking
-  double scale = 1;    ///< of a mesh: metres per unit of the file; of a pattern: factor on its lengths
-  std::string object;  ///< of a mesh: name of what the file has it as; empty: all that it holds
+  double scale = 1;             ///< of a mesh: metres per unit of the file; of a pattern: factor on its lengths
+  FileUp up = FileUp::as_file;  ///< of a mesh: axis of the file that points up
+  std::string object;           ///< of a mesh: name of what the file has it as; empty: all that it holds
   ClothRest rest = ClothRest::automatic;  ///< what the shape at rest of a mesh is taken from
   std::optional<Vec2> uv_scale;           ///< metres per unit of its UVs; absent: measured against the mesh
   double edge_length = 0.02;              ///< of the mesh of a pattern [m]
@@ -289,6 +291,7 @@ struct Plane {
 struct MeshFile {
   std::filesystem::path path;
   double scale = 1;
+  FileUp up = FileUp::as_file;
 };  ///< path is absolute after checking
 
 using Shape = std::variant<Sphere, BoxShape, Cone, Torus, Cylinder, HalfPipe, Plane, MeshFile>;
@@ -305,7 +308,6 @@ struct Obstacle {
   int line = 0, column = 0;  ///< where the scene names it, for errors of its file
 };
 
-enum class FileUp { as_file, x, y, z };
 enum class Stance { first, rest };
 
 /// A joint of the body that `motion` is to move, where its name is none that is known.
@@ -337,7 +339,9 @@ struct Acting {
 
 /// A skinned and animated character from a file.
 struct CharacterFile : Acting {
-  std::filesystem::path path;  ///< absolute after checking
+  std::filesystem::path path;        ///< absolute after checking
+  std::vector<std::string> meshes;   ///< that it consists of, by the names of meshes or their nodes; empty: all
+  std::vector<std::string> without;  ///< that it does not have, likewise
 };
 
 /// Our own mannequin, see character::MannequinBuild. It looks along −y, where y is up along z, and walks there.

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 #include <map>
 #include <set>
 #include <utility>
@@ -18,6 +20,8 @@ namespace {
 constexpr double kFastest = 20;
 // Way of a pin in the first instant that is told of [m].
 constexpr double kJump = 1e-3;
+// Distance from the body that it follows at which a pin starts, beyond which nothing is worn [m]: capes are 5 cm off.
+constexpr double kFarPin = 0.1;
 // How deep a particle is in an obstacle that it enters [m].
 constexpr double kDepth = 1e-3;
 // Looks that are taken at each frame.
@@ -29,6 +33,15 @@ using Held = std::vector<integrator::HeldParticle>;
 
 bool moves(const scene::Pin& pin) {
   return !pin.motion.keys.empty();
+}
+
+bool follows(const scene::Pin& pin) {
+  return !pin.follow.empty();
+}
+
+bool any_pin(const scene::Scene& scene, bool (*is)(const scene::Pin&)) {
+  return std::ranges::any_of(scene.cloths,
+                             [&](const scene::Cloth& cloth) { return std::ranges::any_of(cloth.pins, is); });
 }
 
 struct MovingPins {
@@ -47,10 +60,11 @@ struct MovingPins {
       first.push_back(first.back() + static_cast<Index>(cloth.start.size()));
     return first;
   }
-  bool is_moved(const scene::Scene& scene, std::size_t pin) const {
-    const Pins::About& about = pins.about(pin);
-    return moves(scene.cloths[about.cloth].pins[about.number]);
+  const scene::Pin& pin(const scene::Scene& scene, std::size_t number) const {
+    const Pins::About& about = pins.about(number);
+    return scene.cloths[about.cloth].pins[about.number];
   }
+  bool is_moved(const scene::Scene& scene, std::size_t number) const { return moves(pin(scene, number)); }
   std::string name(const scene::Scene& scene, std::size_t pin) const {
     const Pins::About& about = pins.about(pin);
     return fmt::format("cloth.{}.pin.{}", scene.cloths[about.cloth].name, about.number);
@@ -116,8 +130,7 @@ std::vector<double> times_of(const scene::Scene& scene) {
 }  // namespace
 
 bool has_moving_pins(const scene::Scene& scene) {
-  return std::ranges::any_of(scene.cloths,
-                             [](const scene::Cloth& cloth) { return std::ranges::any_of(cloth.pins, moves); });
+  return any_pin(scene, moves) || any_pin(scene, follows);
 }
 
 std::vector<std::string> find_jumps(const scene::Scene& scene, const environment::Environment& environment) {
@@ -137,22 +150,62 @@ std::vector<std::string> find_jumps(const scene::Scene& scene, const environment
           "step; begin with offset = [0, 0, 0]",
           moving.name(scene, pin), way));
   }
+  std::vector<Vec3> before = moving.start;
+  double last = start;
   for (const double t : times_of(scene)) {
     moving.pins.held_at(t, environment, held);
     for (const integrator::HeldParticle& particle : held) {
-      const std::size_t pin = moving.pins.of(particle.constraint.particle);
-      const double speed = particle.v_end.norm();
-      if (speed > kFastest && moving.is_moved(scene, pin) && fast.insert(pin).second)
-        found.push_back(fmt::format("{}: moves at {:.3g} m/s at {:.4g} s, which tears cloth along",
-                                    moving.name(scene, pin), speed, t));
+      const std::size_t number = moving.pins.of(particle.constraint.particle);
+      Vec3& x = before[static_cast<std::size_t>(particle.constraint.particle)];
+      // A jump between two looks shows in the way alone.
+      const double mean = t > last && last >= 0 ? (particle.x_end - x).norm() / (t - last) : 0;
+      const double speed = std::max(particle.v_end.norm(), mean);
+      x = particle.x_end;
+      const scene::Pin& pin = moving.pin(scene, number);
+      if (speed <= kFastest || !(moves(pin) || follows(pin)) || !fast.insert(number).second) continue;
+      found.push_back(fmt::format(
+          "{}: moves at {:.3g} m/s at {:.4g} s, which tears cloth along{}", moving.name(scene, number), speed, t,
+          moves(pin) ? ""
+                     : fmt::format("; '{}', which it follows, moves or jumps there: keys farther apart make it slower, "
+                                   "and a jump needs a scene of its own on either side",
+                                   pin.follow)));
     }
+    last = t;
   }
+  return found;
+}
+
+std::vector<std::string> find_far_pins(const scene::Scene& scene, const environment::Environment& environment) {
+  std::vector<std::string> found;
+  if (!any_pin(scene, follows)) return found;
+  const double start = -scene.preroll_frames() / scene.time.fps;
+  std::vector<Vec3> x;
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
+    for (std::size_t p = 0; p < scene.cloths[c].pins.size(); ++p) {
+      const std::string name = scene::followed(scene.cloths[c].pins[p]).body;
+      const auto body = std::ranges::find(environment.bodies, name, &environment::BodyObject::name);
+      const std::vector<environment::Chosen>& chosen = environment.cloths[c].pins[p];
+      if (body == environment.bodies.end() || body->infinite_floor || chosen.empty()) continue;
+      x.resize(body->mesh.positions.size());
+      environment.place(static_cast<std::size_t>(body - environment.bodies.begin()), start, x);
+      const std::size_t every = (chosen.size() + kMostLookedAt - 1) / kMostLookedAt;
+      double least = std::numeric_limits<double>::infinity();
+      for (std::size_t k = 0; k < chosen.size(); k += every) {
+        const Vec3& place = environment.cloths[c].start[static_cast<std::size_t>(chosen[k].particle)];
+        least = std::min(least, collision::nearest_point(place, body->mesh.topology.triangles, x).height);
+      }
+      if (least > kFarPin && std::isfinite(least))
+        found.push_back(fmt::format(
+            "cloth.{}.pin.{}: follows '{}' from {:.3g} m away at the start, where what is worn lies on it; position "
+            "of the cloth brings it nearer",
+            scene.cloths[c].name, p, scene.cloths[c].pins[p].follow, least));
+    }
   return found;
 }
 
 std::vector<std::string> find_stretches(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<std::string> found;
-  if (!has_moving_pins(scene)) return found;
+  if (!any_pin(scene, moves)) return found;
   const MovingPins moving(scene, environment);
   struct Stretch {
     double from = 0, most = 0, at = 0;  // times [s]; shares of the length at rest
@@ -188,7 +241,7 @@ std::vector<std::string> find_stretches(const scene::Scene& scene, const environ
 
 std::vector<std::string> find_entries(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<std::string> found;
-  if (!has_moving_pins(scene) || !scene.contact.obstacles) return found;
+  if (!any_pin(scene, moves) || !scene.contact.obstacles) return found;
   const MovingPins moving(scene, environment);
   Held held;
   std::vector<Vec3> x;

@@ -9,8 +9,8 @@
 
 namespace weft::simulation {
 
-/// A sentence for each pin moved by keys that jumps at the start, or moves too fast for cloth to follow:
-/// "cloth.a.pin.0: ...". For all others nothing is computed.
+/// A sentence for each pin moved by keys that jumps at the start, and for each, also of those that follow a body, that
+/// moves too fast for cloth to follow: "cloth.a.pin.0: ...". For all others nothing is computed.
 std::vector<std::string> find_jumps(const scene::Scene& scene, const environment::Environment& environment);
 
 /// Likewise for each obstacle that such a pin enters, with the first time.
@@ -20,7 +20,10 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
 /// between them can be stretched.
 std::vector<std::string> find_stretches(const scene::Scene& scene, const environment::Environment& environment);
 
-/// Whether there is such a pin.
+/// Likewise for each pin that follows a body from farther away than what is worn.
+std::vector<std::string> find_far_pins(const scene::Scene& scene, const environment::Environment& environment);
+
+/// Whether there is a pin that keys or a body move.
 bool has_moving_pins(const scene::Scene& scene);
 
 }  // namespace weft::simulation

@@ -203,8 +203,8 @@ std::vector<std::string> doubts(const scene::Scene& scene) {
   std::vector<std::string> found;
   if (!has_moving_pins(scene)) return found;
   const environment::Environment environment(scene);
-  for (const auto& texts :
-       {find_jumps(scene, environment), find_entries(scene, environment), find_stretches(scene, environment)})
+  for (const auto& texts : {find_jumps(scene, environment), find_entries(scene, environment),
+                            find_stretches(scene, environment), find_far_pins(scene, environment)})
     found.insert(found.end(), texts.begin(), texts.end());
   return found;
 }

@@ -5,6 +5,7 @@
 #include <assimp/material.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <limits>
 #include <memory>
@@ -135,6 +136,48 @@ TEST_F(Scenes, BecomeNodesBonesOneMeshAndClips) {
   EXPECT_NE(std::find(x.begin(), x.end(), Vec3(0, 6, 0)), x.end()) << "the copy at the crate";
 }
 
+TEST_F(Scenes, HaveTheMeshesThatAreChosen) {
+  const auto vertices = [&](const MeshChoice& choice) {
+    return to_character(scene_, {}, choice).character.mesh.positions.size();
+  };
+  EXPECT_EQ(vertices({}), 10u);
+  EXPECT_EQ(vertices({.only = {"leg"}, .without = {}, .elsewhere = {}}), 4u);
+  EXPECT_EQ(vertices({.only = {"crate"}, .without = {}, .elsewhere = {}}), 3u) << "by the node";
+  EXPECT_EQ(vertices({.only = {}, .without = {"box"}, .elsewhere = {}}), 4u);
+  EXPECT_EQ(vertices({.only = {}, .without = {}, .elsewhere = {"box", "nothing of this name"}}), 4u);
+  for (const MeshChoice& choice : {MeshChoice{{"legs"}, {}, {}}, MeshChoice{{}, {"legs"}, {}}}) try {
+      vertices(choice);
+      ADD_FAILURE() << "taken";
+    } catch (const std::runtime_error& error) {
+      EXPECT_NE(std::string(error.what())
+                    .find("expected names of meshes or of their nodes, such as \"box\", "
+                          "\"crate\", \"leg\", \"root\", got \"legs\""),
+                std::string::npos)
+          << error.what();
+    }
+}
+
+// The knee is turned by 180 degrees about the origin after it was bound: vertex 3 goes from (2, 0, 0) to (0, 0, 0).
+TEST_F(Scenes, WhoseRestPoseIsNotThatInWhichTheSkinWasBoundAreWarnedAbout) {
+  knee_->mTransformation.a1 = knee_->mTransformation.b2 = -1;
+  EXPECT_EQ(warning(),
+            "mesh \"leg\": the rest pose of the nodes holds its skin up to 2 m from where it was bound, at node "
+            "\"knee\"; if the body looks wrong, export it in its bind pose, or as glTF");
+}
+
+// FBX binds a mesh where its node is; a mesh with one bone agrees with itself in any pose.
+TEST_F(Scenes, OfFbxAreComparedWithTheirNodes) {
+  leg_->mBones[1]->mWeights[0].mWeight = leg_->mBones[1]->mWeights[1].mWeight = 0;
+  hip_->mTransformation.c4 = 25;
+  leg_->mBones[0]->mWeights[1].mWeight = 1;
+  scene_.mMetaData = aiMetadata::Alloc(1);
+  scene_.mMetaData->Set(0, "UnitScaleFactor", 1.0F);
+  const std::vector<std::string> warnings = read().warnings;
+  EXPECT_TRUE(std::ranges::any_of(warnings, [](const std::string& text) {
+    return text.find("holds its skin up to 0.25 m from where it was bound, at node \"hip\"") != std::string::npos;
+  })) << (warnings.empty() ? "none" : warnings.front());
+}
+
 TEST_F(Scenes, WithABindPoseElsewhereStandWhereTheirMostImportantBoneHoldsThem) {
   hip_->mTransformation.c4 = 7;
   const character::Character body = read().character;
@@ -229,6 +272,7 @@ TEST_F(Scenes, OfFbxWithTransformsInPartsPlayClipsThatHaveThemWhole) {
   helper->mParent = root_;
   knee_->mParent = helper;
   knee_->mTransformation = aiMatrix4x4();
+  leg_->mBones[1]->mOffsetMatrix.a4 = -7;
   const auto place_of_knee = [&] {
     const character::Character body = read().character;
     const auto at = character::global_transforms(body, character::pose_at(body, body.clips[0], 0));

@@ -39,7 +39,7 @@ class DamagedFiles : public testing::TestWithParam<Format> {
   bool try_to_load(const std::string& bytes) {
     std::ofstream(file_, std::ios::binary) << bytes;
     try {
-      const mesh::Mesh mesh = load_mesh(file_, 1, "scene").mesh;
+      const mesh::Mesh mesh = load_mesh(file_, {}, "scene").mesh;
       const auto report = mesh::inspect(mesh.topology.triangles, mesh.positions.size());
       EXPECT_TRUE(report.out_of_range.empty() && report.degenerate.empty());
       EXPECT_FALSE(mesh.topology.triangles.empty());

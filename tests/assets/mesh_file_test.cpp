@@ -39,7 +39,7 @@ class MeshFiles : public testing::Test {
   }
 
   LoadedMesh load(const std::string& name, const std::string& bytes, double scale = 1) const {
-    return load_mesh(put(name, bytes), scale, "scenes/a.toml:12:8: obstacle.chair");
+    return load_mesh(put(name, bytes), {scale}, "scenes/a.toml:12:8: obstacle.chair");
   }
 
   /// The words after scene, file and `mesh file`, or "loaded".
@@ -47,7 +47,7 @@ class MeshFiles : public testing::Test {
 
   static std::string refusal_of(const fs::path& file) {
     try {
-      load_mesh(file, 1, "scenes/a.toml:12:8: obstacle.chair");
+      load_mesh(file, {}, "scenes/a.toml:12:8: obstacle.chair");
       return "loaded";
     } catch (const Error& error) {
       EXPECT_EQ(error.code(), ExitCode::asset_unreadable);
@@ -87,7 +87,7 @@ TEST_F(MeshFiles, OfOurOwnAreReadWhateverByteTheirDataBeginWith) {
       std::vector<Vec3> positions{{0.1, 0.2, 0.3}, {1, 0, 0}, {0, 1, 0.5}};
       std::memcpy(&positions[0].x(), std::array{first, second}.data(), 2);
       mesh::write_ply(folder_ / "own.ply", positions, Triangles{{0, 1, 2}});
-      const LoadedMesh loaded = load_mesh(folder_ / "own.ply", 1, "here");
+      const LoadedMesh loaded = load_mesh(folder_ / "own.ply", {}, "here");
       ASSERT_EQ(loaded.mesh.positions.size(), 3u) << int{first} << " " << int{second};
       EXPECT_EQ(loaded.mesh.topology.triangles, (Triangles{{0, 1, 2}}));
       for (std::size_t v = 0; v < 3; ++v)
@@ -158,13 +158,61 @@ TEST_F(MeshFiles, OfGltfFollowTheirNodesAndFaceOutwardThoughMirrored) {
   EXPECT_TRUE(support::watertight(inspected(loaded)));
   EXPECT_NEAR(volume(loaded), 1.0 / 6, 1e-15);
   const Box3 box = mesh::bounding_box(loaded.mesh.positions);
-  EXPECT_EQ(Vec3(box.min()), Vec3(0, 0, 1));
-  EXPECT_EQ(Vec3(box.max()), Vec3(1, 1, 2));
+  // It is 1 to 2 along z of the file, which has y up.
+  EXPECT_EQ(Vec3(box.min()), Vec3(0, -2, 0));
+  EXPECT_EQ(Vec3(box.max()), Vec3(1, -1, 1));
+}
+
+std::string with_up_axis(std::string collada, const std::string& up) {
+  return collada.replace(collada.find("Y_UP"), 4, up);
+}
+std::string with_up_axis_of_fbx(std::string fbx, int up) {
+  const std::string unit = "\t\tP: \"UnitScaleFactor\"";
+  return fbx.insert(fbx.find(unit), "\t\tP: \"UpAxis\", \"int\", \"Integer\", \"\"," + std::to_string(up) + "\n");
+}
+
+// A square of 1 m from the origin along x and y of the file.
+TEST_F(MeshFiles, ThatSayWhichAxisIsUpAreTurnedToThatOfTheScene) {
+  const Vec3 level(1, 1, 0), upright(1, 0, 1);
+  struct Case {
+    const char* name;
+    std::string bytes;
+    scene::FileUp up;
+    scene::UpAxis scene_up;
+    Vec3 corner;  // farthest from the origin
+  };
+  using scene::FileUp;
+  const auto y = scene::UpAxis::y, z = scene::UpAxis::z;
+  const std::string obj = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  const std::vector<Case> cases = {
+      {"y.dae", collada_square(), FileUp::as_file, z, upright},
+      {"y.dae", collada_square(), FileUp::as_file, y, level},
+      {"z.dae", with_up_axis(collada_square(), "Z_UP"), FileUp::as_file, z, level},
+      {"z.dae", with_up_axis(collada_square(), "Z_UP"), FileUp::as_file, y, Vec3(1, 0, -1)},
+      {"y.fbx", with_up_axis_of_fbx(fbx_square(), 1), FileUp::as_file, z, upright},
+      {"z.fbx", with_up_axis_of_fbx(fbx_square(), 2), FileUp::as_file, z, level},
+      {"nothing.fbx", fbx_square(), FileUp::as_file, z, upright},
+      {"a.obj", obj, FileUp::as_file, z, level},
+      {"a.obj", obj, FileUp::y, z, upright},
+      {"a.obj", obj, FileUp::z, y, Vec3(1, 0, -1)}};
+  for (const Case& c : cases) {
+    const LoadedMesh loaded = load_mesh(put(c.name, c.bytes), {1, c.up, c.scene_up}, "here");
+    double nearest = 1;
+    for (const Vec3& x : loaded.mesh.positions) nearest = std::min(nearest, (x - c.corner).norm());
+    EXPECT_LT(nearest, 1e-5) << c.name << ", expected a corner at " << c.corner.transpose();
+  }
+}
+
+TEST_F(MeshFiles, CountVerticesThatNoTriangleHas) {
+  const LoadedMesh loaded =
+      load("line.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 2 0 0\nv 3 0 0\nv 4 0 0\nf 1 2 3\nf 4 5 6\n");
+  EXPECT_EQ(loaded.removed_triangles, 1u);
+  EXPECT_EQ(loaded.lost_vertices, 3u);
 }
 
 TEST_F(MeshFiles, ThatSayTheirUnitAreInMetresWithTheirTextureCoordinates) {
   for (const auto& [name, bytes] : {std::pair{"cm.fbx", fbx_square()}, {"inch.dae", collada_square()}}) {
-    const LoadedMesh loaded = load(name, bytes, 2);
+    const LoadedMesh loaded = load_mesh(put(name, bytes), {2, scene::FileUp::as_file, scene::UpAxis::y}, "here");
     const Box3 box = mesh::bounding_box(loaded.mesh.positions);
     EXPECT_LT((box.max() - Vec3(2, 2, 0)).norm(), 1e-5) << name << ": " << box.max().transpose();
     EXPECT_LT(box.min().norm(), 1e-5) << name;

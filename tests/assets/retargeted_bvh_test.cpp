@@ -62,8 +62,12 @@ Quat turn_of(const Bone& bone, int key) {
   return Quat(Eigen::AngleAxisd(degrees * std::numbers::pi / 180, bone.axis.normalized()));
 }
 
+/// Of the joints below the root, which then have six channels.
+enum class Translations { none, of_zero, of_offsets };
+
 /// BVH text in which joint j at zero angles is turned by zero[j] in the world; children come in the order of `order`.
-std::string write_bvh(const std::vector<Bone>& bones, const std::vector<Quat>& zero, const std::vector<double>& order) {
+std::string write_bvh(const std::vector<Bone>& bones, const std::vector<Quat>& zero, const std::vector<double>& order,
+                      Translations translations = Translations::none) {
   std::string text = "HIERARCHY\n", channels;
   std::vector<std::size_t> written;
   const auto children = [&](int parent) {
@@ -78,7 +82,7 @@ std::string write_bvh(const std::vector<Bone>& bones, const std::vector<Quat>& z
     const Vec3 offset = parent < 0 ? Vec3(Vec3::Zero()) : Vec3(zero[parent].conjugate() * bones[b].offset);
     text += fmt::format("{} {}\n{{\nOFFSET {:.9f} {:.9f} {:.9f}\nCHANNELS {}Zrotation Yrotation Xrotation\n",
                         parent < 0 ? "ROOT" : "JOINT", bones[b].name, offset.x(), offset.y(), offset.z(),
-                        parent < 0 ? "6 Xposition Yposition Zposition " : "3 ");
+                        parent < 0 || translations != Translations::none ? "6 Xposition Yposition Zposition " : "3 ");
     written.push_back(b);
     const auto below = children(static_cast<int>(b));
     for (const std::size_t child : below) self(self, child);
@@ -91,6 +95,11 @@ std::string write_bvh(const std::vector<Bone>& bones, const std::vector<Quat>& z
     for (const std::size_t b : written) {
       const int parent = bones[b].parent;
       if (parent < 0) text += fmt::format("{} {} {} ", 3 * key, 95 + key % 2, 10 * key);
+      if (parent >= 0 && translations != Translations::none) {
+        const Vec3 offset = zero[parent].conjugate() * bones[b].offset;
+        const Vec3 x = translations == Translations::of_zero ? Vec3(Vec3::Zero()) : offset;
+        text += fmt::format("{:.9f} {:.9f} {:.9f} ", x.x(), x.y(), x.z());
+      }
       const Quat before = parent < 0 ? Quat::Identity() : zero[parent].conjugate();
       const Vec3 zyx = (before * turn_of(bones[b], key) * zero[b]).toRotationMatrix().eulerAngles(2, 1, 0);
       for (const double angle : zyx) text += fmt::format("{:.9f} ", angle * 180 / std::numbers::pi);
@@ -140,6 +149,20 @@ TEST_F(RetargetedBvh, DoesNotDependOnZeroPosesOrTheOrderOfJoints) {
     for (std::size_t v = 0; v < got.size(); ++v) furthest = std::max(furthest, (got[v] - expected[v]).norm());
     // assimp holds offsets and rotations in single precision: measured 2e-6 m.
     EXPECT_LT(furthest, 1e-4) << seed;
+  }
+}
+
+// As MakeHuman writes it, whose translations come on top of the offsets, and as recordings are, whose are the places.
+TEST_F(RetargetedBvh, WithSixChannelsOnEveryJointKeepsItsBones) {
+  const std::vector<Bone> bones = somebody();
+  const std::vector<double> order(bones.size(), 0);
+  const std::vector<Quat> zero(bones.size(), Quat::Identity());
+  const std::vector<Vec3> expected = vertices(write_bvh(bones, zero, order));
+  for (const Translations translations : {Translations::of_zero, Translations::of_offsets}) {
+    const std::vector<Vec3> got = vertices(write_bvh(bones, zero, order, translations));
+    double furthest = 0;
+    for (std::size_t v = 0; v < got.size(); ++v) furthest = std::max(furthest, (got[v] - expected[v]).norm());
+    EXPECT_LT(furthest, 1e-4) << (translations == Translations::of_zero ? "of zero" : "of the offsets");
   }
 }
 

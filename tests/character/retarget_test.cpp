@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 
@@ -106,6 +107,14 @@ struct Result {
 Result retargeted(const Character& body, const Character& motion, const Clip& clip) {
   const auto ours = find_joints(body), theirs = find_joints(motion);
   return {body, retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ()).clip};
+}
+
+/// Joints of a body whose bones say nothing by their lengths, so that only names count.
+std::vector<Index> find_prefixed(Character body) {
+  double length = 0.1;
+  for (Node& node : body.nodes)
+    if (node.parent >= 0) node.local.translation() *= length += 0.37;
+  return find_joints(body);
 }
 
 const Quat kOwnFrame = about(Vec3(1, 2, -1).normalized(), 77);
@@ -312,6 +321,20 @@ TEST(Joints, OfRigsWhoseNameStandsBeforeAllNodesAreFound) {
   }
 }
 
+// As "EthanLeftArm" of a body that is well known, or with the ending of what a program makes of joints.
+TEST(Joints, OfRigsWhoseNameIsPartOfAllNamesAreFound) {
+  const Character plain = make_mannequin({.edge_length = 0.1});
+  const std::vector<Index> expected = find_joints(plain);
+  for (const auto& [beginning, end] :
+       {std::pair{"Ethan", ""}, {"soldier", ""}, {"", "_jnt"}, {"", "Bind"}, {"Ethan", "_jnt"}, {"Hero_", "_end"}}) {
+    Character body = plain;
+    for (Node& node : body.nodes) node.name = beginning + node.name + end;
+    // Nodes beside the skeleton have names of their own.
+    body.nodes.push_back({"Camera", -1, Affine::Identity()});
+    EXPECT_EQ(find_prefixed(body), expected) << beginning << "..." << end;
+  }
+}
+
 TEST(Joints, AreFoundWithTheNumbersThatSketchfabPutsBehindNamesAndWithoutColons) {
   // Bones of characters as they are to be had, without what the tree could tell.
   const std::vector<std::vector<std::string>> rigs = {
@@ -404,6 +427,28 @@ TEST(Retarget, DoubtsWhatNoBodyDoes) {
   const Retargeted result = retarget({body, ours}, {motion, theirs}, clip, Vec3::UnitZ());
   ASSERT_EQ(result.doubts.size(), 1u);
   EXPECT_EQ(result.doubts[0], "LeftLowerArm bends by 175° at 1 s of the motion; people reach 165°");
+}
+
+// A trunk that lies along -y, on four legs of 0.5 m.
+TEST(Retarget, NamesTheMotionOfAnAnimalWithFourLegs) {
+  Builder b{{}, Quat::Identity(), {}};
+  const Index hips = b.add("Hips", -1, {0, 0, 0.5});
+  const Index chest = b.add("Chest", b.add("Spine", hips, {0, -0.4, 0.52}), {0, -0.7, 0.5});
+  b.add("Head", b.add("Neck", chest, {0, -0.8, 0.6}), {0, -0.9, 0.7});
+  for (const auto& [side, x] : {std::pair{"Left", 0.1}, {"Right", -0.1}}) {
+    const std::string which = side;
+    const Index elbow = b.add(which + "LowerArm", b.add(which + "UpperArm", chest, {x, -0.7, 0.45}), {x, -0.68, 0.25});
+    b.add(which + "Hand", elbow, {x, -0.7, 0.03});
+    const Index knee = b.add(which + "LowerLeg", b.add(which + "UpperLeg", hips, {x, 0, 0.5}), {x, -0.02, 0.25});
+    b.add(which + "Foot", knee, {x, 0, 0.03});
+  }
+  const Character motion = b.body;
+  const Character body = sticks(1, 30, 0, kOwnFrame);
+  const auto ours = find_joints(body), theirs = find_joints(motion);
+  const auto doubts = retarget({body, ours}, {motion, theirs}, waving(motion, {0, -1, 0}), Vec3::UnitZ()).doubts;
+  EXPECT_TRUE(std::ranges::any_of(doubts, [](const std::string& text) {
+    return text.find("on all fours in 100 % of its time, as animals with four legs do") != std::string::npos;
+  })) << fmt::format("{}", fmt::join(doubts, "; "));
 }
 
 TEST(Retarget, DoubtsABodyThatDoesNotStandInItsFile) {

@@ -365,7 +365,7 @@ TEST_F(Acting, WarnsOfSizesAndSpeedsThatNobodyHas) {
   support::write_bytes(folder_ / "walk.bvh", fast);
   const Actor actor = make();
   ASSERT_EQ(actor.warnings.size(), 1u);
-  EXPECT_NE(actor.warnings[0].find("it moves at up to 90 m/s; bodies with legs reach 20 m/s"), std::string::npos)
+  EXPECT_NE(actor.warnings[0].find("it moves at up to 90 m/s; people who run reach 9 m/s"), std::string::npos)
       << actor.warnings[0];
 
   file_ = {};

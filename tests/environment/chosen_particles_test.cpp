@@ -173,6 +173,9 @@ TEST_F(ChosenParticles, AreRefusedForWhatTheClothHasNot) {
           "cloth.c.weight.0.vertex_group: expected a mesh with groups of vertices, or bones, got one without");
   support::write_bytes(folder_ / "bare.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nf 1 2 3\n");
   const std::string bare = "shape = 'mesh'\nfile = '" + (folder_ / "bare.obj").string() + "'\n";
+  refused(bare + "pin = [{ low = [0.3, 0.3], high = [0.6, 0.6] }]\n",
+          "got one that holds none between low = [0.3, 0.3] and high = [0.6, 0.6]; the nearest particle is at [0, 0]: "
+          "low = [0, 0], high = [0.6, 0.6] hold it");
   refused(bare + "pin = [{ vertex_color = 'red' }]\n",
           "cloth.c.pin.0.vertex_color: expected a mesh whose vertices have colours, got none");
   refused(bare + "pin = [{ mask = '" + black + "' }]\n",

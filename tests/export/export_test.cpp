@@ -137,7 +137,7 @@ TEST_F(Exported, PanelsAreApartInTextureCoordinatesAndOneInTheMesh) {
         std::pair(Format::gltf, "flutter.glb")}) {
     request_.folder = folder_ / name;
     write(format, {3});
-    const assets::LoadedMesh loaded = assets::load_mesh(file(name), 1, "a test", format == Format::ply ? "" : "cloth");
+    const assets::LoadedMesh loaded = assets::load_mesh(file(name), {}, "a test", format == Format::ply ? "" : "cloth");
     EXPECT_EQ(loaded.mesh.positions.size(), 6U) << name;
     EXPECT_EQ(loaded.mesh.topology.triangles.size(), 4U) << name;
     ASSERT_EQ(loaded.uv.size(), 4U) << name;

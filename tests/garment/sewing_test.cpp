@@ -178,6 +178,38 @@ TEST_F(SewingText, BandsFollowTheirEdges) {
   EXPECT_GT(garment.sheet.bands[4].mass, 0);
 }
 
+// Two rectangles that lie one on the other, with all four sides sewn, or three: the first pattern that people try.
+TEST_F(SewingText, APillowIsClosedAndAPillowcaseHasOneOpening) {
+  const std::string path = "path = 'M -0.25 -0.2 L 0.25 -0.2 L 0.25 0.2 L -0.25 0.2 Z'\nedges = 'low right top left'\n";
+  const std::string panels =
+      "[[panel]]\nname = 'front'\nside = 'front'\n" + path + "[[panel]]\nname = 'back'\nside = 'back'\n" + path;
+  std::string seams;
+  for (const std::string side : {"low", "right", "top", "left"})
+    seams += "[[seam]]\na = 'front." + side + "'\nb = 'back." + side + "'\n";
+  const std::string three = seams.substr(0, seams.rfind("[[seam]]"));
+  for (const double spacing : {0.05, 0.03, 0.02, 0.013}) {
+    const Garment pillow = sew_text(panels + seams, spacing);
+    EXPECT_TRUE(mesh::inspect(pillow.sheet.triangles, pillow.sheet.rest.size()).manifold()) << spacing;
+    EXPECT_EQ(openings(pillow.sheet), 0U) << spacing;
+    EXPECT_EQ(euler_characteristic(pillow.sheet), 2) << "a sphere, at " << spacing;
+    double area = 0, least = 1;
+    for (std::size_t t = 0; t < pillow.sheet.triangles.size(); ++t) {
+      area += mesh::rest_area(pillow.sheet, t);
+      least = std::min(least, mesh::rest_area(pillow.sheet, t));
+    }
+    EXPECT_NEAR(area, 2 * 0.5 * 0.4, 1e-12) << spacing;
+    EXPECT_GT(least, 0.02 * spacing * spacing) << "no needles, at " << spacing;
+    const support::JudgedObject object{"pillow", true, pillow.sheet.rest, pillow.sheet.triangles};
+    EXPECT_EQ(support::judge(std::span(&object, 1)).pairs.size(), 0U) << spacing;
+    const Garment open = sew_text(panels + three, spacing);
+    EXPECT_EQ(openings(open.sheet), 1U) << spacing;
+    EXPECT_EQ(euler_characteristic(open.sheet), 1) << "a disk, at " << spacing;
+  }
+  std::string both_before = panels + seams;
+  both_before.replace(both_before.find("'back'\n" + path), 6, "'front'");
+  expect_mistake(both_before, "panels that lie one on the other need side = \"front\" and side = \"back\"");
+}
+
 // The half is on the wearer's left; its fold is slanted, so that the reflection is not that of x.
 TEST_F(SewingText, AHalfCutOnTheFoldIsAWholePanel) {
   const auto panel = [&](const std::string& text) {

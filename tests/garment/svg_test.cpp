@@ -99,7 +99,22 @@ TEST_F(Drawings, GroupsNameEdgesByTextsBesideThem) {
     support::expect_error(ExitCode::asset_unreadable, words, [&] { load_svg_panel(folder_ / "d.svg", id); });
   };
   refused("both", "d.svg:15:6: g \"both\": expected a group with one closed outline, got 2");
+  refused("frnt", "got none; did you mean \"front\"?");
+  refused("collar", "got none; it has \"front\", \"back\", \"moved\", \"both\", \"odd\"");
   refused("odd", "text: expected edge: and a name of letters");
+}
+
+// As of Valentina and Seamly.
+TEST_F(Drawings, WithoutIdsGiveTheirPathsByNumber) {
+  support::write_bytes(folder_ / "d.svg",
+                       "<svg width='10mm' viewBox='0 0 10 10'><g><path d='M0 0L1 0L0 1Z'/></g><path d='M5 0L7 0L5 2Z'/>"
+                       "<rect x='1' y='2' width='3' height='4'/></svg>");
+  EXPECT_LT((load_svg_panel(folder_ / "d.svg", "path:2").outline[0].start().cwiseAbs() - Vec2(0.005, 0)).norm(), 1e-12);
+  EXPECT_EQ(load_svg_panel(folder_ / "d.svg", "rect:1").outline.size(), 4u);
+  for (const char* id : {"path:3", "path:0", "path:x", "front"})
+    support::expect_error(ExitCode::asset_unreadable,
+                          "got none; none of its 2 paths has one: \"path:1\" is the first of them",
+                          [&] { load_svg_panel(folder_ / "d.svg", id); });
 }
 
 TEST_F(Drawings, DamagedFilesAreRefusedOrRead) {

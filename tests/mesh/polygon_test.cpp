@@ -14,21 +14,23 @@ namespace {
 // Sums of some ten rounded areas near one.
 constexpr double kRoundingOfAreas = 1e-14;
 
-std::vector<Triangle> cut(const std::vector<Vec3>& corners) {
+std::vector<Triangle> cut(const std::vector<Vec3>& corners, decltype(triangulate_polygon)* way = triangulate_polygon) {
   std::vector<Index> indices;
   for (std::size_t k = 0; k < corners.size(); ++k) indices.push_back(static_cast<Index>(k));
   std::vector<Triangle> triangles;
-  triangulate_polygon(indices, corners, triangles);
+  way(indices, corners, triangles);
   return triangles;
 }
 
 /// Expects n - 2 triangles that cover the area without turning over.
 void expect_covered(const std::vector<Vec3>& corners, double area, const Vec3& normal) {
-  const std::vector<Triangle> triangles = cut(corners);
-  EXPECT_EQ(triangles.size(), corners.size() - 2);
-  EXPECT_NEAR(surface_area(triangles, corners), area, kRoundingOfAreas);
-  for (const Triangle& t : triangles) EXPECT_GE(area_vector(t, corners).dot(normal), 0);
-  EXPECT_TRUE(inspect(triangles, corners.size()).manifold());
+  for (auto* way : {triangulate_polygon, triangulate_face}) {
+    const std::vector<Triangle> triangles = cut(corners, way);
+    EXPECT_EQ(triangles.size(), corners.size() - 2);
+    EXPECT_NEAR(surface_area(triangles, corners), area, kRoundingOfAreas);
+    for (const Triangle& t : triangles) EXPECT_GE(area_vector(t, corners).dot(normal), 0);
+    EXPECT_TRUE(inspect(triangles, corners.size()).manifold());
+  }
 }
 
 TEST(Polygon, OfThreeCornersIsItself) {
@@ -71,10 +73,56 @@ TEST(Polygon, ThatIsRegularIsCutWithoutAFan) {
   for (const int count : around) EXPECT_LE(count, 10);
 }
 
+/// Expects that each corner is in a triangle with an area.
+void expect_each_corner_kept(const std::vector<Vec3>& corners) {
+  std::vector<int> kept(corners.size());
+  for (const Triangle& t : cut(corners, triangulate_face)) {
+    const double longest = std::max({(corners[t[1]] - corners[t[0]]).norm(), (corners[t[2]] - corners[t[1]]).norm(),
+                                     (corners[t[0]] - corners[t[2]]).norm()});
+    if (area_vector(t, corners).norm() > 1e-4 * longest * longest)
+      for (const Index v : t) ++kept[v];
+  }
+  EXPECT_EQ(std::ranges::count(kept, 0), 0) << "of " << corners.size();
+}
+
+// Strips of a row of cells in one face, which some programs write; in single precision, as files have them.
+TEST(Polygon, WithCornersAlongStraightSidesKeepsThemAll) {
+  for (const int along : {4, 13, 40})
+    for (const double angle : {0.0, 0.3, 1.1}) {
+      const Quat turn(Eigen::AngleAxisd(angle, Vec3(1, 2, 3).normalized()));
+      std::vector<Vec3> corners;
+      const auto add = [&](double x, double y) {
+        corners.push_back((turn * Vec3(x - 0.3, y - 0.2, 0.1)).cast<float>().cast<double>());
+      };
+      for (int i = 0; i < along; ++i) add(0.025 * i, 0);
+      for (int i = 0; i < along; ++i) add(0.025 * (along - 1 - i), 0.025);
+      expect_each_corner_kept(corners);
+      double flattest = 1;
+      for (const Triangle& t : cut(corners, triangulate_face)) {
+        double longest = 0;
+        for (std::size_t k = 0; k < 3; ++k)
+          longest = std::max(longest, (corners[t[(k + 1) % 3]] - corners[t[k]]).norm());
+        flattest = std::min(flattest, 2 * area_vector(t, corners).norm() / (longest * longest));
+      }
+      EXPECT_GT(flattest, along > 4 ? 0.3 : 0.1)
+          << "halves of squares have 0.5, with " << along << " corners along a side";
+      // A square with as many corners along each side.
+      corners.clear();
+      const double size = 0.025 * along;
+      for (int i = 0; i < along; ++i) add(0.025 * i, 0);
+      for (int i = 0; i < along; ++i) add(size, 0.025 * i);
+      for (int i = 0; i < along; ++i) add(size - 0.025 * i, size);
+      for (int i = 0; i < along; ++i) add(0, size - 0.025 * i);
+      expect_each_corner_kept(corners);
+    }
+}
+
 TEST(Polygon, ThatCrossesItselfOrHasCollapsedStillEnds) {
-  EXPECT_EQ(cut({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0.5, 0}}).size(), 3u);
-  EXPECT_EQ(cut(std::vector<Vec3>(7, Vec3(1, 2, 3))).size(), 5u);
-  EXPECT_EQ(cut({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}).size(), 3u);
+  for (auto* way : {triangulate_polygon, triangulate_face}) {
+    EXPECT_EQ(cut({{0, 0, 0}, {1, 1, 0}, {1, 0, 0}, {0, 1, 0}, {-1, 0.5, 0}}, way).size(), 3u);
+    EXPECT_EQ(cut(std::vector<Vec3>(7, Vec3(1, 2, 3)), way).size(), 5u);
+    EXPECT_EQ(cut({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}, {4, 0, 0}}, way).size(), 3u);
+  }
 }
 
 }  // namespace

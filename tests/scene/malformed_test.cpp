@@ -173,10 +173,12 @@ const std::vector<Malformed> kMalformed = {
     {"PinUpsideDown", "[[cloth]]\nname = 'band'\npin = [{ low = [0.5, 0], high = [0.2, 1] }]\n",
      "s.toml:3:33: cloth.band.pin.0.high: expected >= 0.5, the low end, got 0.2\n"},
     {"PinBetweenParticles", "[[cloth]]\nname = 'band'\nparticles = 3\npin = [{ low = [0.6, 0], high = [0.9, 1] }]\n",
-     "s.toml:4:8: cloth.band.pin.0: expected a part that holds at least one particle, got one between two rows\n"},
+     "s.toml:4:8: cloth.band.pin.0: expected a part that holds at least one particle, got one between two rows; the "
+     "nearest along weft is at 0.5\n"},
     {"PinBetweenGradedParticles",
      "[[cloth]]\nname = 'band'\nparticles = 3\ngrading = 4\npin = [{ low = [0.4, 0], high = [0.6, 1] }]\n",
-     "s.toml:5:8: cloth.band.pin.0: expected a part that holds at least one particle, got one between two rows\n"},
+     "s.toml:5:8: cloth.band.pin.0: expected a part that holds at least one particle, got one between two rows; the "
+     "nearest along weft is at 0.2\n"},
     {"PinAtAnEdgeOfASheet", "[[cloth]]\nname = 'band'\npin = [{ edge = 'front.top' }]\n",
      "s.toml:3:17: cloth.band.pin.0.edge: expected none of a cloth that is sewn from no pattern, got \"front.top\"\n"},
     {"PinFadesWithoutStrength", "[[cloth]]\nname = 'band'\npin = [{ high = [1, 0], fade = 0.1 }]\n",

@@ -49,6 +49,7 @@ LoadResult load_here(const std::string& text, const std::vector<std::string>& ov
 std::string another_value(const Rule& rule, const Value& now) {
   if (rule.type == Type::boolean) return std::get<bool>(now) ? "false" : "true";
   if (rule.type == Type::text) return "\"another_text\"";
+  if (rule.type == Type::texts) return "[\"another_text\"]";
   if (rule.type == Type::choice) {
     return "\"" + (rule.choices.back() == std::get<std::string>(now) ? rule.choices.front() : rule.choices.back()) +
            "\"";

@@ -240,6 +240,30 @@ TEST(Doubts, NamePinsThatJumpRushOrEnterObstacles) {
   const auto inside = of(hanging(0.4, "keys = [{ time = 0, offset = [0, 0.4, 0] }, { time = 0.3, offset = [0, 0, 0] }]",
                                  "[[obstacle]]\nname = 'box'\nshape = 'box'\nsize = [0.6, 0.4, 0.6]\n"
                                  "position = [0, 0.4, 0.6]\n"));
+  // A cape on a block that jumps, and one that hangs behind it.
+  const auto cape = [&](const std::string& y, const std::string& keys) {
+    return of(
+        "time = { duration = 2, fps = 25 }\n[[cloth]]\nname = 'cape'\nsize = [0.4, 0.6]\nparticles = [5, 7]\n"
+        "position = [0, " +
+        y +
+        ", 0.9]\nrotation = [90, 0, 0]\nmaterial = { fabric = 'wool' }\n"
+        "[[cloth.pin]]\nlow = [0, 1]\nfollow = 'block'\n[[obstacle]]\nname = 'block'\nshape = 'box'\n"
+        "size = [0.4, 0.08, 0.9]\nposition = [0, 0, 0.75]\n" +
+        keys);
+  };
+  EXPECT_TRUE(cape("0.06", "").empty());
+  for (const std::string later : {"1.04", "1.0001"}) {
+    const auto jumps = cape("0.06",
+                            "interpolation = 'linear'\nkeys = [{ time = 0, position = [0, 0, 0.75] }, { time = "
+                            "1, position = [0, 0, 0.75] }, { time = " +
+                                later + ", position = [2, 0, 0.75] }]\n");
+    ASSERT_EQ(jumps.size(), 1u) << later;
+    EXPECT_NE(jumps[0].find("cloth.cape.pin.0: moves at "), std::string::npos) << jumps[0];
+    EXPECT_NE(jumps[0].find("'block', which it follows, moves or jumps there"), std::string::npos) << jumps[0];
+  }
+  const auto far = cape("0.25", "");
+  ASSERT_EQ(far.size(), 1u);
+  EXPECT_NE(far[0].find("cloth.cape.pin.0: follows 'block' from 0.2"), std::string::npos) << far[0];
   ASSERT_EQ(inside.size(), 2u) << "a jump, and that it ends inside";
   EXPECT_NE(inside[1].find("enters 'box' at 0 s"), std::string::npos) << inside[1];
 }

@@ -1,0 +1,71 @@
+// A body and its clothes from one file.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <string>
+#include <vector>
+
+#include "environment/environment.hpp"
+#include "support/small_character.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::environment {
+namespace {
+
+// Files hold single precision; figures here are of some metres.
+constexpr double kSingle = 1e-6;
+
+class SameFile : public support::TestFolder {
+ protected:
+  void SetUp() override {
+    TestFolder::SetUp();
+    file_.path = folder_ / "rod.x";
+    scene_.file = "scenes/a.toml";
+    scene_.characters.emplace_back();
+    scene_.characters[0].name = "rod";
+  }
+  Actor make() {
+    scene_.characters[0].source = file_;
+    return make_actor(scene_, scene_.characters[0]);
+  }
+
+  scene::Scene scene_;
+  scene::CharacterFile file_;
+};
+
+TEST_F(SameFile, GivesAClothWhatTheBodyThenHasNotWhereTheBodyHadIt) {
+  std::string file = support::rod_file();
+  file.insert(
+      file.find(" Mesh Rod"),
+      " Frame Dress { FrameTransformMatrix { 1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.0,0.0,1.0,0.0,0.0,0.2,0.0,1.0;; }\n"
+      "  Mesh Cloth { 3; -0.3;0.5;0.2;, 0.3;0.5;0.2;, 0.0;1.5;0.2;; 1; 3;0,1,2;; } }\n");
+  support::write_bytes(file_.path, file);
+  ASSERT_EQ(make().mesh.positions.size(), 8u);
+  file_.without = {"Dress"};
+  EXPECT_EQ(make().mesh.positions.size(), 5u);
+  file_.without = {"Drs"};
+  support::expect_error(ExitCode::asset_unreadable, "without: expected names of meshes or of their nodes",
+                        [&] { make(); });
+  file_.without.clear();
+  scene::Cloth cloth;
+  cloth.name = "dress";
+  cloth.shape = scene::ClothShape::mesh;
+  cloth.rest = scene::ClothRest::mesh;
+  cloth.file = file_.path;
+  cloth.object = "Dress";
+  for (const scene::UpAxis up : {scene::UpAxis::z, scene::UpAxis::y}) {
+    scene_.up = up;
+    scene_.cloths.clear();
+    const std::vector<Vec3> whole = make().mesh.positions;
+    scene_.cloths.push_back(cloth);
+    EXPECT_EQ(make().mesh.positions.size(), 5u);
+    Wearers wearers(scene_);
+    const ClothObject dress = make_cloth(scene_, cloth, wearers);
+    ASSERT_EQ(dress.start.size(), 3u);
+    for (const Vec3& x : dress.start)
+      EXPECT_TRUE(std::ranges::any_of(whole, [&](const Vec3& y) { return (x - y).norm() < kSingle; })) << x.transpose();
+  }
+}
+
+}  // namespace
+}  // namespace weft::environment
