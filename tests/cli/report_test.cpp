@@ -69,21 +69,49 @@ TEST(Summary, NamesTheFramesOfTheExtremes) {
   report.fps = 25;
   report.output_bytes = 1'234'567;
   const std::string text = summary(report);
-  for (const char* part :
-       {"a.mp4: 1 frame, 64x36 at 25 fps, 1.2 MB\n", "2 mm (frame 1)\n", "5.00 % (frame 1)\n", "4 and 1 rejected;",
-        "error estimate     1.2 mm of position", "  simulate      0.02 s  0.02 s      18.0 ms\n"}) {
+  for (const char* part : {"a.mp4: 1 frame, 64x36 at 25 fps, 1.2 MB\n", "2 mm (frame 1)\n", "5.00 % (frame 1)\n",
+                           "4 and 1 rejected;", "  simulate      0.02 s  0.02 s      18.0 ms\n"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
 }
 
-TEST(Summary, SaysWhatLessensTheLargerPartOfTheError) {
+// The sum over all frames is no error of anything: 120 mm for a band of a metre.
+TEST(Summary, SaysByWhatTheWorstFrameIsOffAndWhatLessensIt) {
   RunReport report;
   report.frames = two_frames();
-  EXPECT_NE(summary(report).find("0.2 mm left by the solver, summed up: lessened by a shorter time.step"),
-            std::string::npos);
-  report.frames[1].report.solver_error = 0.002;
-  EXPECT_NE(summary(report).find("2 mm left by the solver, summed up: lessened by a smaller solver.newton_tolerance"),
-            std::string::npos);
+  for (int k = 0; k < 100; ++k) report.frames.push_back(report.frames[1]);
+  report.frames[7].report.frame = 7;
+  report.frames[7].report.error_estimate = 0.005;
+  report.cloth_size = 0.5;
+  EXPECT_NE(summary(report).find("frame 7, the worst, adds about 5 mm (1 % of the cloth's size) to the error of "
+                                 "positions, by the time steps (the solver: 0.2 mm); a smaller time.step or "
+                                 "time.tolerance lessens it; --error measures the whole run\n"),
+            std::string::npos)
+      << summary(report);
+  report.frames[7].report.solver_error = 0.01;
+  EXPECT_NE(summary(report).find("adds about 10 mm (2 % of the cloth's size) to the error of positions, by the solver "
+                                 "(the time steps: 5 mm); a smaller solver.newton_tolerance lessens it"),
+            std::string::npos)
+      << summary(report);
+  report.frames = {{}};
+  EXPECT_NE(summary(report).find("no step was taken"), std::string::npos);
+}
+
+TEST(Summary, SaysWhatCompanionsHaveMeasured) {
+  RunReport report;
+  report.frames = two_frames();
+  report.cloth_size = 2;
+  bench::ErrorPart steps{bench::ErrorSource::steps}, start{bench::ErrorSource::start};
+  steps.errors[static_cast<std::size_t>(bench::Quantity::position)] = 0.008;
+  start.errors[static_cast<std::size_t>(bench::Quantity::position)] = 1e-6;
+  report.error = bench::ErrorEstimate{.parts = {steps, start}, .all = steps.errors};
+  EXPECT_NE(summary(report).find("positions may be off by 8 mm (0.4 % of the cloth's size), most of it by the time "
+                                 "steps; a smaller time.step or time.tolerance lessens it\n"),
+            std::string::npos)
+      << summary(report);
+  EXPECT_EQ(summary(report).find("--error measures"), std::string::npos);
+  report.error->start_matters = true;
+  EXPECT_NE(summary(report).find("the motion is chaotic"), std::string::npos);
 }
 
 TEST(Summary, OfARunWithoutFramesSaysSo) {
