@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <set>
+#include <sstream>
 
 #include "cli/stats.hpp"
 #include "cli/summary.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::cli {
 namespace {
@@ -57,6 +60,43 @@ TEST(StatsJson, SumsUpSteps) {
   EXPECT_EQ(totals.at("rejected_steps"), 2);
   EXPECT_DOUBLE_EQ(totals.at("error_estimate_m"), 0.00246);
   EXPECT_DOUBLE_EQ(totals.at("solver_error_m"), 0.0004);
+}
+
+// The keys in the first column of a table that follows this line of the page.
+std::set<std::string> documented_keys(const std::string& page, const std::string& before) {
+  std::set<std::string> keys;
+  const std::size_t begin = page.find(before);
+  if (begin == std::string::npos) return keys;
+  const std::size_t table = page.find("|---|", begin), end = page.find("\n\n", table);
+  std::istringstream lines(page.substr(table, end - table));
+  for (std::string line; std::getline(lines, line);) {
+    const std::string cell = line.substr(0, line.find('|', 1));
+    for (std::size_t at = cell.find('`'); at != std::string::npos; at = cell.find('`', at + 1)) {
+      const std::size_t close = cell.find('`', at + 1);
+      keys.insert(cell.substr(at + 1, close - at - 1));
+      at = close;
+    }
+  }
+  return keys;
+}
+
+std::set<std::string> keys_of(const nlohmann::ordered_json& json) {
+  std::set<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.insert(key);
+  return keys;
+}
+
+TEST(StatsJson, EachKeyIsDocumented) {
+  const std::string page = support::read_bytes(WEFT_SOURCE_DIR "/scenes/data.md");
+  RunReport report;
+  report.frames = two_frames();
+  report.objects.push_back({"sheet", frame::ObjectKind::cloth, 4, 1});
+  report.error.emplace().parts.push_back({bench::ErrorSource::steps});
+  const auto stats = stats_json(report);
+  EXPECT_EQ(documented_keys(page, "## Keys of `--stats`"), keys_of(stats));
+  EXPECT_EQ(documented_keys(page, "Keys of one of `objects`"), keys_of(stats.at("objects").at(0)));
+  EXPECT_EQ(documented_keys(page, "Keys of `totals`"), keys_of(stats.at("totals")));
+  EXPECT_EQ(documented_keys(page, "Keys of one of `frames`"), keys_of(stats.at("frames").at(1)));
 }
 
 TEST(Summary, NamesTheFramesOfTheExtremes) {
