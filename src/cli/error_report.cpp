@@ -93,9 +93,9 @@ std::string error_sentence(const ErrorEstimate& estimate, double cloth_size) {
         "the motion is chaotic: a start moved by 1 µm alone moves positions by {} mm; in all they are off by {} or "
         "more, and no setting lessens that{}",
         start_text(estimate), length, doubt);
-  return fmt::format("positions {} off by {}, most of it by the {}; {} lessens it{}",
-                     estimate.steps_irregular ? "are at least" : "may be", length, name_of(largest.source),
-                     remedy(largest.source), doubt);
+  return fmt::format("positions {} {}, most of it by the {}; {} lessens it{}",
+                     estimate.steps_irregular ? "are off by at least" : "may be off by", length,
+                     name_of(largest.source), remedy(largest.source), doubt);
 }
 
 nlohmann::ordered_json error_json(const ErrorEstimate& estimate) {
