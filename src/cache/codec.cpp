@@ -233,9 +233,9 @@ template <class Archive>
 void serialize(Archive& archive, frame::FrameReport& report) {
   for (StageTime* stage : {&report.simulate, &report.collide, &report.forces, &report.preconditioner, &report.linear})
     serialize_values(archive, stage->wall_s, stage->cpu_s);
-  for (double* number :
-       {&report.error_estimate, &report.solver_error, &report.min_distance, &report.max_strain, &report.stretch_share,
-        &report.kinetic_energy, &report.potential_energy, &report.elastic_energy})
+  for (double* number : {&report.error_estimate, &report.solver_error, &report.min_distance, &report.max_strain,
+                         &report.stretch_share, &report.kinetic_energy, &report.potential_energy,
+                         &report.elastic_energy, &report.pin_work, &report.solver_work})
     archive.value(*number);
   for (int* number : {&report.steps, &report.rejected_steps, &report.inexact_steps, &report.newton_iterations,
                       &report.linear_iterations, &report.proximities, &report.constraints, &report.pinched_pairs,

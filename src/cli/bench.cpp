@@ -5,6 +5,7 @@
 #include "bench/accuracy_report.hpp"
 #include "bench/fabrics.hpp"
 #include "bench/report.hpp"
+#include "bench/scene_stability_report.hpp"
 #include "bench/speed_report.hpp"
 #include "bench/stability.hpp"
 #include "cli/commands.hpp"
@@ -130,6 +131,38 @@ class RunProgress {
   WallTimer timer_;
   RemainingTime remaining_{{kUnits, 0, 0}};
 };
+
+// "friction 2, step 0.5", of what is not as in the scene.
+std::string describe(const bench::Factors& factors) {
+  std::string text;
+  for (std::size_t a = 0; a < bench::kVariedValues; ++a)
+    if (factors[a] != 1)
+      text += fmt::format("{}{} {:g}", text.empty() ? "" : ", ", name_of(static_cast<bench::Varied>(a)), factors[a]);
+  return text.empty() ? "as it is" : text;
+}
+
+ExitCode bench_scene_stability(const BenchOptions& options, const std::filesystem::path& folder) {
+  const scene::Scene scene = scene_of(options, nullptr, nullptr);
+  check_moves(scene);
+  const std::string name = "stability_" + scene.name, picture = name + ".svg", title = title_of(scene);
+  PathLedger paths;
+  add_inputs(paths, scene);
+  check_outputs(paths, options, folder, {name + ".md", name + ".csv", picture});
+  const StopSignals signals("what was measured is written");
+  RunProgress progress("stability");
+  const bench::SceneStability stability = bench::measure_scene_stability(
+      scene,
+      [&](const bench::Trial& trial, double done) {
+        progress(done,
+                 fmt::format("{}: {}, {:.2f} CPU s", describe(trial.factors), describe(trial.verdict), trial.cpu_s));
+      },
+      [&] { return signals.requested().load(); });
+  write_file(folder / (name + ".csv"), bench::csv(bench::trial_table(stability)));
+  write_file(folder / picture, bench::trial_svg(title, stability));
+  write_file(folder / (name + ".md"), bench::scene_stability_markdown(title, stability, picture));
+  print("{}\nwritten to {}\n", bench::margin_sentence(stability), (folder / (name + ".md")).string());
+  return signals.requested() ? ExitCode::interrupted : ExitCode::ok;
+}
 
 ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path& folder) {
   const scene::Scene scene = scene_of(options, bench::kSwingingSheet, "swinging_sheet.toml");
@@ -283,7 +316,7 @@ ExitCode bench(const BenchOptions& options) {
   const std::filesystem::path folder = options.output.empty() ? "output/bench" : options.output;
   switch (options.kind) {
     case BenchOptions::Kind::stability:
-      return bench_stability(options, folder);
+      return options.scene.empty() ? bench_stability(options, folder) : bench_scene_stability(options, folder);
     case BenchOptions::Kind::accuracy:
       return bench_accuracy(options, folder);
     case BenchOptions::Kind::speed:

@@ -152,6 +152,9 @@ ExitCode diff(const DiffOptions& options) {
   }
   std::vector<Pair> pairs = all_pairs(options);
   const DiffLimits rules(options.limits, options.limits_file);
+  std::vector<std::string> names;
+  for (const Pair& pair : pairs) names.push_back(pair.name);
+  rules.check_used(names);
   for (Pair& pair : pairs) {
     pair.rules = rules.of(pair.name);
     if (compare::is_lossy_video(pair.reference.value_or(fs::path())) || compare::is_lossy_video(pair.test))

@@ -2,6 +2,8 @@
 
 #include <fnmatch.h>
 
+#include <algorithm>
+
 #include "cli/option_values.hpp"
 #include "core/error.hpp"
 #include "core/input_file.hpp"
@@ -11,8 +13,12 @@
 namespace weft::cli {
 namespace {
 
+std::string place_of(const std::filesystem::path& file, const toml::source_region& where) {
+  return fmt::format("{}:{}:{}", file.string(), where.begin.line, where.begin.column);
+}
+
 [[noreturn]] void refuse(const std::filesystem::path& file, const toml::source_region& where, const std::string& text) {
-  throw Error(ExitCode::asset_unreadable, "{}:{}:{}: {}", file.string(), where.begin.line, where.begin.column, text);
+  throw Error(ExitCode::asset_unreadable, "{}: {}", place_of(file, where), text);
 }
 
 toml::table parse(const std::filesystem::path& file) {
@@ -67,17 +73,30 @@ DiffLimits::DiffLimits(const compare::Limits& all, const std::filesystem::path& 
       const toml::table& values = *picture.as_table();
       const auto name = values["name"].value<std::string>();
       if (!name) refuse(file, picture.source(), "expected a name, such as \"front/*.png\"");
-      Entry& entry = entries_.emplace_back(Entry{*name, {}});
+      Entry& entry = entries_.emplace_back(Entry{*name, place_of(file, picture.source()), {}});
       for (const auto& [k, value] : values)
         if (k.str() != "name") entry.changes.push_back(change(file, std::string(k.str()), value));
     }
   }
 }
 
+bool DiffLimits::Entry::fits(const std::string& name) const {
+  return ::fnmatch(pattern.c_str(), name.c_str(), 0) == 0;
+}
+
+void DiffLimits::check_used(const std::vector<std::string>& names) const {
+  for (const Entry& entry : entries_)
+    if (std::ranges::none_of(names, [&](const std::string& name) { return entry.fits(name); }))
+      throw Error(ExitCode::asset_unreadable,
+                  "{}: name: expected a name or pattern of a picture that is compared, got \"{}\", which fits none of "
+                  "{}{}",
+                  entry.place, entry.pattern, names.size(), did_you_mean(entry.pattern, names));
+}
+
 Rules DiffLimits::of(const std::string& name) const {
   Rules rules = all_;
   for (const Entry& entry : entries_)
-    if (::fnmatch(entry.pattern.c_str(), name.c_str(), 0) == 0)
+    if (entry.fits(name))
       for (const auto& apply : entry.changes) apply(rules);
   return rules;
 }

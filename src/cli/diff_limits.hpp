@@ -25,10 +25,16 @@ class DiffLimits {
 
   /// Later tables count before earlier ones.
   Rules of(const std::string& name) const;
+  /// Throws Error(asset_unreadable) with line and column where a table fits none of these pictures: its limit would
+  /// hold nothing without a word.
+  void check_used(const std::vector<std::string>& names) const;
 
  private:
   struct Entry {
+    bool fits(const std::string& name) const;
+
     std::string pattern;
+    std::string place;  // "limits.toml:3:1"
     std::vector<std::function<void(Rules&)>> changes;
   };
   Rules all_;

@@ -19,12 +19,15 @@ std::string describe_figures(const FileComparison& result, const compare::Limits
   const compare::Figures& f = result.worst.figures;
   const auto limit = [](double figure, double most) { return figure > most ? fmt::format(" (limit {:g})", most) : ""; };
   const auto pixels = static_cast<double>(f.pixels);
+  const double budget = std::floor(limits.pixel_budget * pixels);
+  const std::string of_pixels = static_cast<double>(f.pixels_over) > budget
+                                    ? fmt::format(" (limit {:g}: {:g} of all pixels)", budget, limits.pixel_budget)
+                                    : "";
   return fmt::format(
       "{} of {} pixels differ, {} by more than {} levels{}; at most {} at ({}, {}); FLIP {:.2g}{}, at most {:.2g}{}; "
       "SSIM {:.5f}",
-      f.pixels_changed, pixels, f.pixels_over, limits.pixel_tolerance,
-      limit(static_cast<double>(f.pixels_over), std::floor(limits.pixel_budget * pixels)), f.largest, f.largest_x,
-      f.largest_y, f.flip, limit(f.flip, limits.flip), f.spot, limit(f.spot, limits.spot), f.ssim);
+      f.pixels_changed, pixels, f.pixels_over, limits.pixel_tolerance, of_pixels, f.largest, f.largest_x, f.largest_y,
+      f.flip, limit(f.flip, limits.flip), f.spot, limit(f.spot, limits.spot), f.ssim);
 }
 
 }  // namespace
@@ -36,6 +39,8 @@ std::string describe(const FileComparison& result, const compare::Limits& limits
   if (!result.problem.empty()) line += "; ";
   const bool same = result.worst.figures.pixels_changed == 0;
   if (result.video) line += fmt::format("{} of {} frames differ", result.frames_differing, result.frames);
+  if (result.video && result.frames_differing > 0)
+    line += fmt::format(", the first is frame {}", result.first_differing);
   if (result.video && !same) line += fmt::format("; worst is frame {}: ", result.worst_frame);
   if (same) return line + (result.video ? ", all are the same" : "same");
   if (!result.video) line += result.frames_differing > 0 ? "DIFFERS: " : "within the limits: ";
@@ -101,6 +106,7 @@ Json describe_json(const FileComparison& result, const compare::Limits& limits, 
   if (result.video) {
     json["frames"] = result.frames;
     json["frames_differing"] = result.frames_differing;
+    if (result.frames_differing > 0) json["first_frame_differing"] = result.first_differing;
     json["worst_frame"] = result.worst_frame;
   }
   json["width"] = f.width;

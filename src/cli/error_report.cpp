@@ -29,27 +29,23 @@ constexpr Figure kFigures[] = {
 std::string remedy(ErrorSource source) {
   switch (source) {
     case ErrorSource::steps:
-      return "a smaller time.step or time.tolerance, or a method of second order";
+      return "a smaller time.step or time.tolerance";
     case ErrorSource::solver:
       return "a smaller solver.newton_tolerance";
     case ErrorSource::mesh:
       return "more particles";
     case ErrorSource::start:
-      return "nothing: it is what the scene itself does not determine";
+      return "no setting";
   }
   return {};
 }
 
-std::string advice(const ErrorEstimate& estimate) {
-  const ErrorPart& largest = estimate.largest();
-  std::string text =
-      fmt::format("largest by the {}; what lessens it: {}", name_of(largest.source), remedy(largest.source));
-  if (estimate.doubtful()) text += "; paths part, and the run is off by at least this much";
-  if (estimate.start_matters) text += ": a start moved by 1 µm matters as much as steps and solver do";
-  if (estimate.steps_irregular)
-    text += fmt::format("{} steps twice as long fail or change it hardly more than steps half as long",
-                        estimate.start_matters ? ", and" : ":");
-  return text;
+// What the moved start alone comes out as [mm].
+std::string start_text(const ErrorEstimate& estimate) {
+  for (const ErrorPart& part : estimate.parts)
+    if (part.source == ErrorSource::start && part.missing.empty())
+      return fmt::format("{:.2g}", 1e3 * at(part.errors, Quantity::position));
+  return "?";
 }
 
 std::vector<std::string> row(const std::string& name, const bench::Errors& errors) {
@@ -79,7 +75,27 @@ std::string error_summary(const ErrorEstimate& estimate) {
   std::string text = format_table(rows, "l" + std::string(rows[0].size() - 1, 'r'), 2);
   for (const ErrorPart& part : estimate.parts)
     if (!part.missing.empty()) text += fmt::format("  {} not known: {}\n", name_of(part.source), part.missing);
-  return text + fmt::format("  {} ({:.2g} CPU s for the companions)", advice(estimate), estimate.cpu_s);
+  return text + fmt::format("  ({:.2g} CPU s for the companions)", estimate.cpu_s);
+}
+
+std::string relative_length(double length, double cloth_size) {
+  if (!(cloth_size > 0)) return fmt::format("{:.2g} mm", 1e3 * length);
+  return fmt::format("{:.2g} mm ({:.2g} % of the cloth's size)", 1e3 * length, 100 * length / cloth_size);
+}
+
+std::string error_sentence(const ErrorEstimate& estimate, double cloth_size) {
+  const ErrorPart& largest = estimate.largest();
+  const std::string length = relative_length(at(estimate.all, Quantity::position), cloth_size);
+  const std::string doubt =
+      estimate.steps_irregular ? "; steps twice as long fail or change it hardly more than steps half as long" : "";
+  if (estimate.start_matters)
+    return fmt::format(
+        "the motion is chaotic: a start moved by 1 µm alone moves positions by {} mm; in all they are off by {} or "
+        "more, and no setting lessens that{}",
+        start_text(estimate), length, doubt);
+  return fmt::format("positions {} {}, most of it by the {}; {} lessens it{}",
+                     estimate.steps_irregular ? "are off by at least" : "may be off by", length,
+                     name_of(largest.source), remedy(largest.source), doubt);
 }
 
 nlohmann::ordered_json error_json(const ErrorEstimate& estimate) {
@@ -92,7 +108,7 @@ nlohmann::ordered_json error_json(const ErrorEstimate& estimate) {
   return {{"comparable", !estimate.doubtful()},
           {"parts", std::move(parts)},
           {"all", errors_json(estimate.all)},
-          {"advice", advice(estimate)},
+          {"advice", error_sentence(estimate, 0)},
           {"cpu_s", estimate.cpu_s}};
 }
 

@@ -44,6 +44,7 @@ struct FilmResult {
   StageTime setup;                  ///< opening the source
   std::vector<FrameRecord> frames;  ///< all that were made, in order
   int written = 0;
+  double cloth_size = 0;         ///< longest side of the box around the largest cloth, in the first frame [m]
   bool interrupted = false;      ///< stopped on request before the last wanted frame
   std::string painter = "none";  ///< its description
   std::exception_ptr failure;    ///< of the stage nearest to the output, if any failed

@@ -2,10 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <set>
+#include <sstream>
 
 #include "cli/commands.hpp"
 #include "cli/option_values.hpp"
 #include "cli/path_ledger.hpp"
+#include "core/input_file.hpp"
 #include "core/log.hpp"
 #include "core/temporary_file.hpp"
 #include "embedded_templates.hpp"
@@ -17,9 +20,53 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr std::size_t kLargestIgnoreFile = 1 << 20;  // [bytes]
+
 // A file, or a folder of files with all below it.
 std::string template_of(const EmbeddedFile& file) {
   return (*fs::path(file.name).begin()).stem().string();
+}
+
+// A template of several files may go into a repository that has some of them: it adds, and replaces nothing. Lines that
+// a .gitignore lacks are put at its end, a README goes beside that of the repository, and other files stay.
+struct Added {
+  std::vector<std::pair<fs::path, std::string>> files;
+  std::vector<std::string> kept;
+  fs::path readme;
+};
+
+std::string with_missing_lines(const std::string& text, const std::string& wanted) {
+  std::set<std::string> present;
+  std::string line, result = text;
+  for (std::istringstream lines(text); std::getline(lines, line);) present.insert(line);
+  if (!result.empty() && result.back() != '\n') result += '\n';
+  for (std::istringstream lines(wanted); std::getline(lines, line);)
+    if (!present.contains(line)) result += line + "\n";
+  return result;
+}
+
+Added add_to_folder(const std::vector<std::pair<fs::path, std::string>>& files) {
+  Added added;
+  for (const auto& [file, text] : files) {
+    const bool is_readme = file.filename() == "README.md";
+    if (is_readme) added.readme = file;
+    if (!fs::exists(file)) {
+      added.files.emplace_back(file, text);
+    } else if (file.filename() == ".gitignore" && fs::is_regular_file(file)) {
+      const std::string before = read_file(file, kLargestIgnoreFile);
+      const std::string after = with_missing_lines(before, text);
+      if (after != before) added.files.emplace_back(file, after);
+    } else if (is_readme) {
+      added.readme = file.parent_path() / "PICTURES.md";
+      if (fs::exists(added.readme))
+        added.kept.push_back(added.readme.string());
+      else
+        added.files.emplace_back(added.readme, text);
+    } else {
+      added.kept.push_back(file.string());
+    }
+  }
+  return added;
 }
 
 }  // namespace
@@ -46,10 +93,19 @@ ExitCode make_new(const NewOptions& options) {
   if (!fs::exists(schema)) files.emplace_back(schema, scene::json_schema() + "\n");
   PathLedger paths;
   for (const auto& [file, text] : files) paths.writes("NAME", file);
+  const std::string name = scene.string();
+  if (is_folder && !options.overwrite) {
+    const Added added = add_to_folder(files);
+    paths.check_writable();
+    for (const auto& [file, text] : added.files) write_file(file, text);
+    for (const std::string& kept : added.kept) log::info(fmt::format("{}: kept as it is", kept));
+    log::info(
+        fmt::format("{}: {} files written; {} says how to go on", name, added.files.size(), added.readme.string()));
+    return ExitCode::ok;
+  }
   paths.check_absent(options.overwrite);
   paths.check_writable();
   for (const auto& [file, text] : files) write_file(file, text);
-  const std::string name = scene.string();
   log::info(is_folder
                 ? fmt::format("{}: written; {} says how to go on", name, (scene / "README.md").string())
                 : fmt::format("{}: written; weft run {} makes a video of it, weft watch {} draws it as it changes",

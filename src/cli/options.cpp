@@ -72,10 +72,11 @@ void check_unknown(const CLI::App& command, const std::string& prefix) {
 
 BenchOptions checked(BenchOptions bench, const std::string& option_of_speed) {
   using Kind = BenchOptions::Kind;
-  const bool own_scenes = bench.kind == Kind::stability || bench.kind == Kind::fabrics;
-  if (own_scenes && (!bench.scene.empty() || !bench.overrides.empty()))
-    throw Error(ExitCode::usage, "weft bench {}: expected no SCENE and no --set, its scenes are its own",
-                bench.kind == Kind::fabrics ? "fabrics" : "stability");
+  if (bench.kind == Kind::fabrics && (!bench.scene.empty() || !bench.overrides.empty()))
+    throw Error(ExitCode::usage, "weft bench fabrics: expected no SCENE and no --set, its scenes are its own");
+  if (bench.kind == Kind::stability && bench.scene.empty() && !bench.overrides.empty())
+    throw Error(ExitCode::usage,
+                "weft bench stability: expected a SCENE for --set, the built-in scenes are as they are");
   if (bench.kind != Kind::speed && !option_of_speed.empty())
     throw Error(ExitCode::usage, "weft bench: {} is for weft bench speed", option_of_speed);
   return bench;

@@ -141,7 +141,7 @@ struct DoctorOptions {
 struct BenchOptions {
   enum class Kind { stability, accuracy, speed, fabrics };
   Kind kind = Kind::stability;
-  std::filesystem::path scene;         ///< of accuracy and speed; empty: one that is built in
+  std::filesystem::path scene;         ///< of stability, accuracy and speed; empty: built-in ones
   std::vector<std::string> overrides;  ///< of --set
   /// Of speed: what is varied, ascending, and which frames are measured.
   std::vector<double> sizes{0.5, 1, 2, 4}, steps{0.5, 1, 2};

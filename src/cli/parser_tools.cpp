@@ -46,13 +46,16 @@ void Parser::add_bench() {
   command
       .add_option_function<std::string>(
           "WHAT", [this](const std::string& text) { bench.kind = parse_choice("WHAT", text, kBenches); },
-          "stability: what comes of stiff and extreme scenes; accuracy: error against run time of a scene; speed: "
+          "stability: what comes of stiff and extreme scenes, or at what values a scene breaks; accuracy: error "
+          "against "
+          "run time of a scene; speed: "
           "time by stage, iterations and memory over sizes, threads and steps; fabrics: drape, bending and extension "
           "against what was published")
       ->required()
       ->type_name("stability|accuracy|speed|fabrics");
   command
-      .add_option("SCENE", bench.scene, "For accuracy and speed: the scene, a TOML file [a swinging sheet; a drape]")
+      .add_option("SCENE", bench.scene,
+                  "The scene, a TOML file, not of fabrics [extreme ones; a swinging sheet; a drape]")
       ->type_name("");
   add_overrides(command, bench.overrides);
   add_value(command, "-o,--output", "DIR", "Folder for tables and plots [output/bench]",
@@ -88,6 +91,7 @@ void Parser::add_bench() {
   command.footer(
       "\nExamples:\n"
       "  weft bench stability -o stability\n"
+      "  weft bench stability scenes/falling_band.toml --set time.duration=0.8 -o stability\n"
       "  weft bench accuracy scenes/falling_band.toml --set time.duration=0.8 -o accuracy\n"
       "  weft bench speed scenes/falling_band.toml --sizes 0.5,1,2 --frames 20:40 -o speed");
 }

@@ -241,6 +241,7 @@ void Session::estimate_error(const scene::Scene& scene, bench::Recorder& recorde
 void Session::sum_up(const FilmPlan& plan, FilmResult result) {
   report_.objects = std::move(result.objects);
   report_.particles = count_particles(report_.objects);
+  report_.cloth_size = result.cloth_size;
   report_.setup += result.setup;
   report_.frames = std::move(result.frames);
   report_.written = result.written;

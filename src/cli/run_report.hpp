@@ -30,6 +30,7 @@ struct RunReport {
   std::uint64_t scene_hash = 0;
   std::vector<simulation::ObjectInfo> objects;
   std::size_t particles = 0;
+  double cloth_size = 0;  ///< longest side of the box around the largest cloth, in the first frame [m]; 0: no cloth
   int threads = 0;
   std::string gl;
   int width = 0, height = 0;  ///< pixels; 0 where nothing is drawn

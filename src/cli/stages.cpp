@@ -9,6 +9,7 @@
 #include "cli/option_groups.hpp"
 #include "core/log.hpp"
 #include "core/version.hpp"
+#include "frame/heat_name.hpp"
 #include "image/png.hpp"
 #include "mesh/ply.hpp"
 #include "render/framing.hpp"
@@ -142,7 +143,10 @@ void write_meshes(const std::filesystem::path& folder, const frame::FrameSnapsho
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
     mesh::write_ply(mesh_files(folder, surface.name).name(snapshot.frame), snapshot.states[i].positions,
-                    surface.triangles, {.passed_through = surface.passed_through});
+                    surface.triangles,
+                    {.passed_through = surface.passed_through,
+                     .values = snapshot.states[i].heat,
+                     .values_name = name_of(snapshot.stage->heat)});
   }
 }
 

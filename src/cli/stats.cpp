@@ -125,6 +125,9 @@ Json frame_json(const FrameRecord& record) {
           {"stretch_share", finite(report.stretch_share)},
           {"kinetic_energy_j", finite(report.kinetic_energy)},
           {"elastic_energy_j", finite(report.elastic_energy)},
+          {"potential_energy_j", finite(report.potential_energy)},
+          {"pin_work_j", finite(report.pin_work)},
+          {"solver_work_j", finite(report.solver_work)},
           {"pinched_pairs", report.pinched_pairs},
           {"lagging_particles", report.lagging_particles}};
 }

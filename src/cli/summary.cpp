@@ -71,13 +71,23 @@ std::string joule(double energy) {
   return fmt::format("{:.3g} J", std::abs(energy) < 1e-12 ? 0.0 : energy);
 }
 
-// Both parts, and what lessens the larger one.
-std::string error_text(const StepTotals& steps) {
+// How far positions may be off, by whose doing, and what lessens it. Errors of single frames are no error of the run:
+// they may cancel or grow. So the worst frame is told of, unless companions have measured the run.
+std::string error_text(const RunReport& report) {
+  if (report.error) return error_sentence(*report.error, report.cloth_size);
+  const auto of_frame = [](const FrameRecord& record) {
+    return std::max(record.report.error_estimate, record.report.solver_error);
+  };
+  const auto worst = std::ranges::max_element(report.frames, {}, of_frame)->report;
+  const double steps = worst.error_estimate, solver = worst.solver_error;
+  if (!(std::max(steps, solver) > 0)) return "no step was taken";
+  const bool by_solver = solver > steps;
   return fmt::format(
-      "{:.2g} mm of position from the time steps, {:.2g} mm left by the solver, summed up: lessened by a {}",
-      1e3 * steps.error_estimate, 1e3 * steps.solver_error,
-      steps.solver_error > steps.error_estimate ? "smaller solver.newton_tolerance"
-                                                : "shorter time.step or smaller time.tolerance");
+      "frame {}, the worst, adds about {} to the error of positions, by the {} (the {}: {:.2g} mm); a smaller {} "
+      "lessens it; --error measures the whole run",
+      worst.frame, relative_length(by_solver ? solver : steps, report.cloth_size), by_solver ? "solver" : "time steps",
+      by_solver ? "time steps" : "solver", 1e3 * (by_solver ? steps : solver),
+      by_solver ? "solver.newton_tolerance" : "time.step or time.tolerance");
 }
 
 std::string figures_table(const RunReport& report) {
@@ -96,7 +106,7 @@ std::string figures_table(const RunReport& report) {
       {{"particles", fmt::format("{} in {} objects", report.particles, report.objects.size())},
        {"steps", fmt::format("{} and {} rejected; {} Newton and {} linear iterations", steps.accepted, steps.rejected,
                              newton, linear)},
-       {"error estimate", error_text(steps)},
+       {"error", error_text(report)},
        {"smallest distance", none_near ? "nothing came near" : at_largest(report.frames, "{:.3g} mm", nearness, -1e3)},
        {"largest strain", at_largest(report.frames, "{:.2f} %", strain, 100)},
        {"energy at the end",

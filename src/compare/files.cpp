@@ -48,6 +48,7 @@ void add_frame(FileComparison& result, image::Image&& reference, image::Image&& 
     result.reference_picture = std::move(reference);
     result.test_picture = std::move(test);
   }
+  if (first_differing) result.first_differing = result.frames;
   ++result.frames;
   result.frames_differing += differs;
 }

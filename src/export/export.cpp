@@ -13,6 +13,7 @@
 #include "export/pc2.hpp"
 #include "export/seams.hpp"
 #include "export/usd.hpp"
+#include "frame/heat_name.hpp"
 #include "mesh/ply.hpp"
 
 namespace weft::exporter {
@@ -61,11 +62,19 @@ void write_materials(const Request& request, const frame::Surface& surface) {
     write_file(request.folder / picture.name, picture.png(), Flush::no);
 }
 
-void write_cut_ply(const Path& file, const frame::Surface& surface, const std::vector<Vec3>& positions) {
+void write_cut_ply(const Path& file, const frame::FrameSnapshot& snapshot, std::size_t number) {
+  const frame::Surface& surface = *snapshot.surfaces[number];
+  const std::vector<Vec3>& positions = snapshot.states[number].positions;
+  const std::vector<float>& heat = snapshot.states[number].heat;
   const CutSurface cut = cut_at_seams(surface, materials_of(surface), positions.size());
   std::vector<Vec3> places;
-  for (const Index vertex : cut.vertex_of) places.push_back(positions[static_cast<std::size_t>(vertex)]);
-  mesh::write_ply(file, places, cut.triangles, {.uv = cut.uv});
+  std::vector<float> values;
+  for (const Index vertex : cut.vertex_of) {
+    places.push_back(positions[static_cast<std::size_t>(vertex)]);
+    if (!heat.empty()) values.push_back(heat[static_cast<std::size_t>(vertex)]);
+  }
+  mesh::write_ply(file, places, cut.triangles,
+                  {.uv = cut.uv, .values = values, .values_name = name_of(snapshot.stage->heat)});
 }
 
 void write_meshes(const Request& request, const frame::FrameSnapshot& snapshot) {
@@ -74,7 +83,7 @@ void write_meshes(const Request& request, const frame::FrameSnapshot& snapshot) 
     if (request.format == Format::obj && snapshot.frame == request.frames.front()) write_materials(request, surface);
     const Path file = frame_file(request, surface.name, snapshot.frame);
     if (request.format == Format::ply)
-      write_cut_ply(file, surface, snapshot.states[s].positions);
+      write_cut_ply(file, snapshot, s);
     else
       write_obj(file, surface, snapshot.states[s].positions);
   }

@@ -32,6 +32,8 @@ struct FrameReport {
   double kinetic_energy = 0;  ///< [J]
   double potential_energy = 0;  ///< of gravity, zero at the origin [J]
   double elastic_energy = 0;    ///< stretch, shear and bending [J]
+  double pin_work = 0;          ///< that pins have done on the cloth since the frame before [J]
+  double solver_work = 0;       ///< likewise, by what the solver has left of the equation of motion [J]
   int pinched_pairs = 0;        ///< most triangles of cloth at once that have no room and are in an obstacle
   int lagging_particles = 0;    ///< most at once that something kept from where a pin was to hold them
   /// Of what begins or ends: "frame 37: 'sheet' has no room between ..., near (x, y, z) m".

@@ -20,7 +20,7 @@ static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t);
 constexpr std::size_t kPlaceBytes = 3 * sizeof(double), kUvBytes = 2 * sizeof(float);
 
-std::string header(std::size_t vertices, bool has_uv, std::size_t faces, std::size_t passed_through) {
+std::string header(std::size_t vertices, std::size_t faces, std::size_t passed_through, const PlyExtras& extras) {
   return fmt::format(
       "ply\n"
       "format binary_little_endian 1.0\n"
@@ -29,11 +29,12 @@ std::string header(std::size_t vertices, bool has_uv, std::size_t faces, std::si
       "property double x\n"
       "property double y\n"
       "property double z\n"
-      "{}element face {}\n"
+      "{}{}element face {}\n"
       "property list uchar int vertex_indices\n"
       "end_header\n",
       passed_through > 0 ? fmt::format("comment cloth passes through the last {} faces\n", passed_through) : "",
-      vertices, has_uv ? "property float s\nproperty float t\n" : "", faces);
+      vertices, extras.uv.empty() ? "" : "property float s\nproperty float t\n",
+      extras.values.empty() ? "" : fmt::format("property float {}\n", extras.values_name), faces);
 }
 
 }  // namespace
@@ -42,14 +43,16 @@ void write_ply(const std::filesystem::path& file, std::span<const Vec3> position
                std::span<const std::array<Index, 3>> triangles, const PlyExtras& extras) {
   const auto last = static_cast<std::size_t>(std::ranges::count(extras.passed_through, 1));
   const bool has_uv = !extras.uv.empty();
-  std::string content = header(positions.size(), has_uv, triangles.size(), last);
-  const std::size_t vertex_bytes = kPlaceBytes + (has_uv ? kUvBytes : 0);
+  std::string content = header(positions.size(), triangles.size(), last, extras);
+  const std::size_t values_at = kPlaceBytes + (has_uv ? kUvBytes : 0);
+  const std::size_t vertex_bytes = values_at + (extras.values.empty() ? 0 : sizeof(float));
   const std::size_t vertices_at = content.size();
   const std::size_t faces_at = vertices_at + vertex_bytes * positions.size();
   content.resize(faces_at + kFaceBytes * triangles.size());
   char* vertex = content.data() + vertices_at;
   for (std::size_t v = 0; v < positions.size(); ++v, vertex += vertex_bytes) {
     std::memcpy(vertex, positions[v].data(), kPlaceBytes);
+    if (!extras.values.empty()) std::memcpy(vertex + values_at, &extras.values[v], sizeof(float));
     if (!has_uv) continue;
     const std::array<float, 2> uv{static_cast<float>(extras.uv[v].x()), static_cast<float>(extras.uv[v].y())};
     std::memcpy(vertex + kPlaceBytes, uv.data(), kUvBytes);

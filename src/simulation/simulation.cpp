@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -33,8 +35,8 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_values(archive, report.frame, report.time, report.steps, report.rejected_steps, report.inexact_steps,
                    report.error_estimate, report.solver_error, report.newton_iterations, report.linear_iterations,
                    report.proximities, report.constraints, report.min_distance, report.max_strain, report.stretch_share,
-                   report.kinetic_energy, report.potential_energy, report.elastic_energy, report.pinched_pairs,
-                   report.lagging_particles);
+                   report.kinetic_energy, report.potential_energy, report.elastic_energy, report.pin_work,
+                   report.solver_work, report.pinched_pairs, report.lagging_particles);
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
@@ -134,7 +136,8 @@ Simulation::Impl::Impl(const scene::Scene& s)
   measure_energies(start_report);
   start_report.max_strain = steps->cloth().max_strain(steps->progress().now.particles());
   measure(start_report);
-  energy_bound.emplace(scene, start_report);
+  const std::span<const double> masses = steps->cloth().masses();
+  energy_bound.emplace(scene, std::accumulate(masses.begin(), masses.end(), 0.0), start_report);
   for (const std::string& text : find_jumps(scene, environment)) log::warn(text);
 }
 
@@ -179,8 +182,8 @@ FrameReport Simulation::Impl::advance() {
     try {
       steps->advance(time(), report.time, report);
       measure_energies(report);
-      if (std::optional<std::string> warning = energy_bound->check(report.frame, report))
-        report.warnings.push_back(*std::move(warning));
+      report_obstructions(report);
+      std::ranges::move(energy_bound->check(report), std::back_inserter(report.warnings));
     } catch (const Error&) {
       steps->return_to(std::move(start));
       throw;
@@ -188,7 +191,6 @@ FrameReport Simulation::Impl::advance() {
   }
   frame = report.frame;
   measure(report);
-  report_obstructions(report);
   current = make_snapshot();
   return report;
 }
@@ -214,10 +216,11 @@ void Simulation::Impl::measure(FrameReport& report) const {
 void Simulation::Impl::report_obstructions(FrameReport& report) {
   const CollisionStage::Pinches pinches = steps->take_pinches();
   report.pinched_pairs = pinches.pairs;
-  for (const std::string& text : pinches.begun) report.warnings.push_back(fmt::format("frame {}: {}", frame, text));
+  for (const std::string& text : pinches.begun)
+    report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
   const YieldingPins::Lags lags = steps->take_lags();
   report.lagging_particles = lags.particles;
-  for (const std::string& text : lags.turns) report.warnings.push_back(fmt::format("frame {}: {}", frame, text));
+  for (const std::string& text : lags.turns) report.warnings.push_back(fmt::format("frame {}: {}", report.frame, text));
 }
 
 frame::SnapshotPtr Simulation::Impl::make_snapshot() const {

@@ -443,6 +443,7 @@ StepLoop::Rejection StepLoop::reason_of(const integrator::StepReport& step) {
 
 // Makes `next_`, reached over h, the state.
 void StepLoop::accept(double h, FrameReport& report) {
+  count_work(measure_work(stepper_, pins_.held(), cloth_.masses(), progress_.now, next_), report);
   stepper_.accept(progress_.now, h);
   pins_.accept();
   if (collisions_) collisions_->accept();

@@ -14,6 +14,7 @@
 #include "simulation/collision_stage.hpp"
 #include "simulation/simulation.hpp"
 #include "simulation/step_problem.hpp"
+#include "simulation/step_work.hpp"
 #include "simulation/yielding_pins.hpp"
 
 namespace weft::simulation {
@@ -109,6 +110,10 @@ class StepLoop {
   integrator::StepReport solve(double h, integrator::Stepper::Start start, bool look, FrameReport& report);
   static Rejection reason_of(const integrator::StepReport& step);
   void accept(double h, FrameReport& report);
+  static void count_work(const StepWork& work, FrameReport& report) {
+    report.pin_work += work.pins;
+    report.solver_work += work.solver;
+  }
   void measure_stretch(FrameReport& report);
   [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
 

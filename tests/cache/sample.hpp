@@ -115,6 +115,8 @@ struct Sample {
     report.max_strain = 0.01;
     report.kinetic_energy = 0.7;
     report.potential_energy = -0.2;
+    report.pin_work = 0.03;
+    report.solver_work = -0.004;
     report.min_distance = std::numeric_limits<double>::infinity();
     report.elastic_energy = 1.0 / 3;
     report.pinched_pairs = 2;

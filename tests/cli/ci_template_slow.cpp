@@ -83,9 +83,9 @@ TEST_F(CiRepository, CatchesWhatIsChangedAndPassesWhatIsNot) {
   EXPECT_NE(log_.find("\n9 of 9 are as their references\n"), std::string::npos) << log_;
 
   // Six that a viewer would see.
-  expect_caught(
-      "physics", [&] { replace("scenes/flag.toml", "wind = [8, 2, 0]", "wind = [8, 3, 0]"); }, 7,
-      {"\nflag/00010.png: DIFFERS", "\nflag.mp4: 30 of 31 frames differ", "\ndrapes/scarf.mp4: 0 of 21 frames differ"});
+  expect_caught("physics", [&] { replace("scenes/flag.toml", "wind = [8, 2, 0]", "wind = [8, 3, 0]"); }, 7,
+                {"\nflag/00010.png: DIFFERS", "\nflag.mp4: 30 of 31 frames differ, the first is frame 1; ",
+                 "\ndrapes/scarf.mp4: 0 of 21 frames differ"});
   expect_caught("a colour, in a folder", [&] { replace("scenes/drapes/scarf.toml", "b3202c", "b3402c"); }, 7,
                 {"\ndrapes/scarf/00000.png: DIFFERS", "\nflag/00030.png: same"});
   expect_caught("the camera", [&] { replace("scenes/flag.toml", "[0, -2.4, 1.1]", "[0, -2.4, 1.12]"); }, 7,
@@ -96,7 +96,7 @@ TEST_F(CiRepository, CatchesWhatIsChangedAndPassesWhatIsNot) {
                 [&] { fs::copy_file(repo_ / "scenes/flag.toml", repo_ / "scenes/drapes/flag.toml"); }, 8,
                 {"\ndrapes/flag/00020.png: no reference", "9 of 14 are as their references"});
   expect_caught("one frame of a video", [&] { change_frame("00015.png"); }, 7,
-                {"of 31 frames differ; worst is frame 15", "8 of 9 are as their references"});
+                {"the first is frame 15; worst is frame 15", "8 of 9 are as their references"});
 
   // Three that nobody sees.
   expect_caught("a comment", [&] { replace("scenes/flag.toml", "# A flag", "# One flag"); }, 0, {"9 of 9"});
@@ -105,10 +105,13 @@ TEST_F(CiRepository, CatchesWhatIsChangedAndPassesWhatIsNot) {
       "threads", [] {}, 0, {"9 of 9"}, "--threads 1");
 }
 
-TEST_F(CiRepository, EndsWithTheCommandThatFails) {
+TEST_F(CiRepository, GoesOnAfterASceneThatFails) {
   replace("scenes/drapes/scarf.toml", "\"silk\"", "\"slik\"");
   EXPECT_EQ(check(), 3) << log_;
   EXPECT_NE(log_.find("did you mean silk?"), std::string::npos) << log_;
+  EXPECT_NE(log_.find("pictures.sh: scenes/drapes/scarf.toml failed with exit code 3"), std::string::npos) << log_;
+  EXPECT_NE(log_.find("flag/00010.png: no reference"), std::string::npos) << log_;
+  EXPECT_NE(support::read_bytes(repo_ / "report/stats/flag.json").find("\"exit_code\": 0"), std::string::npos);
 }
 
 }  // namespace

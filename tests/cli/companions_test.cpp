@@ -58,7 +58,7 @@ TEST(Companions, NameTheSourceOfTheError) {
   EXPECT_EQ(steps.largest().source, ErrorSource::steps);
   EXPECT_LT(part_of(steps, ErrorSource::solver), 0.1 * part_of(steps, ErrorSource::steps));
   EXPECT_EQ(part_of(steps, ErrorSource::mesh), -1) << "not asked for";
-  EXPECT_NE(cli::error_summary(steps).find("largest by the time steps; what lessens it: a smaller time.step"),
+  EXPECT_NE(cli::error_sentence(steps, 0.5).find("most of it by the time steps; a smaller time.step"),
             std::string::npos);
   ErrorEstimate solver;
   for (ErrorSource source : {ErrorSource::steps, ErrorSource::solver, ErrorSource::start}) {
@@ -66,7 +66,7 @@ TEST(Companions, NameTheSourceOfTheError) {
     solver.parts.back().errors.fill(source == ErrorSource::solver ? 2e-3 : 1e-3);
   }
   EXPECT_NE(
-      cli::error_summary(solver).find("largest by the solver; what lessens it: a smaller solver.newton_tolerance"),
+      cli::error_sentence(solver, 0.5).find("most of it by the solver; a smaller solver.newton_tolerance lessens"),
       std::string::npos);
 }
 
@@ -103,8 +103,8 @@ TEST(Companions, SayWherePathsPart) {
   const ErrorEstimate estimate = estimate_of(undecided());
   EXPECT_TRUE(estimate.start_matters);
   EXPECT_GT(part_of(estimate, ErrorSource::start), 1e-4);
-  const std::string text = cli::error_summary(estimate);
-  EXPECT_NE(text.find("paths part, and the run is off by at least this much: a start moved by 1 µm"), std::string::npos)
+  const std::string text = cli::error_sentence(estimate, 0.3);
+  EXPECT_NE(text.find("the motion is chaotic: a start moved by 1 µm alone moves positions by"), std::string::npos)
       << text;
   EXPECT_FALSE(cli::error_json(estimate).at("comparable"));
 }
@@ -138,7 +138,7 @@ TEST(Companions, DoubtStepsWhoseErrorDoesNotFall) {
   for (const scene::Scene& scene : {bounces, fails}) {
     const ErrorEstimate estimate = estimate_of(scene);
     EXPECT_TRUE(estimate.steps_irregular);
-    EXPECT_NE(cli::error_summary(estimate).find("steps twice as long fail or change it hardly more"),
+    EXPECT_NE(cli::error_sentence(estimate, 0).find("steps twice as long fail or change it hardly more"),
               std::string::npos);
   }
 }
@@ -155,7 +155,7 @@ TEST_F(ErrorOfARun, IsToldAtTheEndAndInTheStatistics) {
                                               "--set", "cloth.sheet.particles=9", "--set", "time.duration=0.4"},
                                              folder_);
   ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
-  EXPECT_NE(outcome.err.find("what lessens it: "), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("error              positions "), std::string::npos) << outcome.err;
   const auto error = nlohmann::json::parse(support::read_bytes(folder_ / "s.json")).at("error");
   const ErrorEstimate expected = estimate_of(swinging());
   EXPECT_DOUBLE_EQ(error.at("all").at("position_m"), at(expected.all, Quantity::position));

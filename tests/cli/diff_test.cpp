@@ -37,7 +37,7 @@ TEST_F(Diff, ExitCodesTellEqualDifferentMissingAndUnreadable) {
   support::write_bytes(folder_ / "broken.png", "words");
   expect({"diff", "a.png", "a.png"}, 0, "a.png: same");
   expect({"diff", "a.png", "b.png"}, 7,
-         "b.png: DIFFERS: 768 of 768 pixels differ, 768 by more than 4 levels (limit 0)");
+         "b.png: DIFFERS: 768 of 768 pixels differ, 768 by more than 4 levels (limit 0: 2e-05 of all pixels)");
   expect({"diff", "a.png", "wide.png"}, 7, "wide.png: 40x24 pixels, the reference has 32x24");
   expect({"diff", "none.png", "a.png"}, 8, "none.png: the reference does not exist");
   expect({"diff", "a.png", "none.png"}, 4, "none.png: the picture to test does not exist");
@@ -146,6 +146,10 @@ TEST_F(Diff, LimitsOfSinglePicturesComeFromAFile) {
   broken("[[picture]]\nname = \"a\"\nmax_flop = 1\n", "limits.toml:3:12: unknown key max_flop; did you mean max_flip?");
   broken("[[picture]]\nname = \"a\"\nmax_flip = 2\n", "limits.toml:3:12: max_flip: expected a number from 0 to 1");
   broken("picture = 1\n", "expected tables [[picture]]");
+  broken("[[picture]]\nname = \"*\"\nmax_flip = 1\n[[picture]]\nname = \"front/c.png\"\nmax_flip = 1\n",
+         "limits.toml:4:1: name: expected a name or pattern of a picture that is compared, got \"front/c.png\", which "
+         "fits "
+         "none of 3; did you mean front/");
 }
 
 TEST_F(Diff, JUnitNamesWhatFailedAndWhatIsBroken) {

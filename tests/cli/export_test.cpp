@@ -18,8 +18,10 @@ std::string without_uv(const std::string& ply) {
   if (at > body) return ply;
   const std::size_t vertices = std::stoul(ply.substr(ply.find("element vertex ") + 15));
   std::string plain = ply.substr(0, at) + ply.substr(at + words.size(), body - at - words.size());
-  for (std::size_t v = 0; v < vertices; ++v) plain += ply.substr(body + 32 * v, 24);
-  return plain + ply.substr(body + 32 * vertices);
+  const std::size_t value = ply.find("property float strain\n") < body ? 4 : 0, size = 32 + value;
+  for (std::size_t v = 0; v < vertices; ++v)
+    plain += ply.substr(body + size * v, 24) + ply.substr(body + size * v + 32, value);
+  return plain + ply.substr(body + size * vertices);
 }
 
 class ExportCommand : public CachedRun {

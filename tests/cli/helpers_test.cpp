@@ -40,6 +40,43 @@ TEST_F(Helpers, EveryTemplateIsASceneWithItsSchemaBesideIt) {
   EXPECT_EQ(run_weft({"new", "other", "--template", "dress"}, folder_).exit_code, 2);
 }
 
+TEST_F(Helpers, TemplateOfARepositoryAddsToOneThatIsThere) {
+  const auto put = [&](const char* name, const std::string& text) { support::write_bytes(folder_ / name, text); };
+  const auto read = [&](const char* name) { return support::read_bytes(folder_ / name); };
+  fs::create_directories(folder_ / "scenes");
+  put("README.md", "mine\n");
+  put(".gitignore", "/build/\n/out/");
+  put("scenes/flag.toml", "# mine\n");
+  put("limits.toml", "# mine\n");
+  const Outcome made = run_weft({"new", ".", "--template", "ci"}, folder_);
+  EXPECT_EQ(made.exit_code, 0) << made.err;
+  EXPECT_EQ(read("README.md"), "mine\n");
+  EXPECT_EQ(read("scenes/flag.toml"), "# mine\n");
+  EXPECT_EQ(read("limits.toml"), "# mine\n");
+  EXPECT_NE(read("PICTURES.md").find("# Scenes of cloth"), std::string::npos);
+  EXPECT_EQ(read(".gitignore"), "/build/\n/out/\n/report/\n/caches/\n/.weft/\n/.ccache/\n");
+  EXPECT_TRUE(fs::exists(folder_ / ".github/workflows/pictures.yml"));
+  EXPECT_TRUE(fs::exists(folder_ / "pictures.sh"));
+  EXPECT_NE(made.err.find("limits.toml: kept as it is"), std::string::npos) << made.err;
+  EXPECT_NE(made.err.find("PICTURES.md says how to go on"), std::string::npos) << made.err;
+  // And once more, what it has written itself.
+  EXPECT_EQ(run_weft({"new", ".", "--template", "ci"}, folder_).exit_code, 0);
+  EXPECT_EQ(read(".gitignore"), "/build/\n/out/\n/report/\n/caches/\n/.weft/\n/.ccache/\n");
+}
+
+// A camera that is found from the cloth moves with it: then all pixels differ.
+TEST_F(Helpers, ScenesOfTheTemplateOfARepositoryHaveFixedCameras) {
+  EXPECT_EQ(run_weft({"new", "repo", "--template", "ci"}, folder_).exit_code, 0);
+  int scenes = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder_ / "repo/scenes")) {
+    if (entry.path().extension() != ".toml") continue;
+    ++scenes;
+    EXPECT_NE(support::read_bytes(entry.path()).find("[[camera]]"), std::string::npos) << entry.path();
+    EXPECT_EQ(run_weft({"check", entry.path().string()}, folder_).exit_code, 0);
+  }
+  EXPECT_EQ(scenes, 2);
+}
+
 TEST_F(Helpers, WatchDrawsAgainWhenTheSceneChanges) {
   std::thread change([&] {
     for (int i = 0; i < 600 && !fs::exists(folder_ / "s.png"); ++i)

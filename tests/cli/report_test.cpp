@@ -2,9 +2,12 @@
 #include <gtest/gtest.h>
 
 #include <limits>
+#include <set>
+#include <sstream>
 
 #include "cli/stats.hpp"
 #include "cli/summary.hpp"
+#include "support/test_folder.hpp"
 
 namespace weft::cli {
 namespace {
@@ -59,6 +62,43 @@ TEST(StatsJson, SumsUpSteps) {
   EXPECT_DOUBLE_EQ(totals.at("solver_error_m"), 0.0004);
 }
 
+// The keys in the first column of a table that follows this line of the page.
+std::set<std::string> documented_keys(const std::string& page, const std::string& before) {
+  std::set<std::string> keys;
+  const std::size_t begin = page.find(before);
+  if (begin == std::string::npos) return keys;
+  const std::size_t table = page.find("|---|", begin), end = page.find("\n\n", table);
+  std::istringstream lines(page.substr(table, end - table));
+  for (std::string line; std::getline(lines, line);) {
+    const std::string cell = line.substr(0, line.find('|', 1));
+    for (std::size_t at = cell.find('`'); at != std::string::npos; at = cell.find('`', at + 1)) {
+      const std::size_t close = cell.find('`', at + 1);
+      keys.insert(cell.substr(at + 1, close - at - 1));
+      at = close;
+    }
+  }
+  return keys;
+}
+
+std::set<std::string> keys_of(const nlohmann::ordered_json& json) {
+  std::set<std::string> keys;
+  for (const auto& [key, value] : json.items()) keys.insert(key);
+  return keys;
+}
+
+TEST(StatsJson, EachKeyIsDocumented) {
+  const std::string page = support::read_bytes(WEFT_SOURCE_DIR "/scenes/data.md");
+  RunReport report;
+  report.frames = two_frames();
+  report.objects.push_back({"sheet", frame::ObjectKind::cloth, 4, 1});
+  report.error.emplace().parts.push_back({bench::ErrorSource::steps});
+  const auto stats = stats_json(report);
+  EXPECT_EQ(documented_keys(page, "## Keys of `--stats`"), keys_of(stats));
+  EXPECT_EQ(documented_keys(page, "Keys of one of `objects`"), keys_of(stats.at("objects").at(0)));
+  EXPECT_EQ(documented_keys(page, "Keys of `totals`"), keys_of(stats.at("totals")));
+  EXPECT_EQ(documented_keys(page, "Keys of one of `frames`"), keys_of(stats.at("frames").at(1)));
+}
+
 TEST(Summary, NamesTheFramesOfTheExtremes) {
   RunReport report;
   report.output = "a.mp4";
@@ -69,21 +109,49 @@ TEST(Summary, NamesTheFramesOfTheExtremes) {
   report.fps = 25;
   report.output_bytes = 1'234'567;
   const std::string text = summary(report);
-  for (const char* part :
-       {"a.mp4: 1 frame, 64x36 at 25 fps, 1.2 MB\n", "2 mm (frame 1)\n", "5.00 % (frame 1)\n", "4 and 1 rejected;",
-        "error estimate     1.2 mm of position", "  simulate      0.02 s  0.02 s      18.0 ms\n"}) {
+  for (const char* part : {"a.mp4: 1 frame, 64x36 at 25 fps, 1.2 MB\n", "2 mm (frame 1)\n", "5.00 % (frame 1)\n",
+                           "4 and 1 rejected;", "  simulate      0.02 s  0.02 s      18.0 ms\n"}) {
     EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;
   }
 }
 
-TEST(Summary, SaysWhatLessensTheLargerPartOfTheError) {
+// The sum over all frames is no error of anything: 120 mm for a band of a metre.
+TEST(Summary, SaysByWhatTheWorstFrameIsOffAndWhatLessensIt) {
   RunReport report;
   report.frames = two_frames();
-  EXPECT_NE(summary(report).find("0.2 mm left by the solver, summed up: lessened by a shorter time.step"),
-            std::string::npos);
-  report.frames[1].report.solver_error = 0.002;
-  EXPECT_NE(summary(report).find("2 mm left by the solver, summed up: lessened by a smaller solver.newton_tolerance"),
-            std::string::npos);
+  for (int k = 0; k < 100; ++k) report.frames.push_back(report.frames[1]);
+  report.frames[7].report.frame = 7;
+  report.frames[7].report.error_estimate = 0.005;
+  report.cloth_size = 0.5;
+  EXPECT_NE(summary(report).find("frame 7, the worst, adds about 5 mm (1 % of the cloth's size) to the error of "
+                                 "positions, by the time steps (the solver: 0.2 mm); a smaller time.step or "
+                                 "time.tolerance lessens it; --error measures the whole run\n"),
+            std::string::npos)
+      << summary(report);
+  report.frames[7].report.solver_error = 0.01;
+  EXPECT_NE(summary(report).find("adds about 10 mm (2 % of the cloth's size) to the error of positions, by the solver "
+                                 "(the time steps: 5 mm); a smaller solver.newton_tolerance lessens it"),
+            std::string::npos)
+      << summary(report);
+  report.frames = {{}};
+  EXPECT_NE(summary(report).find("no step was taken"), std::string::npos);
+}
+
+TEST(Summary, SaysWhatCompanionsHaveMeasured) {
+  RunReport report;
+  report.frames = two_frames();
+  report.cloth_size = 2;
+  bench::ErrorPart steps{bench::ErrorSource::steps}, start{bench::ErrorSource::start};
+  steps.errors[static_cast<std::size_t>(bench::Quantity::position)] = 0.008;
+  start.errors[static_cast<std::size_t>(bench::Quantity::position)] = 1e-6;
+  report.error = bench::ErrorEstimate{.parts = {steps, start}, .all = steps.errors};
+  EXPECT_NE(summary(report).find("positions may be off by 8 mm (0.4 % of the cloth's size), most of it by the time "
+                                 "steps; a smaller time.step or time.tolerance lessens it\n"),
+            std::string::npos)
+      << summary(report);
+  EXPECT_EQ(summary(report).find("--error measures"), std::string::npos);
+  report.error->start_matters = true;
+  EXPECT_NE(summary(report).find("the motion is chaotic"), std::string::npos);
 }
 
 TEST(Summary, OfARunWithoutFramesSaysSo) {

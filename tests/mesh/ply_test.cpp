@@ -70,6 +70,25 @@ TEST_F(Ply, FilesHoldLittleEndianDoublesAndTriangles) {
   EXPECT_EQ(faces, std::string("\3\0\0\0\0\1\0\0\0\2\0\0\0\3\2\0\0\0\1\0\0\0\0\0\0\0", 26));
 }
 
+TEST_F(Ply, HasValuesOfVerticesUnderTheirName) {
+  const std::vector<Vec2> uv{{0, 0}, {0.5, 0}, {0, 0.25}};
+  const std::vector<float> strain{0.01F, 0.5F, 0.125F};
+  write_ply(file(), kPositions, kTriangles, {.uv = uv, .values = strain, .values_name = "strain"});
+  const std::string bytes = bytes_of(file());
+  const std::string names =
+      "property double z\nproperty float s\nproperty float t\nproperty float strain\nelement face";
+  ASSERT_NE(bytes.find(names), std::string::npos) << bytes.substr(0, 300);
+  const std::size_t begin = bytes.find("end_header\n") + 11;
+  ASSERT_EQ(bytes.size(), begin + 3 * (24 + 8 + 4) + 2 * 13);
+  for (std::size_t v = 0; v < 3; ++v) {
+    float value = 0, t = 0;
+    std::memcpy(&t, &bytes[begin + 36 * v + 28], 4);
+    std::memcpy(&value, &bytes[begin + 36 * v + 32], 4);
+    EXPECT_EQ(t, static_cast<float>(uv[v].y()));
+    EXPECT_EQ(value, strain[v]);
+  }
+}
+
 TEST_F(Ply, ReadsBackBitForBit) {
   write_ply(file(), kPositions, kTriangles);
   const support::PlyMesh mesh = support::read_ply(file());

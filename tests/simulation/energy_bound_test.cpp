@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -67,6 +70,118 @@ TEST(EnergyBound, PinsThatMoveMayBringEnergy) {
   FrameReport report;
   for (int k = 0; k < 10; ++k) report = simulation.advance();
   EXPECT_GT(report.kinetic_energy, 0.1 * 0.05 * 9);  // far from rest: 3 m in a second
+  EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
+}
+
+/// A strip that hangs from a pin which is shaken by `way` [m] with a period of 1.2 s.
+scene::Scene shaken(scene::Integrator integrator, double step, const Vec3& way) {
+  scene::Scene scene = testing::sheet_alone(0.5, 11, 1);
+  scene.time.step = step;
+  scene.time.integrator = integrator;
+  scene::Cloth& cloth = scene.cloths[0];
+  cloth.size = {0.05, 0.5};
+  cloth.particles_weft = 2;
+  cloth.pose.rotation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
+  cloth.material.stretch_weft = cloth.material.stretch_warp = 5000;
+  cloth.material.shear = 100;
+  cloth.material.bend = 1e-6;
+  cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
+  scene::Pin pin;
+  pin.low = {0, 1};
+  pin.high = {1, 1};
+  for (int k = 0; k <= 160; ++k)
+    pin.motion.keys.push_back({0.075 * k, {std::sin(k * std::numbers::pi / 8) * way, Quat::Identity()}});
+  cloth.pins = {pin};
+  return scene;
+}
+
+// 3e15 J came of it in 246 frames without a word.
+TEST(EnergyBound, RunawayOfAShakenStripIsRefused) {
+  for (const Vec3& way : {Vec3(0, 0.01, 0), Vec3(0.01, 0, 0.005), Vec3(0, 0.1, 0)}) {
+    Simulation simulation(shaken(scene::Integrator::implicit_midpoint, 0.04, way));
+    const std::string words = refusal(simulation);
+    EXPECT_NE(words.find("by the work of its pins"), std::string::npos) << way.transpose() << ": " << words;
+    EXPECT_LT(simulation.initial_report().kinetic_energy, 1);
+  }
+}
+
+// What pins bring in and what is stored are the same but for what the method damps: the work is exact to its order.
+TEST(EnergyBound, WorkOfPinsClosesTheBudget) {
+  for (const scene::Integrator integrator : testing::kIntegrators) {
+    const bool damps = integrator != scene::Integrator::implicit_midpoint;
+    for (const Vec3& way : {Vec3(0, 0.1, 0), Vec3(0.05, 0, 0.1)}) {
+      scene::Scene scene = shaken(integrator, 0.002, way);
+      scene.solver.newton_tolerance = 1e-3;
+      Simulation simulation(scene);
+      const FrameReport start = simulation.initial_report();
+      const auto all = [](const FrameReport& r) { return r.kinetic_energy + r.potential_energy + r.elastic_energy; };
+      double work = 0, most = 0;
+      for (int k = 0; k < 25; ++k) {
+        const FrameReport now = simulation.advance();
+        EXPECT_TRUE(now.warnings.empty()) << now.warnings.front();
+        work += now.pin_work;
+        most = std::max(most, std::abs(work));
+        const double gain = all(now) - all(start) - work;
+        EXPECT_LT(gain, 0.02 * most) << name_of(integrator) << ", frame " << now.frame;
+        if (!damps) {
+          EXPECT_GT(gain, -0.02 * most) << name_of(integrator) << ", frame " << now.frame;
+        }
+      }
+      EXPECT_GT(most, 1e-4);
+    }
+  }
+}
+
+// For 0.27 µJ a run was refused, in its frame 39: a sheet so stiff that it hangs at rest has less in play.
+TEST(EnergyBound, RoundingIsNoEnergy) {
+  for (const double size : {0.02, 0.4})
+    for (const scene::Integrator integrator : testing::kIntegrators) {
+      scene::Scene scene = testing::sheet_alone(size, 7, 1.8);
+      scene.time.step = 0.02;
+      scene.time.integrator = integrator;
+      scene::Cloth& cloth = scene.cloths[0];
+      cloth.pose.rotation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
+      cloth.material.stretch_weft = cloth.material.stretch_warp = 1e6;
+      cloth.material.shear = 1e5;
+      cloth.material.bend = 1e-4;
+      cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
+      scene::Pin pin;
+      pin.low = {0, 1};
+      pin.high = {1, 1};
+      cloth.pins = {pin};
+      Simulation simulation(scene);
+      for (int k = 0; k < 44; ++k) {
+        const FrameReport report = simulation.advance();
+        ASSERT_TRUE(report.warnings.empty()) << report.warnings.front();
+      }
+    }
+}
+
+// Finite, and its centre at -0.08 m where it should have fallen to -0.33.
+TEST(EnergyBound, MotionThatTheSolverHoldsBackIsWarnedOf) {
+  const auto warnings_of = [](double stiffness) {
+    scene::Scene scene = testing::sheet_alone(0.5, 9, 1);
+    scene.time.step = 0.01;
+    scene::Cloth& cloth = scene.cloths[0];
+    cloth.size = {0.5, 0.4};
+    cloth.particles_warp = 7;
+    cloth.material.stretch_weft = cloth.material.stretch_warp = stiffness;
+    cloth.material.shear = 0.1 * stiffness;
+    cloth.material.bend = 1e-5;
+    cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
+    scene::Pin left, right;
+    left.low = left.high = {0, 0};
+    right.low = right.high = {1, 0};
+    cloth.pins = {left, right};
+    Simulation simulation(scene);
+    std::vector<std::string> warnings;
+    for (int k = 0; k < 12; ++k) std::ranges::copy(simulation.advance().warnings, std::back_inserter(warnings));
+    return warnings;
+  };
+  const std::vector<std::string> of_stiff = warnings_of(1e8);
+  ASSERT_EQ(of_stiff.size(), 1u);
+  EXPECT_NE(of_stiff[0].find("the motion may be far off"), std::string::npos) << of_stiff[0];
+  EXPECT_TRUE(warnings_of(1e4).empty());
 }
 
 // On a ball, at a step with which contacts shook the sheet of the midpoint rule: 12 J came of the 0.35 J of its fall. A
@@ -200,17 +315,17 @@ TEST(EnergyBound, EnergyThatContactBringsToAMethodThatDampsIsWarnedOfOnce) {
     report.elastic_energy = 0.5 + gained;
     return report;
   };
-  EnergyBound bound(on_a_blade(), {}), resumed(on_a_blade(), {});
-  EXPECT_FALSE(bound.check(1, after_a_fall(0.09)));
-  const std::optional<std::string> warning = bound.check(2, after_a_fall(0.5));
-  ASSERT_TRUE(warning);
-  EXPECT_NE(warning->find("more than at the start"), std::string::npos) << *warning;
-  EXPECT_FALSE(bound.check(3, after_a_fall(0.5)));
+  EnergyBound bound(on_a_blade(), 0.05, {}), resumed(on_a_blade(), 0.05, {});
+  EXPECT_TRUE(bound.check(after_a_fall(0.09)).empty());
+  const std::vector<std::string> warnings = bound.check(after_a_fall(0.5));
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings[0].find("more than at the start"), std::string::npos) << warnings[0];
+  EXPECT_TRUE(bound.check(after_a_fall(0.5)).empty());
   ByteWriter saved;
   bound.serialize(saved);
   ByteReader read{saved.bytes};
   resumed.serialize(read);
-  EXPECT_FALSE(resumed.check(3, after_a_fall(0.5)));
+  EXPECT_TRUE(resumed.check(after_a_fall(0.5)).empty());
 }
 
 }  // namespace

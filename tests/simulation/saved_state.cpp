@@ -30,7 +30,7 @@ std::string figures(const FrameReport& r) {
                      r.rejected_steps, r.inexact_steps, r.error_estimate, r.solver_error, r.newton_iterations,
                      r.linear_iterations, r.proximities, r.constraints, r.min_distance, r.max_strain, r.kinetic_energy,
                      r.potential_energy, r.elastic_energy, r.pinched_pairs, fmt::join(r.warnings, " | ")) +
-         fmt::format("; {} {}", r.lagging_particles, r.stretch_share);
+         fmt::format("; {} {} {} {}", r.lagging_particles, r.stretch_share, r.pin_work, r.solver_work);
 }
 
 bool same_picture(const frame::FrameSnapshot& a, const frame::FrameSnapshot& b) {

@@ -41,11 +41,14 @@ inline PlyMesh read_ply(const std::filesystem::path& path) {
   if (const std::size_t said = bytes.find(comment); said < after("end_header\n"))
     mesh.passed_through = std::stoul(bytes.substr(said + comment.size()));
   expect(mesh.passed_through <= mesh.triangles.size());
-  const std::size_t size_of_positions = mesh.positions.size() * sizeof(Vec3);
   std::size_t at = after("end_header\n");
-  expect(bytes.size() == at + size_of_positions + 13 * mesh.triangles.size());
-  std::memcpy(static_cast<void*>(mesh.positions.data()), &bytes[at], size_of_positions);
-  at += size_of_positions;
+  // A value of heat may follow each position; it is not read.
+  const std::size_t vertex_size = sizeof(Vec3) + (bytes.find("property float ") < at ? sizeof(float) : 0);
+  expect(bytes.size() == at + vertex_size * mesh.positions.size() + 13 * mesh.triangles.size());
+  for (Vec3& position : mesh.positions) {
+    std::memcpy(static_cast<void*>(position.data()), &bytes[at], sizeof(Vec3));
+    at += vertex_size;
+  }
   for (auto& triangle : mesh.triangles) {
     expect(bytes[at] == 3);
     std::memcpy(triangle.data(), &bytes[at + 1], 12);

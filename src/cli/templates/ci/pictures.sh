@@ -1,20 +1,35 @@
 #!/bin/sh
 # Draws every scene below scenes/ into out/, a video and a picture of each tenth frame, and compares all of them with
-# references/. What differs is in report/. People and the workflow run just this. Options go to the simulations, such as
-# --threads 4. Exit codes: 0 all as it was, 7 a picture differs or is missing, 8 a picture has no reference, others: the
-# first command that failed.
+# references/. What differs is in report/, statistics of each run are in report/stats/. People and the workflow run just
+# this. Options go to the simulations, such as --threads 4. If a scene fails, the others go on. Exit codes: that of the
+# first scene that failed, else 0 all as it was, 7 a picture differs or is missing, 8 a picture has no reference.
 cd -- "$(dirname -- "$0")" || exit 2
 weft=${WEFT:-weft}
 size=480x270
 mkdir -p report || exit 6
 rm -rf out caches report/*
+mkdir -p out report/stats || exit 6
 
-find scenes -name '*.toml' | sort | while IFS= read -r scene; do
+draw() {
+  scene=$1 name=$2
+  shift 2
+  mkdir -p "report/stats/$(dirname -- "$name")" &&
+    "$weft" simulate "$scene" --cache "caches/$name" --stats "report/stats/$name.json" --progress none "$@" &&
+    "$weft" render "caches/$name" -o "out/$name.mp4" --size "$size" --progress none &&
+    "$weft" render "caches/$name" -o "out/$name/{frame:05}.png" --frames ::10 --size "$size" --progress none
+}
+
+find scenes -name '*.toml' | sort >report/scenes.txt
+failed=0
+while IFS= read -r scene; do
   name=${scene#scenes/}
-  name=${name%.toml}
-  "$weft" simulate "$scene" --cache "caches/$name" --progress none "$@" || exit
-  "$weft" render "caches/$name" -o "out/$name.mp4" --size "$size" --progress none || exit
-  "$weft" render "caches/$name" -o "out/$name/{frame:05}.png" --frames ::10 --size "$size" --progress none || exit
-done || exit
+  draw "$scene" "${name%.toml}" "$@" </dev/null && continue
+  code=$?
+  echo "pictures.sh: $scene failed with exit code $code" >&2
+  [ "$failed" != 0 ] || failed=$code
+done <report/scenes.txt
 
 "$weft" diff references out --limits limits.toml --html report/index.html --junit report/junit.xml
+code=$?
+[ "$failed" = 0 ] || exit "$failed"
+exit "$code"

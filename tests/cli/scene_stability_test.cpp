@@ -1,0 +1,130 @@
+// Where a user's scene breaks: its own values varied, and its margin in a sentence.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "bench/scene_stability_report.hpp"
+#include "cli/subprocess.hpp"
+#include "support/scene_runs.hpp"
+#include "support/test_folder.hpp"
+
+namespace weft::bench {
+namespace {
+
+/// A strip that swings from one edge, of undamped threads, by the midpoint rule: long steps and stiff threads break it.
+const std::string kStrip =
+    "[time]\nduration = 0.8\nfps = 10\nstep = 0.00625\nintegrator = \"implicit_midpoint\"\n[physics]\nair_density = 0\n"
+    "[contact]\nself = false\nobstacles = false\n[[cloth]]\nname = \"strip\"\nsize = [0.3, 0.3]\nparticles = [5, 5]\n"
+    "position = [0, 0, 1]\nmaterial = { density = 0.2, stretch = 1000, shear = 100, bend = 1e-5, bend_viscosity = 0, "
+    "bend_friction = 0, drag = 0, max_stretch = 0 }\n[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, 1]\n";
+
+Factors with(Varied value, double factor) {
+  Factors factors{1, 1, 1, 1, 1, 1};
+  factors[static_cast<std::size_t>(value)] = factor;
+  return factors;
+}
+
+const SceneStability& strip() {
+  static const SceneStability kStability = measure_scene_stability(support::scene_of_text(kStrip));
+  return kStability;
+}
+
+TEST(SceneStability, TriesEachValueThatTheSceneHas) {
+  EXPECT_EQ(strip().as_is.verdict, TrialVerdict::holds) << strip().as_is.reason;
+  EXPECT_EQ(strip().frames, 8);
+  for (const Varied value : {Varied::stiffness, Varied::step, Varied::mass, Varied::mesh})
+    for (const double factor : factors_of(value))
+      EXPECT_NE(strip().find(with(value, factor)), nullptr) << name_of(value) << " " << factor;
+  // It has neither contact nor anything that damps, so there is nothing to vary.
+  for (const Varied value : {Varied::friction, Varied::damping})
+    EXPECT_EQ(strip().find(with(value, 2)), nullptr) << name_of(value);
+  for (const double stiffness : kMapStiffness)
+    for (const double step : kMapSteps) EXPECT_NE(strip().find({stiffness, step, 1, 1, 1, 1}), nullptr);
+  const Trial* fine = strip().find(with(Varied::mesh, 2));
+  EXPECT_GT(fine->cpu_s, 0);
+  EXPECT_DOUBLE_EQ(strip().find(with(Varied::step, 4))->step, 0.025);
+  EXPECT_DOUBLE_EQ(strip().find(with(Varied::step, 8))->step, 0.05);
+}
+
+TEST(SceneStability, FindsWhereItBreaksAndWhatBreaks) {
+  const auto margins = margins_of(strip());
+  const auto stiffer = std::ranges::find_if(margins, [](const Margin& margin) {
+    return margin.axis == Varied::stiffness && margin.breaks != nullptr && margin.breaks->factors[0] > 1;
+  });
+  ASSERT_NE(stiffer, margins.end());
+  // The run itself, with that factor, is told of in the same way.
+  scene::Scene scene = support::scene_of_text(kStrip);
+  scene::Material& material = scene.cloths[0].material;
+  for (double* stiffness : {&material.stretch_weft, &material.stretch_warp, &material.shear, &material.bend})
+    *stiffness *= stiffer->breaks->factors[0];
+  simulation::Simulation simulation(scene);
+  std::string told;
+  try {
+    for (int k = 0; k < 8; ++k)
+      for (const std::string& warning : simulation.advance().warnings) told += warning;
+  } catch (const Error& error) {
+    told += error.what();
+  }
+  EXPECT_NE(told.find("more than at the start"), std::string::npos) << told;
+  const std::string sentence = margin_sentence(strip());
+  EXPECT_TRUE(sentence.starts_with("The scene as it is runs without anything broken, and its nearest limit is "))
+      << sentence;
+  EXPECT_NE(sentence.find("breaks at"), std::string::npos) << sentence;
+}
+
+TEST(SceneStability, ASceneThatBreaksSaysWhatHolds) {
+  SceneStability stability;
+  stability.as_is = {.verdict = TrialVerdict::refused, .reason = "why", .step = 0.01};
+  stability.trials.push_back({.factors = with(Varied::step, 0.125), .mends = true});
+  stability.trials.push_back({.factors = with(Varied::step, 0.5), .mends = true});
+  stability.trials.push_back({.factors = with(Varied::mass, 10), .verdict = TrialVerdict::warned});
+  stability.trials.push_back({.factors = with(Varied::friction, 1.5)});  // breaks as the scene does
+  EXPECT_EQ(margin_sentence(stability), "The scene as it is breaks (refused: why); it goes through with step at 5 ms.");
+}
+
+TEST(SceneStability, MarginIsUpToTheFirstThatBreaks) {
+  SceneStability stability;
+  stability.as_is.step = 0.01;
+  stability.trials.push_back({.factors = with(Varied::step, 2)});
+  stability.trials.push_back(
+      {.factors = with(Varied::step, 4), .verdict = TrialVerdict::warned, .broken = {"energy comes from nowhere"}});
+  stability.trials.push_back({.factors = with(Varied::step, 8)});
+  stability.trials.push_back({.factors = with(Varied::mass, 100), .verdict = TrialVerdict::refused, .reason = "why"});
+  EXPECT_EQ(
+      margin_sentence(stability),
+      "The scene as it is runs without anything broken, and its nearest limit is step: it holds at 20 ms and breaks "
+      "at 40 ms (warned of: energy comes from nowhere).");
+  const Table table = margin_table(stability);
+  ASSERT_EQ(table.size(), 3u);
+  EXPECT_EQ(table[1],
+            (std::vector<std::string>{"step", "more", "20 ms", "40 ms", "warned of", "energy comes from nowhere"}));
+  const std::string svg = trial_svg("a < b", stability);
+  EXPECT_NE(svg.find("a &lt; b"), std::string::npos);
+  EXPECT_EQ(svg.find("a < b"), std::string::npos);
+}
+
+class BenchStability : public support::TestFolder {};
+
+TEST_F(BenchStability, ReportsASceneOfTheUser) {
+  support::write_bytes(folder_ / "s.toml", kStrip);
+  const cli::Outcome outcome =
+      cli::run_weft({"bench", "stability", "s.toml", "--set", "time.duration=0.2", "-o", "b"}, folder_);
+  ASSERT_EQ(outcome.exit_code, 0) << outcome.err;
+  EXPECT_TRUE(outcome.out.starts_with("The scene as it is runs without anything broken")) << outcome.out;
+  const std::string page = support::read_bytes(folder_ / "b/stability_s.md");
+  EXPECT_NE(page.find(outcome.out.substr(0, outcome.out.find('\n'))), std::string::npos);
+  const std::string csv = support::read_bytes(folder_ / "b/stability_s.csv");
+  EXPECT_TRUE(csv.starts_with("stiffness,step,mass,friction,damping,mesh,step_s,verdict,")) << csv;
+  EXPECT_TRUE(support::read_bytes(folder_ / "b/stability_s.svg").starts_with("<svg "));
+  // What is there stays.
+  EXPECT_EQ(cli::run_weft({"bench", "stability", "s.toml", "-o", "b"}, folder_).exit_code, 6);
+}
+
+TEST_F(BenchStability, RefusesValuesForTheBuiltInScenesAndBrokenScenes) {
+  EXPECT_EQ(cli::run_weft({"bench", "stability", "--set", "time.step=1"}, folder_).exit_code, 2);
+  support::write_bytes(folder_ / "s.toml", "[time]\nduration = 1\nstep = -1\n");
+  EXPECT_EQ(cli::run_weft({"bench", "stability", "s.toml"}, folder_).exit_code, 3);
+}
+
+}  // namespace
+}  // namespace weft::bench
