@@ -37,9 +37,8 @@ constexpr double kUnfeltStrain = 0.05;
 // layers turn, of five to 5 and 4.5 times in two, and with this to at most 1.11 in all, for a sixth of the CPU. Wrung,
 // pulled and draped cloth never comes near (1.4 limits in a towel, slowly).
 constexpr double kTearingShare = 2;
-// What a step that is not solved may add to the largest strain; beyond, its solve diverges. Ribbons in a heap that are
-// solved in the end pass through 0.53.
-constexpr double kDivergedStrain = 1;
+// What a step that is not solved may add to the largest strain; beyond, its solve diverges.
+constexpr double kDivergedStrain = 0.5;
 constexpr int kHalvingsBeforeTear = 6;
 // Of its limit to stretch, beyond which the run tells of it.
 constexpr double kOverstretch = 1.1;

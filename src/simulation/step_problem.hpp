@@ -1,6 +1,7 @@
 // The equation of one step as the integrator sees it: cloth, what it meets, and what is remembered between evaluations.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -54,8 +55,11 @@ class StepProblem final : public integrator::System {
   /// Velocities of the air at all particles for the step that begins [m/s]; without, it is the same everywhere.
   void blow(SolveMemory::Quads air);
 
-  /// Within a step, where its contacts are others now.
-  void forget_contacts() { memory_.contacts = {}; }
+  /// Within a step, where its contacts are others now: their loads are followed for half as many updates as those of
+  /// the first ones, or more if there were less so far.
+  void forget_contacts() {
+    memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, collision::ContactSet::kLoadUpdates / 2)};
+  }
 
   /// Before a step is solved anew: friction goes by the loads of its start, whatever they become.
   void keep_loads() { memory_.contacts = {{}, {}, {}, collision::ContactSet::kLoadUpdates}; }

@@ -225,7 +225,9 @@ TEST_F(RoomOfAMannequin, LeavesHalfOfEachLimb) {
   // The middles of forearms keep the half of their girth: of 7 cm across nothing is closer than that.
   const std::vector<Limb> limbs = limbs_of(body_, joints_);
   for (std::size_t v = 0; v < before.size(); ++v) {
-    if (limbs[v] == Limb::left_arm) EXPECT_LT((after[v] - before[v]).norm(), 0.04);
+    if (limbs[v] == Limb::left_arm) {
+      EXPECT_LT((after[v] - before[v]).norm(), 0.04);
+    }
   }
 }
 

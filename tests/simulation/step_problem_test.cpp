@@ -190,14 +190,23 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
       linearise(problem, moved(0, 0.01 * iteration), kRate, iteration);
   EXPECT_EQ(problem.memory().contacts.updates, 6);
   EXPECT_EQ(problem.memory().contacts.loads.size(), 1U);
-  problem.forget_contacts();
-  EXPECT_EQ(problem.memory().contacts.updates, 0);  // of contacts that are others now, loads are followed anew
   linearise(problem, moved(0, 0.02));
   const double lagging = problem.memory().contacts.loads[0];
   problem.begin_step(0, x_, {});
   EXPECT_EQ(problem.memory().contacts.updates, 0);
   linearise(problem, x_);
   EXPECT_NE(problem.memory().contacts.loads[0], lagging);  // that of the start
+}
+
+TEST_F(StepProblems, FollowLoadsOfContactsThatAreOthersWithinAStep) {
+  StepProblem problem = this->problem();
+  for (int update = 0; update < 25; ++update) linearise(problem, moved(0, 0.01));
+  EXPECT_GE(problem.memory().contacts.updates, collision::ContactSet::kLoadUpdates);
+  problem.forget_contacts();
+  linearise(problem, x_);
+  const double load = problem.memory().contacts.loads[0];
+  linearise(problem, moved(0, -0.02));
+  EXPECT_NE(problem.memory().contacts.loads[0], load);
 }
 
 TEST(PinnedProblem, PutsTheMatrixTogetherAnewWherePinsLetGo) {

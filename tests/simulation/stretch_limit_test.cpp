@@ -21,7 +21,7 @@ particles = [17, 17]
 position = [0, 0, 2]
 rotation = [90, 0, 0]
 pin = [{ low = [0, 1], high = [1, 1] }]
-material = { max_stretch = 0.05, max_shear = 45 }
+material = { max_stretch = 0.025, max_shear = 45 }
 [[obstacle]]
 name = "ball"
 shape = "sphere"
@@ -85,9 +85,9 @@ TEST(StretchLimitInAScene, IsKeptWhereABallStrikesAHangingSheet) {
   std::vector<std::string> said;
   EXPECT_LT(largest_share(support::scene_of_text(kImpact), said), 1.1);
   EXPECT_TRUE(said.empty());
-  // Where the limit is far away the same sheet is stretched by 6.4 %, 1.3 times the limit. How it is struck is chance:
-  // with gravity from 9.6 to 10 m/s² ten runs have 3.8 to 15 %.
-  EXPECT_GT(9 * largest_share(support::scene_of_text(kImpact, {"cloth.sheet.material.max_stretch=9"}), said), 0.06);
+  // Where the limit is far away the same sheet is stretched by more. How it is struck is chance: with gravity from 9.6
+  // to 10 m/s² ten runs have 3.8 to 15 %.
+  EXPECT_GT(9 * largest_share(support::scene_of_text(kImpact, {"cloth.sheet.material.max_stretch=9"}), said), 0.035);
 }
 
 TEST(StretchLimitInAScene, GoesOnFromASavedState) {

@@ -79,10 +79,11 @@ void print_summary(const std::vector<MeasuredFrame>& frames) {
       frames.size(), 1e3 * simulate / steps, median_after_contact_ms(frames), 1e3 * collide / steps, rejected, stretch,
       pairs, with_pairs, worst, pinched, lagging);
   std::printf(
-      "%d steps: %.2f Newton, %.1f linear iterations each; CPU ms a frame: forces %.1f, preconditioner %.1f, linear %.1f; "
+      "%d steps: %.2f Newton, %.1f linear iterations each; CPU ms a frame: forces %.1f, preconditioner %.1f, linear "
+      "%.1f; "
       "solver error over that of the steps %.2f\n",
-      taken, static_cast<double>(newton) / taken, static_cast<double>(linear_iterations) / taken,
-      1e3 * forces / steps, 1e3 * preconditioner / steps, 1e3 * linear / steps, of_solver / of_steps);
+      taken, static_cast<double>(newton) / taken, static_cast<double>(linear_iterations) / taken, 1e3 * forces / steps,
+      1e3 * preconditioner / steps, 1e3 * linear / steps, of_solver / of_steps);
   for (const auto& x : frames.back().cloths) {
     double mean = 0, lowest = x.front().z(), highest = lowest;
     for (const weft::Vec3& p : x) {
