@@ -243,7 +243,7 @@ SceneStability measure_scene_stability(const scene::Scene& scene,
     if (each) each(trial, static_cast<double>(result.trials.size() + 1) / static_cast<double>(plan.size() + 1));
   };
   // A scene that cannot be simulated at all is the user's to mend: its message is thrown on.
-  simulation::Simulation{scene};
+  { const simulation::Simulation whole(scene); }
   result.as_is = try_factors(scene, {1, 1, 1, 1, 1, 1}, std::numeric_limits<double>::infinity(), {}, stop);
   told(result.as_is);
   const double most_cpu_s = kSlowRatio * result.as_is.cpu_s + kSlowSeconds;

@@ -58,7 +58,7 @@ std::string what_of(const Trial& trial) {
 }
 
 std::string value_of(Varied axis, double factor, const SceneStability& stability) {
-  const std::string times = fmt::format("{:g} times {}", factor, factor == 0 ? "(none)" : "its value");
+  std::string times = fmt::format("{:g} times {}", factor, factor == 0 ? "(none)" : "its value");
   if (axis != Varied::step || stability.as_is.step == 0) return times;
   return fmt::format("{:g} ms", 1e3 * stability.as_is.step * factor);
 }

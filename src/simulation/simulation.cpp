@@ -96,7 +96,7 @@ struct Simulation::Impl {
   double time() const { return frame / scene.time.fps; }
   void measure_energies(FrameReport& report) const;
   void measure(FrameReport& report) const;
-  void report_obstructions(FrameReport& report);
+  void report_obstructions(FrameReport& report) const;
   frame::SnapshotPtr make_snapshot() const;
   std::vector<Vec3> particles_of_all() const;
   template <class Archive>
@@ -213,7 +213,7 @@ void Simulation::Impl::measure(FrameReport& report) const {
   report.min_distance = collisions->min_distance();
 }
 
-void Simulation::Impl::report_obstructions(FrameReport& report) {
+void Simulation::Impl::report_obstructions(FrameReport& report) const {
   const CollisionStage::Pinches pinches = steps->take_pinches();
   report.pinched_pairs = pinches.pairs;
   for (const std::string& text : pinches.begun)
