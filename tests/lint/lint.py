@@ -33,7 +33,7 @@ class Source:
         self.flags = ["-Wno-unknown-warning-option"]  # those of GCC, but for outputs and its precompiled header
         words = iter(shlex.split(entry["command"])[1:])
         for word in words:
-            if word in ("-include", "-o", "-c"):
+            if word in ("-include", "-o", "-c", "--param"):
                 next(words)
             elif word == "-isystem":
                 self.flags.append(word + next(words))
