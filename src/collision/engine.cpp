@@ -131,12 +131,14 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
   return is_moved;
 }
 
-// Contacts of a guess in which surfaces intersect have directions that say nothing, and layers that are pushed one by
-// the other are found one in each iteration.
+// Contacts of a guess in which surfaces intersect have directions that say nothing, and layers that push each other are
+// found one in each iteration. Nothing is exempted for a guess.
 bool Engine::separate_guess(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::span<const std::uint8_t> movable) {
   if (movable.empty() || response_.form() != ResponseForm::springs || apart(x_t0, x_t1)) return false;
   const std::vector<Vec3> expected(x_t1.begin(), x_t1.end());
+  PinchedPairs pinched = pinched_;
   const bool is_apart = push_apart(x_t0, x_t1, movable, false, false).separated;
+  pinched_ = std::move(pinched);
   if (!is_apart) std::ranges::copy(expected, x_t1.begin());
   return is_apart;
 }

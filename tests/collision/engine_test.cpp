@@ -217,6 +217,29 @@ TEST(Engine, ClothWithoutRoomIsPinchedWhereThatIsAllowed) {
   EXPECT_TRUE(engine.apart(sheet.x, pinched));  // but for what is pinched
 }
 
+// A ceiling comes down on one side first, and pinches cloth there.
+TEST(Engine, NothingIsExemptedForAGuess) {
+  Sheet sheet(6, 0.005, 0.01);
+  std::vector<std::uint8_t> movable(sheet.x.size(), kFixed);
+  std::fill_n(movable.begin(), sheet.particles(), std::uint8_t{kFree});
+  std::vector<int> exempted;
+  for (const bool separates_guess : {false, true}) {
+    Engine engine = sheet.engine();
+    std::vector<Vec3> tilted = sheet.x;
+    for (std::size_t v = tilted.size() - 4; v < tilted.size(); ++v) tilted[v].z() = 0.5 * (tilted[v].x() - 0.03);
+    begin_step(engine, sheet.x, tilted);
+    ASSERT_TRUE(engine.push_apart(sheet.x, tilted, movable, true).separated);
+    std::vector<Vec3> down = tilted;
+    for (std::size_t v = down.size() - 4; v < down.size(); ++v) down[v].z() = -0.05;
+    std::vector<Vec3> guess = down;
+    engine.begin_step(tilted, guess, separates_guess ? std::span(movable) : std::span<std::uint8_t>(), kEngineStep);
+    exempted.push_back(engine.pinched_pairs());
+    EXPECT_TRUE(engine.push_apart(tilted, down, movable, true).separated);
+    EXPECT_GT(engine.pinched_pairs(), exempted[0]);
+  }
+  EXPECT_EQ(exempted[1], exempted[0]);
+}
+
 TEST(Engine, ASheetThroughTheFloorMeetsItAtTheStart) {
   Sheet apart(2, 0.001), through(2, 0.001);
   through.x[4].z() = -0.001;

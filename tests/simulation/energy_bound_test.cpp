@@ -73,6 +73,19 @@ TEST(EnergyBound, PinsThatMoveMayBringEnergy) {
   EXPECT_TRUE(report.warnings.empty()) << report.warnings.front();
 }
 
+/// Turns a cloth upright and pins its upper edge; stiffnesses in N/m and N m, nothing that damps.
+void hang(scene::Cloth& cloth, double stretch, double shear, double bend) {
+  cloth.pose.rotation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
+  cloth.material.stretch_weft = cloth.material.stretch_warp = stretch;
+  cloth.material.shear = shear;
+  cloth.material.bend = bend;
+  cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
+  scene::Pin pin;
+  pin.low = {0, 1};
+  pin.high = {1, 1};
+  cloth.pins = {pin};
+}
+
 /// A strip that hangs from a pin which is shaken by `way` [m] with a period of 1.2 s.
 scene::Scene shaken(scene::Integrator integrator, double step, const Vec3& way) {
   scene::Scene scene = testing::sheet_alone(0.5, 11, 1);
@@ -81,17 +94,9 @@ scene::Scene shaken(scene::Integrator integrator, double step, const Vec3& way) 
   scene::Cloth& cloth = scene.cloths[0];
   cloth.size = {0.05, 0.5};
   cloth.particles_weft = 2;
-  cloth.pose.rotation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
-  cloth.material.stretch_weft = cloth.material.stretch_warp = 5000;
-  cloth.material.shear = 100;
-  cloth.material.bend = 1e-6;
-  cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
-  scene::Pin pin;
-  pin.low = {0, 1};
-  pin.high = {1, 1};
+  hang(cloth, 5000, 100, 1e-6);
   for (int k = 0; k <= 160; ++k)
-    pin.motion.keys.push_back({0.075 * k, {std::sin(k * std::numbers::pi / 8) * way, Quat::Identity()}});
-  cloth.pins = {pin};
+    cloth.pins[0].motion.keys.push_back({0.075 * k, {std::sin(k * std::numbers::pi / 8) * way, Quat::Identity()}});
   return scene;
 }
 
@@ -140,15 +145,7 @@ TEST(EnergyBound, RoundingIsNoEnergy) {
       scene.time.step = 0.02;
       scene.time.integrator = integrator;
       scene::Cloth& cloth = scene.cloths[0];
-      cloth.pose.rotation = Quat(Eigen::AngleAxisd(0.5 * std::numbers::pi, Vec3::UnitX()));
-      cloth.material.stretch_weft = cloth.material.stretch_warp = 1e6;
-      cloth.material.shear = 1e5;
-      cloth.material.bend = 1e-4;
-      cloth.material.bend_viscosity = cloth.material.bend_friction = 0;
-      scene::Pin pin;
-      pin.low = {0, 1};
-      pin.high = {1, 1};
-      cloth.pins = {pin};
+      hang(cloth, 1e6, 1e5, 1e-4);
       Simulation simulation(scene);
       for (int k = 0; k < 44; ++k) {
         const FrameReport report = simulation.advance();

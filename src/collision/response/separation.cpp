@@ -1,6 +1,7 @@
 #include "collision/response/separation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -90,12 +91,14 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
     double limit, mass;  // c from which on it is pushed (of a), or up to which (of b) [m]; [kg]
     bool is_of_a;
   };
-  std::vector<Corner> corners;
+  std::array<Corner, 6> all;
+  std::size_t count = 0;
   for (const bool is_of_a : {true, false})
     for (const Index v : is_of_a ? pair.a : pair.b)
       if (step.movable[v] == kFree)
-        corners.push_back(
-            {n.dot(step.x_t1[v]) + (is_of_a ? -0.5 : 0.5) * target, masses_.empty() ? 1 : masses_[v], is_of_a});
+        all[count++] = {n.dot(step.x_t1[v]) + (is_of_a ? -0.5 : 0.5) * target, masses_.empty() ? 1 : masses_[v],
+                        is_of_a};
+  const std::span<Corner> corners(all.data(), count);
   std::ranges::sort(corners, {}, &Corner::limit);
   const auto gained = [&](double c) {  // along n [kg m]
     double sum = 0;
