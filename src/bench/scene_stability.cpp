@@ -16,8 +16,6 @@ namespace {
 
 // A trial that takes more than so many times what the scene itself takes, and some seconds, is given up [CPU s].
 constexpr double kSlowRatio = 20, kSlowSeconds = 5;
-// Extension over max_stretch from which cloth counts as overstretched, as warnings of a run have it.
-constexpr double kOverstretch = 1.1;
 
 constexpr std::size_t index_of(Varied axis) {
   return static_cast<std::size_t>(axis);
@@ -94,7 +92,7 @@ bool changes(const scene::Scene& scene, Varied axis, double factor) {
 // What counts as broken in a frame.
 void find_broken(const simulation::FrameReport& report, std::set<std::string>& broken) {
   if (report.min_distance <= 0 && report.frame > 0) broken.insert("surfaces touch or pass through each other");
-  if (report.stretch_share > kOverstretch) broken.insert("cloth is stretched beyond its max_stretch");
+  if (report.stretch_share > simulation::kOverstretch) broken.insert("cloth is stretched beyond its max_stretch");
   if (report.pinched_pairs > 0) broken.insert("cloth is caught in an obstacle");
   if (report.lagging_particles > 0) broken.insert("a pin is held back");
   for (const std::string& warning : report.warnings) {

@@ -15,6 +15,9 @@
 
 namespace weft::simulation {
 
+/// FrameReport::stretch_share above which a run warns.
+inline constexpr double kOverstretch = 1.1;
+
 using frame::FrameReport;
 using frame::ObjectInfo;
 

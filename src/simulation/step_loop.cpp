@@ -40,8 +40,6 @@ constexpr double kTearingShare = 2;
 // What a step that is not solved may add to the largest strain; beyond, its solve diverges.
 constexpr double kDivergedStrain = 0.5;
 constexpr int kHalvingsBeforeTear = 6;
-// Of its limit to stretch, beyond which the run tells of it.
-constexpr double kOverstretch = 1.1;
 // Times what was told of before, from which on it is told of again.
 constexpr double kToldAgain = 1.5;
 // By what steps grow again, each time, after one could not be solved: cloth that is wrung refused each step of 10 ms
