@@ -2,7 +2,7 @@
 // or fibres alone; each a little different in tone. Every feature fades to its mean before it gets smaller than two
 // pixels, so that nothing shimmers.
 const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
-const float kUneven = 0.04;  // share of its tone by which a yarn differs at most, at each size
+const float kUneven = 0.10;  // share of its tone by which a yarn differs at most, at each size
 
 float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
 // From -1 to 1, of neighbours that make up for each other: what varies slowly from thread to thread would be left to see,
