@@ -2,7 +2,7 @@
 // or fibres alone; each a little different in tone. Every feature fades to its mean before it gets smaller than two
 // pixels, so that nothing shimmers.
 const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
-const float kUneven = 0.10;  // share of its tone by which a yarn differs at most, at each size
+const float kUneven = 0.11;  // share of its tone by which a yarn differs at most; 0.7 of it at each three times the size
 
 float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
 // From -1 to 1, of neighbours that make up for each other: what varies slowly from thread to thread would be left to see,
@@ -78,11 +78,13 @@ Top knit_top(vec2 thread) {
 float uneven_tone(vec2 thread, float footprint, int threads, float fuzz) {
   vec2 share = threads == kDenim ? vec2(0.5, 3.0) : threads == kKnit ? vec2(0.3, 1.5) : vec2(1.0);
   float length_share = threads == kNone ? 0.7 : 0.125, fibres = smoothstep(0.6, 1.0, fuzz), tone = 1.0;
-  for (float size = 2.5; size < 64.0; size *= 4.0) {
+  float uneven = kUneven / 0.7;
+  for (float size = 3.0; size < 30.0; size *= 3.0) {
     float seen = visible_feature(footprint, size);
+    uneven *= 0.7;
     if (seen == 0.0) continue;
     vec2 at = thread / size;
-    tone *= 1.0 + kUneven * (1.0 + 2.0 * fibres) * seen *
+    tone *= 1.0 + uneven * (1.0 + 2.0 * fibres) * seen *
                       (share.x * unevenness(at * vec2(length_share, 1.0)) +
                        share.y * unevenness(at.yx * vec2(length_share, 1.0) + 71.0));
   }
