@@ -23,7 +23,7 @@ position = [0.003, 0.002, 0.45]  # off the middle, so that no symmetry holds fol
 material = { fabric = "canvas", friction = 0.3 }
 
 [cloth.look]
-color = "#2f5f73"
+color = "#6a9bb6"
 back_color = "#d8c9a4"
 
 [[obstacle]]

@@ -63,6 +63,8 @@ TEST(Codec, SurfacesComeBackAsTheyWere) {
     EXPECT_EQ(a.quads, b.quads);
     EXPECT_EQ(a.uv, b.uv);
     EXPECT_EQ(a.crease_angle, b.crease_angle);
+    EXPECT_EQ(a.reach.has_value(), b.reach.has_value());
+    if (a.reach) EXPECT_TRUE(a.reach->isApprox(*b.reach, 0));
     EXPECT_EQ(a.appearance.color, b.appearance.color);
     EXPECT_EQ(a.appearance.back_color, b.appearance.back_color);
     EXPECT_EQ(a.appearance.roughness, b.appearance.roughness);

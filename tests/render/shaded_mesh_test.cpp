@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "render/renderer.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
@@ -92,6 +93,22 @@ TEST(ShadedMesh, OnlyASurfaceWithoutBordersIsClosed) {
   EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
   EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {2, 0, 3}}));
   EXPECT_FALSE(is_closed({}));
+}
+
+// A sphere of 16 columns, its terminator in the middle of the picture: faces beyond which the light goes shade those
+// that still face it, unless light is asked for at the sphere.
+TEST(ShadedMesh, LightFallsEvenlyToTheDarkSideOfFewFaces) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  add_sphere(snapshot, Vec3::Zero(), 0.5, 8).crease_angle = 180;
+  snapshot.cameras = {camera_at(Vec3(0, -4, 0), Vec3::Zero(), 16)};
+  snapshot.lights = {sun(Vec3::UnitX())};
+  Settings settings;
+  settings.width = 320;
+  settings.height = 320;
+  const image::Image image = Renderer(settings).draw(snapshot);
+  for (int y = 100; y < 220; y += 8)
+    for (int x = 80; x < 200; ++x) EXPECT_LE(image.pixel(x + 1, y)[1], image.pixel(x, y)[1] + 3) << x << ", " << y;
 }
 
 }  // namespace
