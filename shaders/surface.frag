@@ -126,7 +126,7 @@ void main() {
   albedo *= woven.tone;
   at.shine = woven.shine;
 #ifdef TRIMMED
-  Trimmed trimmed = trim(pixel, rest_uv, heat_trim.yzw, front, threads, woven, at.n);
+  Trimmed trimmed = trim(pixel, distance_view * 2.0 * frame.frustum.y * frame.viewport.w, rest_uv, heat_trim.yzw, front, threads, woven, at.n);
   at.n = trimmed.normal_world;
   albedo = mix(albedo * trimmed.tone, kJeans, trimmed.thread);
   if (trimmed.layers > 1.0) at.finish.w = mix(at.finish.w, at.finish.w * at.finish.w, trimmed.layers - 1.0);

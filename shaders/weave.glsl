@@ -31,6 +31,7 @@ struct Weave {
   float shine;  // factor on the highlight
   float weft;   // share of it that shows, where it has a colour of its own
   vec3 weft_world, warp_world;  // directions of the threads
+  bool at_outline;              // derivatives look at other cloth, or none: they say nothing
 };
 
 // 1 while a feature of `size` is well above the pixel's footprint, 0 once it is below two pixels.
@@ -106,8 +107,16 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   float area = across.x * down.y - across.y * down.x;
   weft *= sign(area) * inversesqrt(max(dot(weft, weft), 1e-20));
   warp *= sign(area) * inversesqrt(max(dot(warp, warp), 1e-20));
-  Weave result = Weave(n_world, 1.0, 1.0, 0.25, weft, warp);
-  if (spacing <= 0.0) footprint = 1e6;
+  // Threads hardly stretch: where rest coordinates change by much more or less than places do, there is an outline.
+  float along_threads = spacing * spacing * max(dot(across, across), dot(down, down)),
+        in_space = max(dot(p_dx, p_dx), dot(p_dy, p_dy));
+  bool at_outline = spacing > 0.0 && (along_threads > 4.0 * in_space || in_space > 4.0 * along_threads);
+  if (at_outline) {
+    weft = normalize(cross(n_world, frame.right_world.xyz) + 1e-6);
+    warp = cross(n_world, weft);
+  }
+  Weave result = Weave(n_world, 1.0, 1.0, 0.25, weft, warp, at_outline);
+  if (spacing <= 0.0 || at_outline) footprint = 1e6;
   result.tone = uneven_tone(thread, footprint, threads, fuzz);
 
   // The lines of a twill are farther apart than its threads.
