@@ -36,8 +36,9 @@ void main() {
   trim_distances = vertex_trim_distances;
   trim_places = vertex_trim_places;
 #endif
+  // llvmpipe cuts here even where GL_CLIP_DISTANCE0 is off: a millimetre less, or rounding takes away the floor itself.
   gl_ClipDistance[0] =
-      dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w;
+      dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w + 1e-3;
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);
   if (nearer > 0.0 && gl_Position.w > frame.frustum.z) {
     float n = frame.frustum.z, f = frame.frustum.w, distance_view = max(gl_Position.w - nearer, n);

@@ -202,6 +202,23 @@ TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
   }
 }
 
+TEST(Floor, IsSeenHoweverItsHeightIsRounded) {
+  Settings settings;
+  settings.width = settings.height = 16;
+  Renderer renderer(settings);
+  for (int i = 0; i < 40; ++i) {
+    frame::FrameSnapshot snapshot;
+    frame::Surface& floor =
+        add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 0, -0.1 - 0.07 * i), Vec3::UnitZ(), Vec3::UnitX(), 5);
+    floor.infinite_floor = true;
+    floor.appearance.color = Vec3(0.1, 0.8, 0.1);
+    snapshot.cameras = {camera_at(Vec3(0, -2, 1.3 + 0.013 * i), Vec3::Zero(), 30)};
+    snapshot.lights = {sun(-Vec3::UnitZ())};
+    const image::Image image = renderer.draw(snapshot);
+    EXPECT_GT(image.pixel(8, 15)[1], 2 * image.pixel(8, 15)[0]) << i;
+  }
+}
+
 /// Light in the middle of a picture of grey floor, toward which a lamp behind it shines at 50 degrees.
 double floor_before_a_lamp(double roughness, Quality quality) {
   frame::FrameSnapshot snapshot;
