@@ -5,6 +5,7 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "image/color.hpp"
 #include "render/renderer.hpp"
 #include "render/snapshots.hpp"
 
@@ -107,8 +108,12 @@ TEST(ShadedMesh, LightFallsEvenlyToTheDarkSideOfFewFaces) {
   settings.width = 320;
   settings.height = 320;
   const image::Image image = Renderer(settings).draw(snapshot);
-  for (int y = 100; y < 220; y += 8)
-    for (int x = 80; x < 200; ++x) EXPECT_LE(image.pixel(x + 1, y)[1], image.pixel(x, y)[1] + 3) << x << ", " << y;
+  // 142 pixels are its radius. Below a cosine of 0.06 direct light fades out.
+  for (int x = 70; x < 148; ++x) {
+    const double cosine = (160 - (x + 0.5)) / 142;
+    const Vec3 shown = image::srgb_from_linear(cosine * image::linear_from_srgb(Vec3::Constant(0.8)));
+    EXPECT_NEAR(image.pixel(x, 160)[1], 255 * shown.x(), 14) << x;
+  }
 }
 
 }  // namespace

@@ -215,7 +215,7 @@ TEST(Floor, IsSeenHoweverItsHeightIsRounded) {
     snapshot.cameras = {camera_at(Vec3(0, -2, 1.3 + 0.013 * i), Vec3::Zero(), 30)};
     snapshot.lights = {sun(-Vec3::UnitZ())};
     const image::Image image = renderer.draw(snapshot);
-    EXPECT_GT(image.pixel(8, 15)[1], 2 * image.pixel(8, 15)[0]) << i;
+    EXPECT_GT(image.pixel(8, 15)[1], 195) << i;  // 0.8 of 255; the backdrop has 178 and less
   }
 }
 
