@@ -109,7 +109,7 @@ std::shared_ptr<frame::Surface> make_surface(const std::string& name, frame::Obj
 
 std::shared_ptr<frame::Surface> make_cloth_surface(const environment::ClothObject& cloth, const scene::Look& look,
                                                    Pictures& pictures) {
-  const auto surface = make_surface(cloth.name, frame::ObjectKind::cloth, cloth.mesh);
+  auto surface = make_surface(cloth.name, frame::ObjectKind::cloth, cloth.mesh);
   for (const std::string& panel : cloth.panels) surface->parts.push_back({panel, {}});
   surface->part_of_triangle = cloth.panel_of;
   surface->paint_uv = cloth.paint_uv;
@@ -147,7 +147,7 @@ frame::SurfacePart part_of(const character::Material& material, const std::strin
 }
 
 std::shared_ptr<frame::Surface> make_body_surface(const environment::BodyObject& body, Pictures& pictures) {
-  const auto surface =
+  auto surface =
       make_surface(body.name, body.character ? frame::ObjectKind::character : frame::ObjectKind::obstacle, body.mesh);
   surface->infinite_floor = body.infinite_floor;
   surface->passed_through = body.passed_through;

@@ -183,7 +183,8 @@ TEST(Simulation, SurfacesReachAllPlacesToWhichKeysMoveThem) {
   scene.time.duration = 1;
   scene.obstacles.push_back(obstacle("ball", scene::Sphere{0.1}));
   scene.obstacles.back().motion.keys = {{0, {{0, 0, 0}, Quat::Identity()}}, {1, {{2, 0, 0}, Quat::Identity()}}};
-  const auto& surfaces = Simulation(scene).snapshot()->surfaces;
+  const frame::SnapshotPtr snapshot = Simulation(scene).snapshot();
+  const auto& surfaces = snapshot->surfaces;
   EXPECT_NEAR(surfaces[0]->reach->max().z(), 1, 1e-12);
   EXPECT_NEAR(surfaces[1]->reach->min().x(), -0.1, 1e-3);
   EXPECT_NEAR(surfaces[1]->reach->max().x(), 2.1, 1e-3);
