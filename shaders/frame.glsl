@@ -3,8 +3,8 @@ layout(std140, binding = 0) uniform Frame {
   mat4 clip_from_world;
   mat4 view_from_world;
   mat4 above_from_world;   // to texture space of the map seen from above
-  vec4 eye_world;          // w: radius of the subjects [m]
-  vec4 center_world;       // of the subjects; w: roughness of the floor
+  vec4 eye_world;          // w: radius of the surroundings [m]
+  vec4 center_world;       // of the surroundings; w: roughness of the floor
   vec4 up_world;
   vec4 right_world;        // of the camera
   vec4 sky;                // linear light from above; w: reach of sky occlusion [m]

@@ -1,10 +1,13 @@
 // What is seen at each pixel, for shading afterwards: llvmpipe shades whole 4x4 blocks of every triangle they touch,
 // which for the small triangles of cloth is some eight times the pixels seen. Of the floor only `seen` is kept.
+#include "frame.glsl"
+const float kMostRise = 0.02;  // [m]: where normals of a fold's two sides meet they say nothing
 in vec3 surface_normal_world;
 in vec2 surface_uv;
 in float surface_heat;
+in vec3 normal_squares, normal_products, plane;
 uniform float surface;
-layout(location = 0) out vec4 normal_heat;       // world, toward the viewer
+layout(location = 0) out vec4 normal_heat;       // world, toward the viewer; longer than 1 by the rise of the surface [m]
 layout(location = 1) out vec2 rest_uv;
 layout(location = 2) out vec2 distance_surface;  // frame.glsl
 #ifdef PAINTED
@@ -25,6 +28,15 @@ layout(location = 4) out vec4 trims;  // trim.glsl
 #ifdef PEELED
 layout(binding = 12) uniform sampler2D peeled;  // distances up to which all is taken off already
 #endif
+
+// By how much the smooth surface that the triangles stand for lies outside of them [m]: the mean of the planes through the
+// corners, by their shares of the place (Hanika, "Hacking the Shadow Terminator", 2021), along the normal.
+float rise(vec3 n) {
+  vec3 p = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, 1.0 / gl_FragCoord.w));
+  vec3 products = normal_products.zxy * p.yzx + normal_products.yzx * p.zxy;
+  return clamp(dot(n, plane - normal_squares * p - products), -kMostRise, kMostRise);
+}
+
 void main() {
 #ifdef PEELED
   if (1.0 / gl_FragCoord.w <= texelFetch(peeled, ivec2(gl_FragCoord.xy), 0).r) discard;
@@ -49,7 +61,9 @@ void main() {
   if (!gl_FrontFacing) root = back_color.w < 0.0 ? sqrt(back_color.rgb) : mix(root, vec3(1.0), back_color.w);
   paint = laid == 0 ? vec4(0.0) : vec4(root, 1.0);
 #endif
-  normal_heat = vec4(gl_FrontFacing ? surface_normal_world : -surface_normal_world, surface_heat);
+  vec3 n = normalize(surface_normal_world);
+  float side = gl_FrontFacing ? 1.0 : -1.0;
+  normal_heat = vec4((side + rise(n)) * n, surface_heat);
   rest_uv = surface_uv;
 #ifdef TRIMMED
   bool other = trim_distances.y < trim_distances.x;

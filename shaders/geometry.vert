@@ -18,12 +18,17 @@ uniform float nearer;  // [m] by which it counts as nearer than other things
 out vec3 surface_normal_world;
 out vec2 surface_uv;
 out float surface_heat;
+// Of the normal n and the place p from the eye: squares and products of n, and n times its share of p (geometry.frag).
+out vec3 normal_squares, normal_products, plane;
 invariant gl_Position;
 out float gl_ClipDistance[1];  // height above the floor, for mirror.hpp
 void main() {
   surface_normal_world = normal_world;
   surface_uv = vertex_uv;
   surface_heat = heat;
+  normal_squares = normal_world * normal_world;
+  normal_products = normal_world.yzx * normal_world.zxy;
+  plane = normal_world * dot(normal_world, position_world - frame.eye_world.xyz);
 #ifdef PICTURED
   place = vec2(dot(picture_u, vec3(vertex_place, 1.0)), dot(picture_v, vec3(vertex_place, 1.0)));
 #endif
@@ -31,8 +36,9 @@ void main() {
   trim_distances = vertex_trim_distances;
   trim_places = vertex_trim_places;
 #endif
+  // llvmpipe cuts here even where GL_CLIP_DISTANCE0 is off: a millimetre less, or rounding takes away the floor itself.
   gl_ClipDistance[0] =
-      dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w;
+      dot(frame.floor_plane_world.xyz, position_world - frame.eye_world.xyz) + frame.floor_plane_world.w + 1e-3;
   gl_Position = frame.clip_from_world * vec4(position_world, 1.0);
   if (nearer > 0.0 && gl_Position.w > frame.frustum.z) {
     float n = frame.frustum.z, f = frame.frustum.w, distance_view = max(gl_Position.w - nearer, n);

@@ -5,7 +5,7 @@ struct Light {
   vec4 toward_light_world;        // w: squared distance of a spot from its target, of a sun 0
   vec4 position_world;            // w: cosine of half the cone
   vec4 color;                     // linear; w: 1 / width of the soft edge of the cone
-  vec4 shadow;                    // penumbra width for each unit of depth, depth bias, raise of curved surfaces [m]
+  vec4 shadow;                    // penumbra width for each unit of depth, depth bias
 };
 // LIGHTS of them are there, one at least. Index them by constants: llvmpipe reads a member at a variable index once for
 // each pixel.

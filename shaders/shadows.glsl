@@ -54,9 +54,8 @@ float visibility(int i, vec3 position_world, vec3 normal_world, bool wanted) {
   return taps == 0 ? 1.0 : lit / float(FILTER_TAPS);
 }
 
-// The same of a surface that may be curved. Its faces lie behind the smooth surface that its normals are of, and where light
-// grazes it shade each other, as a sawtooth: there it is asked for a point a little outside.
-float visibility_of_curved(int i, vec3 position_world, vec3 normal_world, vec3 toward_light_world, bool wanted) {
-  float grazing = 1.0 - max(dot(normal_world, toward_light_world), 0.0);
-  return visibility(i, position_world + lights[i].shadow.w * grazing * normal_world, normal_world, wanted);
+// The same of a place of a triangle that stands for a smooth surface, which lies `rise` metres outside, toward the light:
+// triangles shade each other, as a sawtooth, where light grazes them.
+float visibility_of_curved(int i, vec3 position_world, vec3 normal_world, float rise, bool wanted) {
+  return visibility(i, position_world + max(rise, 0.0) * normal_world, normal_world, wanted);
 }

@@ -23,7 +23,7 @@ vec2 blur_jitter(vec2 texel) {
 // Scalable ambient obscurance (McGuire, Mara, Luebke 2012, Eq. 1): the mean of how far neighbours stand out of the
 // tangent plane, so that it hardly depends on the distance at which taps happen to land.
 float nearby_openness(vec2 uv, vec3 p_view, vec3 n_view, vec2 jitter, bool wanted) {
-  float radius = 0.16 * frame.eye_world.w;
+  float radius = 0.2 * frame.sky.w;
   vec2 reach_uv = min(radius / (2.0 * frame.frustum.xy * -p_view.z), vec2(0.12));
   ivec2 last = textureSize(small_distances, 0) - 1;
   float sum = 0.0;
@@ -74,13 +74,12 @@ float sky_openness(vec3 p_world, vec3 n_world, float turn, bool wanted) {
   return clamp(1.0 - covered / float(SKY_TAPS), 0.0, 1.0);
 }
 
-float share(int i, vec3 p_world, vec3 n_world, float surface) {
+float share(int i, vec3 p_world, vec3 n_world, float rise, float surface) {
   float cone;
   vec3 l = toward_light(i, p_world, cone);
   bool wanted = surface != kNothing && cone > 0.0;
-  vec3 n_toward = dot(n_world, l) < 0.0 ? -n_world : n_world;
-  // Floor is flat, and shadows shall begin at what stands on it.
-  return visibility_of_curved(i, p_world, n_toward, surface == kFloor ? n_toward : l, wanted);
+  float side = dot(n_world, l) < 0.0 ? -1.0 : 1.0;
+  return visibility_of_curved(i, p_world, side * n_world, side * rise, wanted);
 }
 
 void main() {
@@ -90,7 +89,12 @@ void main() {
   vec2 seen = texelFetch(distances_surfaces, pixel, 0).rg;
   float distance_view = seen.x, surface = floor(seen.y);
   vec3 n_world = frame.floor_plane_world.xyz;
-  if (surface >= kFirstSurface) n_world = normalize(texelFetch(normals_heat, pixel, 0).xyz);
+  float rise = 0.0;
+  if (surface >= kFirstSurface) {
+    vec3 normal = texelFetch(normals_heat, pixel, 0).xyz;
+    n_world = normalize(normal);
+    rise = length(normal) - 1.0;
+  }
   vec3 p_view = position_view(uv, distance_view), p_world = world_from_view(p_view) + frame.eye_world.xyz;
   vec2 jitter = blur_jitter(gl_FragCoord.xy);
   // Far from all subjects nothing is hidden from anything.
@@ -104,9 +108,9 @@ void main() {
   open = mix(1.0, open, hidden);
   // Floor that other things may light counts as shaded.
   if (in_bounced_light(p_world)) open = min(open, 0.9975);
-  vec2 lit = vec2(share(0, p_world, n_world, surface), 1.0);
+  vec2 lit = vec2(share(0, p_world, n_world, rise, surface), 1.0);
 #if LIGHTS > 1
-  lit.y = share(1, p_world, n_world, surface);
+  lit.y = share(1, p_world, n_world, rise, surface);
 #endif
   soft_light = vec4(pack_soft(surface, surface == kNothing ? 1.0 : open), lit, distance_view);
 }

@@ -37,6 +37,7 @@ float thread_highlight(vec3 n, vec3 t, vec3 b, vec3 v, vec3 l) {
 // What the pixel shows, as far as light on it needs to know.
 struct Point {
   vec3 position_world, n, n_smooth, v;
+  float rise;        // geometry.frag
   float shine, alpha, f0;
   vec3 weft, warp;   // unit, in the surface
   vec4 finish;
@@ -56,7 +57,8 @@ void add_light(inout LightSums sums, int i, Point at, Softness soft) {
 #else
   bool wanted = cone > 0.0 && side > 0.0;
 #endif
-  float lit = share_of_light(i, soft, at.position_world, side < 0.0 ? -at.n_smooth : at.n_smooth, l, wanted);
+  float lit = share_of_light(i, soft, at.position_world, side < 0.0 ? -at.n_smooth : at.n_smooth,
+                             side < 0.0 ? -at.rise : at.rise, wanted);
   vec3 strength = lights[i].color.rgb * (cone * lit);
   sums.diffuse += strength * (max(dot(at.n, l), 0.0) * smoothstep(0.0, 0.06, side));
 #ifdef CLOTH
@@ -91,6 +93,7 @@ void main() {
   at.v = -normalize(offset_world);
   // Near outlines a smooth normal may lean away from the eye; bend it back to the horizon.
   vec3 n_seen = normalize(normal_heat.xyz);
+  at.rise = length(normal_heat.xyz) - 1.0;
   at.n = at.n_smooth = normalize(n_seen + at.v * max(0.02 - dot(n_seen, at.v), 0.0));
   float roughness = front_roughness.w;
   at.alpha = max(roughness * roughness, 0.02);
@@ -123,7 +126,7 @@ void main() {
   albedo *= woven.tone;
   at.shine = woven.shine;
 #ifdef TRIMMED
-  Trimmed trimmed = trim(pixel, rest_uv, heat_trim.yzw, front, threads, woven, at.n);
+  Trimmed trimmed = trim(pixel, distance_view * 2.0 * frame.frustum.y * frame.viewport.w, rest_uv, heat_trim.yzw, front, threads, woven, at.n);
   at.n = trimmed.normal_world;
   albedo = mix(albedo * trimmed.tone, kJeans, trimmed.thread);
   if (trimmed.layers > 1.0) at.finish.w = mix(at.finish.w, at.finish.w * at.finish.w, trimmed.layers - 1.0);

@@ -54,8 +54,9 @@ struct Trimmed {
   float thread;  // share of the pixel that shows stitches of another colour
 };
 
-// `look`: width of the hem [m], thickness of the cloth [m], distance of stitches from seams [m], 0 for none.
-Trimmed trim(ivec2 pixel, vec2 rest_uv, vec3 look, bool front, int threads, Weave woven, vec3 n_world) {
+// `look`: width of the hem [m], thickness of the cloth [m], distance of stitches from seams [m], 0 for none. `pixel_width`:
+// of a pixel, seen head-on [m].
+Trimmed trim(ivec2 pixel, float pixel_width, vec2 rest_uv, vec3 look, bool front, int threads, Weave woven, vec3 n_world) {
   vec3 at = texelFetch(trims, pixel, 0).xyz;
   vec3 right = dFdx(at), up = dFdy(at), width = clamp(abs(right) + abs(up), 1e-6, 1.0);
   // The directions in which border and seam are left, in the surface.
@@ -63,6 +64,7 @@ Trimmed trim(ivec2 pixel, vec2 rest_uv, vec3 look, bool front, int threads, Weav
   float area = u_right.x * u_up.y - u_right.y * u_up.x, sense = area < 0.0 ? -1.0 : 1.0;
   // Right on a seam both sides are as far away, as if pixels had no width.
   width.xy = max(width.xy, 0.7 * min(sqrt(abs(area)), 1.0));
+  if (woven.at_outline) width = vec3(pixel_width);
   float hem = look.x, thickness = max(look.y, 1e-5), shown = on_top(at.z, width.z);
   vec2 du = (right.xy * u_up.y - up.xy * u_right.y) * sense, dv = (up.xy * u_right.x - right.xy * u_up.x) * sense;
   vec3 inward = du.x * woven.weft_world + dv.x * woven.warp_world, aside = du.y * woven.weft_world + dv.y * woven.warp_world;
@@ -89,6 +91,8 @@ Trimmed trim(ivec2 pixel, vec2 rest_uv, vec3 look, bool front, int threads, Weav
     fall += groove(at.y, width.y, look.z);
   }
   float doubled = hem > 0.0 ? clamp((hem - at.x) / width.x + 0.5, 0.0, 1.0) : 0.0;
-  vec3 n = normalize(n_world - (rise * step(width.x, fold + kGroove)) * inward - fall * aside);
+  rise *= 1.0 - smoothstep(0.3, 0.6, width.x / (fold + kGroove));
+  if (woven.at_outline) rise = fall = 0.0;
+  vec3 n = normalize(n_world - rise * inward - fall * aside);
   return Trimmed(n, tone, 1.0 + doubled, threads == kDenim ? min(thread, 1.0) : 0.0);
 }

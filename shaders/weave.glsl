@@ -2,7 +2,7 @@
 // or fibres alone; each a little different in tone. Every feature fades to its mean before it gets smaller than two
 // pixels, so that nothing shimmers.
 const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
-const float kUneven = 0.04;  // share of its tone by which a yarn differs at most, at each size
+const float kUneven = 0.11;  // share of its tone by which a yarn differs at most; 0.7 of it at each three times the size
 
 float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
 // From -1 to 1, of neighbours that make up for each other: what varies slowly from thread to thread would be left to see,
@@ -31,6 +31,7 @@ struct Weave {
   float shine;  // factor on the highlight
   float weft;   // share of it that shows, where it has a colour of its own
   vec3 weft_world, warp_world;  // directions of the threads
+  bool at_outline;              // derivatives look at other cloth, or none: they say nothing
 };
 
 // 1 while a feature of `size` is well above the pixel's footprint, 0 once it is below two pixels.
@@ -78,11 +79,13 @@ Top knit_top(vec2 thread) {
 float uneven_tone(vec2 thread, float footprint, int threads, float fuzz) {
   vec2 share = threads == kDenim ? vec2(0.5, 3.0) : threads == kKnit ? vec2(0.3, 1.5) : vec2(1.0);
   float length_share = threads == kNone ? 0.7 : 0.125, fibres = smoothstep(0.6, 1.0, fuzz), tone = 1.0;
-  for (float size = 2.5; size < 64.0; size *= 4.0) {
+  float uneven = kUneven / 0.7;
+  for (float size = 3.0; size < 30.0; size *= 3.0) {
     float seen = visible_feature(footprint, size);
+    uneven *= 0.7;
     if (seen == 0.0) continue;
     vec2 at = thread / size;
-    tone *= 1.0 + kUneven * (1.0 + 2.0 * fibres) * seen *
+    tone *= 1.0 + uneven * (1.0 + 2.0 * fibres) * seen *
                       (share.x * unevenness(at * vec2(length_share, 1.0)) +
                        share.y * unevenness(at.yx * vec2(length_share, 1.0) + 71.0));
   }
@@ -104,8 +107,16 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   float area = across.x * down.y - across.y * down.x;
   weft *= sign(area) * inversesqrt(max(dot(weft, weft), 1e-20));
   warp *= sign(area) * inversesqrt(max(dot(warp, warp), 1e-20));
-  Weave result = Weave(n_world, 1.0, 1.0, 0.25, weft, warp);
-  if (spacing <= 0.0) footprint = 1e6;
+  // Threads hardly stretch: where rest coordinates change by much more or less than places do, there is an outline.
+  float along_threads = spacing * spacing * max(dot(across, across), dot(down, down)),
+        in_space = max(dot(p_dx, p_dx), dot(p_dy, p_dy));
+  bool at_outline = spacing > 0.0 && (along_threads > 4.0 * in_space || in_space > 4.0 * along_threads);
+  if (at_outline) {
+    weft = normalize(cross(n_world, frame.right_world.xyz) + 1e-6);
+    warp = cross(n_world, weft);
+  }
+  Weave result = Weave(n_world, 1.0, 1.0, 0.25, weft, warp, at_outline);
+  if (spacing <= 0.0 || at_outline) footprint = 1e6;
   result.tone = uneven_tone(thread, footprint, threads, fuzz);
 
   // The lines of a twill are farther apart than its threads.

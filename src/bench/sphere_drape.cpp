@@ -23,8 +23,8 @@ position = [0.003, 0.002, 0.45]  # off the middle, so that no symmetry holds fol
 material = { fabric = "canvas", friction = 0.3 }
 
 [cloth.look]
-color = [0.20, 0.42, 0.52]
-back_color = [0.86, 0.80, 0.68]
+color = "#6a9bb6"
+back_color = "#d8c9a4"
 
 [[obstacle]]
 name = "sphere"
@@ -38,19 +38,19 @@ look = { color = [0.88, 0.52, 0.20], roughness = 0.3 }
 name = "floor"
 shape = "plane"
 friction = 0.3
-look = { color = [0.90, 0.895, 0.885], roughness = 0.8 }
+look = { color = "#a8a39b", roughness = 0.8 }
 
 [[camera]]
 name = "front"
-position = [1.75, -1.55, 1.05]
-target = [0, 0, 0.17]
+position = [1.3, -1.2, 0.85]
+target = [0, 0, 0.16]
 field_of_view = 26
 
 [[light]]
 name = "key"
-direction = [-0.75, -0.1, -1.1]
-intensity = 0.9
-softness = 3
+direction = [0.5, 0.75, -0.7]
+intensity = 1.0
+softness = 5
 )";
 
 }  // namespace weft::bench

@@ -54,6 +54,12 @@ void serialize_finite(Archive& archive, Vec3& vector) {
   for (double& number : vector) serialize_finite(archive, number);
 }
 
+template <class Archive>
+void serialize_finite(Archive& archive, Box3& box) {
+  serialize_finite(archive, box.min());
+  serialize_finite(archive, box.max());
+}
+
 template <class Archive, class Value>
 void serialize_optional(Archive& archive, std::optional<Value>& value) {
   bool given = value.has_value();
@@ -188,6 +194,7 @@ void serialize(Archive& archive, frame::Surface& surface, const Textures& textur
   serialize_plain(archive, surface.quads);
   serialize_plain(archive, surface.uv);
   serialize_finite(archive, surface.crease_angle);
+  serialize_optional(archive, surface.reach);
   serialize(archive, surface.appearance, textures);
   serialize_each(
       archive, surface.parts,

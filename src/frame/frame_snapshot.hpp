@@ -73,6 +73,8 @@ struct Surface {
   std::vector<std::uint8_t> passed_through;     ///< per triangle: 1 where cloth does not meet it; empty: it meets all
   std::vector<std::array<Index, 4>> quads;      ///< faces as simulated, if the object is made of quads; else empty
   std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; empty if it has none
+  /// World space [m]: all places to which a body moves in the run, those at which a cloth starts; absent: not known.
+  std::optional<Box3> reach;
   double crease_angle = 30;  ///< degrees; sharper edges are drawn hard (180: all smooth, as for cloth)
   Appearance appearance;
   std::vector<SurfacePart> parts;              ///< empty: all triangles look as `appearance` says

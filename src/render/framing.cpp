@@ -30,6 +30,13 @@ Box3 subject_bounds(const frame::FrameSnapshot& snapshot) {
   return bounds.isEmpty() ? Box3(Vec3::Constant(-0.5), Vec3::Constant(0.5)) : bounds;
 }
 
+Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot) {
+  Box3 bounds;
+  for (const auto& surface : snapshot.surfaces)
+    if (is_subject(*surface) && surface->reach) bounds.extend(*surface->reach);
+  return bounds.isEmpty() ? subject_bounds(snapshot) : bounds;
+}
+
 frame::Camera automatic_camera() {
   frame::Camera camera;
   camera.kind = frame::Camera::Kind::whole;

@@ -17,6 +17,10 @@ bool is_subject(const frame::Surface& surface);
 /// Smallest box around all subjects [m]; a metre around the origin where there are none.
 Box3 subject_bounds(const frame::FrameSnapshot& snapshot);
 
+/// Box around the places that the subjects reach in the run [m], the same in all its frames: backdrop and floor, and
+/// the cubes of bounced light, go by it. Where the snapshot does not say, around the subjects.
+Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot);
+
 /// The camera of a scene that names none: one that has all of a run in view.
 frame::Camera automatic_camera();
 

@@ -12,9 +12,6 @@ namespace {
 
 // Share of a shadow map left free at each edge, so that penumbrae end inside it.
 constexpr double kBorder = 1.0 / 32;
-// Curved surfaces are raised by a texel of the whole map, as faces are larger in larger scenes, but no more than this
-// [m]: there would be light between a hem and the leg under it.
-constexpr double kMostRaised = 4e-3;
 
 Vec3 travel_direction(const frame::Light& light) {
   const bool spot = light.kind == frame::Light::Kind::spot;
@@ -133,11 +130,11 @@ std::vector<frame::Light> effective_lights(const frame::FrameSnapshot& snapshot,
   std::vector<frame::Light> lights = snapshot.lights;
   if (lights.size() > kMaxLights) lights.resize(kMaxLights);
   if (!lights.empty()) return lights;
-  // Key light over the left shoulder, so that shadows fall to the right and a little away and folds get relief.
+  // Key light over the left shoulder and low, so that shadows fall to the right and a little away and folds get relief.
   const Vec3 level_forward = view_axes(camera.right.cross(-up), up).forward;
   frame::Light key;
   key.name = "key";
-  key.direction = 0.75 * camera.right + 0.45 * level_forward - 1.15 * up;
+  key.direction = 0.9 * camera.right + 0.35 * level_forward - 0.8 * up;
   key.color = Vec3(1.0, 0.985, 0.955);
   key.softness = look == frame::Stage::Look::daylight ? 1 : 5;
   if (look != frame::Stage::Look::stage) return {key};
@@ -158,7 +155,6 @@ ShadowView fit_shadow(const frame::Light& light, std::span<const Vec3> casters, 
                       int map_size) {
   const bool spot = light.kind == frame::Light::Kind::spot;
   ShadowView shadow = spot ? fit_spot(light, casters, up, map_size) : fit_sun(light, casters, up, map_size);
-  shadow.raise = std::min(shadow.texel_metres, kMostRaised);
   // A sun's map fits its casters as it is.
   if (spot || in_view != nullptr) crop(shadow, casters, in_view);
   return shadow;
@@ -190,7 +186,7 @@ LightUniform pack_light(const frame::Light& light, const ShadowView& shadow, con
       static_cast<float>(1 / (inner - outer));
   // Half a texel for the slope that the filter cannot see, and 0.2 mm for what rasterising rounds.
   const double bias = (0.25 * shadow.texel_metres + 2e-4) * shadow.depth_per_metre;
-  packed.shadow << shadow.penumbra_uv.cast<float>(), static_cast<float>(bias), static_cast<float>(shadow.raise);
+  packed.shadow << shadow.penumbra_uv.cast<float>(), static_cast<float>(bias), 0.0f;
   return packed;
 }
 

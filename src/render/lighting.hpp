@@ -37,7 +37,6 @@ struct ShadowView {
                            ///< central projection, and so does the blur
   double depth_per_metre = 1;  ///< of the depth buffer, in the middle of the subjects
   double texel_metres = 0;     ///< width of one texel there
-  double raise = 0;            ///< by which curved surfaces ask for light from outside, where it grazes them [m]
 };
 
 /// Fits a shadow map of `map_size` texels to the given casters (world space), as tightly as they allow, and to what is
@@ -59,9 +58,8 @@ struct LightUniform {
   Eigen::Matrix4f shadow_planes_from_world;  ///< inverse transpose of the above: carries planes instead of points
   Eigen::Vector4f toward_light;              ///< unit; w: squared distance of a spot from its target [m²], of a sun 0
   Eigen::Vector4f position;                  ///< [m]; w: cosine of half the cone
-  Eigen::Vector4f color;  ///< linear, times intensity; w: 1 / (cosine inside which all is lit - position.w)
-  Eigen::Vector4f
-      shadow;  ///< penumbra_uv; depth bias; by how much curved surfaces are raised where light grazes them [m]
+  Eigen::Vector4f color;   ///< linear, times intensity; w: 1 / (cosine inside which all is lit - position.w)
+  Eigen::Vector4f shadow;  ///< penumbra_uv; depth bias
 };
 static_assert(sizeof(LightUniform) == 2 * 64 + 4 * 16,
               "as packed in lights.glsl: five vectors would be padded to six here");

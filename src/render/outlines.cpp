@@ -19,11 +19,11 @@ constexpr int kWord = 64;
 constexpr float kOffsetX[] = {9 / 16.f, 7 / 16.f, 13 / 16.f, 5 / 16.f, 3 / 16.f, 1 / 16.f, 11 / 16.f, 15 / 16.f};
 constexpr float kOffsetY[] = {5 / 16.f, 11 / 16.f, 9 / 16.f, 3 / 16.f, 13 / 16.f, 7 / 16.f, 15 / 16.f, 1 / 16.f};
 
-// Where something ends or folds, 1 / distance, which is linear over the picture of any plane, has a kink or a step.
-constexpr float kKink = 1e-3f;
-// A sample shows what its pixel shows where that lies in the plane of the sample's triangle, to this part of the
-// distance: a quarter of what counts as a kink.
-constexpr float kSamePlane = 2.5e-4f;
+// Where something ends or folds, 1 / distance, which is linear over the picture of any plane, has a kink or a step. Of
+// a crease that is seen head-on and turns by an angle the kink is its tangent times the angle of a pixel.
+constexpr double kCrease = 0.4;
+// A sample shows what its pixel shows where that lies in the plane of the sample's triangle: to this part of a kink.
+constexpr float kSamePlane = 0.25f;
 
 /// Twice the signed area of the triangle of an edge from a to b and a place, positive on its left. Exactly the opposite
 /// for the edge from b to a, as both measure from the same end: no sample falls between two triangles.
@@ -113,7 +113,7 @@ void Outlines::find(std::span<const Seen> seen, const PixelArea& area) {
     for (int x = left; x < right; ++x) {
       const float across = std::abs(here[x - 1] + here[x + 1] - 2 * here[x]);
       const float along = std::abs(below[x] + above[x] - 2 * here[x]);
-      flags[x] = (std::max(across, along) > kKink * here[x]) | (own[x].surface != lower[x].surface) |
+      flags[x] = (std::max(across, along) > kink_ * here[x]) | (own[x].surface != lower[x].surface) |
                  (own[x].surface != upper[x].surface);
     }
     for (int x = std::max(left, 1); x < right; ++x) flags[x] |= own[x].surface != own[x - 1].surface;
@@ -297,7 +297,7 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
       };
       chosen = index(x, y);
       float least = off_plane(x, y);
-      if (least > kSamePlane) {
+      if (least > kSamePlane * kink_) {
         for (int j = y0; j <= y1; ++j) {
           for (int i = x0; i <= x1; ++i) {
             const float off = off_plane(i, j);
@@ -316,6 +316,7 @@ std::array<std::size_t, Outlines::kSamples> Outlines::find_sources(std::size_t s
 void Outlines::smooth(std::span<const Seen> seen, std::span<const DrawnMesh> meshes, const std::optional<Floor>& floor,
                       const View& view, const PixelArea& area, std::span<std::uint64_t> picture) {
   if (area.width <= 0 || area.height <= 0) return;
+  kink_ = static_cast<float>(kCrease * 2 * view.tan_half_height / height_);
   find(seen, area);
   number();
   for (std::size_t i = 0; i < meshes.size(); ++i) sample(meshes[i], static_cast<float>(kFirstSurface + i), view);

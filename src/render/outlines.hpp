@@ -61,6 +61,7 @@ class Outlines {
   Vertex to_picture(const Eigen::Vector4d& clip) const;
 
   int width_, height_, words_;  // words of bits in a row
+  float kink_ = 0;              // of 1 / distance, as a part of it, beyond which something folds
   std::vector<Bits> bits_;      // a bit for each pixel with an outline
   std::vector<int> first_;      // for each word: samples of its lowest pixel
   std::vector<Pixel> pixels_;

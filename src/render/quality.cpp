@@ -13,7 +13,7 @@ QualitySettings quality_settings(Quality quality) {
     case Quality::final:
       break;
   }
-  return {true, 1024, 10, 16, 2, 6, 7, 16, 5000, true, true, true, false, true};
+  return {true, 1024, 20, 16, 2, 6, 7, 16, 5000, true, true, true, false, true};
 }
 
 }  // namespace weft::render

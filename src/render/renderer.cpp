@@ -47,7 +47,7 @@ void check(const frame::FrameSnapshot& snapshot) {
 struct Plan {
   frame::Stage stage;
   Vec3 up;
-  Box3 subjects;
+  Box3 subjects, surroundings;
   std::optional<Floor> floor;
   View view;
   std::vector<frame::Light> lights;
@@ -72,6 +72,7 @@ Plan make_plan(const frame::FrameSnapshot& snapshot, const frame::Stage& stage, 
   plan.stage.heat = heat_shown(snapshot, stage);
   plan.up = up_of(snapshot);
   plan.subjects = subject_bounds(snapshot);
+  plan.surroundings = surroundings_bounds(snapshot);
   plan.floor = find_floor(snapshot, plan.up);
   plan.view = make_view(camera, plan.up, aspect, plan.subjects, plan.floor);
   plan.lights = effective_lights(snapshot, plan.stage.look, plan.view.axes, plan.up);
@@ -217,8 +218,8 @@ void Renderer::Impl::update_floor(const Plan& plan) {
 }
 
 void Renderer::Impl::upload_frame(const Plan& plan) {
-  const FrameUniform block =
-      pack_frame(plan.view, plan.lighting, plan.subjects, plan.floor, settings.width, settings.height);
+  const FrameUniform block = pack_frame(plan.view, plan.lighting, plan.subjects, plan.surroundings, plan.floor,
+                                        settings.width, settings.height);
   gl.NamedBufferData(passes->frame_block.name(), sizeof(block), &block, GL_STREAM_DRAW);
   gl.BindBufferBase(GL_UNIFORM_BUFFER, 0, passes->frame_block.name());
 }
@@ -248,7 +249,7 @@ void Renderer::Impl::bounce(const Plan& plan, std::span<const DrawnMesh> meshes,
     surfaces.push_back({&passes->surfaces[i], &looks[i].appearance, plan.lighting.style.plain, meshes[i].opacity});
   }
   passes->bounced.draw(surfaces, plan.floor, plan.lighting.style.floor_tint, irradiance_of(plan.lighting.around),
-                       plan.subjects, passes->shadows);
+                       plan.surroundings, passes->shadows);
 }
 
 void Renderer::Impl::shade(const Plan& plan, const PixelArea& subjects, double heat) {
@@ -292,8 +293,8 @@ void Renderer::Impl::draw_sharp(const frame::FrameSnapshot& snapshot, const Plan
   if (reflects(plan)) {
     if (!mirror) mirror.emplace(gl, quality, settings.width, settings.height);
     const View view = mirrored(plan.view, *plan.floor);
-    const FrameUniform block =
-        pack_frame(view, plan.lighting, plan.subjects, plan.floor, mirror->width(), mirror->height());
+    const FrameUniform block = pack_frame(view, plan.lighting, plan.subjects, plan.surroundings, plan.floor,
+                                          mirror->width(), mirror->height());
     const std::vector<Shading::Material> looks = materials(plan);
     mirror->draw(view, block, {passes->surfaces, opaque, looks, above, heat, !plan.lighting.style.plain},
                  light_set(plan.lights));

@@ -243,8 +243,8 @@ double rim_width(const frame::Appearance& look, std::span<const Vec3> positions,
   double nearest = 1e9;
   for (const Vec3& p : positions) nearest = std::min(nearest, view.axes.forward.dot(p - view.eye));
   const double pixel = 2 * view.tan_half_height * std::max(nearest, view.near) / rows;
-  const double share = std::clamp(edge / pixel - 1, 0.0, 1.0);
-  return edge * share * share * (3 - 2 * share);
+  const double share = std::clamp(edge / pixel - 1.5, 0.0, 1.0), width = edge * share * share * (3 - 2 * share);
+  return width < pixel ? 0 : width;
 }
 
 RimStrip rim_strip(std::span<const Trims::Rim> rims, std::span<const Vec3> positions, std::span<const Vec3> normals,

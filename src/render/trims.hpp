@@ -78,7 +78,7 @@ struct RimStrip {
 };
 
 /// Width of the strips [m]: as thick as the edge is, twice so where it is folded to a hem; thinner where that is less
-/// than two pixels of a picture of so many rows, and 0 from one on, as it would break into dots.
+/// than 2.5 pixels of a picture of so many rows, and 0 where a pixel would be left, as it would break into dots.
 double rim_width(const frame::Appearance& look, std::span<const Vec3> positions, const View& view, int rows);
 
 /// Of a surface as it lies in a frame, `thickness` [m] wide; `normals` by vertex.

@@ -126,7 +126,7 @@ double floor_roughness(const Style& style, const std::optional<Floor>& floor) {
   return std::min(floor->look.roughness, style.floor_roughness);
 }
 
-FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects,
+FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects, const Box3& surroundings,
                         const std::optional<Floor>& floor, int width, int height) {
   const auto four = [](const Vec3& v, double w) {
     return Eigen::Vector4f(static_cast<float>(v.x()), static_cast<float>(v.y()), static_cast<float>(v.z()),
@@ -134,7 +134,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   };
   const Style& style = lighting.style;
   const Surroundings& around = lighting.around;
-  const double radius = 0.5 * subjects.diagonal().norm(), reach = sky_reach(subjects);
+  const double radius = 0.5 * surroundings.diagonal().norm(), reach = sky_reach(subjects);
   const SkyView above = fit_sky(subjects, around.up, reach);
   const bool sky = style.horizon.minCoeff() < style.horizon.maxCoeff();
   const Vec3 shown = style.floor_tint * lighting.exposure.floor;
@@ -145,7 +145,7 @@ FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& 
   frame.clip_from_world = view.clip_from_world.cast<float>();
   frame.view_from_world = view.view_from_world.cast<float>();
   frame.eye_world = four(view.eye, radius);
-  frame.center_world = four(subjects.center(), floor_roughness(style, floor));
+  frame.center_world = four(surroundings.center(), floor_roughness(style, floor));
   frame.up_world = four(around.up, 0);
   frame.right_world = four(view.axes.right, 0);
   frame.sky = four(around.sky, reach);

@@ -83,7 +83,8 @@ Lighting light_up(const frame::Stage& stage, const Vec3& up, const std::optional
 double floor_roughness(const Style& style, const std::optional<Floor>& floor);
 inline constexpr double kMirrorsLamps = 0.6, kMirrorsSubjects = 0.5;
 
-FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects,
+/// `surroundings`: of the run (surroundings_bounds()).
+FrameUniform pack_frame(const View& view, const Lighting& lighting, const Box3& subjects, const Box3& surroundings,
                         const std::optional<Floor>& floor, int width, int height);
 
 }  // namespace weft::render

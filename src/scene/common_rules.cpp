@@ -23,7 +23,9 @@ std::optional<Vec3> change_of_angles(const Pose& from, const Pose& to) {
 const Table& obstacle_look_rules() {
   static const Table kTable =
       TableBuilder<Look>("How the obstacle is drawn.")
+          .starting_from(look_of(kObstacleColor))
           .color("color", &Look::color, "of the surface")
+          .by_default("[0.76, 0.72, 0.65], of planes [0.66, 0.66, 0.65]")
           .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
           .plain(Type::boolean, "checker", &Look::checker, "faint grid of 0.5 m tiles, to give a floor scale")
           .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture; it still collides")

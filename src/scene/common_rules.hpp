@@ -16,6 +16,14 @@ inline const std::vector<std::string> kXyz = {"x", "y", "z"};
 inline const std::vector<std::string> kWeftWarp = {"weft", "warp"};
 inline const std::vector<std::string> kInterpolations = {"linear", "cubic"};
 
+// Tones of what a scene gives no colour [sRGB]: a floor that reflects 0.4 of the light, and what stands out from it.
+inline const Vec3 kClothColor(0.60, 0.27, 0.22), kObstacleColor(0.76, 0.72, 0.65), kFloorColor(0.66, 0.66, 0.65);
+inline Look look_of(const Vec3& color) {
+  Look look;
+  look.color = color;
+  return look;
+}
+
 /// Turns about the fixed x, then y, then z axis.
 Quat from_angles(const Vec3& degrees);
 

@@ -119,6 +119,7 @@ const Table& panel_look_rules() {
 const Table& cloth_look_rules() {
   static const Table kTable =
       TableBuilder<Look>("How the cloth is drawn.")
+          .starting_from(look_of(kClothColor))
           .with(paint_rows<Look>)
           .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
           .number("gloss", &Look::gloss, within(0, 1), "", "highlights of its threads, 1 as of satin")
@@ -319,7 +320,10 @@ const Table& obstacle_rules() {
           .choice_by(
               "shape", {"sphere", "box", "cone", "torus", "cylinder", "half_pipe", "plane", "mesh"},
               "kind of body; decides which further keys it has", [](Obstacle& o) { return o.shape.index(); },
-              [](Obstacle& o, std::size_t index) { o.shape = kShapes[index]; })
+              [](Obstacle& o, std::size_t index) {
+                o.shape = kShapes[index];
+                if (std::holds_alternative<Plane>(o.shape)) o.look.color = kFloorColor;
+              })
           .need(Need::required)
           .selects()
           .with(shape_rows)
@@ -337,6 +341,10 @@ const Table& obstacle_rules() {
 void set_up_axis(Scene& s, std::size_t index) {
   s.up = static_cast<UpAxis>(index);
   s.physics.gravity = turned_up(s.up, Physics{}.gravity);
+}
+
+void append_cloth(Scene& s, std::size_t) {
+  s.cloths.emplace_back().look.color = kClothColor;
 }
 
 void append_light(Scene& s, std::size_t) {
@@ -367,7 +375,7 @@ const Table& scene_rules() {
                                   .table("render", &Scene::render, render_rules())
                                   .list(Type::list, "obstacle", &Scene::obstacles, obstacle_rules())
                                   .list(Type::list, "character", &Scene::characters, character_rules())
-                                  .list(Type::list, "cloth", &Scene::cloths, cloth_rules())
+                                  .list(Type::list, "cloth", &Scene::cloths, cloth_rules(), append_cloth)
                                   .list(Type::list, "camera", &Scene::cameras, camera_rules(), append_camera)
                                   .not_simulated()
                                   .list(Type::list, "light", &Scene::lights, light_rules(), append_light)

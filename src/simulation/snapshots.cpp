@@ -107,9 +107,9 @@ std::shared_ptr<frame::Surface> make_surface(const std::string& name, frame::Obj
   return surface;
 }
 
-std::shared_ptr<const frame::Surface> make_cloth_surface(const environment::ClothObject& cloth, const scene::Look& look,
-                                                         Pictures& pictures) {
-  const auto surface = make_surface(cloth.name, frame::ObjectKind::cloth, cloth.mesh);
+std::shared_ptr<frame::Surface> make_cloth_surface(const environment::ClothObject& cloth, const scene::Look& look,
+                                                   Pictures& pictures) {
+  auto surface = make_surface(cloth.name, frame::ObjectKind::cloth, cloth.mesh);
   for (const std::string& panel : cloth.panels) surface->parts.push_back({panel, {}});
   surface->part_of_triangle = cloth.panel_of;
   surface->paint_uv = cloth.paint_uv;
@@ -146,8 +146,8 @@ frame::SurfacePart part_of(const character::Material& material, const std::strin
   return part;
 }
 
-std::shared_ptr<const frame::Surface> make_body_surface(const environment::BodyObject& body, Pictures& pictures) {
-  const auto surface =
+std::shared_ptr<frame::Surface> make_body_surface(const environment::BodyObject& body, Pictures& pictures) {
+  auto surface =
       make_surface(body.name, body.character ? frame::ObjectKind::character : frame::ObjectKind::obstacle, body.mesh);
   surface->infinite_floor = body.infinite_floor;
   surface->passed_through = body.passed_through;
@@ -188,6 +188,24 @@ std::shared_ptr<const frame::Stage> make_stage(const scene::Scene& scene) {
   }
   stage->heat_max = scene.render.heat_max;
   return stage;
+}
+
+Box3 box_around(std::span<const Vec3> positions) {
+  Box3 box;
+  for (const Vec3& position : positions) box.extend(position);
+  return box;
+}
+
+/// Of a body, from time 0 on.
+Box3 reach_of(const environment::Environment& environment, std::size_t body, double duration) {
+  constexpr int kMoments = 100;
+  std::vector<Vec3> positions(environment.bodies[body].mesh.positions.size());
+  Box3 reach;
+  for (int k = 0; k <= (environment.bodies[body].moving ? kMoments : 0); ++k) {
+    environment.place(body, duration * k / kMoments, positions);
+    reach.extend(box_around(positions));
+  }
+  return reach;
 }
 
 environment::Spline<7> camera_track(const scene::Camera& camera) {
@@ -319,9 +337,16 @@ std::shared_ptr<const frame::Surface> Looks::dressed(const frame::Surface& surfa
 
 SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment) : looks_(scene) {
   Pictures pictures;
-  for (std::size_t c = 0; c < scene.cloths.size(); ++c)
-    surfaces_.push_back(make_cloth_surface(environment.cloths[c], look_of(scene.cloths[c]), pictures));
-  for (const environment::BodyObject& body : environment.bodies) surfaces_.push_back(make_body_surface(body, pictures));
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const auto surface = make_cloth_surface(environment.cloths[c], look_of(scene.cloths[c]), pictures);
+    surface->reach = box_around(environment.cloths[c].start);
+    surfaces_.push_back(surface);
+  }
+  for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
+    const auto surface = make_body_surface(environment.bodies[b], pictures);
+    surface->reach = reach_of(environment, b, scene.time.duration);
+    surfaces_.push_back(surface);
+  }
 }
 
 frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const environment::Environment& environment,

@@ -63,6 +63,10 @@ TEST(Codec, SurfacesComeBackAsTheyWere) {
     EXPECT_EQ(a.quads, b.quads);
     EXPECT_EQ(a.uv, b.uv);
     EXPECT_EQ(a.crease_angle, b.crease_angle);
+    const auto corners = [](const std::optional<Box3>& box) {
+      return box ? std::vector<Vec3>{box->min(), box->max()} : std::vector<Vec3>{};
+    };
+    EXPECT_EQ(corners(a.reach), corners(b.reach));
     EXPECT_EQ(a.appearance.color, b.appearance.color);
     EXPECT_EQ(a.appearance.back_color, b.appearance.back_color);
     EXPECT_EQ(a.appearance.roughness, b.appearance.roughness);

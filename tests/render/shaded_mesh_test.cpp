@@ -5,6 +5,8 @@
 #include <set>
 
 #include "core/error.hpp"
+#include "image/color.hpp"
+#include "render/renderer.hpp"
 #include "render/snapshots.hpp"
 
 namespace weft::render {
@@ -92,6 +94,26 @@ TEST(ShadedMesh, OnlyASurfaceWithoutBordersIsClosed) {
   EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 1, 2}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}));
   EXPECT_FALSE(is_closed(std::vector<Triangle>{{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {2, 0, 3}}));
   EXPECT_FALSE(is_closed({}));
+}
+
+// A sphere of 16 columns, its terminator in the middle of the picture: faces beyond which the light goes shade those
+// that still face it, unless light is asked for at the sphere.
+TEST(ShadedMesh, LightFallsEvenlyToTheDarkSideOfFewFaces) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = stage_without_sky();
+  add_sphere(snapshot, Vec3::Zero(), 0.5, 8).crease_angle = 180;
+  snapshot.cameras = {camera_at(Vec3(0, -4, 0), Vec3::Zero(), 16)};
+  snapshot.lights = {sun(Vec3::UnitX())};
+  Settings settings;
+  settings.width = 320;
+  settings.height = 320;
+  const image::Image image = Renderer(settings).draw(snapshot);
+  // 142 pixels are its radius. Below a cosine of 0.06 direct light fades out.
+  for (int x = 70; x < 148; ++x) {
+    const double cosine = (160 - (x + 0.5)) / 142;
+    const Vec3 shown = image::srgb_from_linear(cosine * image::linear_from_srgb(Vec3::Constant(0.8)));
+    EXPECT_NEAR(image.pixel(x, 160)[1], 255 * shown.x(), 14) << x;
+  }
 }
 
 }  // namespace

@@ -70,6 +70,26 @@ TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
 }
 
 // A mirror sees the middle of a box as bright as it is, a rough surface sees it weaker and wider; all of it stays.
+/// Bytes at the left border of a picture, which a sheet at this height neither covers nor shades.
+std::vector<int> left_border(double height) {
+  frame::FrameSnapshot snapshot;
+  add_floor(snapshot);
+  add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, 0, height), Vec3::UnitZ(), Vec3::UnitX(), 0.5).reach =
+      Box3(Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 2));
+  snapshot.cameras = {camera_at(Vec3(0, -8, 1.5), Vec3(0, 0, 0.8), 40)};
+  Settings settings;
+  settings.width = 160;
+  settings.height = 100;
+  const image::Image image = Renderer(settings).draw(snapshot);
+  std::vector<int> bytes;
+  for (int y = 0; y < settings.height; ++y) bytes.push_back(image.pixel(0, y)[1]);
+  return bytes;
+}
+
+TEST(Surroundings, AreThoseOfTheRunWhileASheetFalls) {
+  EXPECT_EQ(left_border(2), left_border(0.2));
+}
+
 TEST(Surroundings, BlurKeepsTheLightOfABox) {
   Surroundings around;
   around.boxes[0] = {Vec3(0.6, 0, 0.8), 40, Vec3(2, 1, 0.5)};
@@ -179,6 +199,23 @@ TEST(BouncedLight, ALitWallColorsTheFloorBeforeItUnlessSomethingIsBetween) {
     EXPECT_NEAR(light.y() / expected.y(), 1, 0.1) << height;
     if (height == 0) continue;
     EXPECT_LT(light_on_floor(wall(height, true)).x(), light.x() / 3);
+  }
+}
+
+TEST(Floor, IsSeenHoweverItsHeightIsRounded) {
+  Settings settings;
+  settings.width = settings.height = 16;
+  Renderer renderer(settings);
+  for (int i = 0; i < 40; ++i) {
+    frame::FrameSnapshot snapshot;
+    frame::Surface& floor =
+        add_square(snapshot, frame::ObjectKind::obstacle, Vec3(0, 0, -0.1 - 0.07 * i), Vec3::UnitZ(), Vec3::UnitX(), 5);
+    floor.infinite_floor = true;
+    floor.appearance.color = Vec3(0.1, 0.8, 0.1);
+    snapshot.cameras = {camera_at(Vec3(0, -2, 1.3 + 0.013 * i), Vec3::Zero(), 30)};
+    snapshot.lights = {sun(-Vec3::UnitZ())};
+    const image::Image image = renderer.draw(snapshot);
+    EXPECT_GT(image.pixel(8, 15)[1], 195) << i;  // 0.8 of 255; the backdrop has 178 and less
   }
 }
 

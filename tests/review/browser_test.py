@@ -29,7 +29,7 @@ def simulate(folder, output, *settings):
     name = pathlib.Path(output).name.split("_{")[0].removesuffix(".mp4")
     weft(folder, "run", f"{SOURCE}/scenes/falling_band.toml", "-o", output, "--stats",
          str(pathlib.Path(output).parent / f"{name}.json"), "--frames", f"0:{FRAMES}:{STEP}", "--quality", "draft",
-         "--size", f"{SIZE[0]}x{SIZE[1]}", "--progress", "none", *settings)
+         "--size", f"{SIZE[0]}x{SIZE[1]}", "--progress", "none", "--set", "cloth.band.particles=[17,161]", *settings)
 
 
 def read_png(content):

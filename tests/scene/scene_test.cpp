@@ -334,6 +334,16 @@ TEST(Scene, DefaultsFollowTheUpAxisWhereverItIsWritten) {
   EXPECT_EQ(y.lights[0].keys[0].direction, Vec3(-0.4, -1, 0.5));
 }
 
+TEST(Scene, WhatHasNoColorHasATone) {
+  const Scene scene = load_good(
+      "[[cloth]]\nname = 'a'\n[[obstacle]]\nname = 'b'\nshape = 'box'\n[[obstacle]]\nname = 'c'\nshape = 'plane'\n");
+  const Vec3 cloth = scene.cloths[0].look.color, box = scene.obstacles[0].look.color,
+             floor = scene.obstacles[1].look.color;
+  EXPECT_LT(floor.maxCoeff(), 0.79);  // 0.6 of the light comes back
+  for (const Vec3& difference : {Vec3(cloth - box), Vec3(box - floor), Vec3(floor - cloth)})
+    EXPECT_GT(difference.cwiseAbs().maxCoeff(), 0.08);
+}
+
 TEST(Fabrics, GiveTheNumbersThatASceneLeavesOut) {
   const Scene scene = load_good("cloth = [{ name = 'a', material = { density = 0.5, fabric = 'silk' } }]\n");
   const Material& material = scene.cloths[0].material;
