@@ -26,6 +26,12 @@ install(EXPORT Weft FILE WeftConfig.cmake NAMESPACE Weft:: DESTINATION ${config_
 write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/WeftConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/WeftConfigVersion.cmake DESTINATION ${config_folder})
 
+if(WEFT_PYTHON)
+  set(WEFT_PYTHON_FOLDER lib/python3/dist-packages CACHE STRING "Where the Python module is installed, below the prefix")
+  install(DIRECTORY python/weft DESTINATION ${WEFT_PYTHON_FOLDER})
+  install(TARGETS weft_extension LIBRARY DESTINATION ${WEFT_PYTHON_FOLDER}/weft)
+endif()
+
 # The program writes its own manual page, completions and schema.
 install(TARGETS weft RUNTIME)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)
@@ -54,4 +60,7 @@ set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6 | libegl1")  # opened at run time
+if(WEFT_PYTHON)
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", python3, python3-numpy")
+endif()
 include(CPack)
