@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 #include <mutex>
+#include <utility>
 
 namespace weft::log {
 namespace {
@@ -13,6 +14,7 @@ struct State {
   std::mutex mutex;
   std::string status;
   std::vector<std::string> warnings, notes;
+  std::function<void(std::string_view)> handle;
 };
 
 State& state() {
@@ -55,6 +57,7 @@ void print(State& s, std::string_view text) {
 void keep(std::string_view text, const char* kind, std::vector<std::string> State::*list) {
   State& s = state();
   const std::lock_guard lock(s.mutex);
+  if (s.handle) return s.handle(text);
   if (std::find((s.*list).begin(), (s.*list).end(), text) != (s.*list).end()) return;
   (s.*list).emplace_back(text);
   print(s, fmt::format("{}: {}", kind, text));
@@ -74,6 +77,12 @@ void warn(std::string_view text) {
 
 void note(std::string_view text) {
   keep(text, "note", &State::notes);
+}
+
+void set_handler(std::function<void(std::string_view text)> handle) {
+  State& s = state();
+  const std::lock_guard lock(s.mutex);
+  s.handle = std::move(handle);
 }
 
 std::vector<std::string> warnings() {

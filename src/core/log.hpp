@@ -1,6 +1,7 @@
 // Lines for people on standard error, whole and in order whichever thread they come from. Safe from all threads.
 #pragma once
 
+#include <functional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -16,6 +17,10 @@ void warn(std::string_view text);
 /// Prints `note: text` and keeps the text for the summary at the end; the same text again is ignored. For what was done
 /// and is not wrong.
 void note(std::string_view text);
+
+/// From now on `handle` gets warnings and notes, one call at a time; they are neither printed nor kept. An empty one
+/// restores that.
+void set_handler(std::function<void(std::string_view text)> handle);
 
 /// All warnings so far, in order.
 std::vector<std::string> warnings();

@@ -90,7 +90,7 @@ void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
 /// line.
 ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers);
 
-/// Does not change: who steps through time keeps what it asks for.
+/// Changes by set_motion() alone: who steps through time keeps what it asks for.
 class Environment {
  public:
   /// Makes meshes and motions. Throws Error(asset_unreadable, scene_invalid) naming file and scene line.
@@ -102,6 +102,11 @@ class Environment {
   /// Writes where the vertices of a body are at time t [s], as many as its mesh has. Linear in them, in parallel;
   /// allocates nothing. A body that does not move is where it is at time 0.
   void place(std::size_t body, double t, std::span<Vec3> positions) const;
+
+  /// From now on the obstacle moves so. Only of one that is `moving`, and where it is now must stay the same.
+  void set_motion(std::size_t obstacle, const scene::PoseTrack& motion) {
+    movers_[obstacle] = std::make_shared<const Mover>(Track(motion));
+  }
 
   /// Pose of an obstacle at any time [s], and how it changes.
   PoseSample pose(std::size_t obstacle, double t) const { return std::get<Track>(*movers_[obstacle]).at(t); }

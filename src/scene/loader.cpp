@@ -50,6 +50,7 @@ LoadResult load_from(const std::optional<std::string_view>& text, const std::fil
                      const std::vector<std::string>& overrides, Findings& findings) {
   LoadResult result;
   result.file = file;
+  result.text = text.value_or("");
   result.scene.file = std::filesystem::absolute(file);
   result.scene.name = file.stem().string();
   if (!is_plain_name(result.scene.name))
@@ -69,7 +70,7 @@ LoadResult load_from(const std::optional<std::string_view>& text, const std::fil
 }  // namespace
 
 std::string LoadResult::describe() const {
-  std::string text;
+  std::string lines;
   for (const Mistake& mistake : mistakes) {
     std::string where = file.string();
     if (!mistake.override_text.empty()) {
@@ -77,9 +78,9 @@ std::string LoadResult::describe() const {
     } else if (mistake.line > 0) {
       where += fmt::format(":{}:{}", mistake.line, mistake.column);
     }
-    text += where + ": " + (mistake.key.empty() ? "" : mistake.key + ": ") + mistake.text + "\n";
+    lines += where + ": " + (mistake.key.empty() ? "" : mistake.key + ": ") + mistake.text + "\n";
   }
-  return text;
+  return lines;
 }
 
 LoadResult load(const std::filesystem::path& file, const std::vector<std::string>& overrides) {

@@ -30,6 +30,7 @@ struct LoadResult {
   /// One line a mistake: `file:line:column: key: text` (overrides: `--set key=value: key: text`).
   std::string describe() const;
   std::filesystem::path file;
+  std::string text;  ///< of the file
 };
 
 /// Reads and checks a scene; `overrides` are "path.to.key=value" texts, checked like the file itself. Never throws for

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <iterator>
 #include <limits>
+#include <map>
 #include <numeric>
 #include <optional>
 #include <string>
@@ -94,6 +96,9 @@ struct Simulation::Impl {
   bool all_dressed() const { return layer + 1 == layers.size(); }
   FrameReport advance();
   double time() const { return frame / scene.time.fps; }
+  double next_time() const { return (frame + 1) / scene.time.fps; }
+  void drive(std::size_t obstacle, const scene::Pose& end);
+  void set_motion(std::size_t obstacle);
   void measure_energies(FrameReport& report) const;
   void measure(FrameReport& report) const;
   void report_obstructions(FrameReport& report) const;
@@ -113,6 +118,7 @@ struct Simulation::Impl {
   frame::SnapshotPtr current;
   FrameReport start_report;  // of frame 0
   std::optional<EnergyBound> energy_bound;
+  std::map<std::size_t, std::array<scene::PoseKey, 2>> driven;  // obstacles, and their last way
 };
 
 Simulation::Impl::Impl(const scene::Scene& s)
@@ -254,8 +260,32 @@ std::vector<Vec3> Simulation::Impl::particles_of_all() const {
   return all;
 }
 
+void Simulation::Impl::drive(std::size_t obstacle, const scene::Pose& end) {
+  const environment::PoseSample now = environment.pose(obstacle, time());
+  driven[obstacle] = {{{time(), {now.position, now.rotation}}, {next_time(), {end.position, end.rotation}}}};
+  set_motion(obstacle);
+}
+
+void Simulation::Impl::set_motion(std::size_t obstacle) {
+  const auto& way = driven.at(obstacle);
+  const scene::PoseTrack motion{scene::Interpolation::linear, {way.begin(), way.end()}};
+  environment.set_motion(obstacle, motion);
+  if (part) part->environment.set_motion(obstacle, motion);
+}
+
 template <class Archive>
 void Simulation::Impl::serialize(Archive& archive) {
+  for (auto& [obstacle, way] : driven) {
+    for (scene::PoseKey& key : way) {
+      serialize_values(archive, key.time);
+      archive.raw(key.pose.position.data(), 3 * sizeof(double));
+      archive.raw(key.pose.rotation.coeffs().data(), 4 * sizeof(double));
+    }
+    if constexpr (Archive::kReads) {
+      require(way[0].time < way[1].time, "a way forward in time");
+      set_motion(obstacle);
+    }
+  }
   archive.value(frame);
   std::uint64_t last = layer;
   archive.value(last);
@@ -313,6 +343,21 @@ MatrixSize Simulation::matrix() const {
 ParticleState Simulation::state() const {
   const Moment& now = impl_->steps->progress().now;
   return {now.particles(), now.v, impl_->steps->cloth().masses()};
+}
+
+ClothMotion Simulation::motion_of(std::size_t cloth) const {
+  const std::vector<std::size_t>& dressed = impl_->layers[impl_->layer].dressed;
+  const auto found = std::ranges::find(dressed, cloth);
+  if (found == dressed.end()) return {};
+  const auto number = static_cast<std::size_t>(found - dressed.begin());
+  const ClothSystem& cloths = impl_->steps->cloth();
+  const Moment& now = impl_->steps->progress().now;
+  const Index first = cloths.first_particle(number), end = cloths.first_particle(number + 1);
+  return {std::span(now.v).subspan(at(first), at(end - first)), cloths.strain_per_particle(number, now.particles())};
+}
+
+void Simulation::drive(std::size_t obstacle, const scene::Pose& end) {
+  impl_->drive(obstacle, end);
 }
 
 bool Simulation::run_preroll(const std::function<bool()>& proceed) {

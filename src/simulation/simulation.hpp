@@ -27,6 +27,12 @@ struct ParticleState {
   std::span<const double> masses;               ///< [kg]
 };
 
+/// What a frame shows of a cloth besides its positions; empty until the cloth is put on.
+struct ClothMotion {
+  std::span<const Vec3> velocities;  ///< per particle [m/s]
+  std::vector<float> strains;        ///< per particle: largest relative change of length of the threads next to it
+};
+
 /// One line of `weft check --plan`: a part and whether this scene needs it.
 struct PlanItem {
   std::string part;
@@ -92,12 +98,19 @@ class Simulation {
   MatrixSize matrix() const;
   /// Of the current frame, and of cloths that are put on by then; valid until the next advance().
   ParticleState state() const;
+  /// Of a cloth of the scene, by number; valid until the next advance().
+  ClothMotion motion_of(std::size_t cloth) const;
+
+  /// In the next frame the obstacle, by its number in the scene, goes to `end` at constant velocity and stays there,
+  /// whatever the scene says of its motion. Only for an obstacle that has two keys or more.
+  void drive(std::size_t obstacle, const scene::Pose& end);
 
   /// Appends all that later frames depend on, in a form for machines of one kind and one version of the program. Not
   /// after a failed advance().
   void save(std::string& bytes) const;
-  /// Goes on from what a simulation of the same scene has saved: what follows has the same bits. Only before the first
-  /// advance(). Throws std::runtime_error where the bytes are none of this scene; the simulation is then of no use.
+  /// Goes on from what a simulation of the same scene has saved: what follows has the same bits. Before it, each
+  /// obstacle that was driven must be driven once, to anywhere. Only before the first advance(). Throws
+  /// std::runtime_error where the bytes are none of this scene; the simulation is then of no use.
   void restore(std::string_view bytes);
 
  private:

@@ -50,6 +50,20 @@ TEST_F(MadeTree, IncludeOfAModuleNotUsedIsReportedWithItsLine) {
   EXPECT_EQ(wrong_includes(folder_), "src/mesh/ply.cpp:3: mesh does not use render\n");
 }
 
+TEST_F(MadeTree, InterfaceIncludesTheStandardLibraryAloneAndIsOfItsModule) {
+  write("src/library/include/weft/scene.hpp", "#include <vector>\n#include <weft/api.hpp>\n");
+  EXPECT_EQ(wrong_includes(folder_), "src/library/include/weft/scene.hpp:2: library does not use library\n");
+  write("src/CMakeLists.txt", "weft_module(core)\nweft_module(mesh)\nweft_module(library)\n");
+  fs::remove_all(folder_ / "src/render");
+  EXPECT_EQ(wrong_includes(folder_), "");
+  write("src/library/include/weft/scene.hpp", "#include <Eigen/Core>\n#include \"core/error.hpp\"\n");
+  write("src/mesh/ply.cpp", "#include <weft/scene.hpp>\n");
+  EXPECT_EQ(wrong_includes(folder_),
+            "src/library/include/weft/scene.hpp:1: others cannot include this\n"
+            "src/library/include/weft/scene.hpp:2: others cannot include this\n"
+            "src/mesh/ply.cpp:1: mesh does not use library\n");
+}
+
 TEST_F(MadeTree, CoreMayUseNoOtherModule) {
   write("src/core/log.cpp", "#include \"mesh/mesh.hpp\"\n");
   EXPECT_EQ(wrong_includes(folder_), "src/core/log.cpp:1: core does not use mesh\n");

@@ -52,6 +52,9 @@ std::vector<fs::path> written_files(const fs::path& root, const std::vector<std:
 const std::set<std::string> kGeneratedHeaders = {"embedded_shaders.hpp", "embedded_review.hpp", "embedded_cli.hpp",
                                                  "embedded_templates.hpp", "embedded_export.hpp"};
 
+// Headers that are installed.
+const std::string kInterface = "src/library/include/";
+
 const std::vector<std::string> kCodeFolders = {"src", "shaders", "tests"};
 const std::vector<std::string> kAllFolders = {"src", "shaders", "tests", "scenes", ".ci"};
 
@@ -102,6 +105,8 @@ std::string wrong_includes(const fs::path& root) {
     allowed[module.name].insert({"core", module.name});
   }
   const std::regex include(R"re(\s*#\s*include\s*"([^"]+)".*)re");
+  const std::regex public_include(R"re(\s*#\s*include\s*<(weft)/.*)re"),
+      standard_include(R"re(\s*#\s*include\s*<\w+>.*)re");
   std::string wrong;
   for (const fs::path& file : written_files(root, {"src"})) {
     if (!kCode.contains(file.extension()) || *file.begin() != "src") continue;
@@ -109,6 +114,12 @@ std::string wrong_includes(const fs::path& root) {
     const auto lines = lines_of(root / file);
     for (std::size_t i = 0; i < lines.size(); ++i) {
       std::smatch match;
+      const bool of_interface = std::regex_match(lines[i], match, public_include);
+      if (of_interface && !allowed[from].contains("library"))
+        wrong += at(file, i + 1) + from + " does not use library\n";
+      if (file.generic_string().starts_with(kInterface) && lines[i].starts_with("#include") && !of_interface &&
+          !std::regex_match(lines[i], standard_include))
+        wrong += at(file, i + 1) + "others cannot include this\n";
       if (!std::regex_match(lines[i], match, include)) continue;
       const fs::path target = match[1].str();
       if (kGeneratedHeaders.contains(target)) continue;

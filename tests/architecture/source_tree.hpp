@@ -19,7 +19,8 @@ std::vector<Module> read_modules(const std::filesystem::path& root);
 // Each check returns one line for each violation, "file:line: what is wrong", paths relative to root; empty if all is
 // well.
 
-/// Includes of src/ that name a module which neither USES nor core allows, or no file at all.
+/// Includes of src/ that name a module which neither USES nor core allows, or no file at all. <weft/...> is of library,
+/// and its headers there include nothing but each other and the standard library.
 std::string wrong_includes(const std::filesystem::path& root);
 
 /// Names in USES that are not declared earlier in the file (which also rules out cycles), folders of src/ that are

@@ -17,6 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
+const std::regex kFirstLineOfScript(R"(# ([\w.-]+\.py)\n[^]*)");
 const std::regex kFirstLine(R"(# ([\w.-]+\.toml)(?:: ([\w.-]+\.toml), and at its end)?\n[^]*)");
 
 void write(const fs::path& file, const std::string& text) {
@@ -28,7 +29,11 @@ void write(const fs::path& file, const std::string& text) {
 // Runs `commands` by the shell, which stops at the first that fails. Both outputs together.
 int run(const std::string& commands, const fs::path& folder, std::string& output) {
   write(folder / "commands.sh", commands);
-  FILE* pipe = ::popen(fmt::format("cd '{}' && sh -eu commands.sh 2>&1", folder.string()).c_str(), "r");
+  FILE* pipe = ::popen(
+      fmt::format("cd '{}' && PATH=$PWD/.bin:$PATH PYTHONPATH='" WEFT_BUILD_DIR "/python' sh -eu commands.sh 2>&1",
+                  folder.string())
+          .c_str(),
+      "r");
   if (pipe == nullptr) throw std::runtime_error("no shell");
   char bytes[4096];
   for (std::size_t count; (count = std::fread(bytes, 1, sizeof bytes, pipe)) > 0;) output.append(bytes, count);
@@ -65,10 +70,13 @@ std::string wrong_blocks(const std::string& page) {
       } else if (!scenes.insert({match[1], true}).second) {
         complain("a scene before is named " + match[1].str());
       }
+    } else if (fence.info == "python") {
+      if (!std::regex_match(fence.text, kFirstLineOfScript))
+        complain("the first line of a script names its file: # NAME.py");
     } else if (fence.info == "text") {
       if (before != "sh") complain("no commands before this text");
     } else if (fence.info != "sh") {
-      complain("expected toml, sh or text, got '" + fence.info + "'");
+      complain("expected toml, python, sh or text, got '" + fence.info + "'");
     }
     before = fence.info;
   }
@@ -77,6 +85,8 @@ std::string wrong_blocks(const std::string& page) {
 
 std::string run_section(const std::string& page, const std::string& section, const fs::path& folder) {
   fs::create_symlink(WEFT_PROGRAM, folder / "weft");
+  fs::create_directory(folder / ".bin");
+  fs::create_symlink(WEFT_PYTHON_PROGRAM, folder / ".bin/python3");  // that of the module
   fs::create_symlink(fs::path(WEFT_SOURCE_DIR) / "scenes", folder / "scenes");
   std::string output;
   for (const Fence& fence : read_page(page).fences) {
@@ -85,6 +95,7 @@ std::string run_section(const std::string& page, const std::string& section, con
       const std::string base = match[2].matched ? read_file(folder / match[2].str()) + "\n" : "";
       write(folder / match[1].str(), base + fence.text);
     }
+    if (std::regex_match(fence.text, match, kFirstLineOfScript)) write(folder / match[1].str(), fence.text);
     if (fence.section != section) continue;
     if (fence.info == "sh") {
       output.clear();

@@ -38,6 +38,12 @@ TEST_F(MadeGuide, MakesAScenesOfAnotherAndMore) {
   EXPECT_EQ(run_section(kMade, "Two", folder_), "");
 }
 
+TEST_F(MadeGuide, RunsItsScripts) {
+  EXPECT_EQ(run_section("## One\n```python\n# a.py\nprint(6 * 7)\n```\n```sh\npython3 a.py\n```\n```text\n42\n```\n",
+                        "One", folder_),
+            "");
+}
+
 TEST_F(MadeGuide, FailsWithTheFirstCommandThatFails) {
   EXPECT_EQ(run_section(kMade, "Three", folder_), "line 25: exit code 1\nfalse\ntrue\n");
 }
@@ -51,7 +57,8 @@ TEST(MadeBlocks, OfAnotherKindOrWithoutANameAreWrong) {
   EXPECT_EQ(wrong_blocks("```toml\n[time]\n```\n"), "1: the first line of a scene names its file: # NAME.toml\n");
   EXPECT_EQ(wrong_blocks("```toml\n# b.toml: a.toml, and at its end\n```\n"), "1: no scene before is named a.toml\n");
   EXPECT_EQ(wrong_blocks("```toml\n# a.toml\n```\n```toml\n# a.toml\n```\n"), "4: a scene before is named a.toml\n");
-  EXPECT_EQ(wrong_blocks("```\nx\n```\n"), "1: expected toml, sh or text, got ''\n");
+  EXPECT_EQ(wrong_blocks("```\nx\n```\n"), "1: expected toml, python, sh or text, got ''\n");
+  EXPECT_EQ(wrong_blocks("```python\nimport weft\n```\n"), "1: the first line of a script names its file: # NAME.py\n");
   EXPECT_EQ(wrong_blocks("```toml\n# a.toml\n```\n```text\nx\n```\n"), "4: no commands before this text\n");
 }
 
@@ -102,6 +109,7 @@ std::string test_name(const ::testing::TestParamInfo<std::string>& section) {
 std::vector<std::string> sections() {
   std::vector<std::string> sections;
   for (const Fence& fence : read_page(guide()).fences) {
+    if (fence.text.starts_with("python3 ") && !WEFT_HAS_PYTHON) continue;
     if (fence.info == "sh" && (sections.empty() || sections.back() != fence.section)) sections.push_back(fence.section);
   }
   return sections;

@@ -1,0 +1,55 @@
+// What stands behind the public classes, for the library and the Python module.
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+#include <weft/scene.hpp>
+#include <weft/simulation.hpp>
+
+#include "core/error.hpp"
+#include "frame/frame_report.hpp"
+#include "frame/frame_snapshot.hpp"
+#include "scene/scene.hpp"
+
+namespace weft {
+
+struct Scene::Data {
+  scene::Scene scene;
+  std::string text;            ///< TOML as it was given
+  std::filesystem::path file;  ///< likewise
+  std::vector<std::string> changes;
+};
+
+struct Frame::Data {
+  frame::SnapshotPtr snapshot;
+  Report report;
+  std::vector<std::vector<Vec3>> velocities;  ///< per cloth
+  std::vector<std::vector<float>> strains;    ///< likewise
+  std::vector<Object> objects;                ///< views of the above
+};
+
+}  // namespace weft
+
+namespace weft::library {
+
+Report report_of(const frame::FrameReport& report);
+
+/// Makes the views of `data`.
+Frame make_frame(Frame::Data data);
+
+/// Throws the public exception for one of the program's.
+[[noreturn]] void throw_public(const Error& error);
+
+/// Returns what `work` returns, with the exceptions of errors.hpp.
+template <class Work>
+auto with_public_errors(const Work& work) {
+  try {
+    return work();
+  } catch (const Error& error) {
+    throw_public(error);
+  }
+}
+
+}  // namespace weft::library

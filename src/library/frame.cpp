@@ -1,0 +1,93 @@
+#include <fmt/format.h>
+
+#include <stdexcept>
+#include <utility>
+
+#include "library/data.hpp"
+
+namespace weft {
+namespace {
+
+// Points of `count` numbers each lie in memory one after the other, here as there.
+template <class To, class From>
+std::span<const To> viewed(const std::vector<From>& points) {
+  static_assert(sizeof(To) == sizeof(From));
+  return {reinterpret_cast<const To*>(points.data()), points.size()};
+}
+
+Object view_object(const Frame::Data& data, std::size_t number) {
+  const frame::Surface& surface = *data.snapshot->surfaces[number];
+  Object object;
+  object.name = surface.name;
+  object.kind = static_cast<Kind>(surface.kind);
+  object.positions = viewed<Vector>(data.snapshot->states[number].positions);
+  if (number < data.velocities.size()) {
+    object.velocities = viewed<Vector>(data.velocities[number]);
+    object.strains = data.strains[number];
+  }
+  if (object.kind == Kind::cloth) object.rest = viewed<RestPoint>(surface.uv);
+  object.triangles = surface.triangles;
+  return object;
+}
+
+}  // namespace
+
+Frame::Frame(std::shared_ptr<const Data> data) : data_(std::move(data)) {}
+
+int Frame::number() const {
+  return data_->snapshot->frame;
+}
+double Frame::time() const {
+  return data_->snapshot->time;
+}
+const Report& Frame::report() const {
+  return data_->report;
+}
+std::span<const Object> Frame::objects() const {
+  return data_->objects;
+}
+
+const Object& Frame::object(std::string_view name) const {
+  std::string names;
+  for (const Object& object : data_->objects) {
+    if (object.name == name) return object;
+    names += fmt::format("{}{}", names.empty() ? "" : ", ", object.name);
+  }
+  throw std::out_of_range(fmt::format("expected one of the objects {}, got {}", names, name));
+}
+
+}  // namespace weft
+
+namespace weft::library {
+
+Report report_of(const frame::FrameReport& report) {
+  return {.wall_s = report.simulate.wall_s,
+          .cpu_s = report.simulate.cpu_s,
+          .steps = report.steps,
+          .rejected_steps = report.rejected_steps,
+          .newton_iterations = report.newton_iterations,
+          .linear_iterations = report.linear_iterations,
+          .near_pairs = report.proximities,
+          .constraints = report.constraints,
+          .min_distance = report.min_distance,
+          .max_strain = report.max_strain,
+          .stretch_ratio = report.stretch_share,
+          .kinetic_energy = report.kinetic_energy,
+          .potential_energy = report.potential_energy,
+          .elastic_energy = report.elastic_energy,
+          .pin_work = report.pin_work,
+          .error_estimate = report.error_estimate,
+          .solver_error = report.solver_error,
+          .pinched_pairs = report.pinched_pairs,
+          .lagging_particles = report.lagging_particles,
+          .warnings = report.warnings};
+}
+
+Frame make_frame(Frame::Data data) {
+  const auto shared = std::make_shared<Frame::Data>(std::move(data));
+  for (std::size_t i = 0; i < shared->snapshot->surfaces.size(); ++i)
+    shared->objects.push_back(view_object(*shared, i));
+  return Frame(shared);
+}
+
+}  // namespace weft::library

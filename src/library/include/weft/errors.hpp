@@ -1,0 +1,45 @@
+// What the library throws. Every text says where, what was expected with its unit, what was found, and what to do.
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+#include <weft/api.hpp>
+
+namespace weft {
+
+/// One mistake of a scene.
+struct Mistake {
+  std::string file;          ///< of the scene, as it was given
+  int line = 0, column = 0;  ///< counted from 1; 0: the file as a whole, or a change
+  std::string change;        ///< "key=value", if a change brought the mistake; else empty
+  std::string key;           ///< such as "cloth.band.material.thickness"; empty: the file as a whole
+  std::string text;          ///< such as "expected > 0 m, got -0.001"
+};
+
+/// A scene has mistakes. what() lists all of them, one a line: "file:line:column: key: text".
+class WEFT_API SceneError : public std::runtime_error {
+ public:
+  SceneError(const std::string& text, std::vector<Mistake> mistakes)
+      : std::runtime_error(text), mistakes_(std::move(mistakes)) {}
+  /// All mistakes in the order of the file, then those of the changes.
+  const std::vector<Mistake>& mistakes() const { return mistakes_; }
+
+ private:
+  std::vector<Mistake> mistakes_;
+};
+
+/// A mesh, motion or picture that the scene names cannot be used. what() names the file.
+class WEFT_API FileError : public SceneError {
+ public:
+  using SceneError::SceneError;
+};
+
+/// The simulation cannot continue. what() names the frame, the time and the reason.
+class WEFT_API SimulationError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+}  // namespace weft

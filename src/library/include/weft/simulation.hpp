@@ -1,0 +1,119 @@
+// A scene, simulated frame by frame.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+#include <weft/api.hpp>
+#include <weft/errors.hpp>
+#include <weft/scene.hpp>
+
+namespace weft {
+
+using Vector = std::array<double, 3>;          ///< x, y, z in world space
+using RestPoint = std::array<double, 2>;       ///< along weft and warp
+using Triangle = std::array<std::int32_t, 3>;  ///< numbers of vertices, counter-clockwise seen from the front
+
+/// Where a body is: first turned about its origin, then shifted.
+struct Pose {
+  Vector position{0, 0, 0};                    ///< [m]
+  std::array<double, 4> rotation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z
+};
+
+enum class Kind { cloth, obstacle, character };
+
+/// One object in one frame. The spans are valid as long as the frame or a copy of it exists.
+struct Object {
+  std::string_view name;
+  Kind kind = Kind::cloth;
+  std::span<const Vector> positions;    ///< per vertex [m]; the vertices of a cloth are its particles
+  std::span<const Vector> velocities;   ///< per particle [m/s]; empty for bodies and for cloth that is not yet put on
+  std::span<const float> strains;       ///< per particle: largest |length / rest length - 1| of the threads there
+  std::span<const RestPoint> rest;      ///< per particle: rest coordinates [m]; empty if there are none
+  std::span<const Triangle> triangles;  ///< the same in all frames
+};
+
+/// What the computation of a frame took and found. In frame 0: the energies of the start.
+struct Report {
+  double wall_s = 0, cpu_s = 0;  ///< of simulating this frame [s]
+  int steps = 0;                 ///< time steps that were accepted
+  int rejected_steps = 0;        ///< time steps that were done again, shorter
+  int newton_iterations = 0;
+  int linear_iterations = 0;    ///< of conjugate gradients
+  int near_pairs = 0;           ///< vertex-face and edge-edge pairs within the detection distance, at the end
+  int constraints = 0;          ///< contacts that push, and particles that pins hold, at the end
+  double min_distance = 0;      ///< of two surfaces [m]; infinite if none is within the detection distance
+  double max_strain = 0;        ///< largest |length / rest length - 1| in all its steps
+  double stretch_ratio = 0;     ///< largest extension over the `max_stretch` of its fabric, in all its steps
+  double kinetic_energy = 0;    ///< [J]
+  double potential_energy = 0;  ///< of gravity, 0 at the origin [J]
+  double elastic_energy = 0;    ///< stretch, shear and bending [J]
+  double pin_work = 0;          ///< of pins on the cloth in this frame [J]
+  double error_estimate = 0;    ///< sum over the steps of the local error of positions, estimated [m]
+  double solver_error = 0;      ///< likewise, of what the solver left [m]
+  int pinched_pairs = 0;        ///< most triangle pairs at once that obstacles leave no space
+  int lagging_particles = 0;    ///< most particles at once that something keeps from where a pin holds them
+  std::vector<std::string> warnings;
+};
+
+/// One frame. It never changes; copies share one frame, and any thread may read them.
+class WEFT_API Frame {
+ public:
+  int number() const;            ///< counted from 0
+  double time() const;           ///< [s]
+  const Report& report() const;  ///< zeros in the frame that a simulation was restored at
+  /// Cloths, obstacles, characters, each in the order of the scene.
+  std::span<const Object> objects() const;
+  /// Throws std::out_of_range with the names that there are.
+  const Object& object(std::string_view name) const;
+
+  struct Data;
+  /// For the library itself.
+  explicit Frame(std::shared_ptr<const Data> data);
+
+ private:
+  std::shared_ptr<const Data> data_;
+};
+
+struct SimulationOptions {
+  std::vector<std::string> driven;  ///< names of the obstacles that Simulation::move() moves
+  std::string state;                ///< what save() returned, to continue from there; empty: begin at frame 0
+};
+
+/// A simulation at one frame. One thread at a time may use it; different simulations may run in different threads.
+/// The same scene gives the same bits on any number of threads.
+class WEFT_API Simulation {
+ public:
+  /// Builds the simulation and computes `time.preroll`, if the scene has one. Throws SceneError if surfaces touch at
+  /// the start, FileError, SimulationError; std::invalid_argument if the options do not fit the scene.
+  explicit Simulation(const Scene& scene, const SimulationOptions& options = {});
+  ~Simulation();
+  Simulation(Simulation&&) noexcept;
+  Simulation& operator=(Simulation&&) noexcept;
+
+  /// The current frame.
+  const Frame& frame() const;
+  /// Computes the next frame, also beyond the last one of the scene. Throws SimulationError; the current frame then
+  /// stays as it was.
+  const Frame& advance();
+
+  /// In the next frame a driven obstacle goes to `pose` at constant velocity and stays there. Pins that `follow` it go
+  /// along: an obstacle with `collide = false` is a handle that holds cloth. Throws std::invalid_argument for an
+  /// obstacle that is not driven, or numbers that are not finite.
+  void move(std::string_view obstacle, const Pose& pose);
+
+  /// All that later frames depend on, for the same scene, options, library version and kind of machine. Not after a
+  /// failed advance().
+  std::string save() const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace weft

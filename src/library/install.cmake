@@ -1,0 +1,66 @@
+# The shared library of the public interface, and what `cmake --install` installs.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+# Objects of the modules instead of the modules themselves, which would bring the libraries of pictures: what the
+# simulation needs stands here, and the linker reports everything else as undefined.
+set(objects "")
+foreach(module core mesh scene character assets garment environment solver forces integrator collision untangle
+               simulation library)
+  list(APPEND objects $<TARGET_OBJECTS:weft_${module}>)
+endforeach()
+add_library(weft_shared SHARED library/host_pictures.cpp image/color.cpp image/picture.cpp ${objects})
+target_include_directories(weft_shared PRIVATE ${CMAKE_CURRENT_SOURCE_DIR}
+                           PUBLIC $<BUILD_INTERFACE:${CMAKE_CURRENT_SOURCE_DIR}/library/include> $<INSTALL_INTERFACE:include>)
+target_compile_features(weft_shared INTERFACE cxx_std_20)
+target_link_libraries(weft_shared PRIVATE weft_warnings Eigen3::Eigen TBB::tbb Threads::Threads PkgConfig::fmt
+                      PkgConfig::tomlplusplus PkgConfig::pugixml assimp::assimp)
+target_link_options(weft_shared PRIVATE -Wl,--as-needed -Wl,-z,defs)
+set_target_properties(weft_shared PROPERTIES OUTPUT_NAME weft EXPORT_NAME weft VERSION ${PROJECT_VERSION} SOVERSION
+                      ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+
+install(TARGETS weft_shared EXPORT Weft LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+install(DIRECTORY library/include/weft DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Weft)
+install(EXPORT Weft FILE WeftConfig.cmake NAMESPACE Weft:: DESTINATION ${config_folder})
+write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/WeftConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${CMAKE_CURRENT_BINARY_DIR}/WeftConfigVersion.cmake DESTINATION ${config_folder})
+
+if(WEFT_PYTHON)
+  set(WEFT_PYTHON_FOLDER lib/python3/dist-packages CACHE STRING "Where the Python module is installed, below the prefix")
+  install(DIRECTORY python/weft DESTINATION ${WEFT_PYTHON_FOLDER})
+  install(TARGETS weft_extension LIBRARY DESTINATION ${WEFT_PYTHON_FOLDER}/weft)
+endif()
+
+# The program writes its own manual page, completions and schema.
+install(TARGETS weft RUNTIME)
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+function(install_output file)
+  cmake_path(GET file PARENT_PATH folder)
+  install(CODE "
+    set(prefix \"\$ENV{DESTDIR}\${CMAKE_INSTALL_PREFIX}\")
+    file(MAKE_DIRECTORY \"\${prefix}/${folder}\")
+    execute_process(COMMAND \"\${prefix}/${CMAKE_INSTALL_BINDIR}/weft\" ${ARGN}
+                    OUTPUT_FILE \"\${prefix}/${file}\" COMMAND_ERROR_IS_FATAL ANY)
+    message(STATUS \"Installing: \${prefix}/${file}\")")
+endfunction()
+install_output(${CMAKE_INSTALL_MANDIR}/man1/weft.1 man)
+install_output(${CMAKE_INSTALL_DATADIR}/weft/scene.schema.json schema)
+install_output(${CMAKE_INSTALL_DATADIR}/bash-completion/completions/weft completion bash)
+install_output(${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions/_weft completion zsh)
+install_output(${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d/weft.fish completion fish)
+
+# A Debian package: cpack --config build/CPackConfig.cmake
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "Weft")
+set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Simulation and rendering of cloth")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6 | libegl1")  # opened at run time
+if(WEFT_PYTHON)
+  string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", python3, python3-numpy")
+endif()
+include(CPack)

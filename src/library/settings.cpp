@@ -1,0 +1,22 @@
+#include <utility>
+#include <weft/settings.hpp>
+
+#include "core/log.hpp"
+#include "core/parallel.hpp"
+#include "core/version.hpp"
+
+namespace weft {
+
+const char* version() {
+  return kVersion;
+}
+
+void set_threads(int threads) {
+  set_thread_count(threads);
+}
+
+void set_warning_handler(std::function<void(std::string_view warning)> handle) {
+  log::set_handler(std::move(handle));
+}
+
+}  // namespace weft

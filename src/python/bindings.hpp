@@ -1,0 +1,18 @@
+// The parts of the Python module.
+#pragma once
+
+#include <pybind11/pybind11.h>
+
+namespace weft::python {
+
+namespace py = pybind11;
+
+/// Scenes, simulations, frames, and the exceptions of errors.hpp.
+void bind_simulation(py::module_& module);
+/// Error of a run, frame caches, comparison of pictures.
+void bind_tools(py::module_& module);
+
+/// Without the lock of the interpreter: others go on meanwhile.
+using WithoutLock = py::call_guard<py::gil_scoped_release>;
+
+}  // namespace weft::python

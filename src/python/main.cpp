@@ -1,0 +1,6 @@
+#include "python/bindings.hpp"
+
+PYBIND11_MODULE(_weft, module) {
+  weft::python::bind_simulation(module);
+  weft::python::bind_tools(module);
+}

@@ -1,0 +1,179 @@
+"""The Python module: what it computes, that its arrays are views, its errors, and that its stubs name what is there.
+
+module_test.py WEFT SOURCES    PYTHONPATH names the folder of the module.
+"""
+import ast
+import pathlib
+import subprocess
+import sys
+import tempfile
+import threading
+import unittest
+import warnings
+
+import numpy
+import weft
+
+PROGRAM, SOURCES = pathlib.Path(sys.argv[1]).resolve(), pathlib.Path(sys.argv[2])
+DRAPE = """
+[time]
+duration = 0.4
+fps = 25
+[[cloth]]
+name = "sheet"
+size = [0.5, 0.5]
+particles = [16, 16]
+position = [0, 0, 0.25]
+[[obstacle]]
+name = "ball"
+shape = "sphere"
+radius = 0.15
+segments = 16
+"""
+
+
+def run(*words, folder):
+    subprocess.run([PROGRAM, *map(str, words)], cwd=folder, check=True, capture_output=True)
+
+
+class Module(unittest.TestCase):
+    def setUp(self):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.folder = pathlib.Path(self.temporary.name)
+        (self.folder / "drape.toml").write_text(DRAPE)
+        self.addCleanup(self.temporary.cleanup)
+
+    def test_frames_have_the_bits_of_a_cache_of_the_program(self):
+        run("simulate", "drape.toml", "--cache", "cache", folder=self.folder)
+        cache = weft.Cache(self.folder / "cache")
+        self.assertEqual(cache.frames, list(range(11)))
+        self.assertEqual((cache.fps, cache.scene.frames), (25, 11))
+        simulation = weft.Simulation(weft.load(self.folder / "drape.toml"))
+        for number in cache.frames[1:]:
+            frame, cached = simulation.advance(), cache[number]
+            self.assertEqual((frame.number, frame.time), (number, number / 25))
+            for name in ("sheet", "ball"):
+                numpy.testing.assert_array_equal(frame[name].positions, cached[name].positions)
+                numpy.testing.assert_array_equal(frame[name].triangles, cached[name].triangles)
+            self.assertEqual(frame.report.kinetic_energy, cached.report.kinetic_energy)
+
+    def test_arrays_are_views_that_stay_valid_and_cannot_be_written_to(self):
+        simulation = weft.Simulation(weft.parse(DRAPE))
+        sheet = simulation.frame["sheet"]
+        positions = sheet.positions
+        self.assertEqual((positions.shape, positions.dtype), ((256, 3), numpy.float64))
+        self.assertEqual((sheet.strains.shape, sheet.velocities.shape, sheet.rest.shape), ((256,), (256, 3), (256, 2)))
+        self.assertEqual(positions.__array_interface__["data"], sheet.positions.__array_interface__["data"])
+        before = positions.copy()
+        for _ in range(5):
+            simulation.advance()
+        del simulation, sheet
+        numpy.testing.assert_array_equal(positions, before)
+        with self.assertRaises(ValueError):
+            positions[0, 0] = 1
+
+    def test_changes_take_python_values(self):
+        scene = weft.parse(DRAPE).with_changes({
+            "cloth.sheet.material.fabric": "silk", "time.step": 0.005, "contact.self": False,
+            "cloth.sheet.particles": (numpy.int64(9), 11), "cloth.sheet.position": numpy.array([0, 0, 0.3]),
+            "cloth.sheet.pin": [{"low": [0, 0], "high": [0, 1], "release": 0.2}]})
+        start = weft.Simulation(scene).frame["sheet"].positions
+        self.assertEqual(start.shape, (99, 3))
+        self.assertTrue((start[:, 2] == 0.3).all())
+
+    def test_mistakes_have_their_place(self):
+        with self.assertRaises(weft.SceneError) as caught:
+            weft.parse(DRAPE.replace("radius", "raduis"), name="some/drape.toml")
+        mistake, = caught.exception.mistakes
+        self.assertEqual((mistake.file, mistake.line, mistake.column, mistake.key),
+                         ("some/drape.toml", 13, 1, "obstacle.ball.raduis"))
+        self.assertIn("did you mean radius?", str(caught.exception))
+        self.assertIsInstance(caught.exception, ValueError)
+        with self.assertRaises(KeyError):
+            weft.Simulation(weft.parse(DRAPE)).frame["shet"]
+
+    def test_a_failed_simulation_raises_and_keeps_its_frame(self):
+        scene = weft.parse(DRAPE, {"solver.newton_iterations": 1, "solver.halvings": 0, "time.step": 0.04,
+                                   "solver.newton_tolerance": 1e-9})
+        simulation = weft.Simulation(scene)
+        with self.assertRaises(weft.SimulationError) as caught:
+            for _ in range(10):
+                simulation.advance()
+        self.assertIn(f"frame {simulation.frame.number + 1}", str(caught.exception))
+
+    def test_a_driven_ball_lifts_the_sheet_and_a_saved_state_continues(self):
+        scene = weft.parse(DRAPE)
+        simulation = weft.Simulation(scene, driven=["ball"])
+        for number in range(1, 11):
+            simulation.move("ball", [0, 0, 0.01 * number])
+            frame = simulation.advance()
+            if number == 5:
+                state = simulation.save()
+        self.assertGreater(frame["sheet"].positions[:, 2].max(), 0.25)
+        other = weft.Simulation(scene, driven=["ball"], state=state)
+        for number in range(6, 11):
+            other.move("ball", [0, 0, 0.01 * number])
+            other.advance()
+        numpy.testing.assert_array_equal(other.frame["sheet"].positions, frame["sheet"].positions)
+
+    def test_other_threads_go_on_while_a_frame_is_computed(self):
+        scene = weft.parse(DRAPE, {"cloth.sheet.particles": [61, 61]})
+        simulation, counted, done = weft.Simulation(scene), [], threading.Event()
+
+        def count():
+            while not done.is_set():
+                counted.append(1)
+                done.wait(0.001)
+
+        thread = threading.Thread(target=count)
+        thread.start()
+        simulation.advance()
+        done.set()
+        thread.join()
+        self.assertGreater(len(counted), 3)
+
+    def test_warnings_are_those_of_python(self):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            weft.Simulation(weft.parse(DRAPE, {"cloth.sheet.pin": [
+                {"low": [0, 0], "high": [0, 1],
+                 "keys": [{"time": t, "offset": [0.1, 0, 0]} for t in (0, 1)]}]}))
+        self.assertIn("cloth.sheet.pin.0", str(caught[0].message))
+
+    def test_the_error_of_a_run_has_its_sources(self):
+        estimate = weft.estimate_error(weft.parse(DRAPE, {"time.duration": 0.16}))
+        self.assertEqual(set(estimate.parts), {"time steps", "solver", "start"})
+        self.assertGreater(estimate.all["position"], 0)
+        self.assertFalse(estimate.chaotic)
+
+    def test_pictures_are_compared_as_the_program_does(self):
+        for name, fabric in (("a", "cotton"), ("b", "cotton"), ("c", "leather")):
+            run("thumbnail", "drape.toml", "--frame", 8, "--size", "64x64", "--quality", "draft", "-o", name + ".png",
+                "--set", "cloth.sheet.material.fabric=" + fabric, folder=self.folder)
+        a, b, c = (self.folder / (name + ".png") for name in "abc")
+        self.assertEqual(weft.compare(a, b).outcome, "same")
+        difference = weft.compare(a, c)
+        self.assertEqual((difference.outcome, difference.good, difference.pixels), ("differs", False, 64 * 64))
+        self.assertGreater(difference.flip, 0)
+        self.assertTrue(weft.compare(a, c, pixel_budget=1, flip=1, spot=1).good)
+        self.assertEqual(weft.compare(a, self.folder / "none.png").outcome, "no test")
+
+    def test_stubs_and_docstrings_are_of_what_is_there(self):
+        stub = ast.parse((SOURCES / "src/python/weft/__init__.pyi").read_text())
+
+        def names_in(body):
+            return {node.name for node in body if isinstance(node, (ast.ClassDef, ast.FunctionDef))}
+
+        there = {name for name in dir(weft) if not name.startswith("_")} - {"annotations"}
+        self.assertEqual(names_in(stub.body), there)
+        for node in stub.body:
+            if isinstance(node, ast.ClassDef) and node.name[-5:] != "Error":
+                has = {name for name in vars(getattr(weft, node.name))
+                       if not name.startswith("_") or name in ("__getitem__",)}
+                self.assertEqual(names_in(node.body) - {"__init__"}, has, node.name)
+            if isinstance(node, ast.FunctionDef):
+                self.assertIn("\n", getattr(weft, node.name).__doc__)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)
