@@ -30,8 +30,8 @@ class FrameConverter {
   bool rgb_;
   std::filesystem::path file_;
   ScalerPtr scaler_;
-  // The picture, padded, in memory that libswscale has aligned: handed over where it lies, it came out otherwise by some
-  // levels in eight of ten runs that went on from a stop, and in none of seven so.
+  // The picture, padded, in memory that libswscale has aligned: handed over where it lies, it came out otherwise by
+  // some levels in eight of ten runs that went on from a stop, and in none of seven so.
   FramePtr source_;
 };
 
