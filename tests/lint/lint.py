@@ -37,8 +37,8 @@ class Source:
                 next(words)
             elif word == "-isystem":
                 self.flags.append(word + next(words))
-            elif word != "-Winvalid-pch":
-                self.flags.append(word)
+            elif word != "-Winvalid-pch" and not word.startswith(("-fPIC", "-fvisibility")):
+                self.flags.append(word)  # all share one precompiled header
 
     def names(self):
         """What it declares in unnamed namespaces, and what it may call or name: what one source of a chunk declares
