@@ -97,6 +97,10 @@ CodecPtr open_codec(const std::filesystem::path& file, const Settings& settings,
   switch (settings.codec) {
     case Codec::h264:
       check(av_opt_set_double(context->priv_data, "crf", settings.crf, 0), file, "choose the quality");
+      // The macroblock tree of x264 (build 164) reads memory that it has not written, at most sizes: equal pictures
+      // gave other bits. Without it a film of 1280x720 is larger by 38 % and 0.5 dB closer to its pictures, at the same
+      // crf.
+      check(av_opt_set_int(context->priv_data, "mbtree", 0, 0), file, "choose the rate control");
       break;
     case Codec::h264_lossless:
       check(av_opt_set_int(context->priv_data, "qp", 0, 0), file, "choose the quality");

@@ -5,7 +5,6 @@ extern "C" {
 }
 
 #include <algorithm>
-#include <cstddef>
 #include <cstring>
 #include <utility>
 
@@ -53,11 +52,7 @@ FrameConverter::FrameConverter(int width, int height, std::filesystem::path file
       rgb_(format == AV_PIX_FMT_RGB24 || format == AV_PIX_FMT_BGR0),
       file_(std::move(file)) {
   scaler_ = make_scaler(padded_width(), padded_height(), format_, rgb_, file_);
-  source_ = check_allocated(FramePtr(av_frame_alloc()), file_);
-  source_->format = AV_PIX_FMT_RGB24;
-  source_->width = padded_width();
-  source_->height = padded_height();
-  check(av_frame_get_buffer(source_.get(), 0), file_, "get memory for a picture");
+  if (padded_width() != width || padded_height() != height) padded_ = image::Image(padded_width(), padded_height());
 }
 
 FramePtr FrameConverter::make_frame() const {
@@ -76,16 +71,20 @@ FramePtr FrameConverter::make_frame() const {
 }
 
 void FrameConverter::convert(const image::Image& image, AVFrame& frame) {
-  const std::size_t row_bytes = 3 * static_cast<std::size_t>(width_);
-  for (int y = 0; y < source_->height; ++y) {
-    std::uint8_t* row = source_->data[0] + static_cast<std::ptrdiff_t>(y) * source_->linesize[0];
-    std::memcpy(row, image.pixel(0, std::min(y, height_ - 1)), row_bytes);
-    if (source_->width > width_) std::memcpy(row + row_bytes, row + row_bytes - 3, 3);
+  const image::Image* source = &image;
+  if (!padded_.rgb.empty()) {
+    for (int y = 0; y < padded_.height; ++y) {
+      const int from_y = std::min(y, height_ - 1);
+      std::memcpy(padded_.pixel(0, y), image.pixel(0, from_y), 3 * static_cast<std::size_t>(width_));
+      if (width_ % 2 != 0) std::memcpy(padded_.pixel(width_, y), image.pixel(width_ - 1, from_y), 3);
+    }
+    source = &padded_;
   }
-  const int rows =
-      check(sws_scale(scaler_.get(), source_->data, source_->linesize, 0, source_->height, frame.data, frame.linesize),
-            file_, "convert a frame to video colours");
-  if (rows != source_->height) fail(file_, "convert a frame to video colours", "rows are missing");
+  const std::uint8_t* const planes[] = {source->rgb.data()};
+  const int strides[] = {3 * source->width};
+  const int rows = check(sws_scale(scaler_.get(), planes, strides, 0, source->height, frame.data, frame.linesize),
+                         file_, "convert a frame to video colours");
+  if (rows != source->height) fail(file_, "convert a frame to video colours", "rows are missing");
 }
 
 }  // namespace weft::video

@@ -30,9 +30,7 @@ class FrameConverter {
   bool rgb_;
   std::filesystem::path file_;
   ScalerPtr scaler_;
-  // The picture, padded, in memory that libswscale has aligned: handed over where it lies, it came out otherwise by
-  // some levels in eight of ten runs that went on from a stop, and in none of seven so.
-  FramePtr source_;
+  image::Image padded_;  // only for odd sizes
 };
 
 }  // namespace weft::video

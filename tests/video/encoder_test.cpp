@@ -1,10 +1,14 @@
 #include "video/encoder.hpp"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
 #include <sys/resource.h>
 
 #include <cmath>
 #include <csignal>
+#include <set>
+#include <string>
+#include <utility>
 
 #include "decode.hpp"
 #include "support/test_folder.hpp"
@@ -189,6 +193,33 @@ TEST_F(EncoderTest, SameFramesSameBytes) {
   encode_numbers(folder_ / "a.mp4", settings, 60);
   encode_numbers(folder_ / "b.mp4", settings, 60);
   EXPECT_EQ(read_bytes(folder_ / "a.mp4"), read_bytes(folder_ / "b.mp4"));
+}
+
+// x264's macroblock tree hangs on memory that it has not written, at sizes such as these.
+TEST_F(EncoderTest, WhatWasInMemoryBeforeHasNoInfluence) {
+  for (const auto& [width, height] : {std::pair{64, 36}, {160, 90}, {400, 226}, {720, 404}}) {
+    Settings settings;
+    settings.width = width;
+    settings.height = height;
+    std::set<std::string> videos;
+    for (const int filling : {0, 85, 170, 255}) {
+      mallopt(M_PERTURB, filling);  // what malloc() returns is filled with the complement
+      Encoder encoder(folder_ / "a.mp4", settings);
+      image::Image image(width, height);
+      for (int frame = 0; frame < 12; ++frame) {
+        for (int y = 0; y < height; ++y)
+          for (int x = 0; x < 3 * width; ++x) {
+            const bool inside = std::hypot(x / 3 - width / 4 - 3 * frame, y - height / 2) < height / 4;
+            image.pixel(0, y)[x] = static_cast<std::uint8_t>(inside ? 37 * x + 91 * y : 90 + y / 4);
+          }
+        encoder.add(image);
+      }
+      encoder.finish();
+      videos.insert(read_bytes(folder_ / "a.mp4"));
+    }
+    mallopt(M_PERTURB, 0);
+    EXPECT_EQ(videos.size(), 1U) << width << " x " << height;
+  }
 }
 
 TEST_F(EncoderTest, TheFinalNameAppearsOnlyWhenFinished) {
