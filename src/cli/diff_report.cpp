@@ -41,6 +41,7 @@ std::string describe(const FileComparison& result, const compare::Limits& limits
   if (result.video) line += fmt::format("{} of {} frames differ", result.frames_differing, result.frames);
   if (result.video && result.frames_differing > 0)
     line += fmt::format(", the first is frame {}", result.first_differing);
+  if (result.frames_of_spill > 0) line += fmt::format(", and the encoder changed {} near them", result.frames_of_spill);
   if (result.video && !same) line += fmt::format("; worst is frame {}: ", result.worst_frame);
   if (same) return line + (result.video ? ", all are the same" : "same");
   if (!result.video) line += result.frames_differing > 0 ? "DIFFERS: " : "within the limits: ";
@@ -107,6 +108,7 @@ Json describe_json(const FileComparison& result, const compare::Limits& limits, 
     json["frames"] = result.frames;
     json["frames_differing"] = result.frames_differing;
     if (result.frames_differing > 0) json["first_frame_differing"] = result.first_differing;
+    if (result.frames_of_spill > 0) json["frames_of_spill"] = result.frames_of_spill;
     json["worst_frame"] = result.worst_frame;
   }
   json["width"] = f.width;

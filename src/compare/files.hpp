@@ -31,7 +31,8 @@ struct FileComparison {
   std::string problem;       ///< in words, for the outcomes from `size` on
   bool video = false;        ///< else a picture, of one frame
   int frames = 0;            ///< that were compared
-  int frames_differing = 0;  ///< of these, those past a limit
+  int frames_differing = 0;  ///< of these, those past a limit, spill apart
+  int frames_of_spill = 0;   ///< of a lossy video, beside those: an encoder predicted them from a changed one
   int first_differing = 0;   ///< the first of them, counted from 0; of no meaning where there is none
   int worst_frame = 0;       ///< from 0; past a limit before within it, then with the largest mean of the FLIP map
   Comparison worst;          ///< of that frame; empty if none was compared
