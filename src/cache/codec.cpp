@@ -194,7 +194,7 @@ void serialize(Archive& archive, frame::Surface& surface, const Textures& textur
   serialize_plain(archive, surface.quads);
   serialize_plain(archive, surface.uv);
   serialize_finite(archive, surface.crease_angle);
-  serialize_optional(archive, surface.reach);
+  serialize_optional(archive, surface.run_bounds);
   serialize(archive, surface.appearance, textures);
   serialize_each(
       archive, surface.parts,

@@ -74,7 +74,7 @@ struct Surface {
   std::vector<std::array<Index, 4>> quads;      ///< faces as simulated, if the object is made of quads; else empty
   std::vector<Vec2> uv;                         ///< per vertex: rest coordinates (weft, warp) [m]; empty if it has none
   /// World space [m]: all places to which a body moves in the run, those at which a cloth starts; absent: not known.
-  std::optional<Box3> reach;
+  std::optional<Box3> run_bounds;
   double crease_angle = 30;  ///< degrees; sharper edges are drawn hard (180: all smooth, as for cloth)
   Appearance appearance;
   std::vector<SurfacePart> parts;              ///< empty: all triangles look as `appearance` says

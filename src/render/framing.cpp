@@ -33,7 +33,7 @@ Box3 subject_bounds(const frame::FrameSnapshot& snapshot) {
 Box3 surroundings_bounds(const frame::FrameSnapshot& snapshot) {
   Box3 bounds;
   for (const auto& surface : snapshot.surfaces)
-    if (is_subject(*surface) && surface->reach) bounds.extend(*surface->reach);
+    if (is_subject(*surface) && surface->run_bounds) bounds.extend(*surface->run_bounds);
   return bounds.isEmpty() ? subject_bounds(snapshot) : bounds;
 }
 

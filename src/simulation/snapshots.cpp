@@ -197,15 +197,15 @@ Box3 box_around(std::span<const Vec3> positions) {
 }
 
 /// Of a body, from time 0 on.
-Box3 reach_of(const environment::Environment& environment, std::size_t body, double duration) {
+Box3 bounds_over_run(const environment::Environment& environment, std::size_t body, double duration) {
   constexpr int kMoments = 100;
   std::vector<Vec3> positions(environment.bodies[body].mesh.positions.size());
-  Box3 reach;
+  Box3 bounds;
   for (int k = 0; k <= (environment.bodies[body].moving ? kMoments : 0); ++k) {
     environment.place(body, duration * k / kMoments, positions);
-    reach.extend(box_around(positions));
+    bounds.extend(box_around(positions));
   }
-  return reach;
+  return bounds;
 }
 
 environment::Spline<7> camera_track(const scene::Camera& camera) {
@@ -339,12 +339,12 @@ SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Envir
   Pictures pictures;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const auto surface = make_cloth_surface(environment.cloths[c], look_of(scene.cloths[c]), pictures);
-    surface->reach = box_around(environment.cloths[c].start);
+    surface->run_bounds = box_around(environment.cloths[c].start);
     surfaces_.push_back(surface);
   }
   for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
     const auto surface = make_body_surface(environment.bodies[b], pictures);
-    surface->reach = reach_of(environment, b, scene.time.duration);
+    surface->run_bounds = bounds_over_run(environment, b, scene.time.duration);
     surfaces_.push_back(surface);
   }
 }

@@ -66,7 +66,7 @@ TEST(Codec, SurfacesComeBackAsTheyWere) {
     const auto corners = [](const std::optional<Box3>& box) {
       return box ? std::vector<Vec3>{box->min(), box->max()} : std::vector<Vec3>{};
     };
-    EXPECT_EQ(corners(a.reach), corners(b.reach));
+    EXPECT_EQ(corners(a.run_bounds), corners(b.run_bounds));
     EXPECT_EQ(a.appearance.color, b.appearance.color);
     EXPECT_EQ(a.appearance.back_color, b.appearance.back_color);
     EXPECT_EQ(a.appearance.roughness, b.appearance.roughness);

@@ -33,7 +33,7 @@ struct Sample {
     cloth.quads = {{0, 1, 2, 3}};
     cloth.uv = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
     cloth.crease_angle = 180;
-    cloth.reach = Box3(Vec3(-1, -2, 0), Vec3(1, 2, 3.5));
+    cloth.run_bounds = Box3(Vec3(-1, -2, 0), Vec3(1, 2, 3.5));
     cloth.appearance.color = {0.1, 0.2, 0.3};
     cloth.appearance.back_color = {0.9, 0.7, 0.5};
     cloth.appearance.roughness = 0.25;

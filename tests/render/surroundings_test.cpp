@@ -69,12 +69,11 @@ TEST(Surroundings, WhatLiesFlatGetsTheShareOfTheStyle) {
   }
 }
 
-// A mirror sees the middle of a box as bright as it is, a rough surface sees it weaker and wider; all of it stays.
 /// Bytes at the left border of a picture, which a sheet at this height neither covers nor shades.
 std::vector<int> left_border(double height) {
   frame::FrameSnapshot snapshot;
   add_floor(snapshot);
-  add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, 0, height), Vec3::UnitZ(), Vec3::UnitX(), 0.5).reach =
+  add_square(snapshot, frame::ObjectKind::cloth, Vec3(0, 0, height), Vec3::UnitZ(), Vec3::UnitX(), 0.5).run_bounds =
       Box3(Vec3(-0.5, -0.5, 0), Vec3(0.5, 0.5, 2));
   snapshot.cameras = {camera_at(Vec3(0, -8, 1.5), Vec3(0, 0, 0.8), 40)};
   Settings settings;
@@ -90,6 +89,7 @@ TEST(Surroundings, AreThoseOfTheRunWhileASheetFalls) {
   EXPECT_EQ(left_border(2), left_border(0.2));
 }
 
+// A mirror sees the middle of a box as bright as it is, a rough surface sees it weaker and wider; all of it stays.
 TEST(Surroundings, BlurKeepsTheLightOfABox) {
   Surroundings around;
   around.boxes[0] = {Vec3(0.6, 0, 0.8), 40, Vec3(2, 1, 0.5)};

@@ -178,16 +178,16 @@ TEST(Simulation, PinThatFollowsAnObstacleMovesWithIt) {
   }
 }
 
-TEST(Simulation, SurfacesReachAllPlacesToWhichKeysMoveThem) {
+TEST(Simulation, SurfacesKnowAllPlacesToWhichKeysMoveThem) {
   scene::Scene scene = sheet_alone(0.4, 3, 1);
   scene.time.duration = 1;
   scene.obstacles.push_back(obstacle("ball", scene::Sphere{0.1}));
   scene.obstacles.back().motion.keys = {{0, {{0, 0, 0}, Quat::Identity()}}, {1, {{2, 0, 0}, Quat::Identity()}}};
   const frame::SnapshotPtr snapshot = Simulation(scene).snapshot();
   const auto& surfaces = snapshot->surfaces;
-  EXPECT_NEAR(surfaces[0]->reach->max().z(), 1, 1e-12);
-  EXPECT_NEAR(surfaces[1]->reach->min().x(), -0.1, 1e-3);
-  EXPECT_NEAR(surfaces[1]->reach->max().x(), 2.1, 1e-3);
+  EXPECT_NEAR(surfaces[0]->run_bounds->max().z(), 1, 1e-12);
+  EXPECT_NEAR(surfaces[1]->run_bounds->min().x(), -0.1, 1e-3);
+  EXPECT_NEAR(surfaces[1]->run_bounds->max().x(), 2.1, 1e-3);
 }
 
 TEST(Simulation, SheetOnABallIntersectsNothingInAnyFrame) {
