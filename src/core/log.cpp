@@ -56,8 +56,11 @@ void print(State& s, std::string_view text) {
 /// Prints a text that is new to the list, and keeps it there.
 void keep(std::string_view text, const char* kind, std::vector<std::string> State::*list) {
   State& s = state();
-  const std::lock_guard lock(s.mutex);
-  if (s.handle) return s.handle(text);
+  std::unique_lock lock(s.mutex);
+  if (const auto handle = s.handle) {
+    lock.unlock();  // it may wait for a lock that another thread holds while it logs
+    return handle(text);
+  }
   if (std::find((s.*list).begin(), (s.*list).end(), text) != (s.*list).end()) return;
   (s.*list).emplace_back(text);
   print(s, fmt::format("{}: {}", kind, text));

@@ -18,8 +18,8 @@ void warn(std::string_view text);
 /// and is not wrong.
 void note(std::string_view text);
 
-/// From now on `handle` gets warnings and notes, one call at a time; they are neither printed nor kept. An empty one
-/// restores that.
+/// From now on `handle` gets warnings and notes, in the thread that they come from; they are neither printed nor kept.
+/// An empty one restores that.
 void set_handler(std::function<void(std::string_view text)> handle);
 
 /// All warnings so far, in order.

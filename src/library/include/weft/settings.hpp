@@ -15,8 +15,8 @@ WEFT_API const char* version();
 /// At most so many threads compute; 0: as many as there are processors. Results do not depend on it.
 WEFT_API void set_threads(int threads);
 
-/// From now on `handle` gets each warning about a scene, instead of standard error. Calls come one at a time, from the
-/// thread that loads or simulates. An empty function restores standard error.
+/// From now on `handle` gets each warning about a scene, instead of standard error. Calls come from the thread that
+/// loads or simulates, so from several at once if several do. An empty function restores standard error.
 WEFT_API void set_warning_handler(std::function<void(std::string_view warning)> handle);
 
 /// A decoded picture.
