@@ -19,6 +19,7 @@ Object view_object(const Frame::Data& data, std::size_t number) {
   const frame::Surface& surface = *data.snapshot->surfaces[number];
   Object object;
   object.name = surface.name;
+  static_assert(static_cast<int>(Kind::character) == static_cast<int>(frame::ObjectKind::character));
   object.kind = static_cast<Kind>(surface.kind);
   object.positions = viewed<Vector>(data.snapshot->states[number].positions);
   if (number < data.velocities.size()) {
