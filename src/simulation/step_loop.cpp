@@ -29,10 +29,6 @@ constexpr double kIdleShare = 0.9;
 // Share of the cloth's energy, of motion and elastic, that pushing it apart may add to a step, and it is done; and from
 // which the step is done again in halves where the way has bent as often as it may.
 constexpr double kUnfeltGain = 0.1, kCorrectionGain = 0.2;
-// Times the energy in play that an unfinished solve may add before it is taken to be led astray by friction. With 0.2 a
-// handkerchief pulled through a ring took 25.7 Newton iterations a step in place of 21.2, with 30 a sheet with friction
-// 10 on a box 20.8 for 12.5.
-constexpr double kAstrayGain = 3;
 // What it may add to the largest strain, and it is done.
 constexpr double kUnfeltStrain = 0.05;
 // Limits to stretch by which a step may stretch cloth that is beyond one, and halvings that it is asked for first. What
@@ -336,7 +332,8 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
     // Loads that follow friction, and friction that follows them, can drive each other up: a sheet with friction 10
     // that fell on a cone had 1,300 J after a look, of 0.5 J, and went on from there. With loads that are kept friction
     // has a potential, and takes energy whatever they are.
-    if (is_first && step.verdict == integrator::Verdict::unfinished && added_share(energy(now), h) > kAstrayGain) {
+    if (is_first && step.verdict == integrator::Verdict::unfinished && response.friction_exceeds_load() &&
+        added_share(energy(now), h) > kCorrectionGain) {
       problem_.keep_loads();
       step = solve(h, Start::unchanged_velocity, look, report);
     }

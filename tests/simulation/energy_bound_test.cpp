@@ -278,6 +278,22 @@ TEST(EnergyBound, FrictionOfManyTimesTheLoadBringsNone) {
     }
 }
 
+// Friction that is wrong can change no more than the speed that the sheet has, for the 0.15 s that a velocity left by
+// the solver counts.
+TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
+  constexpr double kCounts = 0.15;  // [s]
+  for (const scene::Shape& shape :
+       {scene::Shape(scene::BoxShape{{0.3, 0.3, 0.3}}), scene::Shape(scene::Cone{0.3, 0.3})}) {
+    Simulation simulation(falls_on(shape, 10, 0.01));
+    for (int frame = 1; frame <= 10; ++frame) {
+      double fastest = 0;
+      for (const Vec3& v : simulation.state().velocities) fastest = std::max(fastest, v.norm());
+      const FrameReport report = simulation.advance();
+      EXPECT_LT(report.solver_error, kCounts * (report.steps * fastest + 9.81 * 0.04)) << "frame " << frame;
+    }
+  }
+}
+
 /// A sheet that falls on the edge of a plate 1 mm thick, and folds over it faster than its contacts turn.
 scene::Scene on_a_blade() {
   scene::Scene scene = testing::sheet_alone(0.5, 21, 0.17);
