@@ -110,9 +110,9 @@ TEST(Documentation, HasWholeTables) {
   for (const fs::path& file : pages(kRoot)) EXPECT_EQ(read_page(read_file(kRoot / file)).mistakes, "") << file;
 }
 
-TEST(Documentation, StartsWithAReadmeOf300Lines) {
+TEST(Documentation, StartsWithAReadmeOf200Lines) {
   const std::string text = read_file(kRoot / "README.md");
-  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 300);
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 200);
 }
 
 TEST(Documentation, OfEachRoomIsLinkedFromTheReadme) {

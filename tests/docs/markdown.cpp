@@ -116,7 +116,7 @@ Page read_page(const std::string& text) {
 
 std::vector<fs::path> pages(const fs::path& root) {
   std::vector<fs::path> found = {"README.md"};
-  for (const char* folder : {"src", "scenes", "shaders", "tests"}) {
+  for (const char* folder : {".github", "src", "scenes", "shaders", "tests"}) {
     for (const auto& entry : fs::recursive_directory_iterator(root / folder)) {
       if (entry.path().extension() == ".md") found.push_back(entry.path().lexically_relative(root));
     }
