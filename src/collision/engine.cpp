@@ -50,7 +50,6 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
 
 void Engine::forget() {
   candidates_.forget();
-  gathered_at_.clear();
   if (!coherence_) return;
   coherence_->forget();
   candidates_.drop();
@@ -105,6 +104,7 @@ bool Engine::begin_step(std::span<const Vec3> x_t0, std::span<Vec3> x_t1, std::s
                         double h, std::span<const RigidMotion> motions) {
   step_ = h;
   x_t0_ = x_t0;
+  gathered_at_.clear();  // what is near follows from where the step starts alone
   pinched_pushes_.clear();
   carried_.begin_step(x_t0, x_t1, motions);
   begin_contacts(x_t0, x_t1);

@@ -106,7 +106,7 @@ class CollisionStage {
   /// The step is done.
   void accept() { engine_.accept(); }
 
-  /// Before a frame: see Engine::forget.
+  /// Before a frame, of what the scene switches on: see Engine::forget.
   void forget() { engine_.forget(); }
 
   /// What the next step from `now`, at time t [s], depends on. Throws std::runtime_error where this scene cannot have

@@ -88,7 +88,7 @@ class StepLoop {
   // Why a step was rejected; empty where it was not.
   using Rejection = std::optional<std::string>;
 
-  void advance_equally(double t_t0, double t_t1, FrameReport& report);
+  void advance_equally(double t_t0, FrameReport& report);
   bool may_rest(double t, double h, int steps);
   bool has_settled() const;
   static bool is_slow(const Moment& moment);

@@ -47,8 +47,8 @@ class StepProblem final : public integrator::System {
   void use_contacts(const collision::ContactResponse* contacts) { contacts_ = contacts; }
 
   /// Before the first solve of a step that ends at time t [s] of the simulation, with what pins hold until then: sews
-  /// cloth on to there, and friction goes by the loads at the start, threads lock by their tensions there (at x).
-  /// `pulls` must outlive the step.
+  /// cloth on to there, and friction goes by the loads at the start, threads lock by their tensions there (at x). The
+  /// next linearisation puts the matrix together anew. `pulls` must outlive the step.
   void begin_step(double t, std::span<const Vec3> x, std::span<const integrator::HeldParticle> pinned,
                   std::span<const Pull> pulls = {});
 
@@ -64,10 +64,6 @@ class StepProblem final : public integrator::System {
   /// Before a step is solved anew: friction goes by the loads of its start, whatever they become.
   void keep_loads() { memory_.contacts = {{}, {}, {}, collision::ContactSet::kLoadUpdates}; }
 
-  /// Makes the next linearisation put the matrix together anew: what is computed from here on depends on positions and
-  /// velocities alone.
-  void forget();
-
   const SolveMemory& memory() const { return memory_; }
 
   std::span<const double> masses() const override { return cloth_.masses(); }
@@ -81,6 +77,7 @@ class StepProblem final : public integrator::System {
   solver::LinearSystem& linear_system() override { return memory_.system; }
 
  private:
+  void forget();
   void add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const;
   void add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force);
   bool move_to(std::size_t cloth, const integrator::StagePoint& at);

@@ -190,6 +190,22 @@ TEST(Simulation, SurfacesKnowAllPlacesToWhichKeysMoveThem) {
   EXPECT_NEAR(surfaces[1]->run_bounds->max().x(), 2.1, 1e-3);
 }
 
+// A step depends on where it starts alone, not on what a frame has done before it.
+TEST(Simulation, EqualStepsLeadToTheSameBitsInFramesOfAnyLength) {
+  scene::Scene coarse = sheet_on_ball();
+  coarse.time.step = 0.01;
+  coarse.time.fps = 25;
+  scene::Scene fine = coarse;
+  fine.time.fps = 100;
+  Simulation few(coarse), many(fine);
+  for (int frame = 1; frame <= 10; ++frame) {
+    few.advance();
+    for (int k = 0; k < 4; ++k) many.advance();
+    ASSERT_EQ(sheet_of(few.snapshot()), sheet_of(many.snapshot())) << "frame " << frame;
+  }
+  EXPECT_LT(lowest(sheet_of(few.snapshot())), 0.2);  // it has met the ball
+}
+
 TEST(Simulation, SheetOnABallIntersectsNothingInAnyFrame) {
   Simulation simulation(sheet_on_ball());
   double lowest_so_far = 1;

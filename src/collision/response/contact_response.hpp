@@ -2,7 +2,6 @@
 // constraints of their velocity.
 #pragma once
 
-#include <algorithm>
 #include <optional>
 #include <span>
 #include <vector>
@@ -59,10 +58,6 @@ class ContactResponse {
   int active(std::span<const Vec3> x_end) const { return springs_.active(x_end); }
 
   std::span<const Contact> springs() const { return springs_.contacts(); }
-  /// Whether friction of any spring can be more than the normal force that it comes of.
-  bool friction_exceeds_load() const {
-    return std::ranges::any_of(springs(), [](const Contact& contact) { return contact.static_friction > 1; });
-  }
   /// Whether no contact is known, of either form.
   bool empty() const { return springs_.contacts().empty() && (!walls_ || walls_->empty()); }
 
