@@ -43,6 +43,9 @@ git -C "$root" archive HEAD | tar x -C "$source"
 CCACHE_BASEDIR=$source
 CCACHE_NOHASHDIR=1
 export CCACHE_BASEDIR CCACHE_NOHASHDIR
+if command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+fi
 cmake -S "$source" -B "$source/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DWEFT_TESTS=OFF >/dev/null || exit 1
 build
 compare "$folder/unchanged" "$@" | tee "$folder/unchanged.txt"
