@@ -24,7 +24,7 @@ source=$folder/source
 shift
 
 build() {
-  ninja -C "$source/build" weft >"$folder/build.log" 2>&1 || { tail "$folder/build.log"; exit 1; }
+  ninja -C "$source/build" weft_tools_program >"$folder/build.log" 2>&1 || { tail "$folder/build.log"; exit 1; }
 }
 
 # The lines of `weft diff` for the stills, one each.
