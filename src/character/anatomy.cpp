@@ -168,7 +168,7 @@ class AnatomyFinder {
       const Vec3 left = axis(p, trunk, Vec3::UnitX()), back = axis(p, trunk, Vec3::UnitY());
       const Vec3 from = arm ? Vec3(right ? -left : left) : Vec3(-axis(p, trunk, Vec3::UnitZ()));
       const Vec3 hinge = from.cross(arm ? Vec3(-back) : back), to = along(p, upper);
-      return Vec3((1 + from.dot(to)) / 2 * (Quat::FromTwoVectors(from, to) * hinge));
+      return Vec3((1 + from.dot(to)) / 2 * (shortest_rotation(from, to) * hinge));
     };
     const auto bend = [&](const Posture& p, std::size_t) { return unit(along(p, upper).cross(along(p, lower))); };
     const auto bent = [&](const Posture& p, std::size_t) {
@@ -177,7 +177,7 @@ class AnatomyFinder {
     take_bone(upper, trunk, sum(upper, bent, bend, guess));
     if (!skeleton_.has(lower)) return;
     const auto hinge = [&](const Posture& p, std::size_t) {
-      return Vec3(Quat::FromTwoVectors(along(p, upper), along(p, lower)) * axis(p, upper, Vec3::UnitX()));
+      return Vec3(shortest_rotation(along(p, upper), along(p, lower)) * axis(p, upper, Vec3::UnitX()));
     };
     take_bone(lower, upper, sum(lower, bent, bend, hinge));
   }

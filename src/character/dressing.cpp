@@ -110,7 +110,7 @@ void turn(const Character& character, Pose& pose, Index node, const Vec3& from, 
   const std::vector<Affine> globals = global_transforms(character, pose);
   const Vec3 place = globals[node].translation();
   const Affine turned =
-      Eigen::Translation3d(place) * Quat::FromTwoVectors(from, to) * Eigen::Translation3d(-place) * globals[node];
+      Eigen::Translation3d(place) * shortest_rotation(from, to) * Eigen::Translation3d(-place) * globals[node];
   const Index parent = character.nodes[node].parent;
   pose.nodes[node] = to_placement(parent < 0 ? turned : globals[parent].inverse() * turned);
 }

@@ -260,7 +260,7 @@ LegTurns reach(const Leg& leg, const Vec3& ankle) {
   const double cosine = std::clamp((length * length - a * a - b * b) / (2 * a * b), -1.0, 1.0);
   const double now = std::atan2(thigh.cross(shin).dot(normal), thigh.dot(shin));
   const Quat bend(Eigen::AngleAxisd(std::acos(cosine) - now, normal));
-  const Quat swing = Quat::FromTwoVectors(thigh + bend * shin, way);
+  const Quat swing = shortest_rotation(thigh + bend * shin, way);
   return {swing, swing * bend};
 }
 

@@ -1,6 +1,7 @@
 #include "character/pose.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 #include "core/parallel.hpp"
@@ -116,6 +117,21 @@ Pose blend(const Pose& a, const Pose& b, double weight) {
   }
   for (std::size_t m = 0; m < pose.morphs.size(); ++m) pose.morphs[m] = between(pose.morphs[m], b.morphs[m], weight);
   return pose;
+}
+
+Quat shortest_rotation(const Vec3& from, const Vec3& to) {
+  const Vec3 a = from.normalized(), b = to.normalized();
+  const double cosine = b.dot(a);
+  Quat rotation;
+  if (cosine < -1 + 1e-12) {  // the cross product is rounding
+    rotation.w() = 0;
+    rotation.vec() = a.unitOrthogonal();
+  } else {
+    const double twice_w = std::sqrt(2 * (1 + cosine));
+    rotation.w() = 0.5 * twice_w;
+    rotation.vec() = a.cross(b) * (1 / twice_w);
+  }
+  return rotation;
 }
 
 std::vector<Affine> global_transforms(const Character& character, const Pose& pose) {

@@ -47,6 +47,11 @@ Index traveling_node(const Clip& clip);
 /// From `a` (weight 0) to `b` (weight 1): positions and stretches along straight lines, rotations the shortest way.
 Pose blend(const Pose& a, const Pose& b, double weight);
 
+/// The rotation by the smallest angle that takes the direction of `from` to that of `to`; if they are opposite, about
+/// one of the axes perpendicular to them. Eigen's own computes that axis by a singular value decomposition, which takes
+/// the compiler longer than the rest of this module.
+Quat shortest_rotation(const Vec3& from, const Vec3& to);
+
 /// Node to world for every node.
 std::vector<Affine> global_transforms(const Character& character, const Pose& pose);
 

@@ -15,7 +15,7 @@ constexpr double kStep = 0.6;
 /// And speeds of feet, whose contacts come and go [s].
 constexpr double kFootWindow = 0.05;
 /// Balls of feet lower than this above the lowest one carry the body [legs].
-constexpr double kLow = 0.05;
+constexpr double kLowFoot = 0.05;
 /// Feet that pass more slowly do not walk [legs/s].
 constexpr double kWalks = 0.1;
 
@@ -125,7 +125,7 @@ class Path {
       for (const Posture& p : postures_)
         if (skeleton_.has(balls[right])) floor = std::min(floor, up_.dot(p.places[place_of(balls[right])]));
     }
-    const double low = kLow * skeleton_.leg_length(postures_.front());
+    const double low = kLowFoot * skeleton_.leg_length(postures_.front());
     std::vector<double> weights(times_.size(), 0);
     std::vector<Vec3> ways(times_.size(), Vec3::Zero());
     for (const Joint ball : balls) {

@@ -64,7 +64,9 @@ int start(std::vector<std::string> words, Outputs outputs, pid_t& process) {
 }  // namespace
 
 std::filesystem::path own_program() {
-  return std::filesystem::read_symlink("/proc/self/exe");
+  std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
+  if (program.filename() == kToolsName) program.replace_filename("weft");
+  return program;
 }
 
 pid_t start_process(const std::vector<std::string>& words, const std::filesystem::path& log) {

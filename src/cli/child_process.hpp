@@ -9,7 +9,10 @@
 
 namespace weft::cli {
 
-/// The file that this process runs.
+/// File name of the program that holds the commands which make no film.
+inline constexpr const char* kToolsName = "weft-tools";
+
+/// The program that was called; where this process is that of the tools, the one beside it.
 std::filesystem::path own_program();
 
 /// Starts `words[0]`, looked up as a shell does, without input; what it prints goes to `log`, empty: where ours does.

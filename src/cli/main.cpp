@@ -19,5 +19,5 @@ __attribute__((constructor(101), target("arch=x86-64"))) static void check_cpu()
 #endif
 
 int main(int argc, char** argv) {
-  return weft::cli::run_program(argc, argv);
+  return weft::cli::run_program(argc, argv, WEFT_RUN_TOOL);
 }

@@ -1,5 +1,7 @@
 #include "cli/option_groups.hpp"
 
+#include <CLI/CLI.hpp>
+
 namespace weft::cli {
 namespace {
 

@@ -1,7 +1,6 @@
 // Options that several commands share, as CLI11 reads them.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <functional>
 #include <string>
@@ -9,6 +8,10 @@
 
 #include "cli/option_values.hpp"
 #include "cli/options.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace weft::cli {
 

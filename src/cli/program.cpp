@@ -2,14 +2,17 @@
 
 #include <fmt/format.h>
 #include <signal.h>
+#include <unistd.h>
 
+#include <cerrno>
+#include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <variant>
 
+#include "cli/child_process.hpp"
 #include "cli/commands.hpp"
 #include "cli/failure.hpp"
-#include "cli/options.hpp"
 #include "cli/standard_output.hpp"
 #include "core/input_file.hpp"
 #include "core/log.hpp"
@@ -31,24 +34,21 @@ struct Dispatch {
   ExitCode operator()(const CheckOptions& options) const { return check(options); }
   ExitCode operator()(const ThumbnailOptions& options) const { return thumbnail(options); }
   ExitCode operator()(const SheetOptions& options) const { return sheet(options); }
-  ExitCode operator()(const JoinOptions& options) const { return join(options); }
-  ExitCode operator()(const SweepOptions& options) const { return sweep(options); }
-  ExitCode operator()(const FarmOptions& options) const { return farm(options); }
   ExitCode operator()(const NewOptions& options) const { return make_new(options); }
   ExitCode operator()(const WatchOptions& options) const { return watch(options); }
   ExitCode operator()(const SchemaOptions& options) const {
     return print_all(
         (options.pattern ? scene::json_schema(garment::pattern_rules(), "Weft pattern") : scene::json_schema()) + "\n");
   }
-  ExitCode operator()(const DoctorOptions& options) const { return doctor(options); }
-  ExitCode operator()(const BenchOptions& options) const { return bench(options); }
-  ExitCode operator()(const DiffOptions& options) const { return diff(options); }
-  ExitCode operator()(const AcceptOptions& options) const { return accept(options); }
-  ExitCode operator()(const ReviewOptions& options) const { return review(options); }
-  ExitCode operator()(const ExportOptions& options) const {
-    return read_checked(options.cache, [&] { return export_frames(options); });
-  }
   ExitCode operator()(const PrintText& text) const { return print_all(text.text); }
+  template <class ToolOptions>
+  ExitCode operator()(const ToolOptions&) const {
+    return run_other(command, argv);
+  }
+
+  const Command& command;
+  char** argv;
+  ExitCode (*run_other)(const Command&, char**);
 };
 
 // All relative paths start there.
@@ -65,7 +65,14 @@ void report(const Failure& failure) {
 
 }  // namespace
 
-int run_program(int argc, char** argv) noexcept {
+ExitCode become_tools(const Command& /*command*/, char** argv) {
+  const std::filesystem::path tools = own_program().replace_filename(kToolsName);
+  ::execv(tools.c_str(), argv);
+  throw Error(ExitCode::internal, "{}: cannot be started: {}; it belongs beside the program", tools.string(),
+              std::strerror(errno));
+}
+
+int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept {
   try {
     // A closed pipe or a file past its size limit is an error of the write that meets it, not a reason to die with half
     // a file.
@@ -74,7 +81,7 @@ int run_program(int argc, char** argv) noexcept {
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
     const Command command = parse_command_line(arguments);
     if (!std::holds_alternative<PrintText>(command)) check_working_folder();
-    return static_cast<int>(std::visit(Dispatch{}, command));
+    return static_cast<int>(std::visit(Dispatch{command, argv, run_other}, command));
   } catch (...) {
     const Failure failure = describe_failure(std::current_exception());
     report(failure);

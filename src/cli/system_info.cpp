@@ -6,6 +6,8 @@
 #include <fstream>
 #include <iterator>
 
+#include "cli/child_process.hpp"
+
 namespace weft::cli {
 
 std::string cpu_model() {
@@ -18,7 +20,7 @@ std::string cpu_model() {
 }
 
 std::string program_fingerprint() {
-  std::ifstream program("/proc/self/exe", std::ios::binary);
+  std::ifstream program(own_program(), std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(program), {}};
   return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
 }

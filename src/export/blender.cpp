@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include "core/json.hpp"
 #include "core/version.hpp"
 #include "embedded_export.hpp"
 #include "export/materials.hpp"
@@ -114,9 +115,9 @@ void BlenderScript::add(int frame, const std::vector<View>& views) {
 
 std::string BlenderScript::text() const {
   // JSON in ASCII has no three quotes in a row, so it ends where it should.
-  const std::string data = film_.dump(-1, ' ', true, Json::error_handler_t::replace);
+  const std::string data = json_text(film_, -1, JsonLetters::ascii);
   std::string text = fmt::format("# {}, by Weft {}.\nFILM_TEXT = r\"\"\"{}\"\"\"\n\n",
-                                 film_["name"].dump(-1, ' ', true, Json::error_handler_t::replace), kVersion, data);
+                                 json_text(film_["name"], -1, JsonLetters::ascii), kVersion, data);
   for (const EmbeddedFile& file : kEmbeddedExport)
     if (file.name == "blender.py") text += file.text;
   return text;

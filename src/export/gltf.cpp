@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "core/json.hpp"
 #include "core/temporary_file.hpp"
 #include "core/version.hpp"
 
@@ -358,7 +359,7 @@ void GltfFile::write(const std::filesystem::path& file, const std::string& anima
     if (document_[list].empty()) document_.erase(list);
   document_["buffers"] = {{{"byteLength", bytes_.size()}}};
 
-  const std::string text = document_.dump(-1, ' ', false, json::error_handler_t::replace);
+  const std::string text = sorted_json_text(document_);
   const std::size_t most = text.size() + bytes_.size() + 64;  // with heads and fillers
   if (most > std::numeric_limits<std::uint32_t>::max())
     throw Error(ExitCode::output_failed,

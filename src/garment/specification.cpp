@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <exception>
 #include <limits>
 #include <map>
 #include <numbers>
@@ -34,7 +36,7 @@ constexpr double kClear = 0.02;
 
 /// A value, as messages show it.
 std::string shown(const json& value) {
-  return value.dump().substr(0, 40);
+  return sorted_json_text(value).substr(0, 40);
 }
 
 class Reader {

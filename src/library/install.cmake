@@ -33,7 +33,7 @@ if(WEFT_PYTHON)
 endif()
 
 # The program writes its own manual page, completions and schema.
-install(TARGETS weft RUNTIME)
+install(TARGETS weft weft_tools_program RUNTIME)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 function(install_output file)

@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/input_file.hpp"
+#include "core/json.hpp"
 #include "core/toml.hpp"
 
 namespace weft::review {
@@ -29,7 +30,7 @@ std::string entry_name(const toml::node& entry, std::size_t index) {
 }
 
 std::string value_text(const toml::node& node) {
-  if (const auto* text = node.as_string()) return Json(text->get()).dump();
+  if (const auto* text = node.as_string()) return json_text(text->get());
   if (const auto* number = node.as_floating_point()) return fmt::format("{}", number->get());
   if (const auto* number = node.as_integer()) return fmt::format("{}", number->get());
   if (const auto* truth = node.as_boolean()) return truth->get() ? "true" : "false";

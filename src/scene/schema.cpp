@@ -1,8 +1,7 @@
 // The JSON schema of the scene format, Draft 2020-12. It has only what editors that know no draft after 7 read alike.
 #include <fmt/format.h>
 
-#include <nlohmann/json.hpp>
-
+#include "core/json.hpp"
 #include "scene/loader.hpp"
 #include "scene/rule.hpp"
 
@@ -154,7 +153,7 @@ Json table_schema(const Table& table) {
 std::string json_schema(const Table& table, const std::string& title) {
   Json schema = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}};
   schema.update(table_schema(table));
-  return schema.dump(2) + "\n";
+  return json_text(schema, 2) + "\n";
 }
 
 }  // namespace weft::scene

@@ -143,5 +143,24 @@ TEST(Blend, GoesFromOnePoseToTheOther) {
   EXPECT_NEAR(blend(rest, bent, 0.25).nodes[1].rotation.angularDistance(rest.nodes[1].rotation), 42.5 * kDegree, 1e-7);
 }
 
+TEST(ShortestRotation, IsThatOfEigenToTheLastBit) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  for (int round = 0; round < 1000; ++round) {
+    const Vec3 from(normal(random), normal(random), normal(random));
+    Vec3 to(normal(random), normal(random), normal(random));
+    if (round % 2 == 1) to = -from + 1e-3 * to;  // nearly opposite
+    EXPECT_EQ(shortest_rotation(from, to).coeffs(), Quat::FromTwoVectors(from, to).coeffs());
+  }
+}
+
+TEST(ShortestRotation, TurnsToTheOppositeDirection) {
+  for (const Vec3& from : {Vec3(0, 0, 2), Vec3(-3, 0, 0), Vec3(1, 2, 3)}) {
+    const Quat rotation = shortest_rotation(from, -2 * from);
+    EXPECT_NEAR(rotation.norm(), 1, kRounding);
+    EXPECT_LT((rotation * from + from).norm(), kRounding * from.norm());
+  }
+}
+
 }  // namespace
 }  // namespace weft::character

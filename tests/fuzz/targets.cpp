@@ -23,6 +23,7 @@
 #include "cache/sample.hpp"
 #include "core/error.hpp"
 #include "core/json.hpp"
+#include "core/nesting.hpp"
 #include "core/toml.hpp"
 #include "garment/outline.hpp"
 #include "garment/pattern.hpp"

@@ -120,6 +120,17 @@ TEST_F(Launcher, BuildsAgainAfterAnEditANewFileOrARemovedOne) {
   EXPECT_EQ(calls(), "ninja ");
 }
 
+TEST_F(Launcher, BuildsTheToolsOnceTheyAreAskedFor) {
+  launch();
+  EXPECT_NE(read_bytes(folder_ / "fakes/calls").find(" weft\n"), std::string::npos);
+  calls();
+  EXPECT_EQ(launch("diff a.png b.png").out, "/\n[diff][a.png][b.png]");
+  EXPECT_NE(read_bytes(folder_ / "fakes/calls").find(" weft_tools_program\n"), std::string::npos);
+  EXPECT_EQ(calls(), "ninja ");
+  for (const char* arguments : {"diff a.png b.png", "run a.toml"}) launch(arguments);
+  EXPECT_EQ(calls(), "");
+}
+
 TEST_F(Launcher, ConfiguresAfreshWhereTheTreeHasMoved) {
   launch();
   calls();

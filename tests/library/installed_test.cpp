@@ -64,9 +64,9 @@ TEST_F(InstalledLibrary, NeedsNothingForPicturesOrVideos) {
 
 TEST_F(InstalledLibrary, ComesWithManualPageCompletionsSchemaAndScenes) {
   install();
-  for (const char* file :
-       {"bin/weft", "include/weft/simulation.hpp", "share/man/man1/weft.1", "share/bash-completion/completions/weft",
-        "share/weft/scene.schema.json", "share/weft/scenes/falling_band.toml", "share/doc/weft/LICENSE"})
+  for (const char* file : {"bin/weft", "bin/weft-tools", "include/weft/simulation.hpp", "share/man/man1/weft.1",
+                           "share/bash-completion/completions/weft", "share/weft/scene.schema.json",
+                           "share/weft/scenes/falling_band.toml", "share/doc/weft/LICENSE"})
     EXPECT_GT(fs::file_size(folder_ / "prefix" / file), 0u) << file;
   const std::string bits = run("grep -c . prefix/share/zsh/vendor-completions/_weft");
   EXPECT_GT(std::stoi(bits), 10);

@@ -24,7 +24,7 @@ source=$folder/source
 shift
 
 build() {
-  ninja -C "$source/build" weft >"$folder/build.log" 2>&1 || { tail "$folder/build.log"; exit 1; }
+  ninja -C "$source/build" weft_tools_program >"$folder/build.log" 2>&1 || { tail "$folder/build.log"; exit 1; }
 }
 
 # The lines of `weft diff` for the stills, one each.
@@ -43,6 +43,9 @@ git -C "$root" archive HEAD | tar x -C "$source"
 CCACHE_BASEDIR=$source
 CCACHE_NOHASHDIR=1
 export CCACHE_BASEDIR CCACHE_NOHASHDIR
+if command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+fi
 cmake -S "$source" -B "$source/build" -G Ninja -DCMAKE_BUILD_TYPE=Release -DWEFT_TESTS=OFF >/dev/null || exit 1
 build
 compare "$folder/unchanged" "$@" | tee "$folder/unchanged.txt"
