@@ -142,18 +142,20 @@ std::string short_name(const std::string& key, const std::set<std::string>& keys
 }
 
 // Without what shells, file systems and patterns of names read in their own way.
+std::string plain(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) || std::string_view("._+-,=").find(c) != std::string_view::npos)
+      name += c;
+    else if (std::string_view("[]{}\"' ").find(c) == std::string_view::npos)
+      name += '-';
+  }
+  return name;
+}
+
 std::string file_name(const Changes& difference) {
   std::string name;
-  for (const auto& [key, value] : difference) {
-    if (!name.empty()) name += '_';
-    name += key + "=";
-    for (const char c : value) {
-      if (std::isalnum(static_cast<unsigned char>(c)) || std::string_view("._+-,=").find(c) != std::string_view::npos)
-        name += c;
-      else if (std::string_view("[]{}\"' ").find(c) == std::string_view::npos)
-        name += '-';
-    }
-  }
+  for (const auto& [key, value] : difference) name += (name.empty() ? "" : "_") + plain(key) + "=" + plain(value);
   return name.substr(0, kLongestName);
 }
 

@@ -53,6 +53,10 @@ TEST(SweepPlan, NamesAreFileNamesOfTheirOwn) {
                                                    "k=" + std::string(118, 'x') + "~2"}));
 }
 
+TEST(SweepPlan, NamesHaveNothingOfAPathFromAKey) {
+  EXPECT_EQ(names(plan_sweep({}, {{"../a/b", {"1", "2"}}})), (std::vector<std::string>{"-a-b=1", "-a-b=2"}));
+}
+
 // As many as there may be, alike as far as a name goes: each is counted on from the one before.
 TEST(SweepPlan, NamesThatAreCutAlikeAreNumbered) {
   Axis axis{"k", {}};
