@@ -7,6 +7,7 @@
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstddef>
+#include <new>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -79,7 +80,11 @@ const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& f
     scene = importer.ReadFileFromMemory(gltf->data(), gltf->size(), steps, "glb");
   else
     scene = importer.ReadFile(file.string(), steps);
-  if (scene == nullptr || scene->mRootNode == nullptr) throw std::runtime_error(importer.GetErrorString());
+  if (scene == nullptr || scene->mRootNode == nullptr) {
+    const std::string_view error = importer.GetErrorString();
+    if (error.find("bad_alloc") != std::string_view::npos) throw std::bad_alloc();  // which assimp has caught
+    throw std::runtime_error(std::string(error));
+  }
   return *scene;
 }
 

@@ -56,7 +56,7 @@ frame::ObjectInfo parse_object(const Json& json) {
 }
 
 Manifest parse(const Json& json) {
-  require(json.is_object() && json.value("format", "") == kFormat, "it is no manifest of a frame cache");
+  require(value_or(json, "format", std::string()) == kFormat, "it is no manifest of a frame cache");
   const int version = parse_count(json, "format_version", 1, 1'000'000);
   if (version != static_cast<int>(kFormatVersion))
     throw std::runtime_error(fmt::format("expected version {} of the format, got {}", kFormatVersion, version));

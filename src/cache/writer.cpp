@@ -37,22 +37,24 @@ std::optional<std::string_view> beginning_of(std::string_view name) {
   return std::nullopt;
 }
 
+/// Zeros stand where the machine went down before the disk had the file.
 bool begins_as_written(const fs::path& file) {
   const auto beginning = beginning_of(file.filename().string());
-  return beginning && read_start(file, beginning->size()) == *beginning;
+  if (!beginning) return false;
+  const std::string start = read_start(file, beginning->size());
+  return start == *beginning || (!start.empty() && start.find_first_not_of('\0') == std::string::npos);
 }
 
-/// Whether Weft has written what has this name in the folder: a cache's own manifest says so, or the file itself does.
-/// Nothing is lost with an empty file.
+/// Whether Weft has written what has this name in the folder: the file itself says so, or of the scene the files beside
+/// it do. Nothing is lost with an empty file.
 bool is_ours(const fs::path& folder, const std::string& name) {
   const std::string_view kept = final_name_of(name);
   if (!kept.empty()) return is_name_of_cache(kept);
   const fs::path file = folder / name;
   std::error_code error;
   if (!is_name_of_cache(name) || !fs::is_regular_file(fs::symlink_status(file, error))) return false;
-  const bool empty = fs::file_size(file, error) == 0;
-  return empty || begins_as_written(file) ||
-         (name != kManifestFile && name != kLockFile &&
+  return fs::file_size(file, error) == 0 || begins_as_written(file) ||
+         (name == kSceneFile &&
           (begins_as_written(folder / kManifestFile) || begins_as_written(folder / kSurfacesFile)));
 }
 
@@ -131,6 +133,8 @@ void Lock::remove() const {
 
 Writer::Writer(const Lock& lock, Manifest manifest, std::string_view scene_text)
     : folder_(lock.folder()), manifest_(std::move(manifest)) {
+  for (const std::string& name : names_in(folder_))
+    if (const auto frame = frame_of(name)) own_frames_.insert(*frame);
   write(kManifestFile, manifest_text(manifest_));
   write(kSceneFile, std::string(scene_text));
 }
@@ -146,6 +150,8 @@ void Writer::add(const frame::FrameSnapshot& snapshot, const frame::FrameReport&
   }
   const std::string content =
       pack({Kind::frame, snapshot.frame, manifest_.scene_hash}, encode_frame(snapshot, report, *surfaces_));
+  // Nobody of ours makes one meanwhile: the folder is locked.
+  if (own_frames_.insert(snapshot.frame).second) keep_if_made_meanwhile(folder_ / frame_file(snapshot.frame));
   write(frame_file(snapshot.frame), content);
   bytes_added_ += content.size();
 }

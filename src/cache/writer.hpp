@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <string_view>
 
@@ -42,7 +43,8 @@ class Writer {
   /// Writes the manifest and the scene. The folder is empty, or a cache of the same scene to go on with.
   Writer(const Lock& lock, Manifest manifest, std::string_view scene_text);
 
-  /// Frame 0 comes first, unless the folder has it already. A frame that is there is replaced.
+  /// Frame 0 comes first, unless the folder has it already. A frame that was there at the beginning is replaced; one
+  /// that somebody else has made since then is kept, with Error(output_failed).
   void add(const frame::FrameSnapshot& snapshot, const frame::FrameReport& report);
 
   /// The state of `frame`, in place of an earlier one. All frames up to it have been added.
@@ -57,6 +59,7 @@ class Writer {
   std::filesystem::path folder_;
   Manifest manifest_;
   std::optional<Surfaces> surfaces_;
+  std::set<int> own_frames_;  // whose files may be replaced
   std::uintmax_t bytes_added_ = 0;
 };
 

@@ -58,7 +58,7 @@ int start(std::vector<std::string> words, Outputs outputs, pid_t& process) {
 }
 
 [[noreturn]] void fail(const std::string& program, int problem) {
-  throw Error(ExitCode::internal, "{}: cannot be started: {}", program, std::strerror(problem));
+  throw Error(ExitCode::output_failed, "{}: cannot be started: {}", program, std::strerror(problem));
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ inline constexpr const char* kToolsName = "weft-tools";
 std::filesystem::path own_program();
 
 /// Starts `words[0]`, looked up as a shell does, without input; what it prints goes to `log`, empty: where ours does.
-/// Killed with the calling thread. Throws Error(internal), or Error(output_failed) where `log` cannot be written.
+/// Killed with the calling thread. Throws Error(output_failed) where it cannot be started or `log` cannot be written.
 pid_t start_process(const std::vector<std::string>& words, const std::filesystem::path& log);
 
 struct ProcessResult {

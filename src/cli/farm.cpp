@@ -79,11 +79,11 @@ int count_files(const fs::path& folder, const char* ending) {
 }
 
 State state_of(const fs::path& folder, const nlohmann::ordered_json& run) {
-  const std::string scene = run.value("scene", "");
+  const std::string scene = value_or(run, "scene", std::string());
   const nlohmann::ordered_json stats = read_json_or_null(folder / (scene + ".json"));
-  const bool simulated = stats.is_object() && stats.value("exit_code", -1) == 0;
+  const bool simulated = value_or(stats, "exit_code", -1) == 0;
   if (simulated && fs::exists(folder / (scene + ".mp4"))) return {"done", true};
-  const int frames = run.value("frames", 0);
+  const int frames = value_or(run, "frames", 0);
   if (simulated) return {fmt::format("{} of {} frames drawn", count_files(folder / "frames", ".png"), frames), false};
   try {
     return {fmt::format("{} of {} frames simulated", cache::Reader(folder / "cache").frames().size(), frames), false};
@@ -133,7 +133,7 @@ class Farm {
     std::vector<std::vector<std::string>> rows;
     std::size_t done = 0;
     for (const auto& run : index["runs"]) {
-      const std::string name = run.value("folder", "");
+      const std::string name = value_or(run, "folder", std::string());
       const State state = state_of(folder_ / name, run);
       done += state.done ? 1 : 0;
       rows.push_back({name, state.text});
@@ -171,6 +171,9 @@ class Farm {
     if (!index.is_object() || !index.contains("runs"))
       throw Error(ExitCode::asset_unreadable, "{}: expected the folder that weft farm submit was given with -o",
                   folder_.string());
+    if (index["runs"].size() > kMostRuns)
+      throw Error(ExitCode::asset_unreadable, "{}: expected at most {} runs, got {}",
+                  (folder_ / review::kSweepName).string(), kMostRuns, index["runs"].size());
     return index;
   }
 

@@ -272,12 +272,19 @@ void Session::sum_up(const FilmPlan& plan, FilmResult result) {
 }
 
 void Session::end_early(const FilmPlan& plan, const Store* store) {
-  const int kept = plan.draws() ? report_.written : static_cast<int>(report_.frames.size());
-  report_.message += kept > 0
-                         ? fmt::format("; {} frame{} kept in {}", kept, kept == 1 ? " is" : "s are", report_.output)
-                         : "; no frame was written";
+  std::error_code ignored;
+  // Somebody may have removed what was written.
+  const fs::path place =
+      fs::absolute(plan.draws() ? plan.target.file(plan.wanted.begin) : fs::path(report_.output), ignored);
+  const int written = plan.draws() ? report_.written : static_cast<int>(report_.frames.size());
+  const int kept = fs::exists(plan.draws() ? place.parent_path() : place, ignored) ? written : 0;
+  if (kept > 0)
+    report_.message += fmt::format("; {} frame{} kept in {}", kept, kept == 1 ? " is" : "s are", report_.output);
+  else
+    report_.message += written > 0 ? "; no frame is kept" : "; no frame was written";
   // A simulation that cannot go on will not be able to again.
-  if (store != nullptr && store->can_resume() && report_.exit_code != ExitCode::simulation_failed)
+  if (store != nullptr && store->can_resume() && report_.exit_code != ExitCode::simulation_failed &&
+      fs::exists(store->folder(), ignored))
     report_.message += "; the same command with --resume goes on from there";
 }
 

@@ -5,6 +5,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <sstream>
 
 #include "cli/child_process.hpp"
@@ -38,9 +39,11 @@ struct Job : SweepJob {
   /// By what it has left.
   ExitCode outcome() const {
     if (is_done()) return ExitCode::ok;
-    const nlohmann::ordered_json json = read_json_or_null(stats());
-    const int told = json.is_object() ? json.value("exit_code", 0) : 0;
-    return told == 0 ? ExitCode::not_whole : static_cast<ExitCode>(told);
+    const auto told = static_cast<ExitCode>(value_or(read_json_or_null(stats()), "exit_code", 0));
+    constexpr std::array kFailures{ExitCode::internal,          ExitCode::usage,         ExitCode::scene_invalid,
+                                   ExitCode::asset_unreadable,  ExitCode::output_failed, ExitCode::not_whole,
+                                   ExitCode::simulation_failed, ExitCode::interrupted};
+    return std::ranges::find(kFailures, told) != kFailures.end() ? told : ExitCode::not_whole;
   }
 
   std::string last_words() const {

@@ -25,8 +25,8 @@ std::vector<std::string> SweepJob::overrides() const {
 
 bool SweepJob::is_done() const {
   const Json json = read_json_or_null(stats());
-  return fs::exists(video()) && json.is_object() && json.value("exit_code", -1) == 0 &&
-         json.value("scene_hash", "") == fmt::format("{:016x}", scene_hash);
+  return fs::exists(video()) && value_or(json, "exit_code", -1) == 0 &&
+         value_or(json, "scene_hash", std::string()) == fmt::format("{:016x}", scene_hash);
 }
 
 std::vector<SweepJob> read_sweep(const SweepOptions& options, PathLedger& paths) {
@@ -67,10 +67,12 @@ void check_sweep_folder(const SweepOptions& options, PathLedger& paths) {
   if (!before.is_object() || !before.contains("runs") || !before.contains("options"))
     throw Error(ExitCode::output_failed, "{}: is no folder of a sweep, and not empty; give another name",
                 folder.string());
-  if (!options.overwrite && before["options"] != Json(options.passed_on))
+  std::vector<std::string> words;
+  for (const Json& word : before["options"]) words.push_back(word.is_string() ? word.get<std::string>() : word.dump());
+  if (!options.overwrite && words != options.passed_on)
     throw Error(ExitCode::output_failed,
                 "{}: holds runs with other options ({}); give these, --overwrite to start again, or another name",
-                folder.string(), fmt::join(before.value("options", std::vector<std::string>{}), " "));
+                folder.string(), fmt::join(words, " "));
 }
 
 void write_sweep_index(const SweepOptions& options, const std::vector<SweepJob>& jobs) {

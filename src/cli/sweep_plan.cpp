@@ -17,7 +17,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMostRuns = 10'000;  // more is a slip: a day of runs of ten seconds
 constexpr std::size_t kMostKeys = 200;     // of a run; scenes have fewer that make sense together
 constexpr std::size_t kLongestName = 120;  // bytes; file systems take 255 for a name
 
@@ -143,18 +142,20 @@ std::string short_name(const std::string& key, const std::set<std::string>& keys
 }
 
 // Without what shells, file systems and patterns of names read in their own way.
+std::string plain(const std::string& text) {
+  std::string name;
+  for (const char c : text) {
+    if (std::isalnum(static_cast<unsigned char>(c)) || std::string_view("._+-,=").find(c) != std::string_view::npos)
+      name += c;
+    else if (std::string_view("[]{}\"' ").find(c) == std::string_view::npos)
+      name += '-';
+  }
+  return name;
+}
+
 std::string file_name(const Changes& difference) {
   std::string name;
-  for (const auto& [key, value] : difference) {
-    if (!name.empty()) name += '_';
-    name += key + "=";
-    for (const char c : value) {
-      if (std::isalnum(static_cast<unsigned char>(c)) || std::string_view("._+-,=").find(c) != std::string_view::npos)
-        name += c;
-      else if (std::string_view("[]{}\"' ").find(c) == std::string_view::npos)
-        name += '-';
-    }
-  }
+  for (const auto& [key, value] : difference) name += (name.empty() ? "" : "_") + plain(key) + "=" + plain(value);
   return name.substr(0, kLongestName);
 }
 
@@ -187,7 +188,10 @@ Axis parse_axis(const std::string& text) {
 }
 
 std::vector<Changes> read_list(const fs::path& file) {
-  const std::string text = read_file(file, scene::kMaxFileSize);
+  return parse_list(file, read_file(file, scene::kMaxFileSize));
+}
+
+std::vector<Changes> parse_list(const fs::path& file, const std::string& text) {
   std::vector<Changes> rows = file.extension() == ".toml" ? read_toml(file, text) : read_csv(file, text);
   if (rows.empty()) throw Error(ExitCode::asset_unreadable, "{}: names no run", file.string());
   if (rows.size() > kMostRuns)
@@ -223,12 +227,15 @@ std::vector<SweepRun> plan_sweep(const std::vector<Changes>& list, const std::ve
   std::map<std::string, std::string> short_names;
   for (const std::string& key : differing) short_names[key] = short_name(key, differing);
   std::set<std::string> names;
+  std::map<std::string, int> copies;  // of a name, so that many of one name do not ask for each number again
   for (SweepRun& run : runs) {
     for (const auto& [key, value] : run.changes)
       if (differing.contains(key)) run.difference.emplace_back(short_names[key], value);
     const std::string name = run.difference.empty() ? "as_it_is" : file_name(run.difference);
-    run.name = name;
-    for (int n = 2; !names.insert(run.name).second; ++n) run.name = fmt::format("{}~{}", name, n);
+    int& copy = copies[name];
+    do {
+      run.name = ++copy == 1 ? name : fmt::format("{}~{}", name, copy);
+    } while (!names.insert(run.name).second);
   }
   return runs;
 }

@@ -1,6 +1,7 @@
 // Which runs a sweep has: combinations of values, rows of a list, or both.
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <map>
 #include <string>
@@ -8,6 +9,9 @@
 #include <vector>
 
 namespace weft::cli {
+
+/// Of a sweep; more are a slip: a day of runs of ten seconds.
+inline constexpr std::size_t kMostRuns = 10'000;
 
 /// A key of the scene and the texts of its values, as --set takes them.
 struct Axis {
@@ -24,6 +28,9 @@ using Changes = std::vector<std::pair<std::string, std::string>>;
 /// The rows of a list: CSV with the keys in its first line, or TOML with a table [[run]] for each. Throws
 /// Error(asset_unreadable) with the line.
 std::vector<Changes> read_list(const std::filesystem::path& file);
+
+/// The same of the text of a file, which the ending of its name says how to read.
+std::vector<Changes> parse_list(const std::filesystem::path& file, const std::string& text);
 
 struct SweepRun {
   Changes changes;     ///< all of them

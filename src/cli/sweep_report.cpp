@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/json.hpp"
 #include "image/contact_sheet.hpp"
 #include "image/png.hpp"
 #include "image/shrink.hpp"
@@ -58,7 +59,7 @@ std::vector<std::string> figures_of(const Json& stats) {
   const Json& frames = frames_of(stats);
   if (frames.empty()) return std::vector<std::string>(5);
   double iterations = 0;
-  for (const Json& frame : frames) iterations += frame.value("newton_iterations", 0.0);
+  for (const Json& frame : frames) iterations += value_or(frame, "newton_iterations", 0.0);
   return {fmt::format("{}", iterations), text_of(at(stats, {"totals", "rejected_steps"})), largest(stats, "max_strain"),
           text_of(at(frames.back(), {"kinetic_energy_j"})), error_of(stats)};
 }

@@ -69,7 +69,11 @@ class InputFile {
 std::string read_bytes(const std::filesystem::path& file, std::uintmax_t most) {
   const InputFile input(file);
   if (input.size() > most) refuse(fmt::format("expected at most {} bytes, got {}", most, input.size()));
-  return input.read(input.size());
+  try {
+    return input.read(input.size());
+  } catch (const std::bad_alloc&) {
+    refuse(fmt::format("its {} bytes are too many for the memory of this machine", input.size()));
+  }
 }
 
 std::string read_file(const std::filesystem::path& file, std::uintmax_t most) {

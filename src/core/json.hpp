@@ -2,9 +2,11 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <string_view>
+#include <type_traits>
 
 namespace weft {
 
@@ -15,6 +17,26 @@ Json parse_json(std::string_view text);
 
 extern template nlohmann::ordered_json parse_json(std::string_view);
 extern template nlohmann::json parse_json(std::string_view);
+
+/// The value of a key; `otherwise` where `json` is no object, lacks the key, or has a value of another type there.
+/// nlohmann's own value() throws for the first and the last, which is an internal error unless somebody catches it.
+template <class T, class Json>
+T value_or(const Json& json, const char* key, T otherwise) {
+  if (!json.is_object()) return otherwise;
+  const auto found = json.find(key);
+  if (found == json.end()) return otherwise;
+  bool fits = false;
+  if constexpr (std::is_same_v<T, std::string>) {
+    fits = found->is_string();
+  } else if constexpr (std::is_same_v<T, double>) {
+    fits = found->is_number();
+  } else {
+    static_assert(std::is_same_v<T, int>);
+    fits = found->is_number_integer() && *found >= std::numeric_limits<int>::min() &&
+           *found <= std::numeric_limits<int>::max();
+  }
+  return fits ? found->template get<T>() : otherwise;
+}
 
 /// What a file holds; null for what cannot be read.
 nlohmann::ordered_json read_json_or_null(const std::filesystem::path& file);

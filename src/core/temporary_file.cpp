@@ -144,9 +144,12 @@ TemporaryName::TemporaryName(const fs::path& final_name, Kind kind) {
 }
 
 TemporaryName::~TemporaryName() {
-  std::error_code ignored;
-  if (!path_.empty()) fs::remove_all(path_, ignored);
+  const fs::path path = path_;
+  // A file goes without a descriptor, of which there may be none left, a folder with that of its lock.
+  const bool removed = path.empty() || ::unlink(path.c_str()) == 0;
   release();
+  std::error_code ignored;
+  if (!removed) fs::remove_all(path, ignored);
 }
 
 void TemporaryName::release() {

@@ -249,7 +249,7 @@ class Page {
     }
     if (!decision.is_null()) {
       entry.json["decision"] = decision;
-      const bool now = decision.value("of", "") == entry.json["of"];
+      const bool now = value_or(decision, "of", std::string()) == entry.json["of"];
       outcome_.approved += now && decision["state"] == "approved" ? 1 : 0;
       outcome_.needing_work += now && decision["state"] == "needs work" ? 1 : 0;
     }

@@ -177,6 +177,26 @@ TEST_F(CacheFolder, ForeignFilesAreNeverTouched) {
   expect_error(ExitCode::output_failed, "cannot make the folder", [&] { Lock lock(folder_ / "file"); });
 }
 
+TEST_F(CacheFolder, ForeignFilesWithNamesOfFramesAreKept) {
+  fill(3);
+  const std::string frame = support::read_bytes(cache() / "frame_00001.weft");
+  {
+    const Lock lock(cache());
+    Writer writer(lock, sample_.manifest(), "");
+    support::write_bytes(cache() / "frame_00007.weft", "precious");
+    expect_error(ExitCode::output_failed, "frame_00007.weft: was made by somebody else",
+                 [&] { writer.add(*sample_.snapshot(7), {}); });
+    writer.add(*sample_.snapshot(1), {});  // which was there before
+  }
+  EXPECT_NE(support::read_bytes(cache() / "frame_00001.weft"), frame);
+  // A manifest of ours beside it says nothing of it.
+  expect_error(ExitCode::output_failed, "holds frame_00007.weft", [&] { Lock(cache()).clear(); });
+  EXPECT_EQ(support::read_bytes(cache() / "frame_00007.weft"), "precious");
+  support::write_bytes(cache() / "frame_00007.weft", std::string(100, '\0'));  // as a crash of the machine leaves it
+  Lock(cache()).remove();
+  EXPECT_FALSE(fs::exists(cache()));
+}
+
 TEST_F(CacheFolder, ClearingLeavesNothingOfIt) {
   fill(3);
   support::write_bytes(cache() / ".frame_00003.weft.weft-1234.tmp", "half a frame of a process that was killed");

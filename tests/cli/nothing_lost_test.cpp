@@ -112,6 +112,7 @@ TEST_F(NothingLost, AFolderThatIsRemovedWhileARunWorksEndsTheRun) {
     EXPECT_EQ(outcome.exit_code, 6) << run[3] << outcome.err;
     EXPECT_TRUE(contains(outcome.err, "No such file or directory")) << outcome.err;
     EXPECT_FALSE(fs::exists(folder_ / "d")) << run[3];
+    EXPECT_FALSE(contains(outcome.err, "kept in d")) << outcome.err;
     fs::remove_all(folder_ / "gone");
   }
 }
@@ -198,6 +199,33 @@ TEST_F(AnyInput, ThatNestsTooDeepIsRefused) {
   image::write_png(folder_ / "r/p_2.png", image::Image(16, 16));
   const Outcome page = run_weft({"review", "r", "-o", "page"}, folder_);
   EXPECT_EQ(page.exit_code, 0) << page.err.substr(0, 2000);
+}
+
+TEST_F(AnyInput, JsonWithValuesOfOtherTypesIsNoFaultOfOurs) {
+  const auto filled = [](std::string text, const std::string& value) {
+    for (std::size_t at = 0; (at = text.find('@', at)) != std::string::npos; at += value.size())
+      text.replace(at, 1, value);
+    return text;
+  };
+  const std::string run = R"({"folder": "a", "scene": "s", "frames": @, "set": @})";
+  for (const char* value : {"null", "true", "-1", "1e308", "18446744073709551615", "\"x\"", "[]", "{}", "[[1]]"}) {
+    for (const std::string& index :
+         std::vector<std::string>{R"({"options": @, "runs": [{"folder": @, "scene": @, "frames": @, "set": @}, @]})",
+                                  R"({"options": [], "runs": @})", R"({"options": @, "runs": []})",
+                                  R"({"options": [@], "runs": [)" + run + "]}"}) {
+      write("w/sweep.json", filled(index, value));
+      write("w/a/s.json", filled(R"({"scene": @, "exit_code": @, "scene_hash": @, "frames": @, "totals": @})", value));
+      write("w/a/s.mp4");
+      const Outcome status = run_weft({"farm", "status", "w"}, folder_);
+      EXPECT_TRUE(status.exit_code == 0 || status.exit_code == 4 || status.exit_code == 9)
+          << index << value << status.err;
+      expect_refused({"sweep", "s.toml", "--set", "title=a,b", "-o", "w", "--size", "16x16"}, "with other options");
+    }
+    write("w/sweep.json", R"({"options": [], "runs": []})");
+    write("w/title=a/s.json",
+          filled(R"({"scene": "s", "exit_code": @, "frames": [{"newton_iterations": @}, @]})", value));
+    expect_refused({"sweep", "s.toml", "--set", "title=a,b", "-o", "w", "--report"});
+  }
 }
 
 TEST_F(AnyInput, ThatIsNoPathIsNoFaultOfOurs) {
@@ -302,6 +330,10 @@ TEST_F(AnyInput, OfAnEndlessNumberOfThingsIsBounded) {
   ASSERT_NE(at, std::string::npos);
   support::write_bytes(folder_ / "c/manifest.json", manifest.replace(at, 17, "\"frame_count\": 10000000"));
   expect_refused({"render", "c", "-o", "x.mp4"}, "frame_count: expected 1 to 100001");
+  std::string runs = "{}";
+  for (int i = 0; i < 10'000; ++i) runs += ", {}";
+  write("w/sweep.json", R"({"options": [], "runs": [)" + runs + "]}");
+  expect_refused({"farm", "status", "w"}, "expected at most 10000 runs, got 10001");
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "cli/cached_run.hpp"
 #include "cli/sweep_plan.hpp"
@@ -50,6 +51,19 @@ TEST(SweepPlan, NamesAreFileNamesOfTheirOwn) {
       plan_sweep({}, {{"k", {"[0, 1]", "{0,1}", "../a b", std::string(300, 'x'), std::string(301, 'x')}}});
   EXPECT_EQ(names(runs), (std::vector<std::string>{"k=0,1", "k=0,1~2", "k=..-ab", "k=" + std::string(118, 'x'),
                                                    "k=" + std::string(118, 'x') + "~2"}));
+}
+
+TEST(SweepPlan, NamesHaveNothingOfAPathFromAKey) {
+  EXPECT_EQ(names(plan_sweep({}, {{"../a/b", {"1", "2"}}})), (std::vector<std::string>{"-a-b=1", "-a-b=2"}));
+}
+
+// As many as there may be, alike as far as a name goes: each is counted on from the one before.
+TEST(SweepPlan, NamesThatAreCutAlikeAreNumbered) {
+  Axis axis{"k", {}};
+  for (int i = 0; i < 10'000; ++i) axis.values.push_back(std::string(200, 'x') + std::to_string(i));
+  const std::vector<std::string> all = names(plan_sweep({}, {axis}));
+  EXPECT_EQ(all.back(), "k=" + std::string(118, 'x') + "~10000");
+  EXPECT_EQ(std::set<std::string>(all.begin(), all.end()).size(), axis.values.size());
 }
 
 TEST(SweepPlan, WhatIsAskedForTwiceIsThereOnce) {

@@ -71,6 +71,18 @@ TEST_F(TemporaryFileTest, LeavesNothingBehindWithoutCommit) {
   EXPECT_EQ(entries(), 0u);
 }
 
+TEST_F(TemporaryFileTest, LeavesNothingBehindWhereNoDescriptorIsLeft) {
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
+  {
+    const TemporaryFile temporary(folder_ / "a.txt");
+    const rlimit none{0, before.rlim_max};
+    ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  }
+  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  EXPECT_EQ(entries(), 0u);
+}
+
 TEST_F(TemporaryFileTest, TheSignalHandlersSweepRemovesWhatIsOpenAndKeepsWhatIsWhole) {
   write_file(folder_ / "whole.txt", "whole");
   TemporaryFile temporary(folder_ / "half.txt");

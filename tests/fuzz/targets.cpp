@@ -9,8 +9,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <cstring>
 #include <filesystem>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -21,6 +23,8 @@
 #include "cache/container.hpp"
 #include "cache/manifest.hpp"
 #include "cache/sample.hpp"
+#include "cli/diff_limits.hpp"
+#include "cli/sweep_plan.hpp"
 #include "core/error.hpp"
 #include "core/json.hpp"
 #include "core/nesting.hpp"
@@ -29,6 +33,8 @@
 #include "garment/pattern.hpp"
 #include "garment/specification.hpp"
 #include "garment/svg.hpp"
+#include "image/exr.hpp"
+#include "image/picture.hpp"
 #include "image/png.hpp"
 #include "review/decisions.hpp"
 #include "review/review.hpp"
@@ -163,6 +169,30 @@ void read_statistics(Bytes bytes) {
   (void)review::script_json(data);
 }
 
+/// Lists of runs in both forms, and the values of one key.
+void read_list(Bytes bytes) {
+  const std::string text(text_of(bytes));
+  for (const char* file : {"fuzz.toml", "fuzz.csv"}) {
+    may_refuse({ExitCode::usage, ExitCode::asset_unreadable}, [&] {
+      std::set<std::string> names;
+      for (const cli::SweepRun& run : cli::plan_sweep(cli::parse_list(file, text), {})) {
+        require(run.name != "." && run.name != ".." && run.name.find('/') == std::string::npos, "a name of a folder");
+        require(!run.name.empty() && run.name.size() < 140 && names.insert(run.name).second, "a name of its own");
+      }
+    });
+  }
+  may_refuse({ExitCode::usage}, [&] { (void)cli::plan_sweep({}, {cli::parse_axis(text)}); });
+}
+
+/// Limits of single pictures, as `weft diff --limits` takes them.
+void read_limits(Bytes bytes) {
+  may_refuse({ExitCode::asset_unreadable}, [&] {
+    const compare::Limits limits = cli::DiffLimits({}, MemoryFile(bytes).path()).of("front/a.png").limits;
+    require(limits.pixel_tolerance >= 0 && limits.pixel_tolerance <= 255, "a tolerance is in levels");
+    require(limits.flip >= 0 && limits.flip <= 1, "a limit is a share");
+  });
+}
+
 void check_outline(const garment::Outline& outline) {
   require(!outline.empty(), "an outline has curves");
   for (std::size_t i = 0; i < outline.size(); ++i) {
@@ -202,6 +232,24 @@ void read_image(Bytes bytes) {
     image::Metadata metadata;
     const image::Image image = image::read_png(MemoryFile(with_right_sums(bytes)).path(), &metadata);
     require(image.rgb.size() == 3 * std::size_t(image.width) * std::size_t(image.height), "an image is whole");
+  });
+}
+
+/// Pictures of all kinds that cloth can have.
+void read_picture(Bytes bytes) {
+  try {
+    const image::Picture picture = image::decode_picture(text_of(bytes));
+    require(picture.rgba.size() == 4 * std::size_t(picture.width) * std::size_t(picture.height), "a picture is whole");
+  } catch (const std::logic_error&) {
+    throw;
+  } catch (const std::runtime_error&) {
+  }
+}
+
+void read_layers(Bytes bytes) {
+  may_refuse({ExitCode::asset_unreadable}, [&] {
+    const image::ExrHeader header = image::read_exr_header(MemoryFile(bytes).path());
+    require(header.width > 0 && header.height > 0, "a picture has a size");
   });
 }
 
@@ -269,9 +317,13 @@ constexpr std::array kTargets{Target{"scene", read_scene},
                               Target{"toml", read_toml},
                               Target{"json", read_json},
                               Target{"statistics", read_statistics},
+                              Target{"list", read_list},
+                              Target{"limits", read_limits},
                               Target{"svg", read_svg},
                               Target{"outline", read_outline},
                               Target{"image", read_image},
+                              Target{"picture", read_picture},
+                              Target{"layers", read_layers},
                               Target{"character", read_answer<assets::character_from_bytes>},
                               Target{"mesh", read_answer<assets::from_bytes>},
                               Target{"container", read_container},

@@ -29,7 +29,7 @@ void set_rasteriser_environment(int threads) {
 void Context::load_functions(Loader loader, const std::string& backend) {
   const int version = gladLoadGLContext(&gl_, loader);
   if (version < GLAD_MAKE_VERSION(4, 5)) {
-    throw Error(ExitCode::internal, "{}: expected OpenGL 4.5 core, got {}.{}; install Mesa 20 or newer", backend,
+    throw Error(ExitCode::usage, "{}: expected OpenGL 4.5 core, got {}.{}; install Mesa 20 or newer", backend,
                 GLAD_VERSION_MAJOR(version), GLAD_VERSION_MINOR(version));
   }
   description_ = fmt::format("{}; {}; {}; OpenGL {}", backend, text(gl_, GL_VENDOR), text(gl_, GL_RENDERER),
@@ -71,7 +71,7 @@ std::unique_ptr<Context> make_context(Backend backend, int threads) {
     return make_egl_context();
   } catch (const Error& error) {
     throw Error(
-        ExitCode::internal,
+        ExitCode::usage,
         "no OpenGL without a window on this machine: install libosmesa6, or libegl1 and libgl1-mesa-dri\n  {}\n  {}",
         osmesa_said, error.what());
   }

@@ -8,12 +8,12 @@ namespace weft::render {
 
 SharedLibrary::SharedLibrary(const std::string& file)
     : file_(file), handle_(dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL)) {
-  if (!handle_) throw Error(ExitCode::internal, "{}: cannot be opened: {}", file, dlerror());
+  if (!handle_) throw Error(ExitCode::usage, "{}: cannot be opened: {}", file, dlerror());
 }
 
 void* SharedLibrary::address(const char* name) const {
   void* symbol = dlsym(handle_, name);
-  if (!symbol) throw Error(ExitCode::internal, "{}: has no function {}", file_, name);
+  if (!symbol) throw Error(ExitCode::usage, "{}: has no function {}", file_, name);
   return symbol;
 }
 

@@ -8,10 +8,10 @@ namespace weft::render {
 /// Stays open for the life of the process: a software rasteriser leaves threads and LLVM state behind.
 class SharedLibrary {
  public:
-  /// Throws Error(internal) with the dynamic loader's words.
+  /// Throws Error(usage), as of a package that is missing, with the dynamic loader's words.
   explicit SharedLibrary(const std::string& file);
 
-  /// Address of a function; throws Error(internal) where the library has none of that name.
+  /// Address of a function; throws Error(usage) where the library has none of that name.
   template <class Function>
   Function function(const char* name) const {
     return reinterpret_cast<Function>(address(name));
