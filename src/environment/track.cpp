@@ -1,5 +1,6 @@
 #include "environment/track.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <optional>
@@ -142,11 +143,17 @@ RotationSpline::Sample RotationSpline::at(double t) const {
 }
 
 Track::Track(const scene::PoseTrack& track, const scene::Pose& rest)
-    : position_(track.interpolation, times_of(track), positions_of(track, rest)),
+    : times_(times_of(track)),
+      position_(track.interpolation, times_of(track), positions_of(track, rest)),
       rotation_(track.interpolation, times_of(track), poses_of(track, rest)),
       moving_(track.keys.size() > 1) {}
 
+// A time that is a key's but for rounding counts as the key's: beside it a track that stops there and one that goes on
+// would differ by roundings, which contacts of cloth make millimetres of.
 PoseSample Track::at(double t) const {
+  constexpr double kRounding = 1e-12;  // [s]
+  const auto key = std::ranges::lower_bound(times_, t - kRounding);
+  if (key != times_.end() && *key <= t + kRounding) t = *key;
   const Spline<3>::Sample p = position_.at(t);
   const RotationSpline::Sample r = rotation_.at(t);
   return {p.value, r.rotation, p.first_derivative, r.angular_velocity, p.second_derivative, r.angular_acceleration};

@@ -74,6 +74,7 @@ class Track {
   bool moving() const { return moving_; }
 
  private:
+  std::vector<double> times_;  // of the keys [s]
   Spline<3> position_;
   RotationSpline rotation_;
   bool moving_;

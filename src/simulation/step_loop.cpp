@@ -162,8 +162,8 @@ void StepLoop::advance_equally(double t_t0, FrameReport& report) {
   const int steps = std::max(1, static_cast<int>(std::ceil(1 / (fps * scene_.time.step) - 1e-9)));
   const double h = 1 / (fps * steps);
   if (steps > 1 && may_rest(t_t0, h, steps) && rest(t_t0, 1 / fps, report)) return;
-  const double first = std::round(t_t0 * fps) * steps;
-  for (int s = 0; s < steps; ++s) advance_over((first + s) / (fps * steps), h, 0, scene_.solver.halvings, report);
+  const double done = std::round(t_t0 * fps) * steps;
+  for (int s = 0; s < steps; ++s) advance_over((done + s) / (fps * steps), h, 0, scene_.solver.halvings, report);
 }
 
 // Whether all cloth is slow and stays so, by its last step, and at the ends of so many steps of length h all that the

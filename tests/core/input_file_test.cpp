@@ -44,7 +44,7 @@ TEST_F(InputFileTest, WhatCannotBeReadSaysWhy) {
                [&] { read_file(folder_ / "no"); });
   expect_error(ExitCode::asset_unreadable, "expected at most 4 bytes, got 5", [&] { read_file(folder_ / "a", 4); });
   expect_error(ExitCode::asset_unreadable, "File name too long", [&] { read_file(folder_ / std::string(5000, 'x')); });
-#ifndef __SANITIZE_ADDRESS__  // which ends the process instead
+#ifndef __SANITIZE_ADDRESS__                                // which ends the process instead
   fs::resize_file(folder_ / "a", std::uintmax_t{1} << 42);  // without a block on the disk
   expect_error(ExitCode::asset_unreadable, "bytes are too many for the memory", [&] { read_file(folder_ / "a"); });
 #endif

@@ -259,11 +259,8 @@ TEST_F(SewnProblem, ForgetsWhatItKnewOfClothThatIsSewnOn) {
   };
   const std::vector<Vec3> start = force_at(0), later = force_at(0.3);
   EXPECT_NE(later, start);
-  const auto version = problem.memory().system.parts[0].version;
-  EXPECT_EQ(force_at(0.3), later);
-  EXPECT_EQ(problem.memory().system.parts[0].version, version) << "nothing was sewn";
+  EXPECT_EQ(force_at(0.3), later) << "nothing was sewn";
   EXPECT_EQ(force_at(0), start);
-  EXPECT_GT(problem.memory().system.parts[0].version, version);
 }
 
 }  // namespace
