@@ -68,8 +68,9 @@ void report(const Failure& failure) {
 ExitCode become_tools(const Command& /*command*/, char** argv) {
   const std::filesystem::path tools = own_program().replace_filename(kToolsName);
   ::execv(tools.c_str(), argv);
-  throw Error(ExitCode::internal, "{}: cannot be started: {}; it belongs beside the program", tools.string(),
-              std::strerror(errno));
+  throw Error(ExitCode::usage,
+              "{}: cannot be started: {}; this command needs it beside the program, where ./weft builds it",
+              tools.string(), std::strerror(errno));
 }
 
 int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& command, char** argv)) noexcept {

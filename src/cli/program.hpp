@@ -12,7 +12,7 @@ int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& comm
 /// Runs such a command itself: it is compiled into the program of tools alone.
 ExitCode run_tool(const Command& command, char** argv);
 
-/// Becomes the program of tools, which lies beside this one. Throws Error(internal) where it is not there.
+/// Becomes the program of tools, which lies beside this one. Throws Error(usage) where it is not there.
 ExitCode become_tools(const Command& command, char** argv);
 
 }  // namespace weft::cli

@@ -98,6 +98,19 @@ Verdict verdict(const Figures& figures, const Limits& limits) {
   return within ? Verdict::within : Verdict::differs;
 }
 
+bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits) {
+  // Up to 1.3 times the limit and 0.29 of the changed frame, in films of 96x64 pixels with a square in one or two
+  // frames that the others do not have.
+  constexpr std::size_t kFrames = 12;
+  constexpr double kOverLimit = 2, kShare = 1.0 / 3;
+  Limits wider = limits;
+  wider.flip *= kOverLimit, wider.pixel_budget *= kOverLimit;
+  if (verdict(frames[k], wider) != Verdict::within) return false;
+  const std::size_t first = k - std::min(k, kFrames), end = std::min(k + kFrames + 1, frames.size());
+  const double largest = std::ranges::max(frames.subspan(first, end - first), {}, &Figures::flip).flip;
+  return frames[k].flip <= kShare * largest;
+}
+
 image::Image heat_map(const Plane<float>& flip) {
   const auto table = image::heat_table();
   std::array<std::array<std::uint8_t, 3>, image::kHeatColors> colors;

@@ -1,7 +1,9 @@
 // How two images of one size differ: in numbers, and as a picture.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 #include "compare/plane.hpp"
 #include "image/image.hpp"
@@ -60,6 +62,11 @@ Comparison compare(const image::Image& reference, const image::Image& test, int 
                    const Mask* mask = nullptr);
 
 Verdict verdict(const Figures& figures, const Limits& limits);
+
+/// Whether frame k of a lossy video, which differs, does so only because the encoder predicted it from a changed frame
+/// within half a second: it exceeds the limits of means alone, by less than twice, and differs by at most a third of
+/// that frame. `frames`: of the whole video, in their order.
+bool is_spill(std::span<const Figures> frames, std::size_t k, const Limits& limits);
 
 /// The FLIP map in the heat colours of `image::heat_color`, from dark blue for 0, with the position on the scale the
 /// square root of the value, because what a test must find is small: 0.01 is at a tenth of the scale.

@@ -57,22 +57,12 @@ Figures add_frame(FileComparison& result, image::Image&& reference, image::Image
   return figures;
 }
 
-// A frame that an encoder predicted from a changed one within half a second of it is past limits of means alone, by
-// less than twice, and differs by a third of that frame at most. (Up to 1.3 times the limit and 0.29 of the changed
-// frame, in films of 96x64 pixels with a square in one or two frames that the others do not have.)
-constexpr std::size_t kFramesOfSpill = 12;
-constexpr double kSpillOverLimit = 2, kSpillShare = 1.0 / 3;
-
 // Tells frames that differ from those that a changed one has spilled into.
-void set_spill_apart(FileComparison& result, const std::vector<Figures>& frames, const Limits& limits) {
+void set_spill_apart(FileComparison& result, std::span<const Figures> frames, const Limits& limits) {
   result.frames_differing = 0;
   for (std::size_t k = 0; k < frames.size(); ++k) {
     if (verdict(frames[k], limits) != Verdict::differs) continue;
-    const std::size_t first = k - std::min(k, kFramesOfSpill), end = std::min(k + kFramesOfSpill + 1, frames.size());
-    const double largest = std::ranges::max(std::span(frames).subspan(first, end - first), {}, &Figures::flip).flip;
-    Limits wider = limits;
-    wider.flip *= kSpillOverLimit, wider.pixel_budget *= kSpillOverLimit;
-    if (frames[k].flip <= kSpillShare * largest && verdict(frames[k], wider) == Verdict::within)
+    if (is_spill(frames, k, limits))
       ++result.frames_of_spill;
     else if (result.frames_differing++ == 0)
       result.first_differing = static_cast<int>(k);

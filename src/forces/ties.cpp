@@ -29,14 +29,8 @@ Ties::Ties(const mesh::Sheet& sheet, Index first) {
   }
 }
 
-bool Ties::use(double t, double share) {
-  bool changed = false;
-  for (Piece& piece : pieces_) {
-    const double strength = piece.tie.strength * share * closed_share(piece.tie, t);
-    changed |= strength != piece.strength;
-    piece.strength = strength;
-  }
-  return changed;
+void Ties::use(double t, double share) {
+  for (Piece& piece : pieces_) piece.strength = piece.tie.strength * share * closed_share(piece.tie, t);
 }
 
 void Ties::couple(std::vector<std::pair<Index, Index>>& pairs) const {

@@ -18,8 +18,8 @@ class Ties final : public Force {
 
   Ties(const mesh::Sheet& sheet, Index first);
 
-  /// At time t [s] of the scene, after a share of the sewing. Returns whether that changes a force.
-  bool use(double t, double share);
+  /// At time t [s] of the scene, after a share of the sewing.
+  void use(double t, double share);
 
   void couple(std::vector<std::pair<Index, Index>>& pairs) const override;
   void attach(const solver::Assembly& assembly) override;

@@ -276,19 +276,15 @@ void ClothSystem::Sewing::use_share(double new_share) {
   if (bands != nullptr) bands->rest_between_start_and_pattern(share);
 }
 
-bool ClothSystem::sew(double t) {
-  bool changed = false;
+void ClothSystem::sew(double t) {
   for (Sewing& sewing : sewing_) {
     const double share = sewing.duration > 0 ? ease((t - sewing.begin) / sewing.duration) : 1;
     if (sewing.ties != nullptr) {
       sewing.time = t;
-      changed |= sewing.ties->use(begin_ + t, share);
+      sewing.ties->use(begin_ + t, share);
     }
-    if (share == sewing.share) continue;
-    sewing.use_share(share);
-    changed = true;
+    if (share != sewing.share) sewing.use_share(share);
   }
-  return changed;
 }
 
 bool ClothSystem::hold(std::span<const integrator::HeldParticle> pinned) {

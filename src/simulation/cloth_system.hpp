@@ -72,9 +72,8 @@ class ClothSystem {
   /// An empty system with the pattern of this one.
   solver::LinearSystem make_linear_system() const;
 
-  /// Gives cloths that are being sewn the rest shape that they have at time t of the simulation [s]; whether one
-  /// changed, and with it the forces.
-  bool sew(double t);
+  /// Gives cloths that are being sewn the rest shape that they have at time t of the simulation [s].
+  void sew(double t);
 
   /// Which particles pins hold from now on; whether that is a change, and with it the stiffness at the borders of pins.
   bool hold(std::span<const integrator::HeldParticle> pinned);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
+#include <vector>
 
 #include "compare/pictures.hpp"
 #include "core/error.hpp"
@@ -102,6 +104,42 @@ TEST(Compare, DefaultsPassTheNoiseOfProcessors) {
 TEST(Compare, DefaultsCatchOneLevelEverywhere) {
   EXPECT_EQ(verdict(compare(plain(320, 180, 150, 150, 150), plain(320, 180, 151, 151, 151), 4).figures, {}),
             Verdict::differs);
+}
+
+/// Of a frame that differs a little everywhere.
+Figures mild(double flip) {
+  Figures figures;
+  figures.pixels = 1000, figures.pixels_changed = 900, figures.pixels_over = 10;
+  figures.flip = flip, figures.spot = 0.1;
+  return figures;
+}
+
+/// Whether frame 20 - `before` is spill of frame 20, whose map has the mean `changed`.
+bool is_spill_of(const Figures& frame, double changed, std::size_t before = 2) {
+  std::vector<Figures> frames(40);
+  for (Figures& other : frames) other.pixels = 1000;
+  frames[20] = mild(changed);
+  frames[20 - before] = frame;
+  return is_spill(frames, 20 - before, with_encoder_noise({}));
+}
+
+TEST(Compare, SpillIsNearAChangedFrameAndLessThanAThirdOfIt) {
+  EXPECT_TRUE(is_spill_of(mild(0.025), 0.1));
+  EXPECT_TRUE(is_spill_of(mild(0.025), 0.1, 12));
+  EXPECT_FALSE(is_spill_of(mild(0.025), 0.1, 13));
+  EXPECT_TRUE(is_spill_of(mild(0.025), 0.0751));
+  EXPECT_FALSE(is_spill_of(mild(0.025), 0.0749));
+}
+
+TEST(Compare, SpillExceedsOnlyLimitsOfMeansAndByLessThanTwice) {
+  const double limit = with_encoder_noise({}).flip;
+  EXPECT_TRUE(is_spill_of(mild(1.99 * limit), 1));
+  EXPECT_FALSE(is_spill_of(mild(2.01 * limit), 1));
+  Figures spotted = mild(0.025), scattered = spotted;
+  spotted.spot = 0.5;
+  scattered.pixels_over = 30;
+  EXPECT_FALSE(is_spill_of(spotted, 1));
+  EXPECT_FALSE(is_spill_of(scattered, 1));
 }
 
 TEST(Compare, HeatMapShowsTheSquareRootOfTheMapOnTheHeatScale) {

@@ -69,12 +69,5 @@ TEST(Ties, AreOpenAndClosedAtTheirTimes) {
   EXPECT_NEAR(held(0.5, 1, kAfter), kPull, 1e-6);
 }
 
-TEST(Ties, SayWhetherTheyHaveChanged) {
-  Ties ties = tie_of(1, kNever);
-  EXPECT_TRUE(ties.use(0, 1));
-  EXPECT_FALSE(ties.use(0.5, 1));
-  EXPECT_TRUE(ties.use(1, 1));
-}
-
 }  // namespace
 }  // namespace weft::forces

@@ -195,6 +195,8 @@ TEST(Simulation, EqualStepsLeadToTheSameBitsInFramesOfAnyLength) {
   scene::Scene coarse = sheet_on_ball();
   coarse.time.step = 0.01;
   coarse.time.fps = 25;
+  coarse.obstacles[0].motion.keys = {{0, coarse.obstacles[0].pose}, {0.3, coarse.obstacles[0].pose}};
+  coarse.obstacles[0].motion.keys[1].pose.position += Vec3(0.05, 0, 0.1);
   scene::Scene fine = coarse;
   fine.time.fps = 100;
   Simulation few(coarse), many(fine);
