@@ -2,11 +2,10 @@
 
 #include <algorithm>
 
+#include "core/numerics.hpp"
+
 namespace weft::collision {
 namespace {
-
-// Bounds of slow steps are enlarged by this much more, in reaches, so that the candidates hold for several steps.
-constexpr double kSkin = 0.5;
 
 // Where pairs are kept with their closest points they are listed as a whole, else ProximityFinder knows who shares a
 // vertex.
@@ -57,7 +56,10 @@ CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<co
   for (std::size_t i = 0; i < x_t0.size(); ++i)
     if (!is_clear(bodies_.body_of(static_cast<Index>(i))))
       way = std::max(way, (high_t1[i] - x_t0[i]).cwiseMax(x_t0[i] - low_t1[i]).maxCoeff());
-  const double margin = (0.5 + (parameters_.reuse && way < kSkin * reach_ ? kSkin : 0.0)) * reach_;
+  const double margin =
+      (0.5 + (parameters_.reuse && way < numerics.contact.candidate_margin * reach_ ? numerics.contact.candidate_margin
+                                                                                    : 0.0)) *
+      reach_;
   refit(motion, margin);
   pairs_.clear();
   for (const auto& [a, b] : wanted_) a == b ? broad_phase_.self_pairs(a, pairs_) : broad_phase_.pairs(a, b, pairs_);

@@ -5,34 +5,10 @@
 #include <limits>
 #include <utility>
 
+#include "core/numerics.hpp"
+
 namespace weft::collision {
 namespace {
-
-// Stiffness of a contact against m/h² of its particles: a particle that arrives with speed v then comes to rest within
-// v h / 100, so even a heavy cloth stops well inside the range. h is time.step, whatever steps are taken: a law that
-// changed with every length that time.tolerance chooses threw a strip on a cylinder 11 cm off its way, without a word.
-constexpr double kInertialStiffness = 100;
-
-// Sum of sines from which two edges are sharp: their pair has its whole share.
-constexpr double kSharp = 0.2;
-// Sine of the angle outside of a wedge at which the share of a pair of edges has faded out.
-constexpr double kOutsideWedge = 0.1;
-// Part of an edge, from its end, over which the share of a closest point there fades out.
-constexpr double kEndOfEdge = 0.1;
-
-// Speed at which cloth is pushed out of an obstacle that it was pinched into [m/s]: out of 5 mm within a frame, and not
-// enough to hop over 2 mm.
-constexpr double kHealingSpeed = 0.2;
-// Share of the stiffness of a contact that does so where there is no room: full stiffness between two obstacles clamps
-// the cloth and costs twice the Newton iterations. Where there is room it has to lift what hangs on the cloth.
-constexpr double kHealingShare = 0.05;
-
-// By what a contact is stiffer for each time but one that its cloth was pushed away in the step before, and how often
-// at most: threads that lock are stiffer than contacts, and cloth between jaws slipped through them again and again
-// (16,173 iterations for 2,892, its limit to stretch being 0.15). Only before obstacles that move: where sheets fall on
-// still ones and on each other it takes a quarter more iterations (multi_sheet, 7,120 for 5,660) and mends nothing.
-constexpr double kHardening = 3;
-constexpr int kMostHardenings = 5;
 
 constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
@@ -62,8 +38,9 @@ double stiffness_share(const Proximity& proximity) {
   const auto& outside = proximity.outside_wedge;
   double least = 1;
   for (double weight : proximity.weights) least = std::min(least, std::abs(weight));
-  return ramp(kFlattest, kSharp, -outside[0] - outside[1]) *
-         ramp(-kOutsideWedge, 0, -std::max(outside[0], outside[1])) * ramp(0, kEndOfEdge, least);
+  return ramp(numerics.contact.flat_fold, numerics.contact.sharp_fold, -outside[0] - outside[1]) *
+         ramp(-numerics.contact.wedge_fade, 0, -std::max(outside[0], outside[1])) *
+         ramp(0, numerics.contact.end_fade, least);
 }
 
 // Friction of a pair: the geometric mean of both coefficients, or what the pair has of its own.
@@ -93,8 +70,8 @@ void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPa
 
 void ContactBuilder::add_pinched(const PinchedPairs::Push& push, const StepMotion& motion,
                                  ContactResponse& response) const {
-  const double share = push.has_room ? 1 : kHealingShare;
-  auto contact = build(push.way, share, push.way.distance + kHealingSpeed * motion.h, motion);
+  const double share = push.has_room ? 1 : numerics.contact.depenetration_stiffness;
+  auto contact = build(push.way, share, push.way.distance + numerics.contact.depenetration_velocity * motion.h, motion);
   if (!contact) return;
   contact->full_range = kNoLimit;  // no stiffer as it is deeper
   contact->friction = contact->static_friction = 0;
@@ -180,9 +157,10 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double sha
   contact.full_range = 0.5 * (bodies_.skins()[sides[0]].thickness + bodies_.skins()[sides[1]].thickness);
   contact.range = std::min(range_limit, contact.full_range);
   contact.depth = contact.range - contact.normal.dot(relative);
-  contact.stiffness = share * std::max(stiffness_, kInertialStiffness * mass / mass_weight / (step_ * step_));
+  contact.stiffness =
+      share * std::max(stiffness_, numerics.contact.inertial_stiffness * mass / mass_weight / (step_ * step_));
   if (contact.obstacle_start != contact.obstacle_end)
-    contact.stiffness *= std::pow(kHardening, std::clamp(failures - 1, 0, kMostHardenings));
+    contact.stiffness *= std::pow(numerics.contact.hardening, std::clamp(failures - 1, 0, numerics.contact.hardenings));
   const Friction& friction = friction_of(sides[0], sides[1]);
   contact.friction = friction.sliding;
   contact.static_friction = friction.static_friction;

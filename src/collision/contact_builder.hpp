@@ -45,8 +45,6 @@ struct StepMotion {
 /// outside of a wedge, where a face at the edge is closer, and towards the ends of either edge: nothing is switched on
 /// or off while cloth rests. Between two smooth layers that leaves a fifth of the contacts.
 double stiffness_share(const Proximity& proximity);
-/// Fold of two edges, as a sum of sines, below which a pair of them has no share.
-inline constexpr double kFlattest = 0.05;
 
 class ContactBuilder {
  public:

@@ -5,27 +5,17 @@
 #include <limits>
 
 #include "core/archive.hpp"
+#include "core/numerics.hpp"
 #include "core/parallel_append.hpp"
 
 namespace weft::collision {
 namespace {
 
-// Contacts are prepared up to this multiple of the range: those that come into range during the step are then in its
-// solve. Beyond, whatever would meet is found by the failing certificates.
-constexpr double kReachOfRange = 1.5;
-// Motion of a vertex that the features gathered survive, in reaches.
-constexpr double kGatherSkin = 0.25;
-// Relative motion that kept closest points survive, in reaches: they are then a quarter of the reach farther apart than
-// their features at most. With half of the reach twice as many are kept (tests/bench/README.md).
-constexpr double kCoherenceBudget = 0.125;
-// Pairs whose closest features a thread looks for at once.
-constexpr std::size_t kPairsAtOnce = 64;
-
 // Distance below which contacts are prepared [m].
 double reach_of(const Bodies& bodies) {
   double range = 0;
   for (const Skin& skin : bodies.skins()) range = std::max(range, skin.thickness);
-  return kReachOfRange * range;
+  return numerics.contact.detection * range;
 }
 
 }  // namespace
@@ -44,8 +34,9 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
   const double reach = candidates_.reach();
   if (parameters.search.coherence)
-    coherence_.emplace(bodies_.surfaces(), candidates_.wanted(), x,
-                       CoherenceParameters{reach, kCoherenceBudget * reach, kFlattest});
+    coherence_.emplace(
+        bodies_.surfaces(), candidates_.wanted(), x,
+        CoherenceParameters{reach, numerics.contact.coherence_margin * reach, numerics.contact.flat_fold});
 }
 
 void Engine::forget() {
@@ -83,7 +74,7 @@ void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
 // Features that may come within the reach not far from x. Of the pairs only those whose separating planes leave them
 // near can have some.
 void Engine::gather(std::span<const Vec3> x) {
-  const double skin = kGatherSkin * candidates_.reach();
+  const double skin = numerics.contact.feature_margin * candidates_.reach();
   const auto is_near = [&] {
     for (std::size_t v = 0; v < x.size(); ++v)
       if (!((x[v] - gathered_at_[v]).squaredNorm() <= skin * skin) && !candidates_.is_kept_clear(v, x[v])) return false;
@@ -94,9 +85,10 @@ void Engine::gather(std::span<const Vec3> x) {
   closer_.clear();
   separation_.append_closer(radius, x, closer_);
   if (meets_itself_)
-    finder_.gather(closer_, bodies_.deformable(), x, radius, kFlattest, separation_.open_triangles(radius, x));
+    finder_.gather(closer_, bodies_.deformable(), x, radius, numerics.contact.flat_fold,
+                   separation_.open_triangles(radius, x));
   else
-    finder_.gather(closer_, {}, x, radius, kFlattest, {});
+    finder_.gather(closer_, {}, x, radius, numerics.contact.flat_fold, {});
   gathered_at_.assign(x.begin(), x.end());
 }
 
@@ -170,7 +162,7 @@ void Engine::look_ahead(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) 
 // Adds contacts of these pairs; returns how many are new.
 int Engine::add_failing(std::span<const CornerPair> pairs, const StepMotion& motion) {
   std::vector<ClosestFeatures> closest(pairs.size());
-  parallel_for(pairs.size(), kPairsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(pairs.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; ++p) closest[p] = closest_features(pairs[p], motion.x_from);
   });
   int fresh = 0;

@@ -33,7 +33,7 @@ struct EngineParameters {
   SearchParameters search;
   ContactParameters contact;
   ResponseForm response = ResponseForm::springs;
-  double stick_speed = ContactSet::kStickSpeed;  ///< of springs [m/s]
+  double stick_speed = numerics.contact.stick_velocity;  ///< of springs [m/s]
 };
 
 class Engine {

@@ -15,6 +15,10 @@ namespace weft {
 void set_thread_count(int threads);
 int thread_count();
 
+/// Items of a chunk: of vectors and of lists of pairs, some 10 to 50 µs; and of what is dearer, a contact or a leaf.
+/// Sums have the bits of their chunks.
+inline constexpr std::size_t kGrainSize = 1024, kFineGrainSize = 256;
+
 /// Calls body(begin, end) for consecutive chunks of [0, count) with `chunk` items each. Chunks must write to disjoint
 /// data.
 template <class Body>

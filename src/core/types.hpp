@@ -25,6 +25,9 @@ inline std::size_t at(Index i) {
   return static_cast<std::size_t>(i);
 }
 
+/// Ratios and lengths [m] far above rounding, and far below any that matters.
+inline constexpr double kRoundoff = 1e-9;
+
 inline constexpr double kDegree = std::numbers::pi / 180;  ///< [rad]
 
 }  // namespace weft

@@ -7,9 +7,6 @@
 namespace weft::forces {
 namespace {
 
-// Pieces of threads that are looked at at once.
-constexpr std::size_t kPiecesAtOnce = 1024;
-
 // Below the onset a piece has to have some stiffness, for its tension to tell where it is; any leads to the same end.
 StretchParameters some(StretchParameters below) {
   constexpr double kLeast = 1;  // [N/m]
@@ -176,7 +173,7 @@ void StretchLimit::lock(const Thread& piece, const Vec3& s, const double* lag, c
 
 void StretchLimit::begin(std::span<const Vec3> x, LockLag& lag) const {
   lag.extensions.resize(threads_.size());
-  parallel_for(threads_.size(), kPiecesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(threads_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       lag.extensions[t] = derivative(threads_[t], threads_[t].along, x).norm() - 1;
   });
@@ -186,7 +183,7 @@ void StretchLimit::update(std::span<const Vec3> x, bool first, LockLag& lag) con
   const Lock lock(stretch_);
   const double onset = lock.onset(), onset_sq = (1 + onset) * (1 + onset);
   lag.near.clear();
-  parallel_append(threads_.size(), kPiecesAtOnce, lag.near, [&](std::size_t begin, std::size_t end, auto& near) {
+  parallel_append(threads_.size(), kGrainSize, lag.near, [&](std::size_t begin, std::size_t end, auto& near) {
     for (std::size_t t = begin; t < end; ++t) {
       const double length_sq = derivative(threads_[t], threads_[t].along, x).squaredNorm();
       double& at = lag.extensions[t];
@@ -246,7 +243,7 @@ double StretchLimit::energy(std::span<const Vec3> x) const {
 StretchLimit::Worst StretchLimit::worst(std::span<const Vec3> x) const {
   using Longest = std::pair<double, std::ptrdiff_t>;  // ‖s‖², and minus the number: of several the first
   const Longest none{1, 1},
-      longest = parallel_max(threads_.size(), kPiecesAtOnce, none, [&](std::size_t begin, std::size_t end) {
+      longest = parallel_max(threads_.size(), kGrainSize, none, [&](std::size_t begin, std::size_t end) {
         Longest most = none;
         for (std::size_t t = begin; t < end; ++t)
           most = std::max(

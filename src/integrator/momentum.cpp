@@ -8,9 +8,6 @@
 namespace weft::integrator {
 namespace {
 
-// Sum of the weights of a term up to which its two sides balance; rounding of barycentric weights is 1e-16.
-constexpr double kBalanced = 1e-9;
-
 /// Disjoint sets of parts, each named by its lowest part.
 class Groups {
  public:
@@ -52,7 +49,7 @@ void add_term(const solver::StencilTerm& term, Groups& groups) {
     else
       groups.join(groups.of_particle(term.particles[first]), groups.of_particle(term.particles[k]));
   }
-  if (first >= 0 && std::abs(sum) > kBalanced) groups.hold(groups.of_particle(term.particles[first]));
+  if (first >= 0 && std::abs(sum) > kRoundoff) groups.hold(groups.of_particle(term.particles[first]));
 }
 
 }  // namespace

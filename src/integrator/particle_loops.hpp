@@ -10,13 +10,10 @@
 
 namespace weft::integrator {
 
-/// Particles that a thread takes at once.
-inline constexpr std::size_t kParticlesAtOnce = 1024;
-
 /// Calls body(i) for all of `count` particles.
 template <class Body>
 void for_each_particle(std::size_t count, const Body& body) {
-  parallel_for(count, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(count, kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) body(i);
   });
 }
@@ -31,7 +28,7 @@ void for_each_particle(const solver::Part& rows, const Body& body) {
 template <class Body>
 double sum_over_particles(const solver::Part& rows, const Body& body) {
   const auto first = static_cast<std::size_t>(rows.begin), count = static_cast<std::size_t>(rows.end) - first;
-  return parallel_sum(count, kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
+  return parallel_sum(count, kGrainSize, [&](std::size_t begin, std::size_t end) {
     double sum = 0;
     for (std::size_t i = first + begin; i < first + end; ++i) sum += body(i);
     return sum;

@@ -3,14 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics.hpp"
+
 namespace weft::integrator {
-namespace {
-
-// Friction that the motion of a part takes, against the most that it can be, from which the part counts as about to
-// slide. From 0.5 on sheets go as far down their slopes.
-constexpr double kAboutToSlide = 0.9;
-
-}  // namespace
+namespace {}  // namespace
 
 bool Sliding::evaluate(const System& system, const StagePoint& at) {
   for (auto* force : {&push_, &friction_}) force->assign(at.v.size(), Vec3::Zero());
@@ -33,7 +29,7 @@ double Sliding::wrong_friction(const solver::Part& rows, std::span<const Vec3> r
   // Friction that the motion takes, and the most that its load allows.
   const double along = missing.dot(friction) / rubbed, taken = rubbed - along;
   const double most = limit * (1 - missing.dot(push) / (pushed * load));
-  return taken > kAboutToSlide * most ? std::max(std::abs(along), taken - most) : 0;
+  return taken > numerics.newton.about_to_slide * most ? std::max(std::abs(along), taken - most) : 0;
 }
 
 bool is_held(const solver::Part& rows, std::span<const solver::ParticleConstraint> constraints) {

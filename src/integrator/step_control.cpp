@@ -3,21 +3,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics.hpp"
+
 namespace weft::integrator {
 namespace {
 
-// Share of the tolerance that is aimed at, so that few steps miss it.
-constexpr double kAim = 0.7;
 // The proportional-integral controller PI.4.2 (Söderlind, "Digital filters in adaptive time-stepping", ACM TOMS 29,
 // 2003): exponents of this share and of the last one, over the order plus one.
 constexpr double kNow = 3.0 / 5, kBefore = -1.0 / 5;
-// A step that is right within these factors stays, and with it the matrix and its preconditioner.
-constexpr double kKeepFrom = 0.9, kKeepTo = 1.1;
-// Growth in one step. Of the change of the error in one step BDF2 takes r² / (1 + 2r) on into the next: at 2, its
-// bound, that is four fifths, here half.
-constexpr double kLeastFactor = 0.2, kLargestFactor = 1.5;
-// Least error that counts, as a share of the tolerance.
-constexpr double kLeastError = 1e-6;
 
 }  // namespace
 
@@ -25,23 +18,23 @@ StepControl::StepControl(Method method, double tolerance, double first)
     : order_plus_one_(method == Method::implicit_euler ? 2 : 3), tolerance_(tolerance), wanted_(first) {}
 
 bool StepControl::accepts(double h, double error) const {
-  return meets(error) || (h <= kLeastStep && std::isfinite(error));
+  return meets(error) || (h <= numerics.steps.least && std::isfinite(error));
 }
 
 // What was aimed at over what came.
 double StepControl::aim_over(double error) const {
-  return kAim * tolerance_ / std::max(error, kLeastError * tolerance_);
+  return numerics.steps.aim * tolerance_ / std::max(error, kRoundoff * tolerance_);
 }
 
 void StepControl::accepted(double h, double error) {
   const double share = aim_over(error), alone = std::pow(share, 1 / order_plus_one_);
-  if (alone > kKeepFrom && alone < kKeepTo) {
+  if (alone > 1 - numerics.steps.kept_change && alone < 1 + numerics.steps.kept_change) {
     wanted_ = h;
   } else {
     const double factor = std::pow(share, kNow / order_plus_one_) * std::pow(last_share_, kBefore / order_plus_one_);
     // Steps are shorter than wanted where that makes them end with the frame: growth goes on from what was wanted.
-    const double longest = (after_failure_ ? 1 : kLargestFactor) * std::max(h, wanted_);
-    wanted_ = std::clamp(std::max(factor, kLeastFactor) * h, kLeastStep, longest);
+    const double longest = (after_failure_ ? 1 : numerics.steps.largest_factor) * std::max(h, wanted_);
+    wanted_ = std::clamp(std::max(factor, numerics.steps.least_factor) * h, numerics.steps.least, longest);
   }
   last_share_ = share;
   after_failure_ = false;
@@ -50,7 +43,8 @@ void StepControl::accepted(double h, double error) {
 // The elementary controller: the last error has nothing to say of a step that went wrong.
 void StepControl::too_inexact(double h, double error) {
   const double factor = std::pow(aim_over(error), 1 / order_plus_one_);
-  wanted_ = std::max(h * std::clamp(factor, kLeastFactor, kKeepFrom), kLeastStep);
+  wanted_ = std::max(h * std::clamp(factor, numerics.steps.least_factor, 1 - numerics.steps.kept_change),
+                     numerics.steps.least);
   after_failure_ = true;
 }
 

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/archive.hpp"
+#include "core/numerics.hpp"
 #include "integrator/stepper.hpp"
 
 namespace weft::integrator {
@@ -19,7 +20,7 @@ class StepControl {
   /// The tolerance and the estimates are lengths [m]; `first` is the length of the first step [s].
   StepControl(Method method, double tolerance, double first);
 
-  /// Whether a step over h with this error may stand. Steps of kLeastStep do in any case.
+  /// Whether a step over h with this error may stand. Steps of the least length do in any case.
   bool accepts(double h, double error) const;
   bool meets(double error) const { return error <= tolerance_; }
 
@@ -35,15 +36,9 @@ class StepControl {
     serialize_values(archive, wanted_, last_share_);
     // Half of the shortest step may be wanted after it failed.
     if constexpr (Archive::kReads)
-      require(wanted_ >= 0.1 * kShortestStep && std::isfinite(wanted_) && std::isfinite(last_share_), "a step length");
+      require(wanted_ >= 0.1 * numerics.steps.shortest && std::isfinite(wanted_) && std::isfinite(last_share_),
+              "a step length");
   }
-
-  /// Steps are not cut below this for their error [s]. Where only an impact's jump of velocity counts, the error is
-  /// about h Δv, and 1e-4 m with 10 m/s is just met by it; smooth motion meets 1e-9 m with it.
-  static constexpr double kLeastStep = 1e-5;
-  /// What cannot be solved in steps of this length [s] is not solved in shorter ones either: where contacts keep
-  /// Newton's method from its end, lengths would go down for ever, with an accepted step now and then.
-  static constexpr double kShortestStep = 1e-7;
 
  private:
   double aim_over(double error) const;

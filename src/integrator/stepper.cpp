@@ -5,6 +5,7 @@
 #include <limits>
 #include <utility>
 
+#include "core/numerics.hpp"
 #include "core/stop.hpp"
 #include "integrator/momentum.hpp"
 #include "integrator/particle_loops.hpp"
@@ -12,45 +13,13 @@
 namespace weft::integrator {
 namespace {
 
-// Share of what may be left that the linear solver may leave.
-constexpr double kLinearShare = 0.5;
-// And with the midpoint rule, which damps nothing, in the first solve of a step; and the share of the linear tolerance
-// there. What is always left of stiff motion grows, step by step, up to the goal: a flat sheet in free fall folded by a
-// tenth of a millimetre.
-constexpr double kUndampedLinearShare = 0.01;
-constexpr double kUndampedTolerance = 0.1;
-// Slope behind the minimum, against that at the start, from which a step counts as overshooting.
-constexpr double kOvershoot = 0.7;
-constexpr int kLineTrials = 6;
-// Slope from which it counts as too short, and how far it may go then.
-constexpr double kUndershoot = 0.5, kFarthest = 4;
-// A part of the system (a cloth) is left alone while what is left of it is below this share of what may be.
-constexpr double kSolvedShare = 0.5;
-// Iterations of a solve from which all are solved for again: parts that press on each other and are solved in turns may
-// chase each other (three layers between plates that slide, steps of 40 ms: no solution in 60 iterations).
-constexpr int kTogether = 10;
-// How long a velocity that Newton leaves counts [s], the same way in step after step: the time of a swing of a metre.
-constexpr double kSwingTime = 0.3;
-// And for so many steps at least: in long ones less would let in energy faster than they damp it.
-constexpr double kLastingSteps = 5;
 // Roundings of positions that no solver goes below.
 constexpr double kRoundings = 32;
-// An acceleration that nobody sees, times the tolerance [m/s²]: at 0.3 it moves cloth by 0.1 mm in a swing.
-constexpr double kUnseen = 0.01;
-// Iterations of a solve after which a velocity that nobody sees may be left too, times the tolerance [m/s]: at 0.3 it
-// moves cloth by a hundredth of a millimetre in a frame. So may this ratio of Euler's error of velocity. Friction of
-// bending flips with less in small cells, contacts of tight cloth converge slowly, and shorter steps would not help.
-constexpr int kPatience = 20;
-constexpr double kUnseenSpeed = 1e-3, kVelocityRatio = 0.5;
-
-// Share of the velocity that may be left by which a whole cloth may slide wrongly. With 0.3 sheets that fall onto
-// slopes half a degree too steep lose 3 % of their way in two of nine cases.
-constexpr double kSlidingShare = 0.2;
 
 // The largest coordinate of a part [m].
 double size_of(const solver::Part& rows, std::span<const Vec3> x) {
   const auto part = x.subspan(static_cast<std::size_t>(rows.begin), static_cast<std::size_t>(rows.end - rows.begin));
-  return parallel_max(part.size(), kParticlesAtOnce, 0.0, [&](std::size_t begin, std::size_t end) {
+  return parallel_max(part.size(), kGrainSize, 0.0, [&](std::size_t begin, std::size_t end) {
     double largest = 0;
     for (std::size_t i = begin; i < end; ++i) largest = std::max(largest, part[i].cwiseAbs().maxCoeff());
     return largest;
@@ -137,7 +106,7 @@ void Stepper::residual(System& system, const State& now, const Stage& stage, Equ
 
 // How long a velocity that is left counts [s].
 double Stepper::carried_on(double h) {
-  return std::max(kLastingSteps * h, 0.5 * kSwingTime);
+  return std::max(numerics.newton.lasting_steps * h, 0.5 * numerics.newton.swing_time);
 }
 
 // Velocity [m/s], root mean square over the mass of a part, that the solver may leave: what moves the part in the time
@@ -145,13 +114,15 @@ double Stepper::carried_on(double h) {
 // step would not do: where steps h follow a tolerance as h^(p+1) it would cost the method an order.
 void Stepper::allow_velocities(double h, int iterations) {
   const double time = carried_on(h);
-  double unseen = kUnseen * h * time;
+  double unseen = numerics.newton.unseen_acceleration * h * time;
   if (parameters_.position_tolerance > 0) unseen = std::min(unseen, parameters_.position_tolerance);
   for (PartState& part : parts_) {
     double error = std::max(part.local_error, unseen) / time;
-    if (iterations >= kPatience) error = std::max(error, kVelocityRatio * part.velocity_error);
+    if (iterations >= numerics.newton.patience)
+      error = std::max(error, numerics.newton.velocity_ratio * part.velocity_error);
     part.allowed = std::max(parameters_.tolerance * error, part.rounding);
-    part.may_slide = std::max({kSlidingShare * part.allowed, parameters_.tolerance * unseen / time, part.rounding});
+    part.may_slide = std::max(
+        {numerics.newton.sliding_fraction * part.allowed, parameters_.tolerance * unseen / time, part.rounding});
   }
 }
 
@@ -204,10 +175,11 @@ void Stepper::estimate_slides(const System& system, const Stage& stage) {
 }
 
 bool Stepper::is_solved(int iterations, double h) const {
-  double most = iterations < kPatience ? 0 : parameters_.tolerance * kUnseenSpeed;
+  double most = iterations < numerics.newton.patience ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity;
   if (parameters_.position_tolerance > 0) most = std::min(most, parameters_.position_tolerance / carried_on(h));
   return std::ranges::all_of(parts_, [&](const PartState& part) {
-    return part.left <= std::max(part.allowed, most) && (part.slides <= part.may_slide || iterations >= kTogether);
+    return part.left <= std::max(part.allowed, most) &&
+           (part.slides <= part.may_slide || iterations >= numerics.newton.solve_together_after);
   });
 }
 
@@ -215,7 +187,8 @@ bool Stepper::is_solved(int iterations, double h) const {
 void Stepper::select_unsolved(int iterations) {
   unsolved_.clear();
   for (std::size_t p = 0; p < parts_.size(); ++p)
-    if (iterations >= kTogether || parts_[p].excess() > kSolvedShare) unsolved_.push_back(p);
+    if (iterations >= numerics.newton.solve_together_after || parts_[p].excess() > numerics.newton.linear_fraction)
+      unsolved_.push_back(p);
 }
 
 // Moves x along delta_: the whole way, less where the whole way overshoots, or farther where it hardly gets nearer.
@@ -235,17 +208,21 @@ double Stepper::search_along_delta(System& system, const State& now, const Stage
     residual(system, now, stage, Equation::linear);
     const double slope = dot(residual_, delta_);
     if (!std::isfinite(slope)) return slope;
-    const bool short_of = slope > kUndershoot * start_slope, beyond = slope < -kOvershoot * start_slope;
-    if (trial == kLineTrials || (!beyond && (high > 0 ? slope <= kOvershoot * start_slope : !short_of))) break;
+    const bool short_of = slope > numerics.newton.undershoot * start_slope,
+               beyond = slope < -numerics.newton.overshoot * start_slope;
+    if (trial == numerics.newton.line_trials ||
+        (!beyond && (high > 0 ? slope <= numerics.newton.overshoot * start_slope : !short_of)))
+      break;
     if (beyond) {
       high = fraction, high_slope = slope;
     } else {
       low = fraction, low_slope = slope;
-      if (high == 0 && fraction >= kFarthest) break;
+      if (high == 0 && fraction >= numerics.newton.longest_search) break;
     }
     if (high == 0) {
-      fraction =
-          low_slope < start_slope ? std::min(kFarthest, fraction * start_slope / (start_slope - slope)) : kFarthest;
+      fraction = low_slope < start_slope
+                     ? std::min(numerics.newton.longest_search, fraction * start_slope / (start_slope - slope))
+                     : numerics.newton.longest_search;
     } else {
       // Regula falsi, kept away from the ends.
       const double guess = low + (high - low) * low_slope / (low_slope - high_slope);
@@ -385,8 +362,8 @@ void Stepper::balance_momentum(std::span<const double> masses, const solver::Lin
 solver::LinearReport Stepper::solve_linear(int iteration, std::span<const Vec3> start) {
   goals_.clear();
   const bool damps = method_ != Method::implicit_midpoint;
-  const double share = damps || iteration > 0 ? kLinearShare : kUndampedLinearShare;
-  const double relative = (damps ? 1 : kUndampedTolerance) * parameters_.linear_tolerance;
+  const double share = damps || iteration > 0 ? numerics.newton.linear_fraction : numerics.newton.undamped_fraction;
+  const double relative = (damps ? 1 : numerics.newton.undamped_tolerance) * parameters_.linear_tolerance;
   for (const PartState& part : parts_) goals_.push_back(share * part.allowed * std::sqrt(part.mass));
   const Stopwatch watch(times_.linear);
   return cg_.solve(residual_, {relative, goals_}, parameters_.max_linear_iterations, delta_, start, unsolved_);

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "core/archive.hpp"
+#include "core/numerics.hpp"
 #include "core/parallel.hpp"
 #include "forces/air.hpp"
 #include "forces/bend.hpp"
@@ -19,13 +20,6 @@
 
 namespace weft::simulation {
 namespace {
-
-// Groups on the preconditioner's coarsest level at most. Its dense factorisation costs 9 kPatches³ operations: as much
-// as a few products with the matrix of 4,000 particles.
-constexpr Index kPatches = 70;
-// Groups longer than so many times their width grow in width only. Where they grew both ways, strips of cells of 0.1 m
-// by 1e-5 m swung with 0.8 of their energy.
-constexpr double kSlender = 2;
 
 // Particles that a thread adds forces to at once, at least; and how many such ranges of a cloth for each thread at
 // most, so that none waits long for another.
@@ -91,7 +85,7 @@ void coarsen(Lattice& lattice) {
   for (std::size_t axis = 0; axis < 3; ++axis)
     if (last[axis] > 0) least = std::min(least, lattice.sides[axis]);
   for (std::size_t axis = 0; axis < 3; ++axis) {
-    if (lattice.sides[axis] > kSlender * least) continue;
+    if (lattice.sides[axis] > numerics.linear.slender_aggregate * least) continue;
     lattice.sides[axis] *= 2;
     for (Box& box : lattice.boxes) box[axis] /= 2;
   }
@@ -247,7 +241,7 @@ void ClothSystem::cut_ranges() {
   }
 }
 
-// Of two by two boxes, again and again, until kPatches or fewer are left in all, or one of each cloth.
+// Of two by two boxes, again and again, until few enough are left in all, or one of each cloth.
 void ClothSystem::cut_groups(const environment::Environment& environment) {
   std::vector<Lattice> lattices;
   for (const environment::ClothObject& cloth : environment.cloths) lattices.push_back(lattice_of(cloth));
@@ -266,7 +260,8 @@ void ClothSystem::cut_groups(const environment::Environment& environment) {
       members = std::move(halved);
     }
     groupings_.push_back(std::move(grouping));
-  } while (groupings_.back().count > std::max(kPatches, static_cast<Index>(lattices.size())));
+  } while (groupings_.back().count >
+           std::max(numerics.linear.coarsest_aggregates, static_cast<Index>(lattices.size())));
 }
 
 void ClothSystem::Sewing::use_share(double new_share) {

@@ -9,27 +9,12 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
+#include "core/numerics.hpp"
 #include "mesh/geometry.hpp"
 #include "simulation/meetings.hpp"
 
 namespace weft::simulation {
 namespace {
-
-// Largest contact thickness in shares of the particles' spacing. Triangles that nearly neighbour each other are at
-// least 0.7 spacings apart; much more, and a sheared sheet would push against itself in its own plane.
-constexpr double kThicknessOfSpacing = 0.25;
-
-// Share of the particles' spacing by which cloth that sticks may creep in a second, where that is more than the stick
-// speed: a spacing of 1 m and contacts that let go at 0.2 mm/s take half as many iterations of Newton's method again.
-constexpr double kCreepOfSpacing = 0.002;
-
-// Largest distance of an obstacle's arc from its chord in shares of the reach. The search covers half of the reach
-// around straight ways.
-constexpr double kLargestSagitta = 0.25;
-
-// Motion of obstacles in a step, in reaches, below which a shorter one finds no way out for cloth that this one finds
-// none for: no more than what keeps contacts in sight.
-constexpr double kCreep = 0.5;
 
 bool bodies_collide(const scene::Scene& scene) {
   const auto collides = [](const auto& body) { return body.collide; };
@@ -86,14 +71,15 @@ collision::EngineParameters engine_parameters(const scene::Scene& scene, const e
                      search_options(contact.search)},
           .contact = {contact.stiffness, scene.time.step, friction_pairs(scene, environment)},
           .response = velocity ? collision::ResponseForm::velocity_constraints : collision::ResponseForm::springs,
-          .stick_speed = std::max(collision::ContactSet::kStickSpeed, kCreepOfSpacing * spacing)};
+          .stick_speed = std::max(numerics.contact.stick_velocity, numerics.contact.stick_spacings * spacing)};
 }
 
 collision::Bodies make_bodies(const scene::Scene& scene, const environment::Environment& environment) {
   collision::Bodies bodies;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const scene::Material& material = scene.cloths[c].material;
-    const double thickness = std::min(material.thickness, kThicknessOfSpacing * environment.cloths[c].spacing);
+    const double thickness =
+        std::min(material.thickness, numerics.contact.thickness_of_spacing * environment.cloths[c].spacing);
     const mesh::Mesh& mesh = environment.cloths[c].mesh;
     bodies.add(mesh.topology.triangles, static_cast<Index>(mesh.positions.size()),
                {.deformable = true, .thickness = thickness, .friction = material.friction});
@@ -196,7 +182,7 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
 }
 
 bool CollisionStage::turns_too_far(double t, double h, const Moment& now) const {
-  const double most = kLargestSagitta * engine_.reach();
+  const double most = numerics.separation.sagitta * engine_.reach();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (radii_[b] == 0) continue;
     // Between keys the speed of turning is nearly even; at its last key a body stands.
@@ -225,7 +211,7 @@ bool CollisionStage::bodies_stay(double t0, double t1, Moment& now, Moment& next
 }
 
 bool CollisionStage::obstacles_creep(const Moment& now, const Moment& next) const {
-  const double most = kCreep * engine_.reach();
+  const double most = numerics.separation.creep * engine_.reach();
   for (std::size_t v = particles_; v < now.x.size(); ++v)
     if ((next.x[v] - now.x[v]).squaredNorm() > most * most &&
         !engine_.is_clear(engine_.bodies().body_of(static_cast<Index>(v))))

@@ -6,22 +6,11 @@
 #include <cmath>
 
 #include "core/error.hpp"
+#include "core/numerics.hpp"
 #include "simulation/collision_stage.hpp"
 
 namespace weft::simulation {
 namespace {
-
-// Share of the energies in play that may have been gained. A run of the midpoint rule that explodes gains all of them
-// within some frames; the worst of what the tolerance of Newton's method did on the stability map is 0.07.
-constexpr double kGain = 0.3;
-// And that is warned of.
-constexpr double kDoubtfulGain = 0.1;
-// Energy of a mass that is too small to be taken for an error: it lifts cloth by a centimetre [J/kg]. A run of the
-// midpoint rule that explodes is beyond it within some frames; 2 cm of silk that falls has no more in play.
-constexpr double kSmallEnergy = 0.1;
-// Ratio to the energies in play of the work of the solver's remainder from which a run is warned of.
-// Shipped scenes stay below 0.004, a ball through a sheet at 0.1; threads of 1e8 N/m at steps of 10 ms come to 0.7.
-constexpr double kSolverRatio = 0.3;
 
 // Whether nothing drives the cloth but pins whose work is counted.
 bool is_driven_by_pins_alone(const scene::Scene& scene) {
@@ -49,7 +38,7 @@ EnergyBound::EnergyBound(const scene::Scene& scene, double mass, const FrameRepo
     : applies_(is_driven_by_pins_alone(scene)),
       damped_contact_(CollisionStage::needed(scene) && scene.time.integrator != scene::Integrator::implicit_midpoint),
       integrator_(scene.time.integrator),
-      small_(mass * kSmallEnergy),
+      small_(mass * numerics.energy.negligible),
       start_(mechanical(start)),
       moving_(start.kinetic_energy),
       elastic_(start.elastic_energy),
@@ -80,8 +69,8 @@ std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) 
   const double in_play = energy_in_play();
   const double gain = mechanical(energies) - start_ - pin_work_;
   const auto is_above = [&](double ratio) { return gain > ratio * in_play + small_; };
-  const bool refused = is_above(kGain) && !damped_contact_;
-  if (!refused && (warned_ || !is_above(kDoubtfulGain))) return {};
+  const bool refused = is_above(numerics.energy.failing_gain) && !damped_contact_;
+  if (!refused && (warned_ || !is_above(numerics.energy.doubtful_gain))) return {};
   const std::string text = fmt::format(
       "frame {}: the cloth has {:.3g} J more than at the start{}, with {:.3g} J in play and nothing else that drives "
       "it; try a smaller time.step or solver.newton_tolerance{}",
@@ -97,7 +86,7 @@ std::optional<std::string> EnergyBound::check_gain(const FrameReport& energies) 
 
 std::optional<std::string> EnergyBound::check_solver(int frame) {
   const double in_play = energy_in_play() + highest_;  // of what drives it too
-  if (warned_of_solver_ || solver_work_ <= kSolverRatio * in_play + small_) return {};
+  if (warned_of_solver_ || solver_work_ <= numerics.energy.residual_work * in_play + small_) return {};
   warned_of_solver_ = true;
   return fmt::format(
       "frame {}: the solver has left forces in the cloth that did {:.3g} J of work, with {:.3g} J in play: the motion "

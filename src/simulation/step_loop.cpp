@@ -8,63 +8,15 @@
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
+#include "core/numerics.hpp"
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
 
 namespace weft::simulation {
 namespace {
 
-// Halvings of a step at least before cloth that cannot be kept out of an obstacle is taken for pinched: where there is
-// room a shorter step finds it, where there is none it only costs. More where obstacles still move far.
-constexpr int kHalvingsBeforePinch = 3;
-// The way of a step is a straight one, or bends so many times at most: where cloth is pushed apart after a solve, the
-// solve goes on from there, with contacts of that place. What a fixed set of contacts lets slip past another side is in
-// sight there. A handkerchief pulled through a ring was stretched by 110 % when it was only pushed apart, and each step
-// began with what that had stored; it took 1,870 iterations in 18 frames with 62 steps rejected, 1,200 and none now.
-// And where cloth was pinched and the way did not bend, 9,283 iterations for 2,111.
-constexpr int kMostBends = 16;
-// After so many on end that left more than this share of the least energy stored before, it bends no more.
-constexpr int kMostIdleBends = 2;
-constexpr double kIdleShare = 0.9;
-// Share of the cloth's energy, of motion and elastic, that pushing it apart may add to a step, and it is done; and from
-// which the step is done again in halves where the way has bent as often as it may.
-constexpr double kUnfeltGain = 0.1, kCorrectionGain = 0.2;
-// Times the energy in play that an unfinished solve may add before it is taken to be led astray by friction. Newton
-// iterations a step: a handkerchief in a ring 25.7 with 0.2, 21.2 so; friction 10 on a box 20.8 with 30, 12.5 so.
-constexpr double kAstrayGain = 3;
-// What it may add to the largest strain, and it is done.
-constexpr double kUnfeltStrain = 0.05;
-// Limits to stretch by which a step may stretch cloth that is beyond one, and halvings that it is asked for first. What
-// a plate at 30 m/s carries along 0.3 m in a step cannot slip past it in one: of four starts a sheet of 41² was
-// stretched to 11 times its length in one and to 4 for good in another, for over 150 s each. Since planes between
-// layers turn, of five to 5 and 4.5 times in two, and with this to at most 1.11 in all, for a sixth of the CPU. Wrung,
-// pulled and draped cloth never comes near (1.4 limits in a towel, slowly).
-constexpr double kTearingShare = 2;
-// What a step that is not solved may add to the largest strain; beyond, its solve diverges.
-constexpr double kDivergedStrain = 0.5;
-constexpr int kHalvingsBeforeTear = 6;
 // Times what was told of before, from which on it is told of again.
 constexpr double kToldAgain = 1.5;
-// By what steps grow again, each time, after one could not be solved: cloth that is wrung refused each step of 10 ms
-// for many frames (58 rejected steps for 15, 1,970 iterations for 1,649).
-constexpr double kRecovery = 1.1;
-
-// Newton iterations of a solve after which the trajectory is checked, and the solve goes on. Contacts that show only
-// then belong into the solve. Iterations a step with 3, 4 and 6: a handkerchief in a ring 24.5, 21.1 and 25.0, a wrung
-// towel 11.8, 12.0 and 15.0, eight sheets and a ball 13.7, 14.3 and 14.3, multi_sheet 6.2, 7.0 and 6.3.
-constexpr int kLookAfter = 4;
-
-// Where no particle is faster than this [m/s] and the step's error is that of no more than this acceleration [m/s²], as
-// Newton's method takes to be unseen, a frame is one step: 0.8 mm and 8 µm in one of 40 ms.
-constexpr double kRestSpeed = 0.02, kRestAcceleration = 0.01;
-// A frame that is one step lasts no longer [s]: as long as at 20 frames a second.
-constexpr double kLongestRest = 0.05 + 1e-9;
-
-// Particles that a thread looks for the air of at once: some 100 µs.
-constexpr std::size_t kBlownAtOnce = 256;
-
-// Times that a step is done with pins let go that the time before had to move; then they are moved.
-constexpr int kMostTries = 4;
 
 integrator::Method method_of(scene::Integrator integrator) {
   switch (integrator) {
@@ -173,8 +125,9 @@ bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // Velocity constraints let go and stick again step by step.
   const bool by_steps = scene_.contact.response == scene::Response::velocity_constraints;
-  if (scene_.time.integrator != scene::Integrator::implicit_euler || by_steps || gusts_ || whole > kLongestRest ||
-      whole > progress_.longest || !is_slow(progress_.now) || !has_settled())
+  if (scene_.time.integrator != scene::Integrator::implicit_euler || by_steps || gusts_ ||
+      whole > (1 + 1e-9) * numerics.steps.longest_rest || whole > progress_.longest || !is_slow(progress_.now) ||
+      !has_settled())
     return false;
   for (int s = 1; s <= steps; ++s) {
     const double end = t + s * h;
@@ -189,18 +142,20 @@ bool StepLoop::has_settled() const {
   if (last.h == 0) return false;
   double sum = 0;
   for (std::size_t i = 0; i < last.before.v.size(); ++i) sum += (progress_.now.v[i] - last.before.v[i]).squaredNorm();
-  const double most = kRestAcceleration * last.h;
+  const double most = numerics.newton.unseen_acceleration * last.h;
   return sum <= most * most * static_cast<double>(last.before.v.size());
 }
 
 bool StepLoop::is_slow(const Moment& moment) {
-  return std::ranges::all_of(moment.v, [](const Vec3& v) { return v.squaredNorm() <= kRestSpeed * kRestSpeed; });
+  return std::ranges::all_of(moment.v, [](const Vec3& v) {
+    return v.squaredNorm() <= numerics.steps.rest_velocity * numerics.steps.rest_velocity;
+  });
 }
 
 // One step in place of several; false where something wakes up, and then no more is left of it than of a rejected step.
 bool StepLoop::rest(double t, double h, FrameReport& report) {
   if (attempt(t, h, 0, false, report)) return false;
-  if (!is_slow(next_) || local_error_ > 0.5 * h * h * kRestAcceleration) return false;
+  if (!is_slow(next_) || local_error_ > 0.5 * h * h * numerics.newton.unseen_acceleration) return false;
   accept(h, report);
   return true;
 }
@@ -237,7 +192,7 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
       h = (t_t1 - t) / left;
     }
     for (; turns_too_far(t, h); h *= 0.5) left *= 2;
-    const bool last_try = retries == scene_.solver.halvings || h < integrator::StepControl::kShortestStep;
+    const bool last_try = retries == scene_.solver.halvings || h < numerics.steps.shortest;
     const Rejection rejection = attempt(t, h, retries, last_try, report);
     if (rejection && last_try) fail(report.frame, t, h, *rejection);
     // An impact may ask for steps without end: after as many tries its error is taken as it is.
@@ -267,9 +222,10 @@ void StepLoop::fail(int frame, double t, double h, const std::string& reason) co
 StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last_try, FrameReport& report) {
   for (int tries = 1;; ++tries) {
     pins_.begin_step(t, h, progress_.now.x);
-    Rejection rejection = attempt_with(t, h, retries, last_try, tries == kMostTries, report);
-    if (!rejection && collisions_ && !last_try && retries < kHalvingsBeforeTear) rejection = torn(h, true);
-    if (!collisions_ || collisions_->gave_way().empty() || tries == kMostTries) return rejection;
+    Rejection rejection = attempt_with(t, h, retries, last_try, tries == numerics.repair.tries, report);
+    if (!rejection && collisions_ && !last_try && retries < numerics.repair.halvings_before_stretch)
+      rejection = torn(h, true);
+    if (!collisions_ || collisions_->gave_way().empty() || tries == numerics.repair.tries) return rejection;
     if (!is_short_enough(retries, last_try) && !pins_.any_lags()) return rejection;
     for (const collision::GivenWay& given : collisions_->gave_way())
       pins_.let_go(given.particle, collisions_->describe(given, progress_.now));
@@ -281,12 +237,16 @@ StepLoop::Rejection StepLoop::torn(double h, bool solved) {
   const auto start = progress_.now.particles(), end = next_.particles();
   if (!solved) {
     const double strain = cloth_.max_strain(end);
-    if (strain <= kDivergedStrain || strain <= cloth_.max_strain(start) + kDivergedStrain) return std::nullopt;
+    if (strain <= numerics.repair.diverged_strain ||
+        strain <= cloth_.max_strain(start) + numerics.repair.diverged_strain)
+      return std::nullopt;
     progress_.longest = 0.5 * h;
     return fmt::format("the solve diverges, to a strain of {:.2g}", strain);
   }
   const double share = cloth_.overstretch(end).share;
-  if (share <= 1 + kTearingShare || share <= cloth_.overstretch(start).share + kTearingShare) return std::nullopt;
+  if (share <= 1 + numerics.repair.overstretch ||
+      share <= cloth_.overstretch(start).share + numerics.repair.overstretch)
+    return std::nullopt;
   progress_.longest = 0.5 * h;
   return fmt::format("threads are stretched to {:.2g} times their max_stretch at once", share);
 }
@@ -296,7 +256,7 @@ void StepLoop::blow(double t, double h) {
   const double later = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
   const Moment& now = progress_.now;
   std::vector<solver::Quad<double>> air(now.v.size());
-  parallel_for(air.size(), kBlownAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(air.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
       air[i] = solver::quad_of<double>(scene_.physics.wind + gusts_->at(now.x[i] + later * now.v[i], t + later));
   });
@@ -305,7 +265,8 @@ void StepLoop::blow(double t, double h) {
 
 // Whether a shorter step would find no room that this one does not.
 bool StepLoop::is_short_enough(int retries, bool last_try) const {
-  return last_try || (retries >= kHalvingsBeforePinch && collisions_->obstacles_creep(progress_.now, next_));
+  return last_try ||
+         (retries >= numerics.repair.halvings_before_pinch && collisions_->obstacles_creep(progress_.now, next_));
 }
 
 // The same with pins as they are.
@@ -331,12 +292,13 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   for (bool is_first = true;; is_first = false, start = Start::next) {
     held_.resize(pinned);
     collisions_->append_prescribed(held_);
-    const bool may_bend = bends < kMostBends && collisions_->may_bend();
+    const bool may_bend = bends < numerics.repair.restarts && collisions_->may_bend();
     integrator::StepReport step = solve(h, start, look && (is_first || may_bend), report);
     // Loads that follow friction, and friction that follows them, can drive each other up: a sheet with friction 10
     // that fell on a cone had 1,300 J after a look, of 0.5 J, and went on from there. With loads that are kept friction
     // has a potential, and takes energy whatever they are.
-    if (is_first && step.verdict == integrator::Verdict::unfinished && added_share(energy(now), h) > kAstrayGain) {
+    if (is_first && step.verdict == integrator::Verdict::unfinished &&
+        added_share(energy(now), h) > numerics.repair.astray_energy) {
       problem_.keep_loads();
       step = solve(h, Start::unchanged_velocity, look, report);
     }
@@ -348,7 +310,7 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
     const bool solved = step.verdict == integrator::Verdict::solved;
     // A solve that diverges scatters particles. All pairs of triangles may then meet, and to find and push them apart
     // takes a hundred times what the step takes in halves.
-    if (!solved && !last_try && retries < kHalvingsBeforeTear)
+    if (!solved && !last_try && retries < numerics.repair.halvings_before_stretch)
       if (Rejection rejection = torn(h, false)) return rejection;
     look = true;
     const bool may_adopt = bends == 0 && adoptions + 1 < response.most_solves();
@@ -366,16 +328,16 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
       if (may_let_go && collisions_->find_pressing_pins()) return "pins press cloth into cloth";
       const double before = solved ? energy(next_) : 0, strain = solved ? cloth_.max_strain(next_.particles()) : 0;
       if (collisions_->push_apart(h, false, false, now, next_)) {
-        bends = kMostBends;  // and what is stuck shows once this is solved
+        bends = numerics.repair.restarts;  // and what is stuck shows once this is solved
         continue;
       }
-      if (solved && added_share(before, h) <= kUnfeltGain &&
-          cloth_.max_strain(next_.particles()) <= strain + kUnfeltStrain)
+      if (solved && added_share(before, h) <= numerics.repair.unfelt_energy &&
+          cloth_.max_strain(next_.particles()) <= strain + numerics.repair.unfelt_strain)
         return std::nullopt;
       const double stored = cloth_.elastic_energy(next_.particles());
-      idle_bends = solved && stored > kIdleShare * least_stored ? idle_bends + 1 : 0;
+      idle_bends = solved && stored > numerics.repair.idle_energy * least_stored ? idle_bends + 1 : 0;
       least_stored = std::min(least_stored, stored);
-      bends = idle_bends == kMostIdleBends ? kMostBends : bends + 1;
+      bends = idle_bends == numerics.repair.idle_restarts ? numerics.repair.restarts : bends + 1;
       collisions_->go_on_from(next_);
       problem_.forget_contacts();
     } else if (solved) {
@@ -389,9 +351,9 @@ StepLoop::Rejection StepLoop::correct(double h, int retries, bool last_try, bool
   const double before = energy(next_);
   const bool may_pinch = is_short_enough(retries, last_try);
   if (Rejection stuck = collisions_->push_apart(h, may_pinch, may_give_way, progress_.now, next_)) return stuck;
-  if (last_try || retries >= kHalvingsBeforePinch) return std::nullopt;
+  if (last_try || retries >= numerics.repair.halvings_before_pinch) return std::nullopt;
   const double share = added_share(before, h);
-  if (share <= kCorrectionGain) return std::nullopt;
+  if (share <= numerics.repair.corrected_energy) return std::nullopt;
   progress_.longest = 0.5 * h;
   return fmt::format("keeping cloth from passing through adds {:.2g} times the energy of its motion and threads",
                      share);
@@ -420,11 +382,12 @@ integrator::Method StepLoop::method() const {
   return damps ? integrator::Method::bdf2 : chosen;
 }
 
-// Into `next_`. `look`: where this takes long it ends unfinished, see kLookAfter.
+// Into `next_`. `look`: where this takes long it ends unfinished.
 integrator::StepReport StepLoop::solve(double h, integrator::Stepper::Start start, bool look, FrameReport& report) {
   stepper_.use(method());
-  const integrator::StepReport step = stepper_.step(problem_, progress_.now, h, scene_.physics.gravity, held_, next_,
-                                                    start, look ? kLookAfter : std::numeric_limits<int>::max());
+  const integrator::StepReport step =
+      stepper_.step(problem_, progress_.now, h, scene_.physics.gravity, held_, next_, start,
+                    look ? numerics.newton.check_after : std::numeric_limits<int>::max());
   report.newton_iterations += step.newton_iterations;
   report.linear_iterations += step.linear_iterations;
   report.forces += step.times.forces;
@@ -449,7 +412,7 @@ void StepLoop::accept(double h, FrameReport& report) {
   pins_.accept();
   if (collisions_) collisions_->accept();
   std::swap(progress_.now, next_);
-  progress_.longest *= kRecovery;
+  progress_.longest *= numerics.steps.recovery;
   measure_stretch(report);
   ++report.steps;
   report.error_estimate += local_error_;

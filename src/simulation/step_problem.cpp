@@ -4,25 +4,11 @@
 #include <limits>
 #include <utility>
 
+#include "core/numerics.hpp"
 #include "core/parallel.hpp"
 
 namespace weft::simulation {
 namespace {
-
-// Motion of a particle since the last linearisation, in spacings, up to which the matrix is good enough to find the way
-// with; residuals are exact always.
-constexpr double kStaleMotion = 0.005;
-
-// Iterations of Newton's method after which compressed edges go into its matrix with the absolute value of their
-// stiffness. Where cloth folds it overshoots without: a swing with threads of 1e8 N/m takes twice the iterations. With
-// four sphere_drape, falling_band and ball_through_cloth took 661, 1,583 and 1,009 iterations, with two 633, 1,235 and
-// 1,011. From the first on, cloth that rests takes four iterations a step in place of one (multi_sheet).
-constexpr int kPlainIterations = 2;
-
-// Rows of the matrix that a thread writes at once.
-constexpr std::size_t kRowsAtOnce = 512;
-// Particles that a thread copies or compares at once.
-constexpr std::size_t kParticlesAtOnce = 1024;
 
 std::size_t size_of(const solver::Part& part) {
   return static_cast<std::size_t>(part.end - part.begin);
@@ -110,7 +96,7 @@ void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> fo
 void StepProblem::add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
   parallel_for(cloth_.cloths(), 1, [&](std::size_t c, std::size_t) { chosen_[c] = move_to(c, at); });
   evaluate(at, false);
-  parallel_for(force.size(), kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(force.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) force[i] += solver::vec3_of(memory_.force[i]);
   });
 }
@@ -125,7 +111,7 @@ void StepProblem::use_rate(double rate) {
 // Whether the forces within a cloth are not those that were evaluated last.
 bool StepProblem::move_to(std::size_t cloth, const integrator::StagePoint& at) {
   const solver::Part& part = memory_.system.parts[cloth];
-  return parallel_sum(size_of(part), kParticlesAtOnce, [&](std::size_t begin, std::size_t end) {
+  return parallel_sum(size_of(part), kGrainSize, [&](std::size_t begin, std::size_t end) {
            bool moved = false;
            for (std::size_t k = begin; k < end; ++k) {
              const auto i = static_cast<std::size_t>(part.begin) + k;
@@ -153,7 +139,8 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int 
     if (assemble) {
       if (!memory_.locks.empty()) evaluation.locks = &memory_.locks[cloth];
       evaluation.assembly = solver::AssemblyRows(memory_.assembly, begin, end);
-      if (iteration >= kPlainIterations) evaluation.linearisation = forces::Linearisation::abs_projected;
+      if (iteration >= numerics.newton.clamped_iterations)
+        evaluation.linearisation = forces::Linearisation::abs_projected;
       memory_.assembly.start(begin, end);
     }
     std::fill(memory_.force.begin() + begin, memory_.force.begin() + end, solver::Quad<double>{});
@@ -164,7 +151,7 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int 
 // Whether a cloth has moved too far from where its rows of the matrix were put together.
 bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
   const solver::Part& part = memory_.system.parts[cloth];
-  const double most = kStaleMotion * cloth_.spacing();
+  const double most = numerics.newton.stale_motion * cloth_.spacing();
   for (auto i = part.begin; i < part.end; ++i)
     if (!((x[i] - memory_.linearised_at[i]).squaredNorm() <= most * most)) return true;
   return false;
@@ -183,7 +170,7 @@ void StepProblem::put_together(const integrator::StagePoint& at, int iteration) 
   for (std::size_t c = 0; c < cloth_.cloths(); ++c) {
     if (!chosen_[c]) continue;
     const solver::Part& part = memory_.system.parts[c];
-    parallel_for(size_of(part), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallel_for(size_of(part), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
       memory_.assembly.write_rows(part.begin + static_cast<Index>(begin), part.begin + static_cast<Index>(end),
                                   memory_.system.matrix);
     });

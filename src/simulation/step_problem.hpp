@@ -58,11 +58,11 @@ class StepProblem final : public integrator::System {
   /// Within a step, where its contacts are others now: their loads are followed for half as many updates as those of
   /// the first ones, or more if there were less so far.
   void forget_contacts() {
-    memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, collision::ContactSet::kLoadUpdates / 2)};
+    memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.contact.force_updates / 2)};
   }
 
   /// Before a step is solved anew: friction goes by the loads of its start, whatever they become.
-  void keep_loads() { memory_.contacts = {{}, {}, {}, collision::ContactSet::kLoadUpdates}; }
+  void keep_loads() { memory_.contacts = {{}, {}, {}, numerics.contact.force_updates}; }
 
   const SolveMemory& memory() const { return memory_; }
 

@@ -3,12 +3,7 @@
 #include "core/parallel.hpp"
 
 namespace weft::simulation {
-namespace {
-
-// Particles that a thread takes at once: some 20 µs.
-constexpr std::size_t kWorkGrainSize = 1024;
-
-}  // namespace
+namespace {}  // namespace
 
 StepWork measure_work(const integrator::Stepper& stepper, std::span<const integrator::HeldParticle> pinned,
                       std::span<const double> masses, const integrator::State& start, const integrator::State& end) {
@@ -17,7 +12,7 @@ StepWork measure_work(const integrator::Stepper& stepper, std::span<const integr
     return stepper.constraint_force(static_cast<Index>(i), masses[i]).dot(end.x[i] - start.x[i]);
   };
   StepWork work;
-  work.solver = parallel_sum(masses.size(), kWorkGrainSize, [&](std::size_t first, std::size_t last) {
+  work.solver = parallel_sum(masses.size(), kGrainSize, [&](std::size_t first, std::size_t last) {
     double sum = 0;
     for (std::size_t i = first; i < last; ++i) sum += missing_work(i);
     return sum;

@@ -7,34 +7,10 @@
 #include <utility>
 
 #include "core/archive.hpp"
+#include "core/numerics.hpp"
 
 namespace weft::simulation {
-namespace {
-
-// Distance from its place at which a particle that lags is held again [m]: what a push of the separation restores, and
-// too little to see.
-constexpr double kArrived = 1e-4;
-// Or this share of the way of its place in the step, at kReturnSpeed at most: what pulls it balances its load there, so
-// that a place that moves is never reached. Four corners of a pin that a ring had held up stayed 0.1 to 3 mm behind for
-// the half second in which it went on at 0.4 m/s. With all of that way what has just begun to lag is tried again.
-constexpr double kArrivedShare = 0.5;
-// Speed beside that of its place at which a particle that lags returns [m/s]: over 0.4 m within ten frames, and no
-// whip.
-constexpr double kReturnSpeed = 1;
-// Least speed of that kind that forces are divided by [m/s].
-constexpr double kSlowest = 1e-3;
-// Steps in which it would return from nearby.
-constexpr double kReturnSteps = 2;
-// Most force on a particle that lags: as much as accelerates it by this [m/s²], which contacts withstand at half their
-// range for steps of 10 ms (they are 100 m/h² stiff) ...
-constexpr double kAcceleration = 2000;
-// ... or what bears this many times the weight of the cloth on all particles of the pin, if that is more ...
-constexpr double kLoad = 3;
-// ... or on those of it that lag, up to this [m/s²], which contacts withstand at six tenths of their range: the threads
-// that hang on the last corner of an edge held it 1.3 mm off for good, where a share of 3/21 of the weight drew it.
-constexpr double kMostAcceleration = 20000;
-
-}  // namespace
+namespace {}  // namespace
 
 YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environment& environment,
                            const std::vector<Index>& first_particle, std::span<const double> masses)
@@ -51,7 +27,7 @@ YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environ
     const std::size_t count = environment.cloths[about.cloth].start.size();
     double weight = 0;
     for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * scene.physics.gravity.norm();
-    load_.push_back(kLoad * weight);
+    load_.push_back(numerics.pins.weights * weight);
   }
 }
 
@@ -70,7 +46,9 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   if (any_lagged)
     for (const integrator::HeldParticle& start : at_start_) {
       const auto i = static_cast<std::size_t>(start.constraint.particle);
-      const double near = std::max(kArrived, kArrivedShare * h * std::min(start.v_end.norm(), kReturnSpeed));
+      const double near =
+          std::max(numerics.pins.arrived,
+                   numerics.pins.arrived_fraction * h * std::min(start.v_end.norm(), numerics.pins.return_velocity));
       lags_[i] = lagged_[i] != 0 && (x[i] - start.x_end).norm() > near;
     }
   held_.clear();
@@ -111,14 +89,15 @@ void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::s
     pulls_.push_back({particle, target.x_end, target.v_end, strength, 2 * std::sqrt(strength * masses_[i])});
     return;
   }
-  Vec3 speed = (target.x_end - h * target.v_end - x[i]) / (kReturnSteps * h);
-  if (const double size = speed.norm(); size > kReturnSpeed) speed *= kReturnSpeed / size;
+  Vec3 speed = (target.x_end - h * target.v_end - x[i]) / (numerics.pins.return_steps * h);
+  if (const double size = speed.norm(); size > numerics.pins.return_velocity)
+    speed *= numerics.pins.return_velocity / size;
   speed += target.v_end;
-  const double most =
-      std::max({load_[pin] / static_cast<double>(std::max<std::size_t>(pins_.about(pin).particles, 1)),
-                std::min(load_[pin] / static_cast<double>(lagging_particles_[pin]), kMostAcceleration * masses_[i]),
-                kAcceleration * masses_[i]});
-  pulls_.push_back({particle, x[i], speed, 0, most / std::max(kSlowest, speed.norm())});
+  const double most = std::max({load_[pin] / static_cast<double>(std::max<std::size_t>(pins_.about(pin).particles, 1)),
+                                std::min(load_[pin] / static_cast<double>(lagging_particles_[pin]),
+                                         numerics.pins.most_acceleration * masses_[i]),
+                                numerics.pins.acceleration * masses_[i]});
+  pulls_.push_back({particle, x[i], speed, 0, most / std::max(numerics.pins.slowest, speed.norm())});
 }
 
 void YieldingPins::let_go(Index particle, const std::string& obstruction) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/numerics.hpp"
 #include "core/parallel.hpp"
 
 namespace weft::solver {
@@ -13,9 +14,6 @@ namespace {
 // stiffness by a share of 6e-8. Sheets that swing on threads of 1e6, 1e7 and 1e8 N/m (shares of 8e5, 8e6 and 8e7) take
 // as many iterations of Newton's method as in double: 361, 1,018 and 2,345 for 355, 1,126 and 2,932.
 constexpr double kSingleStiffness = 1e7;
-// Share of the solution that it leaves without being told apart from roundings: in the energy norm 6e-8 times the root
-// of that stiffness, and a factor of five.
-constexpr double kSingleGoal = 1e-3;
 
 // Whether no particle is held more stiffly than that.
 bool suits_single(const LinearSystem& system) {
@@ -27,13 +25,12 @@ bool suits_single(const LinearSystem& system) {
     const double* block = system.matrix.values().data() + 9 * static_cast<std::size_t>(system.matrix.diagonal(i));
     return fits(i, block[0] + block[4] + block[8]);
   };
-  const int misfits = parallel_sum(static_cast<std::size_t>(system.matrix.rows()), kRowsAtOnce,
-                                   [&](std::size_t begin, std::size_t end) {
-                                     int any = 0;
-                                     for (std::size_t i = begin; i < end; ++i)
-                                       any |= particle_fits(static_cast<Index>(i)) ? 0 : 1;
-                                     return any;
-                                   });
+  const int misfits =
+      parallel_sum(static_cast<std::size_t>(system.matrix.rows()), kGrainSize, [&](std::size_t begin, std::size_t end) {
+        int any = 0;
+        for (std::size_t i = begin; i < end; ++i) any |= particle_fits(static_cast<Index>(i)) ? 0 : 1;
+        return any;
+      });
   if (misfits > 0) return false;
   for (const DiagonalTerm& term : system.diagonal_terms)
     if (!fits(term.particle, term.stiffness.trace())) return false;
@@ -46,7 +43,7 @@ bool suits_single(const LinearSystem& system) {
 template <class Quad>
 void copy_into(std::span<const Quad> from, std::vector<Vec3>& to) {
   to.resize(from.size());
-  parallel_for(from.size(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(from.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) to[i] = vec3_of(from[i]);
   });
 }
@@ -96,7 +93,7 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal&
   Progress progress;
   progress.parts.resize(all_parts_.size());
   End end = End::needs_double;
-  if (is_single_ && goal.relative >= kSingleGoal) {
+  if (is_single_ && goal.relative >= numerics.linear.tight_goal) {
     end = prepared(single_).solve(b, goal, max_iterations, x, start, parts, progress);
     filter(x);
     copy_into(single_.recurrence.residual(), residual_);

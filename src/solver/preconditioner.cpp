@@ -6,34 +6,18 @@
 #include <numeric>
 #include <utility>
 
+#include "core/numerics.hpp"
 #include "core/parallel.hpp"
 
 namespace weft::solver {
 namespace {
 
-// Rows whose blocks a thread inverts at once.
-constexpr std::size_t kBlocksAtOnce = 512;
 // Levels of groups at most, patches included.
 constexpr std::size_t kMaxLevels = 16;
 // Where constraints leave a group no motion its block has no inverse, and its residual is zero: a shift by this share
 // of the block's own trace makes it definite. It must be below the share that masses have beside stiff threads: with
 // 1e-9 of the mean trace, cells of 0.1 m by 1e-5 m took twenty times the iterations.
 constexpr double kSingularShift = 1e-13;
-
-// Share of its neighbours in the groups that a member is interpolated from.
-constexpr double kSmoothing = 0.6;
-// Share of the strain between groups that is left where it is spread over them, from level to level.
-constexpr double kSpread = 0.5;
-
-// Weight of terms on groups. Those of the springs of contacts, multi_sheet with 8 x 17² particles (60 frames), linear
-// iterations for one of Newton's: 25 with 1, 20 with 2, 19 with 4; sphere_drape and falling_band 10 and 12 with each.
-constexpr double kTermsOnGroups = 2;
-
-// Stiffness of a particle against the metric of its whole part from which groups move as wholes: a sheet is as stiff
-// with a finer mesh. Hanging in folds of 17 cm with threads of 1e6 N/m (4e6 against 2000, as 2000) levels that
-// interpolate took some ten times the iterations to 1e-6, and sphere_drape with such threads 1.4 times at 128²; with
-// threads of 1e5 N/m it takes 0.8 times as many, with its own of 4e3 half.
-constexpr double kStiff = 1e3;
 
 Mat3 shift_of(const Mat3& block) {
   const double trace = block.trace();
@@ -99,12 +83,12 @@ template <class Real>
 void Preconditioner<Real>::select(std::span<const std::size_t> parts) {
   if (std::ranges::equal(parts, selected_)) return;
   selected_.assign(parts.begin(), parts.end());
-  rows_ = RowChunks(ranges_of(parts_, selected_), kRowsAtOnce);
+  rows_ = RowChunks(ranges_of(parts_, selected_), kGrainSize);
   for (Level& level : levels_) {
     std::vector<RowRange> ranges;
     for (std::size_t p : selected_) ranges.push_back(level.of_part[p]);
     // A group has some twelve members, or so many that it is interpolated from.
-    level.groups = RowChunks(ranges, kRowsAtOnce / 4);
+    level.groups = RowChunks(ranges, kGrainSize / 4);
   }
 }
 
@@ -112,16 +96,16 @@ template <class Real>
 bool Preconditioner<Real>::is_stiff() const {
   if (system_->metric.empty()) return false;
   return std::ranges::any_of(parts_of(*system_), [&](const Part& part) {
-    const double metric = parallel_sum(at(part.end - part.begin), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    const double metric = parallel_sum(at(part.end - part.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t k = begin; k < end; ++k) sum += system_->metric[at(part.begin) + k];
       return sum;
     });
     const auto stiff = [&](std::size_t i) {
       const double* block = system_->matrix.values().data() + 9 * at(system_->matrix.diagonal(static_cast<Index>(i)));
-      return block[0] + block[4] + block[8] > kStiff * metric;
+      return block[0] + block[4] + block[8] > numerics.linear.stiff_particle * metric;
     };
-    return parallel_sum(at(part.end - part.begin), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    return parallel_sum(at(part.end - part.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
              int any = 0;
              for (std::size_t k = begin; k < end; ++k) any |= stiff(at(part.begin) + k) ? 1 : 0;
              return any;
@@ -170,7 +154,7 @@ void Preconditioner<Real>::prepare_levels() {
 // From full blocks: who shares one is a neighbour, and so are groups that neighbours are in.
 template <class Real>
 void Preconditioner<Real>::find_weights() {
-  const double smoothing = smooth_ ? kSmoothing : 0;
+  const double smoothing = smooth_ ? numerics.linear.interpolation : 0;
   const BlockMatrix::Pattern& full = system_->matrix.full();
   std::vector<std::vector<Index>> neighbours(inverse_.size());
   for (std::size_t i = 0; i < neighbours.size(); ++i)
@@ -233,7 +217,7 @@ void Preconditioner<Real>::invert_particles() {
     inverse_[at(i)] = QuadBlock<Real>(inverse);
   };
   for (std::size_t p = 0; p < parts_.size(); ++p)
-    parallel_for(at(parts_[p].end - parts_[p].begin), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallel_for(at(parts_[p].end - parts_[p].begin), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = at(parts_[p].begin) + begin; i < at(parts_[p].begin) + end; ++i)
         if (changed_[p] || touched_[i] || touched_before_[i]) invert(static_cast<Index>(i));
     });
@@ -252,7 +236,7 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
   const std::vector<Index>& patch_of = levels_.back().group_of;
   const BlockMatrix& matrix = system_->matrix;
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
-  const double share = smooth_ ? std::pow(kSpread, static_cast<double>(depth)) : 1;
+  const double share = smooth_ ? std::pow(numerics.linear.level_stiffness, static_cast<double>(depth)) : 1;
   const auto add_to_patches = [&](Index i, Index j, const auto& block) {
     // The factorisation reads the lower triangle only.
     const Index patch_i = patch_of[at(i)], patch_j = patch_of[at(j)];
@@ -314,7 +298,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
   double share = 1;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
-    if (smooth_) share *= kSpread;
+    if (smooth_) share *= numerics.linear.level_stiffness;
     const RowRange groups = level.of_part[part];
     const RowRange members =
         l == 0 ? RowRange{at(parts_[part].begin), at(parts_[part].end)} : levels_[l - 1].of_part[part];
@@ -388,10 +372,10 @@ void Preconditioner<Real>::invert_groups() {
       if (sums_changed_[p])
         std::fill(anew.begin() + static_cast<std::ptrdiff_t>(level.of_part[p].begin),
                   anew.begin() + static_cast<std::ptrdiff_t>(level.of_part[p].end), 1);
-    parallel_for(anew.size(), kBlocksAtOnce, [&](std::size_t begin, std::size_t end) {
+    parallel_for(anew.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
       for (std::size_t g = begin; g < end; ++g) {
         if (!anew[g]) continue;
-        const Mat3 block = level.of_matrix[g] + kTermsOnGroups * of_groups[g];
+        const Mat3 block = level.of_matrix[g] + numerics.linear.contact_weight * of_groups[g];
         level.inverse[g] = QuadBlock<Real>((block + shift_of(block)).inverse());
       }
     });

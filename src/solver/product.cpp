@@ -9,11 +9,6 @@
 namespace weft::solver {
 namespace {
 
-// Rows that a thread reads the matrix of at once.
-constexpr std::size_t kRowsToRead = 512;
-// Rows whose products are summed up while they are in the cache.
-constexpr std::size_t kCachedRows = 256;
-
 // Without the diagonal.
 BlockMatrix::Pattern beside_diagonal(const BlockMatrix::Pattern& pattern) {
   BlockMatrix::Pattern result;
@@ -115,7 +110,7 @@ void Product<Real>::read_matrix(bool anew) {
     for (std::size_t p = 0; p < parts_.size(); ++p) {
       if (!anew && parts_[p].version == before[p].version) continue;
       const auto first = static_cast<std::size_t>(parts_[p].begin), end = static_cast<std::size_t>(parts_[p].end);
-      parallel_for(end - first, kRowsToRead,
+      parallel_for(end - first, kFineGrainSize,
                    [&](std::size_t a, std::size_t b) { matrix_.take_rows(system_->matrix, first + a, first + b); });
     }
   }
@@ -124,7 +119,7 @@ void Product<Real>::read_matrix(bool anew) {
 template <class Real>
 void Product<Real>::select(std::span<const std::size_t> parts) {
   selected_.assign(parts.begin(), parts.end());
-  rows_ = RowChunks(ranges_of(parts_, selected_), kRowsAtOnce);
+  rows_ = RowChunks(ranges_of(parts_, selected_), kGrainSize);
   const auto is_inside = [&](Index particle) {
     return parts.size() == parts_.size() || std::ranges::any_of(parts, [&](std::size_t p) {
              return particle >= parts_[p].begin && particle < parts_[p].end;
@@ -150,8 +145,8 @@ template <class Real>
 double Product<Real>::multiply(std::span<const Quad<Real>> p, std::span<Quad<Real>> q, std::span<double> moved) const {
   const auto sums = rows_.sums([&](std::size_t begin, std::size_t end) {
     Quad<double> of_product{}, of_metric{};
-    for (std::size_t from = begin; from < end; from += kCachedRows) {
-      const std::size_t to = std::min(from + kCachedRows, end);
+    for (std::size_t from = begin; from < end; from += kFineGrainSize) {
+      const std::size_t to = std::min(from + kFineGrainSize, end);
       if constexpr (std::is_same_v<Real, float>)
         matrix_.multiply(p, q, from, to);
       else

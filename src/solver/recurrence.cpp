@@ -6,36 +6,16 @@
 #include <type_traits>
 #include <utility>
 
+#include "core/numerics.hpp"
 #include "core/stop.hpp"
 
 namespace weft::solver {
 namespace {
 
-// To make the factor costs as much as some 35 iterations without it, and an iteration with it as much as 2.2 to 2.6.
-// What it gains, iterations by 1.4 (crumpled cloth of 6·10⁴ particles) to over 100 (taut threads of 1e6 N/m), shows
-// only after long: threads seem to converge at first. So a goal that is this share of the solution, and nothing else,
-// takes it at once;
-constexpr double kTightTarget = 1e-3;
-// any other when, at the rate of the last kPaceInterval iterations, more than kMinIterationsLeft are still to come.
-// Scenes ask for 0.1 and need ten in all.
-constexpr int kPaceInterval = 40;
-constexpr double kMinIterationsLeft = 100;
-// Weight of the factor beside the levels: both are right about long waves, and with equal weights these count twice,
-// which took twice the iterations of the factor alone on plain folds; with 16 as many. On crumpled stiff sheets both
-// together need about half of what the factor needs alone.
-constexpr double kFactorWeight = 16;
-
-// Iterations whose gains are the estimate of the error: so many at least, of all of them a share of one over this, for
-// long solves have plateaus.
-constexpr std::size_t kLeastDelay = 3, kDelayShare = 5;
-// Least share of the energy norm that must be solved before the metric alone may end a solve: stiff motion comes first,
-// and shows nothing in it.
-constexpr double kSolvedInEnergy = 0.3;
-
-// Whether an error that fell from `before` to `now` times what it may be, in kPaceInterval iterations, needs more than
-// kMinIterationsLeft to get there.
+// Whether an error that fell from `before` to `now` times what it may be, in as many iterations as the factor costs,
+// needs more than 2.5 times as many to get there.
 bool factor_pays(double before, double now) {
-  return !(std::log(now) * kPaceInterval < kMinIterationsLeft * std::log(before / now));
+  return !(std::log(now) < 2.5 * std::log(before / now));
 }
 
 double absolute_goal(const LinearGoal& goal, std::size_t part) {
@@ -44,7 +24,7 @@ double absolute_goal(const LinearGoal& goal, std::size_t part) {
 
 template <class Real>
 void take(std::span<const Vec3> from, std::span<Quad<Real>> to) {
-  parallel_for(from.size(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(from.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) to[i] = quad_of<Real>(from[i]);
   });
 }
@@ -61,7 +41,9 @@ double Progress::OfPart::error_share() const {
 
 // How many of the last iterations tell the error.
 std::ptrdiff_t Progress::OfPart::recent() const {
-  return static_cast<std::ptrdiff_t>(std::min(gains.size(), std::max(kLeastDelay, gains.size() / kDelayShare)));
+  const std::ptrdiff_t all = std::ssize(gains);
+  return std::min<std::ptrdiff_t>(
+      all, std::max<std::ptrdiff_t>(numerics.linear.least_delay, all / numerics.linear.delay_fraction));
 }
 
 bool Progress::meets(const LinearGoal& goal, std::span<const std::size_t> selected) const {
@@ -69,7 +51,7 @@ bool Progress::meets(const LinearGoal& goal, std::span<const std::size_t> select
     const double error_sq = parts[p].error_energy(), absolute = absolute_goal(goal, p);
     return error_sq <= std::max(absolute * absolute, goal.relative * goal.relative * parts[p].energy) ||
            (error_sq * parts[p].error_share() <= absolute * absolute &&
-            error_sq <= kSolvedInEnergy * kSolvedInEnergy * parts[p].energy);
+            error_sq <= numerics.linear.energy_first * numerics.linear.energy_first * parts[p].energy);
   });
 }
 
@@ -122,7 +104,7 @@ double Recurrence<Real>::apply_preconditioner(std::span<Quad<Real>> z, bool with
     if (with_factor) {
       factor_parts_.clear();
       for (std::size_t part : selected_) factor_parts_.push_back(parts_[part]);
-      factor_.add(kFactorWeight, r_, z, factor_parts_);
+      factor_.add(numerics.linear.factor_weight, r_, z, factor_parts_);
       product_.filter(z);
     }
   }
@@ -208,7 +190,7 @@ void Recurrence<Real>::advance(double alpha, Progress& progress) {
 template <class Real>
 End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progress& progress) {
   constexpr bool kSingle = std::is_same_v<Real, float>;
-  if (goal.relative < kTightTarget && goal.absolute.empty()) progress.with_factor = true;
+  if (goal.relative < numerics.linear.tight_goal && goal.absolute.empty()) progress.with_factor = true;
   if (progress.with_factor) {
     if (kSingle) return End::needs_double;
     progress.with_factor = make_factor();
@@ -225,7 +207,7 @@ End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progre
     // Directions made without the factor say nothing about those with it.
     bool restart = false;
     if (progress.iterations == 1) progress.paced_from = progress.farthest_from(goal, selected_);
-    if (!progress.with_factor && progress.iterations % kPaceInterval == 0) {
+    if (!progress.with_factor && progress.iterations % numerics.linear.factor_cost == 0) {
       const double far = progress.farthest_from(goal, selected_);
       restart = progress.with_factor = factor_pays(progress.paced_from, far);
       if (restart && kSingle) return End::needs_double;
@@ -247,7 +229,7 @@ template <class Real>
 End Recurrence<Real>::solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
                             std::span<const Vec3> start, std::span<const std::size_t> parts, Progress& progress) {
   selected_.assign(parts.begin(), parts.end());
-  rows_ = RowChunks(ranges_of(parts_, selected_), kRowsAtOnce);
+  rows_ = RowChunks(ranges_of(parts_, selected_), kGrainSize);
   begin(b, x, start, progress);
   const End end = iterate(goal, max_iterations, progress);
   if (end == End::needs_double && progress.iterations == 0) return end;  // that begins anew

@@ -11,10 +11,6 @@
 
 namespace weft::solver {
 
-/// Rows that a thread does at once, some 5 to 20 µs; with 8,192 two threads were 1.27 times as fast as one over 4,096
-/// particles, with so many 1.43 times. Whatever threads there are, sums are made of chunks of so many.
-inline constexpr std::size_t kRowsAtOnce = 1024;
-
 struct RowRange {
   std::size_t begin = 0, end = 0;
 };

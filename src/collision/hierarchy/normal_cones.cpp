@@ -6,12 +6,7 @@
 
 namespace weft::collision {
 
-namespace {
-
-/// Relative safety against rounding, far above it and far below anything that decides.
-constexpr double kSafety = 1e-9;
-
-}  // namespace
+namespace {}  // namespace
 
 bool star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis, std::span<const Vec3> x_t0,
                  std::span<const Vec3> x_t1) {
@@ -32,7 +27,7 @@ bool star_shaped(std::span<const std::array<Index, 2>> contour, const Vec3& axis
     const double least =
         std::min({axis.dot(p0.cross(q0)), 0.5 * axis.dot(p0.cross(q1) + p1.cross(q0)), axis.dot(p1.cross(q1))});
     const double size = std::max(p0.squaredNorm(), p1.squaredNorm()) + std::max(q0.squaredNorm(), q1.squaredNorm());
-    if (!(least > kSafety * size)) return false;
+    if (!(least > kRoundoff * size)) return false;
     turns += static_cast<int>(up.dot(p0) < 0 && up.dot(q0) >= 0);
   }
   return turns == 1;
@@ -184,7 +179,7 @@ void NormalCones<K>::fit_leaf(const typename Tree<K>::Leaf& leaf, std::span<cons
       }
       cone.cosine = std::min(cone.cosine, along / n.norm());
     }
-  cone.cosine -= kSafety;
+  cone.cosine -= kRoundoff;
   cone.sine = std::sqrt(std::max(0.0, 1 - cone.cosine * cone.cosine));
 }
 
@@ -207,7 +202,7 @@ typename NormalCones<K>::Cone NormalCones<K>::join(std::span<const Cone* const> 
     const double across = std::sqrt(std::max(0.0, 1 - between * between));
     all.cosine = std::min(all.cosine, part->cosine * between - part->sine * across);
   }
-  all.cosine -= kSafety;
+  all.cosine -= kRoundoff;
   all.sine = std::sqrt(std::max(0.0, 1 - all.cosine * all.cosine));
   return all;
 }
@@ -233,7 +228,7 @@ bool NormalCones<K>::nothing_near(const Tree<K>& tree, Ref ref, std::span<const 
                                   double reach) const {
   const Cone& own = cones_[slot(tree, ref)];
   const Patch& patch = patches_[slot(tree, ref)];
-  const double needed = reach * (1 + kSafety);
+  const double needed = reach * (1 + kRoundoff);
   if (!patch.closed || own.cosine * own.altitude <= needed || own.cosine <= 0) return false;
   std::vector<const Cone*> parts{&own};
   for (const Ref leaf : patch.ring) parts.push_back(&cones_[slot(tree, leaf)]);

@@ -15,9 +15,6 @@ namespace {
 /// Past this depth sets are halved by number: centre splits of a badly graded surface may peel off one triangle each.
 constexpr int kMaxCentreSplits = 64;
 
-/// Vertices, and leaves, whose bounds a thread makes at once.
-constexpr std::size_t kVerticesAtOnce = 1024, kLeavesAtOnce = 256;
-
 void check(const Surface& surface, std::size_t positions, const TreeShape& shape) {
   const Index first = surface.first_vertex, last = first + surface.vertex_count;
   if (first < 0 || static_cast<std::size_t>(last) > positions)
@@ -136,12 +133,12 @@ Tree<K>::Tree(const Surface& surface, std::span<const Vec3> positions, const Tre
 template <int K>
 void Tree<K>::refit(const Motion& motion, double margin) {
   const auto first = static_cast<std::size_t>(surface_.first_vertex);
-  parallel_for(vertex_bounds_.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(vertex_bounds_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       vertex_bounds_[v] =
           moving_point<K>(motion.x_t0[first + v], motion.low_t1[first + v], motion.high_t1[first + v], margin);
   });
-  parallel_for(leaves_.size(), kLeavesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(leaves_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t n = begin; n < end; ++n) fit(n);
   });
   // Children have larger numbers than their parent.

@@ -11,12 +11,6 @@ namespace weft::collision {
 
 namespace {
 
-/// Distances that differ by less than this part count as equal when duplicates are dropped: far above rounding, far
-/// below any difference that matters.
-constexpr double kSameDistance = 1e-9;
-
-// What a thread looks at at once: pairs of triangles, a multiple of eight; pairs of features; triangles and vertices.
-constexpr std::size_t kPairsAtOnce = 4096, kFeaturesAtOnce = 1024, kTrianglesAtOnce = 2048;
 // Whose pairs with a common vertex are listed before they are looked at: six to nine each.
 constexpr std::size_t kTrianglesListed = 64;
 
@@ -219,7 +213,7 @@ class ProximityFinder::Search {
       const Triangle& around = features_.triangle(other);
       const bool contains = support[1] < 0 || has_vertex(around, support[1]);
       if (other == face || !contains || has_vertex(around, vertex)) continue;
-      if (other < face || closest_to_face(vertex, around).distance_sq < (1 - kSameDistance) * points.distance_sq)
+      if (other < face || closest_to_face(vertex, around).distance_sq < (1 - kRoundoff) * points.distance_sq)
         return true;
     }
     return false;
@@ -274,7 +268,7 @@ void ProximityFinder::measure_folds(std::span<const Vec3> x) {
   const auto at = [&](Index vertex) -> const Vec3& { return x[vertex]; };
   std::vector<Vec3> normals(triangles.size());
   folds_.resize(triangles.size());
-  parallel_for(triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(triangles.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       normals[t] =
           (at(triangles[t][1]) - at(triangles[t][0])).cross(at(triangles[t][2]) - at(triangles[t][0])).normalized();
@@ -283,7 +277,7 @@ void ProximityFinder::measure_folds(std::span<const Vec3> x) {
   const auto fold = [&](std::size_t t, Index other) {
     return static_cast<float>(std::sqrt(std::max(0.0, 0.5 - 0.5 * normals[t].dot(normals[other]))));
   };
-  parallel_for(triangles.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(triangles.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t)
       for (std::size_t c = 0; c < 3; ++c) {
         const Index other = features_.across(static_cast<Index>(t), c);
@@ -296,7 +290,7 @@ ProximityFinder::First ProximityFinder::begin_gathering(std::span<const Vec3> x,
   if (flattest > 0) measure_folds(x);
   // First look in float.
   rounded_.resize(x.size());
-  parallel_for(x.size(), kTrianglesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(x.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       rounded_[v].xyz =
           Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
@@ -307,7 +301,7 @@ ProximityFinder::First ProximityFinder::begin_gathering(std::span<const Vec3> x,
 }
 
 void ProximityFinder::look_at(std::span<const TrianglePair> pairs, const First& first) {
-  parallel_append(pairs.size(), kPairsAtOnce, pairs_, [&](std::size_t begin, std::size_t end, FeaturePairs& found) {
+  parallel_append(pairs.size(), kGrainSize, pairs_, [&](std::size_t begin, std::size_t end, FeaturePairs& found) {
     Gathering(*this, first, found).look_at(pairs.subspan(begin, end - begin));
   });
 }
@@ -328,7 +322,7 @@ void ProximityFinder::gather(const PairList& apart, std::span<const Surface> def
   const First first = begin_gathering(x, radius, flattest);
   look_at(apart.view(), first);
   for (const Surface& surface : deformable)
-    parallel_append(surface.triangles.size(), kTrianglesAtOnce, pairs_,
+    parallel_append(surface.triangles.size(), kGrainSize, pairs_,
                     [&](std::size_t begin, std::size_t end, FeaturePairs& found) {
                       Gathering gathering(*this, first, found);
                       std::vector<TrianglePair> pairs;
@@ -361,11 +355,11 @@ void ProximityFinder::find(std::span<const Vec3> x, double reach, std::vector<Pr
   out.clear();
   const std::vector<VertexFace>& vertex_faces = pairs_.vertex_faces;
   const std::vector<EdgeEdge>& edge_edges = pairs_.edge_edges;
-  parallel_append(vertex_faces.size(), kFeaturesAtOnce, out, [&](std::size_t begin, std::size_t end, auto& list) {
+  parallel_append(vertex_faces.size(), kGrainSize, out, [&](std::size_t begin, std::size_t end, auto& list) {
     Search search(features_, x, reach, list);
     for (std::size_t p = begin; p < end; ++p) search.vertex_face(vertex_faces[p].vertex, vertex_faces[p].face);
   });
-  parallel_append(edge_edges.size(), kFeaturesAtOnce, out, [&](std::size_t begin, std::size_t end, auto& list) {
+  parallel_append(edge_edges.size(), kGrainSize, out, [&](std::size_t begin, std::size_t end, auto& list) {
     Search search(features_, x, reach, list);
     for (std::size_t p = begin; p < end; ++p) search.edges(edge_edges[p]);
   });

@@ -10,9 +10,6 @@
 namespace weft::collision {
 namespace {
 
-// Faces whose distances differ by less than this part meet in the nearest point: far above the rounding of the squared
-// distance, far below what tells two features apart.
-constexpr double kTie = 1e-9;
 // Closer than this the line to the nearest point has no direction [m].
 constexpr double kNoDirection = 1e-10;
 // Cosine of the angle up to which a face looks the same way as another.
@@ -28,7 +25,7 @@ ClosestPoints closest(const Vec3& p, const Triangle& t, std::span<const Vec3> x)
 // Angle of a face at the feature of its own that the weights are on: of a corner, half a turn of an edge, a whole one
 // inside.
 double angle_at(const Triangle& t, const std::array<double, 3>& weights, std::span<const Vec3> x) {
-  const auto on = [&](std::size_t c) { return weights[c] > kTie; };
+  const auto on = [&](std::size_t c) { return weights[c] > kRoundoff; };
   const int support = on(0) + on(1) + on(2);
   if (support != 1) return support == 2 ? std::numbers::pi : 2 * std::numbers::pi;
   const std::size_t c = on(0) ? 0 : on(1) ? 1 : 2;
@@ -69,11 +66,11 @@ SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, s
   Vec3 difference = Vec3::Zero(), outward = Vec3::Zero();
   for (const Triangle& t : triangles) {
     const Box box(t, x);
-    if ((p - p.cwiseMax(box.low).cwiseMin(box.high)).squaredNorm() > (1 + kTie) * best_sq) continue;
+    if ((p - p.cwiseMax(box.low).cwiseMin(box.high)).squaredNorm() > (1 + kRoundoff) * best_sq) continue;
     const ClosestPoints points = closest(p, t, x);
-    if (points.distance_sq > (1 + kTie) * best_sq) continue;
+    if (points.distance_sq > (1 + kRoundoff) * best_sq) continue;
     const std::array<double, 3> weights{-points.weights[1], -points.weights[2], -points.weights[3]};
-    if (points.distance_sq < (1 - kTie) * best_sq) {
+    if (points.distance_sq < (1 - kRoundoff) * best_sq) {
       best.face = t;
       best.weights = weights;
       best_sq = points.distance_sq;
@@ -81,7 +78,7 @@ SurfacePoint nearest_point(const Vec3& p, std::span<const Triangle> triangles, s
       outward.setZero();
     }
     // Another point just as near, across a thin body, does not count.
-    if ((points.difference - difference).squaredNorm() > kTie * best_sq + kNoDirection * kNoDirection) continue;
+    if ((points.difference - difference).squaredNorm() > kRoundoff * best_sq + kNoDirection * kNoDirection) continue;
     outward += angle_at(t, weights, x) * face_normal(t, x);
   }
   const double distance = std::sqrt(best_sq);

@@ -5,14 +5,10 @@
 #include <limits>
 
 #include "collision/proximity/gjk.hpp"
+#include "core/numerics.hpp"
 
 namespace weft::collision {
 namespace {
-
-// Times that a way is halved where no plane is found for all of it: pieces of an eighth. Newton iterations with none,
-// 2, 3 and 6 (one start each): a handkerchief through a ring 1,362, 1,241, 1,235, 1,227; multi_sheet, 60 frames, 1,384,
-// 1,274, 1,233, 1,264; a wrung towel 1,016, 1,010, 984, 938; ball_through_cloth, 60 frames, 758, 766, 697, 678.
-constexpr int kHalvings = 3;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -73,7 +69,7 @@ class Search {
     const Vec3 closest_later = closest_convex(t1_.a, t1_.b).difference;
     if (closest_later == Vec3::Zero() || turns(closest, closest_later) || halvings == 0) return found_;
     const Sides middle = middle_of(t0_, t1_);
-    if (!Search(t0_, middle, kStartFloor).find(which, halvings - 1)) return std::nullopt;
+    if (!Search(t0_, middle, kRoundoff).find(which, halvings - 1)) return std::nullopt;
     return Search(middle, t1_, floor_).find(which, halvings - 1);
   }
 
@@ -88,7 +84,7 @@ class Search {
     const double length = direction.norm();
     if (!(length > 0)) return false;
     const Vec3 n = rounded(direction / length);
-    if (gap_along(n, t1_) >= floor_ && gap_along(n, t0_) >= kStartFloor) found_ = n;
+    if (gap_along(n, t1_) >= floor_ && gap_along(n, t0_) >= kRoundoff) found_ = n;
     return found_.has_value();
   }
 
@@ -99,8 +95,7 @@ class Search {
     const auto crosswise = [&](Corners Sides::*side, std::size_t k) {
       return n_t0.dot((t1_.*side)[k]) + n_t1.dot((t0_.*side)[k]);
     };
-    if (gap_along(n_t1, t1_) >= floor_ && gap_along(n_t0, t0_) >= kStartFloor &&
-        least_gap(crosswise) >= 2 * kStartFloor)
+    if (gap_along(n_t1, t1_) >= floor_ && gap_along(n_t0, t0_) >= kRoundoff && least_gap(crosswise) >= 2 * kRoundoff)
       found_ = n_t1;
     return found_.has_value();
   }
@@ -120,12 +115,13 @@ double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x)
 }
 
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1) {
-  return gap_along(n, pair, x_t1) >= kFloor && gap_along(n, pair, x_t0) >= kStartFloor;
+  return gap_along(n, pair, x_t1) >= numerics.separation.least_gap && gap_along(n, pair, x_t0) >= kRoundoff;
 }
 
 std::optional<Vec3> find_certificate(const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1,
                                      Certificates which) {
-  return Search(sides_of(pair, x_t0), sides_of(pair, x_t1), kFloor).find(which, kHalvings);
+  return Search(sides_of(pair, x_t0), sides_of(pair, x_t1), numerics.separation.least_gap)
+      .find(which, numerics.separation.halvings);
 }
 
 ClosestFeatures closest_features(const CornerPair& pair, std::span<const Vec3> x) {

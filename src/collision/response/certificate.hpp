@@ -8,6 +8,7 @@
 #include "collision/hierarchy/surface.hpp"
 #include "collision/proximity/closest_points.hpp"
 #include "collision/proximity/feature_pair.hpp"
+#include "core/numerics.hpp"
 #include "core/types.hpp"
 
 namespace weft::collision {
@@ -19,20 +20,13 @@ struct CornerPair {
   friend auto operator<=>(const CornerPair&, const CornerPair&) = default;
 };
 
-/// Gap that a certificate must show at the end of a step [m]: a hundred times where double precision begins to fail for
-/// coordinates of a few metres.
-inline constexpr double kFloor = 1e-6;
-/// Gap that it must show at the start of a step [m], where the step before left kFloor: far above the rounding of a dot
-/// product, 1e-15 of the coordinates, so that what touches is never taken for apart.
-inline constexpr double kStartFloor = 1e-9;
-
 /// min_a n·x − max_b n·x: along the unit direction n, side a lies above side b by this [m].
 double gap_along(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x);
 
-/// Whether n is a certificate for the linear motion from x_t0 to x_t1: the gap along it is at least kStartFloor at the
-/// start and kFloor at the end. Every n·x is linear in time, so the gap is a minimum of linear functions, concave, and
-/// positive all the way between: a plane normal to n that moves along separates the pair for the whole step. No root is
-/// sought.
+/// Whether n is a certificate for the linear motion from x_t0 to x_t1: the gap along it is at least kRoundoff at the
+/// start, so that what touches is never taken for apart, and Numerics::Separation::least_gap at the end. Every n·x is
+/// linear in time, so the gap is a minimum of linear functions, concave, and positive all the way between: a plane
+/// normal to n that moves along separates the pair for the whole step. No root is sought.
 bool separates(const Vec3& n, const CornerPair& pair, std::span<const Vec3> x_t0, std::span<const Vec3> x_t1);
 
 /// Which certificates count: planes of constant direction alone, or those that turn too.

@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics.hpp"
+
 namespace weft::collision {
 namespace {
-
-constexpr int kWallSolves = 6;
 
 // The place of the only particle of a contact with an obstacle; −1 for all other contacts.
 int single_particle(const Contact& contact) {
@@ -55,7 +55,7 @@ void ContactResponse::prepare(std::span<const Vec3> x_t0, std::span<const Vec3> 
 }
 
 int ContactResponse::most_solves() const {
-  return walls_ ? kWallSolves : 1;
+  return walls_ ? numerics.walls.solves : 1;
 }
 
 std::span<const PrescribedParticle> ContactResponse::prescribed() const {

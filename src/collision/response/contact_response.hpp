@@ -21,7 +21,7 @@ enum class ResponseForm { springs, velocity_constraints };
 class ContactResponse {
  public:
   /// `masses`: of the particles [kg]; `stick_speed`: of springs [m/s].
-  ContactResponse(ResponseForm form, std::vector<double> masses, double stick_speed = ContactSet::kStickSpeed);
+  ContactResponse(ResponseForm form, std::vector<double> masses, double stick_speed = numerics.contact.stick_velocity);
 
   ResponseForm form() const { return walls_ ? ResponseForm::velocity_constraints : ResponseForm::springs; }
 

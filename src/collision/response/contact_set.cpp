@@ -3,13 +3,11 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/numerics.hpp"
 #include "core/parallel_append.hpp"
 
 namespace weft::collision {
 namespace {
-
-// Contacts that a thread looks at at once.
-constexpr std::size_t kContactsAtOnce = 256;
 
 Vec3 weighted_sum(const Contact& contact, std::span<const Vec3> x) {
   Vec3 sum = contact.weights[0] * x[contact.particles[0]];
@@ -31,7 +29,7 @@ Load load_at(const Contact& contact, double depth) {
   if (depth <= 0) return {0, contact.stiffness};
   const double full = std::max(contact.full_range, contact.range);
   const double inner = std::min(depth, full), ratio_sq = (inner / full) * (inner / full);
-  const double stiffening = ContactSet::kStiffening * ratio_sq * ratio_sq;
+  const double stiffening = numerics.contact.stiffening * ratio_sq * ratio_sq;
   const double slope = contact.stiffness * (1 + 5 * stiffening);
   return {contact.stiffness * inner * (1 + stiffening) + slope * (depth - inner), slope};
 }
@@ -62,7 +60,7 @@ Vec3 relative_end(const Contact& contact, std::span<const Vec3> x_end) {
 // with its first derivative where both coefficients are the same.
 double friction_over_slip(const Contact& contact, double slip) {
   if (slip < 1) return contact.static_friction * (2 - slip);
-  const double sliding = std::min(1.0, (slip - 1) / (ContactSet::kSlideSpeed - 1));
+  const double sliding = std::min(1.0, (slip - 1) / (numerics.contact.slide_velocity - 1));
   return (contact.static_friction + sliding * (contact.friction - contact.static_friction)) / slip;
 }
 
@@ -113,7 +111,7 @@ void follow(const Contact& contact, const Vec3& slip, FrictionLag& lag) {
   } else if (slip.squaredNorm() < 1) {
     lag.drag = friction_against_load(contact, slip);
     lag.sticks = true;
-  } else if (turned && lag.let_go < ContactSet::kMostReturns) {
+  } else if (turned && lag.let_go < numerics.contact.returns) {
     lag.drag = Vec3::Zero();
     lag.sticks = true;
   }
@@ -141,14 +139,14 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
     const double depth = contact.range - contact.normal.dot(relative);
     const double force = tangent_force(load_at(contact, lag.depths[c]), lag.depths[c], depth);
     lag.depths[c] = depth_with(contact, force, std::max(depth, lag.depths[c]));
-    if (lag.updates < kLoadUpdates) lag.loads[c] = force;
+    if (lag.updates < numerics.contact.force_updates) lag.loads[c] = force;
     if (!contact.against_obstacle || contact.static_friction == 0) return;
-    if (lag.updates < kLoadUpdates)
+    if (lag.updates < numerics.contact.force_updates)
       follow(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
     else
       lag.frictions[c].sticks = false;
   };
-  parallel_for(lag.updates > 0 ? lag.depths.size() : 0, kContactsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(lag.updates > 0 ? lag.depths.size() : 0, kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t c = begin; c < end; ++c) follow_solve(c);
   });
   for (std::size_t c = lag.depths.size(); c < contacts_.size(); ++c) {
@@ -179,7 +177,7 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   }
   response.slope = load.slope;
   response.force = load.force * contact.normal;
-  const bool follows = law == Law::itself && lag.updates < kLoadUpdates;
+  const bool follows = law == Law::itself && lag.updates < numerics.contact.force_updates;
   const double friction_load = follows ? load.force : lag.loads[index];
   if (contact.static_friction == 0 || friction_load == 0) return response;
 
@@ -208,7 +206,7 @@ void ContactSet::add_forces(Law law, std::span<const Vec3> x_end, const ContactL
     Vec3 force;
   };
   std::vector<Push> pushes;
-  parallel_append(contacts_.size(), kContactsAtOnce, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
+  parallel_append(contacts_.size(), kFineGrainSize, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
     for (std::size_t c = begin; c < end; ++c)
       if (const Response response = respond(c, law, x_end, lag); response.active)
         list.push_back({&contacts_[c], response.force});
@@ -242,7 +240,7 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const C
     Mat3 stiffness;
   };
   std::vector<Push> pushes;
-  parallel_append(contacts_.size(), kContactsAtOnce, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
+  parallel_append(contacts_.size(), kFineGrainSize, pushes, [&](std::size_t begin, std::size_t end, auto& list) {
     for (std::size_t c = begin; c < end; ++c) {
       const Contact& contact = contacts_[c];
       const Response response = respond(c, Law::tangent, x_end, lag);

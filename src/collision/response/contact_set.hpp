@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "core/numerics.hpp"
 #include "core/types.hpp"
 #include "solver/linear_system.hpp"
 
@@ -48,34 +49,17 @@ struct ContactLag {
 /// friction −λ w' of a slip u = ψ(‖u‖) w', against λ/ψ, with w = ψ' w'. See ContactSet::linearise.
 Mat3 friction_tangent(const Mat3& across, const Vec3& slip, Vec3 w);
 
-/// Force of a contact: k d (1 + kStiffening (d / r)⁴) for a depth d = r − g of the gap g = n·(a − b) < r, from d = r on
-/// with the slope that it has there; n is kept from the start of the step: convex, with a Jacobian of rank one. A
-/// linear spring of cotton gives 0.1 N before the gap is closed, and a sheet that lies on the tip of a cone weighs 1 N.
-/// Friction opposes the slip u of the step in the tangent plane with μ k (r − g), reached smoothly from zero within a
-/// slip of `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
+/// Force of a contact: k d (1 + s (d / r)⁴), s = Numerics::Contact::stiffening, for a depth d = r − g of the gap g =
+/// n·(a − b) < r, from d = r on with the slope that it has there; n is kept from the start of the step: convex, with a
+/// Jacobian of rank one. A linear spring of cotton gives 0.1 N before the gap is closed, and a sheet that lies on the
+/// tip of a cone weighs 1 N. Friction opposes the slip u of the step in the tangent plane with μ k (r − g), reached
+/// smoothly from zero within a slip of `stick_speed` · h (Li et al., "Incremental Potential Contact", 2020, section 5).
 class ContactSet {
  public:
-  /// Slip speed below which friction is viscous and a contact counts as sticking [m/s]. Smaller creeps less and makes
-  /// the system stiffer: 2 μ λ / (h · stick_speed) per contact of load λ.
-  static constexpr double kStickSpeed = 2e-4;
-  /// Updates of a step, over all of its solves, in which friction follows the loads. From then on it keeps those it
-  /// has: that the load changes with the positions is not in the matrix, and where folds press on each other in steps
-  /// below a millisecond the two would go on chasing each other, however short the step. Nor does friction go on to
-  /// stick and let go in turns: a step of sphere_drape took 236 iterations and two rejections.
-  static constexpr int kLoadUpdates = 20;
-  /// Times in a step that a contact which let go sticks again because its slip turned back: as long as cloth around
-  /// moves with it, what would stick is seen to slide to and fro. The first 11 frames of the catwalk took 612, 460, 536
-  /// and 477 iterations with 1, 2, 3 and any number, and 855 where turning back does not stick.
-  static constexpr int kMostReturns = 2;
-
-  static constexpr double kStiffening = 100;
-  /// Slip speed, in stick speeds, from which friction is that of sliding; between, it falls from the static one.
-  static constexpr double kSlideSpeed = 5;
-
   void clear() { contacts_.clear(); }
   void add(const Contact& contact);
-  /// Before the first solve of a step over h [s], with this slip speed in place of kStickSpeed [m/s].
-  void set_step(double h, double stick_speed = kStickSpeed) { stick_slip_ = stick_speed * h; }
+  /// Before the first solve of a step over h [s], with this stick velocity [m/s].
+  void set_step(double h, double stick_speed = numerics.contact.stick_velocity) { stick_slip_ = stick_speed * h; }
   std::span<const Contact> contacts() const { return contacts_; }
 
   /// Before each linearisation, with the particles where the last one has led to. A contact is unknown by its force λ

@@ -10,9 +10,6 @@
 namespace weft::collision {
 namespace {
 
-// Fans that a thread looks at at once: some 50 µs.
-constexpr std::size_t kFansAtOnce = 512;
-
 /// The triangle with its corners turned so that `first` comes first.
 Triangle turned(const Triangle& t, Index first) {
   return t[0] == first ? t : t[1] == first ? Triangle{t[1], t[2], t[0]} : Triangle{t[2], t[0], t[1]};
@@ -108,7 +105,7 @@ bool Fans::turns_once(std::size_t fan, const Vec3& axis, std::span<const Vec3> x
 
 void Fans::set_reference(std::span<const Vec3> x) {
   has_certificate_.assign(middle_.size(), 0);
-  parallel_for(middle_.size(), kFansAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(middle_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t fan = begin; fan < end; ++fan) rooms_[fan] = room_of(fan, x);
   });
 }
@@ -140,7 +137,7 @@ Fans::Room Fans::room_of(std::size_t fan, std::span<const Vec3> x) const {
 }
 
 void Fans::mark_open(double distance, std::span<const Vec3> x, std::span<std::uint8_t> vertices) const {
-  parallel_for(middle_.size(), kFansAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(middle_.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t fan = begin; fan < end; ++fan)
       if (static_cast<double>(room_of(fan, x).clearance) > distance) vertices[middle_[fan]] = 1;
   });
@@ -182,7 +179,7 @@ void Fans::find_failing(std::span<const Vec3> x_t0, std::span<const Vec3> x_t1, 
     for (Index v : ring(fan)) most = std::max(most, moved[v]);
     return most < slack;
   };
-  parallel_append(middle_.size(), kFansAtOnce, failing, [&](std::size_t begin, std::size_t end, auto& list) {
+  parallel_append(middle_.size(), kFineGrainSize, failing, [&](std::size_t begin, std::size_t end, auto& list) {
     for (std::size_t fan = begin; fan < end; ++fan) {
       if (has_certificate_[fan] && !any_changed(fan)) continue;
       has_certificate_[fan] = 1;

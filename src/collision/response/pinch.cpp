@@ -4,6 +4,7 @@
 #include <functional>
 
 #include "core/archive.hpp"
+#include "core/numerics.hpp"
 
 namespace weft::collision {
 namespace {
@@ -18,7 +19,7 @@ Vec3 outward(const Vec3& p, std::span<const Triangle> faces, std::span<const Vec
 // Those that a certificate has to be looked for against: others are apart by their boxes.
 std::vector<Triangle> PinchedPairs::faces_near(const Key& key, const BroadPhase& surfaces,
                                                std::span<const Vec3> x) const {
-  std::vector<Triangle> faces = triangles_near(key.cloth, surfaces, key.body, x, kFloor);
+  std::vector<Triangle> faces = triangles_near(key.cloth, surfaces, key.body, x, numerics.separation.least_gap);
   std::erase_if(faces, std::not_fn(is_of(key.limb)));
   return faces;
 }

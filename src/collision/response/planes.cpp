@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "core/archive.hpp"
+#include "core/numerics.hpp"
 #include "core/parallel_append.hpp"
 
 namespace weft::collision {
@@ -21,9 +22,6 @@ Points8 cross(const Points8& a, const Points8& b) {
   return {{a.axis[1] * b.axis[2] - a.axis[2] * b.axis[1], a.axis[2] * b.axis[0] - a.axis[0] * b.axis[2],
            a.axis[0] * b.axis[1] - a.axis[1] * b.axis[0]}};
 }
-
-// What a thread looks at at once: new pairs, a multiple of eight; pairs with planes; vertices and triangles.
-constexpr std::size_t kNewPairsAtOnce = 4096, kPairsAtOnce = 4096, kVerticesAtOnce = 2048;
 
 /// One triangle in each lane.
 struct Triangles8 {
@@ -59,7 +57,7 @@ void Planes::look_at_eight(std::size_t first, std::size_t count) {
         raise_to(rounding, coordinate);
         raise_to(rounding, -coordinate);
       }
-  rounding = rounding * 0x1p-19F + static_cast<float>(1.5 * kFloor);
+  rounding = rounding * 0x1p-19F + static_cast<float>(1.5 * numerics.separation.least_gap);
   // Relative to a corner, so that the dot products round at the size of the triangles.
   const Points8 origin = a.corner[0];
   for (int c = 0; c < 3; ++c) a.corner[c] = minus(a.corner[c], origin), b.corner[c] = minus(b.corner[c], origin);
@@ -105,11 +103,11 @@ void Planes::watch(std::span<const Vec3> x) {
   planes_.resize(pairs_.size());
   has_certificate_.assign(pairs_.size(), 0);
   rounded_.resize(x.size());
-  parallel_for(x.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(x.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       rounded_[v] = Lanes4{static_cast<float>(x[v][0]), static_cast<float>(x[v][1]), static_cast<float>(x[v][2]), 0.0F};
   });
-  parallel_for(pairs_.size(), kNewPairsAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(pairs_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t p = begin; p < end; p += 8) look_at_eight(p, std::min<std::size_t>(8, end - p));
   });
 }
@@ -132,7 +130,7 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
                           std::vector<CornerPair>& failing, const CarriedStarts* carried, Certificates which) {
   moved_.resize(triangles_.size());
   changed_.resize(triangles_.size());
-  parallel_for(triangles_.size(), kVerticesAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(triangles_.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t t = begin; t < end; ++t) {
       const Triangle& corners = triangles_[t];
       moved_[t] = std::max({moved[corners[0]], moved[corners[1]], moved[corners[2]]});
@@ -140,7 +138,7 @@ void Planes::find_failing(std::span<const Vec3> reference, std::span<const Vec3>
     }
   });
   if (carried != nullptr) carried->make();
-  parallel_append(pairs_.size(), kPairsAtOnce, failing, [&](std::size_t begin, std::size_t end, auto& list) {
+  parallel_append(pairs_.size(), kGrainSize, failing, [&](std::size_t begin, std::size_t end, auto& list) {
     find_failing(begin, end, {reference, x_t0, x_t1, carried, which}, list);
   });
 }
@@ -167,7 +165,7 @@ void Planes::find_failing(std::size_t begin, std::size_t end, const Way& way, st
       failing.push_back(pair);
       continue;
     }
-    const double gap = gap_along(*found, pair, reference) - 1.5 * kFloor;
+    const double gap = gap_along(*found, pair, reference) - 1.5 * numerics.separation.least_gap;
     plane = {{static_cast<float>(found->x()), static_cast<float>(found->y()), static_cast<float>(found->z())},
              static_cast<float>(gap > 0 ? (1 - 1e-6) * gap : gap)};
   }

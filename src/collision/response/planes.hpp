@@ -11,6 +11,7 @@
 #include "collision/hierarchy/surface.hpp"
 #include "collision/response/carried_starts.hpp"
 #include "collision/response/certificate.hpp"
+#include "core/numerics.hpp"
 #include "core/types.hpp"
 
 namespace weft::collision {
@@ -52,7 +53,7 @@ class Planes {
  private:
   struct Plane {
     std::array<float, 3> n;
-    float gap;  // at the reference, above kFloor and rounding [m]; negative: see is_known
+    float gap;  // at the reference, above the least gap and rounding [m]; negative: see is_known
     bool is_known() const { return n[0] != 0 || n[1] != 0 || n[2] != 0; }
     bool operator==(const Plane&) const = default;
   };

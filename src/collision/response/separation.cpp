@@ -5,24 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "core/numerics.hpp"
 #include "core/parallel.hpp"
 #include "core/stop.hpp"
 
 namespace weft::collision {
-namespace {
-
-// Gap that a push restores [m], or half of the gap at the start where that is less: a tenth of a fabric's thickness, so
-// that the contact springs of the next step have something to act on.
-constexpr double kKeep = 2e-4;
-// Rounds of pushing before particles are backtracked by halves, before they are backtracked entirely, and before all
-// are.
-constexpr int kPushRounds = 24;
-constexpr int kHalfRounds = 36;
-constexpr int kRounds = 60;
-// Vertices that a thread looks at at once.
-constexpr std::size_t kVerticesMovedAtOnce = 2048;
-
-}  // namespace
+namespace {}  // namespace
 
 Separation::Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable,
                        std::span<const double> masses)
@@ -42,7 +30,7 @@ void Separation::watch(std::span<const Vec3> x) {
 
 void Separation::append_closer(double radius, std::span<const Vec3> x, PairList& out) const {
   std::vector<float> moved(x.size());
-  parallel_for(x.size(), kVerticesMovedAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(x.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v)
       moved[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>((x[v] - reference_[v]).squaredNorm()));
   });
@@ -68,7 +56,7 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
     looked_t1_ = looked_t0_;
   }
   end_if_stopped();
-  parallel_for(x_t0.size(), kVerticesMovedAtOnce, [&](std::size_t begin, std::size_t end) {
+  parallel_for(x_t0.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
       const double most_sq = std::max((x_t0[v] - reference_[v]).squaredNorm(), (x_t1[v] - reference_[v]).squaredNorm());
       moved_[v] = (1 + 1e-6F) * std::sqrt(static_cast<float>(most_sq));
@@ -121,7 +109,8 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   const double start_gap = direction.norm();
   if (start_gap == 0) return false;
   const Vec3 n = direction / start_gap;
-  const double target = std::max(2 * kFloor, std::min(kKeep, 0.5 * start_gap));
+  const double target =
+      std::max(2 * numerics.separation.least_gap, std::min(numerics.separation.restored_gap, 0.5 * start_gap));
 
   // The separating plane n·x = c at the end: where both sides get the same momentum, unless what cannot move stands in
   // the way.
@@ -262,10 +251,10 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
   look_again(step);
   step.report.corrected_pairs = static_cast<int>(failing_.size());
   for (round_ = 1; !failing_.empty(); ++round_) {
-    bool changed = round_ >= kRounds && backtrack_all(step);
-    const bool last = round_ > kHalfRounds;
+    bool changed = round_ >= numerics.separation.rounds && backtrack_all(step);
+    const bool last = round_ > numerics.separation.half_rounds;
     for (const CornerPair& pair : failing_) {
-      if (round_ <= kPushRounds && !rides(pair)) {
+      if (round_ <= numerics.separation.push_rounds && !rides(pair)) {
         if (find_certificate(pair, step.start_of(pair), x_t1)) continue;  // an earlier push of this round was enough
         if (push_apart(pair, step) && (changed = true)) continue;
         if (give_way(pair, step) && (changed = true) && push_apart(pair, step)) continue;
@@ -282,7 +271,7 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
       step.report.stuck = failing_.front();
       return step.report;
     }
-    if (!changed) round_ = kHalfRounds;
+    if (!changed) round_ = numerics.separation.half_rounds;
     look_again(step);
   }
   step.report.separated = true;

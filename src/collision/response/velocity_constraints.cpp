@@ -4,33 +4,13 @@
 #include <cmath>
 
 #include "core/archive.hpp"
+#include "core/numerics.hpp"
 
 namespace weft::collision {
 namespace {
 
-// Share of a missing distance that one step makes good. All of it at once throws the particle: what is closer than
-// d_min got there by a correction or by an obstacle's motion, and is in no hurry.
-constexpr double kCorrection = 0.2;
-// Walls that a particle passes by more than this [m] are worth another solve: a hundredth of a fabric's thickness. Less
-// is left to the next step.
-constexpr double kPassed = 2e-5;
-// Walls are met up to this [m], far above rounding.
-constexpr double kSlack = 1e-9;
-// How far a force points beyond a wall, to tell whether the wall holds [m]: about the distances at hand.
-constexpr double kNudge = 1e-4;
-// Sine of the angle between normals from which two walls hold two directions; below, they hold one.
-constexpr double kSameDirection = 0.05;
 // Cosine from which two walls of a particle are taken for one.
 constexpr double kSameWall = 1 - 1e-6;
-// Changes between away, sticking and sliding of a particle within one step; what has not settled then is left to the
-// next step.
-constexpr int kFlips = 3;
-// Acceleration by a change of friction or by a released pull, from which a step is solved again [m/s²]: a twentieth of
-// the weight. Of friction, a fifth of what it was besides.
-constexpr double kNegligibleAcceleration = 0.5;
-constexpr double kLoadChange = 0.2;
-// Walls that are looked at for one particle, the most violated ones.
-constexpr std::size_t kMostWalls = 8;
 
 struct HalfSpace {
   Vec3 normal;
@@ -68,7 +48,7 @@ void VelocityConstraints::add(Index particle, const Vec3& normal, double distanc
     touched_.push_back({particle, -1, {}, {}});
   }
   Touched& touched = touched_[place];
-  const double gamma_d_min = distance >= d_min ? d_min : distance + kCorrection * (d_min - distance);
+  const double gamma_d_min = distance >= d_min ? d_min : distance + numerics.walls.correction * (d_min - distance);
   const double bound = gamma_d_min - distance + normal.dot(motion);
   for (int w = touched.first_wall; w >= 0; w = walls_[w].next) {
     Wall& wall = walls_[w];
@@ -92,18 +72,18 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
     if (of_force && std::find(holding.begin(), holding.end(), w) == holding.end()) continue;
     all.push_back({wall.normal, of_force ? 0 : wall.bound, w});
   }
-  if (feasible(all, u, kSlack)) return u;
+  if (feasible(all, u, kRoundoff)) return u;
   const auto missing = [&](const HalfSpace& h) { return h.bound - h.normal.dot(u); };
-  if (all.size() > kMostWalls) {
+  if (all.size() > numerics.walls.most) {
     std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) { return missing(a) > missing(b); });
-    all.resize(kMostWalls);
+    all.resize(numerics.walls.most);
   }
 
   const std::size_t n = all.size();
   for (std::size_t i = 0; i < n; ++i) {
     const double load = missing(all[i]);
     Vec3 moved = u + load * all[i].normal;
-    if (load <= 0 || !feasible(all, moved, kSlack)) continue;
+    if (load <= 0 || !feasible(all, moved, kRoundoff)) continue;
     held = {{all[i].wall, -1, -1}, {load, 0, 0}, 1};
     return moved;
   }
@@ -114,7 +94,7 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
       const double a = missing(all[i]), b = missing(all[j]);
       const double load_i = (a - c * b) / determinant, load_j = (b - c * a) / determinant;
       Vec3 moved = u + load_i * all[i].normal + load_j * all[j].normal;
-      if (load_i < 0 || load_j < 0 || !feasible(all, moved, kSlack)) continue;
+      if (load_i < 0 || load_j < 0 || !feasible(all, moved, kRoundoff)) continue;
       held = {{all[i].wall, all[j].wall, -1}, {load_i, load_j, 0}, 2};
       return moved;
     }
@@ -127,7 +107,7 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
         const Mat3 gram = normals.transpose() * normals;
         const Vec3 loads = gram.inverse() * Vec3(missing(all[i]), missing(all[j]), missing(all[k]));
         Vec3 moved = u + normals * loads;
-        if (loads.minCoeff() < 0 || !feasible(all, moved, kSlack)) continue;
+        if (loads.minCoeff() < 0 || !feasible(all, moved, kRoundoff)) continue;
         held = {{all[i].wall, all[j].wall, all[k].wall}, {loads[0], loads[1], loads[2]}, 3};
         return moved;
       }
@@ -177,15 +157,15 @@ void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Ve
     const double push = particle.memory.push.norm();
     const Vec3 guess = x_t1[i] - x_t0[i];
     Held held;
-    const Vec3 u =
-        project(particle, push > 0 ? Vec3(guess - kNudge / push * particle.memory.push) : guess, false, held);
+    const Vec3 u = project(
+        particle, push > 0 ? Vec3(guess - numerics.walls.nudge / push * particle.memory.push) : guess, false, held);
     if (held.count == 0) {
       particle.memory = {};
       continue;
     }
     hold(particle, u, held);
     particle.friction_load = particle.memory.load;
-    const Vec3 slips = slip(particle, x_t1[i]) / (ContactSet::kStickSpeed * step_);
+    const Vec3 slips = slip(particle, x_t1[i]) / (numerics.contact.stick_velocity * step_);
     particle.drag = friction_over_slip(slips.norm()) * slips;
   }
   prescribe();
@@ -214,13 +194,13 @@ int VelocityConstraints::revise(std::span<const Vec3> x_t0, std::span<const Vec3
 bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec3& force) {
   Memory& memory = particle.memory;
   const Vec3 u = x_end - particle.x_t0;
-  const double negligible = kNegligibleAcceleration * masses_[particle.particle];
+  const double negligible = numerics.walls.negligible_acceleration * masses_[particle.particle];
   Held next;
   if (memory.state == State::away) {
     const Vec3 held_at = project(particle, u, false, next);
-    if (next.load() < kPassed) return false;
+    if (next.load() < numerics.walls.passed) return false;
     hold(particle, held_at, next);
-    return particle.flips++ < kFlips;
+    return particle.flips++ < numerics.walls.flips;
   }
 
   // The force's normal part, by walls, and what is left: tangential, or pulling.
@@ -230,9 +210,10 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   memory.push = force - left;
   memory.load = size * pushing.load();
   const double push = memory.push.norm();
-  const Vec3 held_at = project(particle, push > 0 ? Vec3(u - kNudge / push * memory.push) : u, false, next);
+  const Vec3 held_at =
+      project(particle, push > 0 ? Vec3(u - numerics.walls.nudge / push * memory.push) : u, false, next);
   if (next.count == 0) {
-    if (left.norm() > negligible && particle.flips++ >= kFlips) return false;
+    if (left.norm() > negligible && particle.flips++ >= numerics.walls.flips) return false;
     memory = {};
     particle.held = {};
     particle.friction_load = 0;
@@ -244,8 +225,8 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   const Wall& wall = walls_[main_wall(particle)];
   const double limit = (memory.state == State::sticking ? wall.static_friction : wall.friction) * memory.load;
   if (memory.state == State::sticking) {
-    const bool slips = left.norm() > limit, passes = passed.load() >= kPassed;
-    if (!(slips || passes) || particle.flips++ >= kFlips) return false;
+    const bool slips = left.norm() > limit, passes = passed.load() >= numerics.walls.passed;
+    if (!(slips || passes) || particle.flips++ >= numerics.walls.flips) return false;
     if (slips) {
       memory.state = State::sliding;
       particle.friction_load = memory.load;
@@ -257,13 +238,14 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
 
   const bool other_walls = !next.same_walls(particle.held);
   const double change = wall.friction * std::abs(memory.load - particle.friction_load);
-  const bool other_load = change > negligible && change > kLoadChange * limit;
-  const bool fast = slip(particle, x_end).norm() >= ContactSet::kStickSpeed * step_;
+  const bool other_load = change > negligible && change > numerics.walls.negligible_change * limit;
+  const bool fast = slip(particle, x_end).norm() >= numerics.contact.stick_velocity * step_;
   particle.slow = limit > 0 && !other_load && !other_walls && !fast;
   hold(particle, held_at, next);
   particle.friction_load = memory.load;
-  const bool matters = other_load || (other_walls && (passed.load() >= kPassed || left.norm() > negligible));
-  return matters && particle.flips++ < kFlips;
+  const bool matters =
+      other_load || (other_walls && (passed.load() >= numerics.walls.passed || left.norm() > negligible));
+  return matters && particle.flips++ < numerics.walls.flips;
 }
 
 void VelocityConstraints::accept() {
@@ -288,7 +270,7 @@ Mat3 VelocityConstraints::free_directions(const Touched& particle) const {
   for (int k = 0; k < particle.held.count; ++k) {
     const Vec3 q = free * walls_[particle.held.walls[k]].normal;
     const double size = q.norm();
-    if (size < kSameDirection) continue;
+    if (size < numerics.walls.same_direction) continue;
     free -= q * q.transpose() / (size * size);
   }
   return free;
@@ -306,7 +288,7 @@ PrescribedParticle VelocityConstraints::prescription(const Touched& particle) co
     const Wall& wall = walls_[particle.held.walls[k]];
     const Vec3 q = free * wall.normal;
     const double size_sq = q.squaredNorm();
-    if (size_sq < kSameDirection * kSameDirection) continue;
+    if (size_sq < numerics.walls.same_direction * numerics.walls.same_direction) continue;
     result.v_end += (wall.normal.dot(wall.motion) / step_ - wall.normal.dot(result.v_end)) / size_sq * q;
     free -= q * q.transpose() / size_sq;
   }
@@ -327,7 +309,7 @@ Vec3 VelocityConstraints::slip(const Touched& particle, const Vec3& x_end) const
 }
 
 VelocityConstraints::Friction VelocityConstraints::friction(const Touched& particle, const Vec3& x_end) const {
-  const double stick_slip = ContactSet::kStickSpeed * step_;
+  const double stick_slip = numerics.contact.stick_velocity * step_;
   const Vec3 slips = slip(particle, x_end) / stick_slip;
   const double size = slips.norm();
   const double limit = walls_[main_wall(particle)].friction * particle.friction_load;

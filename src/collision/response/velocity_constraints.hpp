@@ -34,9 +34,10 @@ struct PrescribedParticle {
 /// A wall holds its particle (equality, one direction less in the CG) while it has to push, and is released where the
 /// residual says that it would pull. Walls of one particle act together: up to three hold it at once. What is held is
 /// held in the tangent plane too, moving with the obstacle, while the force that this takes lies in the friction cone.
-/// Else it slides, with friction μ · load against the slip, smooth below kStickSpeed as that of ContactSet; sliding
-/// that slow at the end of a step sticks from then on. (As an explicit force, friction threw neighbours that began to
-/// slide together back past where they came from, and cloth at rest went to and fro between sticking and sliding.)
+/// Else it slides, with friction μ · load against the slip, smooth below the stick velocity as that of ContactSet;
+/// sliding that slow at the end of a step sticks from then on. (As an explicit force, friction threw neighbours that
+/// began to slide together back past where they came from, and cloth at rest went to and fro between sticking and
+/// sliding.)
 ///
 /// All this is decided anew between solves of a step (revise) and remembered for the next step (accept).
 class VelocityConstraints {

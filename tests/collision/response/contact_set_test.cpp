@@ -24,10 +24,10 @@ Vec3 random_vector(double size) {
 
 /// Force of a contact of 500 N/m [N] and its slope [N/m], for a depth in ranges up to 1.
 double load_at(double depth) {
-  return 500 * kRange * depth * (1 + ContactSet::kStiffening * std::pow(depth, 4));
+  return 500 * kRange * depth * (1 + numerics.contact.stiffening * std::pow(depth, 4));
 }
 double slope_at(double depth) {
-  return 500 * (1 + 5 * ContactSet::kStiffening * std::pow(depth, 4));
+  return 500 * (1 + 5 * numerics.contact.stiffening * std::pow(depth, 4));
 }
 
 /// A vertex 0.4 of the range above the middle of a triangle, both of cloth, in a slanted frame.
@@ -64,7 +64,7 @@ struct VertexOnFace {
   }
   /// ∫ d (1 + c d⁴) for a depth d in ranges; from one range on the force goes on along its tangent.
   static double energy_at(double depth) {
-    constexpr double c = ContactSet::kStiffening;
+    const double c = numerics.contact.stiffening;
     if (depth <= 0) return 0;
     const double inner = std::min(depth, 1.0), beyond = depth - inner;
     return 0.5 * inner * inner + c / 6 * std::pow(inner, 6) + (1 + c) * beyond + 0.5 * (1 + 5 * c) * beyond * beyond;
@@ -147,7 +147,7 @@ TEST(ContactSet, FrictionOpposesTheSlipAndIsBoundedByTheLoad) {
   const Vec3 n = pair.contact.normal;
   // At the start, which friction goes by before the first solve.
   const double load = load_at(0.6);
-  const double stick = ContactSet::kStickSpeed * kSlidingStep;
+  const double stick = numerics.contact.stick_velocity * kSlidingStep;
   const Vec3 direction = n.unitOrthogonal();
   double last = 0;
   for (double share : {0.0, 0.1, 0.5, 0.9, 1.0, 1.1, 10.0, 1000.0}) {
@@ -168,15 +168,15 @@ TEST(ContactSet, StaticFrictionHoldsMoreThanThatOfSliding) {
   pair.contact.static_friction = 0.7;
   const ContactSet contacts = pair.set(), frictionless = smooth.set();
   const double load = load_at(0.6);
-  const double stick = ContactSet::kStickSpeed * kSlidingStep;
+  const double stick = numerics.contact.stick_velocity * kSlidingStep;
   const auto coefficient = [&](double slip) {
     std::vector<Vec3> x = pair.x;
     x[0] += slip * stick * pair.contact.normal.unitOrthogonal();
     return (forces_of(contacts, x)[0] - forces_of(frictionless, x)[0]).norm() / load;
   };
   EXPECT_NEAR(coefficient(1), 0.7, 1e-9);
-  EXPECT_NEAR(coefficient(0.5 * (1 + ContactSet::kSlideSpeed)), 0.55, 1e-9);
-  EXPECT_NEAR(coefficient(ContactSet::kSlideSpeed), 0.4, 1e-9);
+  EXPECT_NEAR(coefficient(0.5 * (1 + numerics.contact.slide_velocity)), 0.55, 1e-9);
+  EXPECT_NEAR(coefficient(numerics.contact.slide_velocity), 0.4, 1e-9);
   EXPECT_NEAR(coefficient(1000), 0.4, 1e-9);
 }
 
@@ -319,7 +319,7 @@ struct Slipping : VertexOnFace {
 
   std::vector<Vec3> slipped(double slip, double sideways = 0) const {
     std::vector<Vec3> at = x;
-    at[0] += ContactSet::kStickSpeed * kSlidingStep * (slip * along + sideways * across);
+    at[0] += numerics.contact.stick_velocity * kSlidingStep * (slip * along + sideways * across);
     return at;
   }
   /// As where an iteration has led to.
@@ -366,7 +366,7 @@ TEST(ContactSet, FrictionThatSticksFollowsItsTangentToTheLaw) {
   for (int k = 0; k < 6; ++k) pair.update(0.6);
   EXPECT_NEAR(pair.friction(0.6).dot(pair.along), -law(0.6), 1e-12);
   EXPECT_NEAR(pair.along.dot(pair.stiffness(0.6) * pair.along),
-              pair.lag.loads[0] * 0.4 * (2 - 2 * 0.6) / (ContactSet::kStickSpeed * kSlidingStep),
+              pair.lag.loads[0] * 0.4 * (2 - 2 * 0.6) / (numerics.contact.stick_velocity * kSlidingStep),
               1e-9 * pair.lag.loads[0] * 1e6);
 }
 

@@ -1,0 +1,233 @@
+// The numbers that the physics is tuned with: all of them, in one place. What is not here follows from a scene, from
+// theory, from rounding, or from the size of a machine's caches.
+#pragma once
+
+namespace weft {
+
+/// Tuned on the shipped scenes and those of tests/bench/scenes: cloth of 0.05 to 1 kg/m², spacings of 1 cm to 1 m,
+/// steps of 1 to 40 ms. Each member says what it is, with its unit, and what happens outside of its range. Members
+/// without a unit are ratios or counts. `tests/tools/change_numerics.sh` shows which tests fail if a member is ten
+/// times as large.
+struct Numerics {
+  /// The linear solver (src/solver).
+  struct Linear {
+    /// Multigrid: what a member takes from the neighbours of its aggregate. 0: aggregates move as wholes, and
+    /// iterations grow with finer meshes.
+    double interpolation = 0.6;
+    /// Stiffness between aggregates that is left from level to level. 1: aggregates are too stiff, iterations double.
+    double level_stiffness = 0.5;
+    /// Weight of contacts on aggregates. 1: a quarter more iterations where much touches.
+    double contact_weight = 2;
+    /// Stiffness of a particle, relative to the mass-weighted norm of its whole block, from which aggregates move as
+    /// wholes. Larger: threads of 1e6 N/m take ten times the iterations; smaller: soft cloth takes twice as many.
+    double stiff_particle = 1e3;
+    /// Iterations that making the incomplete factor costs; it pays if more than 2.5 times as many are left.
+    int factor_cost = 40;
+    /// Weight of the incomplete factor beside the multigrid levels. 1: long waves count twice, twice the iterations.
+    double factor_weight = 16;
+    /// First shift of an indefinite factorisation, relative to the diagonal. 0.1: a third more iterations.
+    double factor_shift = 1e-3;
+    /// Goal, relative to the solution, from which the incomplete factor is made at once.
+    double tight_goal = 1e-3;
+    /// The last iterations, at least, and as a fraction of all, whose gain estimates the error. Fewer: solves end on a
+    /// plateau.
+    int least_delay = 3;
+    int delay_fraction = 5;
+    /// Error in the energy norm below which the mass-weighted norm may end a solve. 1: stiff motion is left unsolved.
+    double energy_first = 0.3;
+    /// Aggregates on the coarsest level, at most; its dense factorisation costs 9 times their third power.
+    int coarsest_aggregates = 70;
+    /// Length over width from which an aggregate grows in width only. Larger: strips of slender cells do not converge.
+    double slender_aggregate = 2;
+  } linear;
+
+  /// Newton's method (src/integrator).
+  struct Newton {
+    /// What the linear solver may leave, relative to what Newton's method may; a block below that is not solved again.
+    double linear_fraction = 0.5;
+    /// The same in the first iteration of the midpoint rule, which damps nothing; and its linear tolerance, relative to
+    /// that of other methods. Larger: flat sheets fold in free fall.
+    double undamped_fraction = 0.01;
+    double undamped_tolerance = 0.1;
+    /// Slopes behind and before the minimum, relative to the one at the start, that end a line search.
+    double overshoot = 0.7;
+    double undershoot = 0.5;
+    /// Longest step of a line search, relative to the solution of the linear system; and evaluations at most.
+    double longest_search = 4;
+    int line_trials = 6;
+    /// Iterations from which compressed threads count with the absolute value of their stiffness. 0: cloth at rest
+    /// takes four times the iterations; 4: folding cloth a quarter more.
+    int clamped_iterations = 2;
+    /// Iterations after which the trajectory is checked for contacts that only the solve reveals.
+    int check_after = 4;
+    /// Iterations after which all blocks are solved together: those that press on each other may chase each other.
+    int solve_together_after = 10;
+    /// Iterations after which an invisible velocity, and half of Euler's velocity error, may be left.
+    int patience = 20;
+    double velocity_ratio = 0.5;
+    /// How long a wrong velocity counts [s]: half of this, the time of a swing of 1 m, and in steps. Shorter: the
+    /// solver decides the error; longer: more iterations.
+    double swing_time = 0.3;
+    double lasting_steps = 5;
+    /// Acceleration and velocity below the visibility threshold, times the tolerance [m/s²], [m/s].
+    double unseen_acceleration = 0.01;
+    double unseen_velocity = 1e-3;
+    /// Part of the allowed velocity by which whole cloths may slide wrongly. Larger: sheets on slopes slide too slowly.
+    double sliding_fraction = 0.2;
+    /// Friction, relative to its limit, from which a cloth counts as about to slide.
+    double about_to_slide = 0.9;
+    /// Motion since the last linearisation, in particle spacings, up to which rows of the matrix are kept. Larger: more
+    /// iterations.
+    double stale_motion = 0.005;
+  } newton;
+
+  /// Step sizes from `time.tolerance` (src/integrator/step_control.cpp), and after rejections.
+  struct Steps {
+    /// Error that is aimed at, relative to the tolerance. 1: every second step is rejected.
+    double aim = 0.7;
+    /// Change of a step size that is not worth a new matrix.
+    double kept_change = 0.1;
+    /// Least and largest factor from one step to the next. Larger: BDF2 carries its error on.
+    double least_factor = 0.2;
+    double largest_factor = 1.5;
+    /// Length below which no error shortens a step [s]: 1e-4 m at 10 m/s.
+    double least = 1e-5;
+    /// Length below which a step that is not solved ends the run [s].
+    double shortest = 1e-7;
+    /// Growth from step to step after one was rejected. 2: cloth that is wrung is rejected again and again.
+    double recovery = 1.1;
+    /// Cloth slower than this [m/s], and with no more acceleration than is visible, rests: a frame is one step.
+    double rest_velocity = 0.02;
+    /// Longest such step [s].
+    double longest_rest = 0.05;
+  } steps;
+
+  /// Contacts (src/collision).
+  struct Contact {
+    /// Detection distance, relative to the largest activation distance. Smaller: contacts show late in a step.
+    double detection = 1.5;
+    /// Verlet margins, in detection distances: of candidate pairs in slow steps, of near features, of kept closest
+    /// points
+    /// (`search.coherence`). Larger: longer lists; smaller: more searches.
+    double candidate_margin = 0.5;
+    double feature_margin = 0.25;
+    double coherence_margin = 0.125;
+    /// Contact thickness, in particle spacings, at most. Larger: a sheared sheet pushes against itself.
+    double thickness_of_spacing = 0.25;
+    /// Stiffness in m/h² (particle mass, `time.step`): what arrives stops within a hundredth of its step's trajectory.
+    double inertial_stiffness = 100;
+    /// Stiffening as the gap closes, k d (1 + stiffening (d/r)⁴). 10: tips press through; 1000: more iterations.
+    double stiffening = 100;
+    /// Folds of two edges, as a sum of sines of half the angles, without contact and with all of it; sine outside of a
+    /// wedge, and part of an edge at its ends, over which an edge pair fades out. 0: contacts switch on and off.
+    double flat_fold = 0.05;
+    double sharp_fold = 0.2;
+    double wedge_fade = 0.1;
+    double end_fade = 0.1;
+    /// Slip velocity below which friction sticks [m/s], and in particle spacings per second if that is more. Larger:
+    /// cloth creeps down slopes; smaller: a stiffer system.
+    double stick_velocity = 2e-4;
+    double stick_spacings = 0.002;
+    /// Slip velocity, in stick velocities, from which friction is no longer static.
+    double slide_velocity = 5;
+    /// Linearisations of a step in which friction follows the normal forces. More: both chase each other.
+    int force_updates = 20;
+    /// Times in a step that a contact which slides back sticks again.
+    int returns = 2;
+    /// Stiffness of a contact with a moving obstacle for each time that its cloth was pushed apart, and how often.
+    double hardening = 3;
+    int hardenings = 5;
+    /// Depenetration velocity of pinched cloth [m/s]: 8 mm a frame; and its stiffness while there is no space.
+    double depenetration_velocity = 0.2;
+    double depenetration_stiffness = 0.05;
+  } contact;
+
+  /// The guarantee that nothing intersects (src/collision/response).
+  struct Separation {
+    /// Gap that a plane must show at the end of a step [m]. Smaller: rounding decides; larger: thin cloth fails.
+    double least_gap = 1e-6;
+    /// Gap that pushing apart restores [m]: a tenth of a fabric's thickness.
+    double restored_gap = 2e-4;
+    /// Halvings of a trajectory in which planes are searched. 0: a tenth more iterations.
+    int halvings = 3;
+    /// Rounds of pushing; of backtracking by halves until round; of backtracking alone until all goes back.
+    int push_rounds = 24;
+    int half_rounds = 36;
+    int rounds = 60;
+    /// Distance between an obstacle's arc and its chord, in detection distances, above which a step is halved.
+    double sagitta = 0.25;
+    /// Motion of an obstacle in a step, in detection distances, below which shorter steps find no more space.
+    double creep = 0.5;
+  } separation;
+
+  /// The paper's velocity constraints (`contact.response`).
+  struct Walls {
+    /// Part of a missing distance that a step restores (Eq. 4).
+    double correction = 0.2;
+    /// Violation that is worth another solve [m].
+    double passed = 2e-5;
+    /// Displacement that tells whether a wall holds [m].
+    double nudge = 1e-4;
+    /// Sine of an angle between walls below which they are one.
+    double same_direction = 0.05;
+    /// Changes between sticking and sliding within one step; solves of a step; walls of a particle.
+    int flips = 3;
+    int solves = 6;
+    int most = 8;
+    /// Accelerations [m/s²] and changes of friction that are left to the next step.
+    double negligible_acceleration = 0.5;
+    double negligible_change = 0.2;
+  } walls;
+
+  /// Repairs of a step (src/simulation/step_loop.cpp).
+  struct Repair {
+    /// Halvings before cloth counts as pinched, and before a diverging or overstretched solve is accepted.
+    int halvings_before_pinch = 3;
+    int halvings_before_stretch = 6;
+    /// Times that a solve continues from where cloth was pushed apart; without gain; and the gain that counts.
+    int restarts = 16;
+    int idle_restarts = 2;
+    double idle_energy = 0.9;
+    /// Energy, relative to that in play, and strain that pushing apart may add; energy for which the step is halved.
+    double unfelt_energy = 0.1;
+    double unfelt_strain = 0.05;
+    double corrected_energy = 0.2;
+    /// Energy, relative to that in play, from which an unfinished solve starts anew with kept normal forces.
+    double astray_energy = 3;
+    /// Limits to stretch, and strain of an unfinished solve, that a step may add.
+    double overstretch = 2;
+    double diverged_strain = 0.5;
+    /// Tries with pins let go.
+    int tries = 4;
+  } repair;
+
+  /// Pins that obstacles keep from their place (src/simulation/yielding_pins.cpp).
+  struct Pins {
+    /// Distance [m], or part of the way of its place, at which a particle is held again.
+    double arrived = 1e-4;
+    double arrived_fraction = 0.5;
+    /// Velocity of its return [m/s], the least that forces are divided by [m/s], and its duration in steps.
+    double return_velocity = 1;
+    double slowest = 1e-3;
+    double return_steps = 2;
+    /// Force on it: acceleration [m/s²], weights of the cloth, and acceleration at most [m/s²].
+    double acceleration = 2000;
+    double weights = 3;
+    double most_acceleration = 20000;
+  } pins;
+
+  /// Energy without a source (src/simulation/energy_bound.cpp), relative to the energy in play.
+  struct Energy {
+    /// Gain from which a run fails, and is warned of.
+    double failing_gain = 0.3;
+    double doubtful_gain = 0.1;
+    /// Energy that is no error [J/kg]: lifts cloth by 1 cm.
+    double negligible = 0.1;
+    /// Work of the residual that is warned of.
+    double residual_work = 0.3;
+  } energy;
+};
+
+extern const Numerics numerics;
+
+}  // namespace weft
