@@ -74,7 +74,7 @@ Vec3 VelocityConstraints::project(const Touched& particle, const Vec3& u, bool o
   }
   if (feasible(all, u, kRoundoff)) return u;
   const auto missing = [&](const HalfSpace& h) { return h.bound - h.normal.dot(u); };
-  if (all.size() > numerics.walls.most) {
+  if (std::ssize(all) > numerics.walls.most) {
     std::stable_sort(all.begin(), all.end(), [&](const auto& a, const auto& b) { return missing(a) > missing(b); });
     all.resize(numerics.walls.most);
   }
