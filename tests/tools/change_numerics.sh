@@ -1,0 +1,12 @@
+#!/bin/sh
+# Builds and runs tests with one member of Numerics changed, to see which tests notice.
+# Usage: change_numerics.sh 'newton.patience *= 10' [CTEST_OPTION...]; in the folder of the project, after a build.
+set -eu
+[ $# -ge 1 ] || { echo "usage: $0 'GROUP.MEMBER *= 10' [CTEST_OPTION...]" >&2; exit 2; }
+change=$1
+shift
+restore() { cmake -S . -B build -DWEFT_CHANGED_NUMERICS= >/dev/null && ninja -C build >/dev/null; }
+trap restore EXIT
+cmake -S . -B build "-DWEFT_CHANGED_NUMERICS=$change" >/dev/null
+ninja -C build >/dev/null
+ctest --test-dir build -LE slow --output-on-failure "$@"
