@@ -87,6 +87,12 @@ class Campaign {
   int steps_of(double step) const {
     return result_.frames * static_cast<int>(std::lround(1 / (scene_.time.fps * step)));
   }
+  // By how much the error falls at least where the step becomes so many times shorter: with half of the order, as waves
+  // and contact lower it. With all of it a run would seem better known than it is.
+  double error_ratio(Integrator integrator, double shorter) const {
+    const double order = result_.contact ? 1 : expected_order({.setting = {.integrator = integrator}});
+    return std::pow(shorter, 0.5 * order);
+  }
   int reference_cut() const { return result_.contact ? kReferenceCutWithContact : kReferenceCut; }
   double work_of(const Setting& setting) const;
 
@@ -251,6 +257,7 @@ Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
     candidate.setting.newton_tolerance = twice.newton_tolerance;
     SamplePtr fine = made(candidate.setting);
     candidate.step = difference(*coarse, *fine);
+    for (double& error : candidate.step) error /= error_ratio(candidate.setting.integrator, 2) - 1;
     candidate.spread = fine->spread;
     candidate.energies_in_play = fine->middle.energies_in_play;
     return fine;
@@ -329,11 +336,9 @@ void Campaign::measure_steps(Integrator integrator) {
   if (!before || step_last > finest_) return;
   CrossCheck check{.setting = as_in_scene(integrator, step_last)};
   check.apart = difference(*last, *reference_);
-  // Half of its order: waves and contact lower it, and with a higher one a good reference would seem uncertain.
-  const double order = 0.5 * (result_.contact ? 1 : expected_order({.setting = check.setting}));
   const Errors change = difference(*before, *last);
-  for (std::size_t q = 0; q < kQuantities; ++q)
-    check.doubt[q] = change[q] / (std::pow(step_before / step_last, order) - 1) + last->spread[q];
+  const double ratio = error_ratio(integrator, step_before / step_last);
+  for (std::size_t q = 0; q < kQuantities; ++q) check.doubt[q] = change[q] / (ratio - 1) + last->spread[q];
   result_.cross_checks.push_back(check);
 }
 

@@ -65,7 +65,7 @@ double expected_order(const Run& run);
 struct Candidate {
   Setting setting;
   std::string failure = {};
-  Errors step{};    ///< difference to twice its step
+  Errors step{};    ///< its own, from the difference to twice its step and half of its order
   Errors solver{};  ///< what newton_tolerance a tenth as large changes at twice its step
   Errors spread{};  ///< how far one start is from the median
   double energies_in_play = 0;

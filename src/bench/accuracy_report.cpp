@@ -119,7 +119,7 @@ std::string reference_text(const Accuracy& accuracy) {
   const Candidate &first = accuracy.reference, &second = accuracy.second;
   const bool checked = second.failure.empty();
   const Errors of_second = second.doubt();
-  Table table{{"quantity", "twice its step", "newton_tolerance × 10", "starts", "the second: all three", "apart",
+  Table table{{"quantity", "its step", "newton_tolerance × 10", "starts", "the second: all three", "apart",
                "uncertainty", "marked ~ up to"}};
   for (Quantity q : quantities_of(accuracy)) {
     std::vector<std::string> row{label(q)};
@@ -132,8 +132,10 @@ std::string reference_text(const Accuracy& accuracy) {
     table.push_back(std::move(row));
   }
   return fmt::format(
-      "{}. The second, made independently: {}{}. The better known one is taken. Its uncertainty is what twice its "
-      "step, a tenfold larger newton_tolerance and the starts change together. If the second, or the finest run of an "
+      "{}. The second, made independently: {}{}. The better known one is taken. Its uncertainty is what its step "
+      "leaves (from twice its step, by half of its order), what a tenfold larger newton_tolerance changes, and the "
+      "starts, "
+      "together. If the second, or the finest run of an "
       "integrator, is further off than its own doubt explains, the uncertainty is at least the rest. Errors below "
       "three times it and the spread of the starts are marked with ~.\n\n{}{}",
       candidate_text(first), candidate_text(second),
