@@ -105,14 +105,15 @@ void print_summary(const std::vector<MeasuredFrame>& frames) {
       "%zu frames: %.1f CPU ms a frame (median after first contact %.1f), of it collisions %.1f; %d rejected steps; "
       "stretch %.4f; %zu pairs in %d frames, at most %zu; %d pinched at most; pins lag in "
       "%d frames\n",
-      frames.size(), 1e3 * sum.simulate / steps, median_after_contact_ms(frames), 1e3 * sum.collide / steps, sum.rejected,
-      sum.stretch, sum.pairs, sum.with_pairs, sum.worst, sum.pinched, sum.lagging);
+      frames.size(), 1e3 * sum.simulate / steps, median_after_contact_ms(frames), 1e3 * sum.collide / steps,
+      sum.rejected, sum.stretch, sum.pairs, sum.with_pairs, sum.worst, sum.pinched, sum.lagging);
   std::printf(
       "%d steps: %.2f Newton, %.1f linear iterations each; CPU ms a frame: forces %.1f, preconditioner %.1f, linear "
       "%.1f; "
       "solver error over that of the steps %.2f\n",
       sum.taken, static_cast<double>(sum.newton) / sum.taken, static_cast<double>(sum.linear_iterations) / sum.taken,
-      1e3 * sum.forces / steps, 1e3 * sum.preconditioner / steps, 1e3 * sum.linear / steps, sum.of_solver / sum.of_steps);
+      1e3 * sum.forces / steps, 1e3 * sum.preconditioner / steps, 1e3 * sum.linear / steps,
+      sum.of_solver / sum.of_steps);
   for (const auto& x : frames.back().cloths) {
     double mean = 0, lowest = x.front().z(), highest = lowest;
     for (const weft::Vec3& p : x) {
