@@ -2,20 +2,24 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <map>
 #include <memory>
+#include <ranges>
+#include <set>
 #include <utility>
 
 #include "core/error.hpp"
 #include "simulation/collision_stage.hpp"
+#include "simulation/simulation.hpp"
 
 namespace weft::bench {
 namespace {
 
 using scene::Integrator;
 
-// Fixed steps: from four times the scene's on, each half of the one before.
-constexpr int kSteps = 6;
-constexpr double kCoarsest = 4;
+// Fixed steps, times the scene's.
+constexpr double kSteps[] = {4, 2, 1, 0.5, 0.25, 0.125};
 // How much finer the steps of the references are than the finest measured: of second order, their error is then below a
 // sixtieth of theirs. With contact it is that of diverging paths rather than that of steps.
 constexpr int kReferenceCut = 8, kReferenceCutWithContact = 2;
@@ -32,15 +36,16 @@ constexpr double kLinearTolerances[] = {0.3, 0.1, 0.03, 0.01, 0.003};
 constexpr double kRefinements[] = {2, 1, 0.5, 0.25};
 // Starts with contact, each moved by a micrometre more than the one before [m].
 constexpr double kShiftOfStart = 1e-6;
-constexpr int kStarts = 3;
 // Runs shorter than this [s] are timed twice.
 constexpr double kShortRun = 0.3;
 // A run that halves its steps over and over is stopped after so many times the steps it should take, or those of the
-// finest one where these are more.
+// finest one where these are more. With a tolerance not after more than the reference takes, which is to be finer.
 constexpr int kStepLimit = 3;
 
-// Runs of one setting from one start, or with contact from several.
+// Runs of one setting from one start or several. With contact medians of functionals are compared, else the first
+// trajectories.
 struct Sample {
+  bool contact = false;
   std::vector<Trajectory> starts;
   Functionals middle;
   Errors spread{};
@@ -48,13 +53,24 @@ struct Sample {
 };
 
 Errors difference(const Sample& a, const Sample& b, const std::vector<std::size_t>& same = {}) {
-  return a.starts.size() > 1 ? compare(a.middle, b.middle) : compare(a.starts[0], b.starts[0], same);
+  return a.contact ? compare(a.middle, b.middle) : compare(a.starts[0], b.starts[0], same);
+}
+
+// Largest error of any start against the middle, without contact against the first start.
+Errors spread_of(const Sample& sample) {
+  Errors spread{};
+  for (const Trajectory& start : sample.starts) {
+    const Errors apart =
+        sample.contact ? compare(start.functionals, sample.middle) : compare(start, sample.starts.front());
+    for (std::size_t q = 0; q < kQuantities; ++q) spread[q] = std::max(spread[q], apart[q]);
+  }
+  return spread;
 }
 
 // As `measure_accuracy` does it, step by step.
 class Campaign {
  public:
-  Campaign(const scene::Scene& scene, const EachRun& each);
+  Campaign(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan);
   Accuracy measure();
 
  private:
@@ -64,9 +80,20 @@ class Campaign {
   Setting as_in_scene(Integrator integrator, double step) const {
     return {integrator, step, {}, scene_.solver.newton_tolerance, scene_.solver.linear_tolerance};
   }
+  // Steps no longer than this one that cut a frame evenly, as the simulation takes them.
+  double even_step(double step) const {
+    return 1 / (scene_.time.fps * std::max(1.0, std::ceil(1 / (scene_.time.fps * step) - 1e-9)));
+  }
   int steps_of(double step) const {
     return result_.frames * static_cast<int>(std::lround(1 / (scene_.time.fps * step)));
   }
+  // By how much the error falls at least where the step becomes so many times shorter: with half of the order, as waves
+  // and contact lower it. With all of it a run would seem better known than it is.
+  double error_ratio(Integrator integrator, double shorter) const {
+    const double order = result_.contact ? 1 : expected_order({.setting = {.integrator = integrator}});
+    return std::pow(shorter, 0.5 * order);
+  }
+  int reference_cut() const { return result_.contact ? kReferenceCutWithContact : kReferenceCut; }
   double work_of(const Setting& setting) const;
 
   SamplePtr sample(const Setting& setting) const;
@@ -75,7 +102,9 @@ class Campaign {
   Errors tighten(Setting& twice, SamplePtr& coarse);
   SamplePtr measure_candidate(Candidate& candidate);
   void measure_references();
-  void measure_grid(Integrator integrator, double step);
+  SamplePtr measure_grid(Integrator integrator, double step);
+  void measure_steps(Integrator integrator);
+  std::vector<double> tolerances_of(Integrator integrator) const;
   bool decides(const Run& run, const Run& tighter) const;
   void measure_tolerances(Integrator integrator);
   void measure_linear();
@@ -83,24 +112,42 @@ class Campaign {
 
   const scene::Scene& scene_;
   const EachRun& each_;
+  const AccuracyPlan& plan_;
   Accuracy result_;
+  std::vector<double> steps_;  // from long to short [s]
+  std::vector<Integrator> integrators_;
   double finest_ = 0, scene_step_ = 0;  // steps [s]
   Integrator best_, other_;             // that of the reference, and of the one beside it
   SamplePtr reference_;
   double work_ = 0, work_done_ = 0;  // [steps]
 };
 
-Campaign::Campaign(const scene::Scene& scene, const EachRun& each) : scene_(scene), each_(each) {
+Campaign::Campaign(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan)
+    : scene_(scene), each_(each), plan_(plan) {
   result_.contact = simulation::CollisionStage::needed(scene);
+  result_.starts = plan.starts.value_or(result_.contact ? kLeastStartsWithContact : 1);
+  if (result_.contact && result_.starts < kLeastStartsWithContact)
+    throw Error(ExitCode::usage, "--starts: expected at least {}, as surfaces may touch in this scene, got {}",
+                kLeastStartsWithContact, result_.starts);
+  for (const double refinement : plan.meshes.value_or(std::vector<double>{}))
+    if (!can_refine(scene, refinement) || !can_refine(scene, 2 * refinement))
+      throw Error(ExitCode::usage,
+                  "--meshes: expected factors that give whole numbers of cells along each side, got {:g}", refinement);
   result_.frames = scene.frame_count() - 1;
   result_.duration = result_.frames / scene.time.fps;
+  result_.cloth_size = cloth_size(*simulation::Simulation(scene).snapshot());
   best_ = result_.contact ? Integrator::bdf2 : Integrator::implicit_midpoint;
   other_ = result_.contact ? Integrator::implicit_euler : Integrator::bdf2;
+  integrators_ = plan.integrators.value_or(std::vector<Integrator>(std::begin(kIntegrators), std::end(kIntegrators)));
   // Frames are cut into equal steps, so that the steps asked for are the steps taken.
-  const double coarsest = std::max(1.0, std::round(1 / (scene.time.fps * kCoarsest * scene.time.step)));
-  scene_step_ = 1 / (scene.time.fps * coarsest * kCoarsest);
-  finest_ = 1 / (scene.time.fps * coarsest * std::pow(2.0, kSteps - 1));
+  scene_step_ = even_step(scene.time.step);
+  std::set<double, std::greater<>> steps;
+  for (const double factor : plan.steps.value_or(std::vector<double>(std::begin(kSteps), std::end(kSteps))))
+    steps.insert(even_step(factor * scene_step_));
+  steps_.assign(steps.begin(), steps.end());
+  finest_ = steps_.empty() ? scene_step_ : steps_.back();
   result_.of_scene = as_in_scene(scene.time.integrator, scene_step_);
+  result_.of_scene.tolerance = scene.time.tolerance;
 }
 
 scene::Scene Campaign::with(const Setting& setting) const {
@@ -119,31 +166,30 @@ scene::Scene Campaign::with(const Setting& setting) const {
 double Campaign::work_of(const Setting& setting) const {
   const double root = setting.integrator == Integrator::implicit_euler ? 2 : 3;
   const double step = setting.tolerance
-                          ? kCoarsest * scene_step_ * std::pow(*setting.tolerance / kLargestTolerance, 1 / root)
+                          ? kSteps[0] * scene_step_ * std::pow(*setting.tolerance / kLargestTolerance, 1 / root)
                           : setting.step;
   return result_.frames / (scene_.time.fps * step) * setting.refinement * setting.refinement;
 }
 
 // Throws where one of its runs does not reach the end.
 Campaign::SamplePtr Campaign::sample(const Setting& setting) const {
-  const FollowLimits limits{.steps = kStepLimit *
-                                     std::max(steps_of(finest_), setting.tolerance ? 0 : steps_of(setting.step))};
+  const FollowLimits limits{.steps = setting.tolerance
+                                         ? std::min(kStepLimit, reference_cut()) * steps_of(finest_)
+                                         : kStepLimit * std::max(steps_of(finest_), steps_of(setting.step))};
   auto sample = std::make_shared<Sample>();
+  sample->contact = result_.contact;
   std::vector<Functionals> functionals;
   scene::Scene scene = with(setting);
-  for (int start = 0; start < (result_.contact ? kStarts : 1); ++start) {
+  for (int start = 0; start < result_.starts; ++start) {
     sample->starts.push_back(follow(scene, limits));
     functionals.push_back(sample->starts.back().functionals);
     for (scene::Cloth& cloth : scene.cloths) cloth.start_noise += kShiftOfStart;
   }
   sample->middle = median(functionals);
   sample->work = sample->starts[0].work;
-  for (const Trajectory& start : sample->starts) {
-    sample->work.cpu_s = std::min(sample->work.cpu_s, start.work.cpu_s);
-    const Errors apart = compare(start.functionals, sample->middle);
-    for (std::size_t q = 0; q < kQuantities; ++q) sample->spread[q] = std::max(sample->spread[q], apart[q]);
-  }
-  if (!result_.contact && sample->work.cpu_s < kShortRun)
+  sample->spread = spread_of(*sample);
+  for (const Trajectory& start : sample->starts) sample->work.cpu_s = std::min(sample->work.cpu_s, start.work.cpu_s);
+  if (result_.starts == 1 && sample->work.cpu_s < kShortRun)
     sample->work.cpu_s = std::min(sample->work.cpu_s, follow(scene, limits).work.cpu_s);
   return sample;
 }
@@ -157,6 +203,10 @@ Campaign::SamplePtr Campaign::run(Run& run, const SamplePtr& against, const std:
     run.work = made->work;
     run.particles = static_cast<int>(made->starts[0].masses.size());
     if (against) run.errors = difference(*made, *against, same);
+    for (std::size_t k = 0; against && same.empty() && k < made->starts.size(); ++k)
+      run.start_errors.push_back(at(result_.contact ? compare(made->starts[k].functionals, against->middle)
+                                                    : compare(made->starts[k], against->starts[0]),
+                                    deciding_quantity(result_)));
   } catch (const Error& error) {
     run.failure = error.what();
   }
@@ -207,6 +257,7 @@ Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
     candidate.setting.newton_tolerance = twice.newton_tolerance;
     SamplePtr fine = made(candidate.setting);
     candidate.step = difference(*coarse, *fine);
+    for (double& error : candidate.step) error /= error_ratio(candidate.setting.integrator, 2) - 1;
     candidate.spread = fine->spread;
     candidate.energies_in_play = fine->middle.energies_in_play;
     return fine;
@@ -217,7 +268,7 @@ Campaign::SamplePtr Campaign::measure_candidate(Candidate& candidate) {
 }
 
 void Campaign::measure_references() {
-  const double step = finest_ / (result_.contact ? kReferenceCutWithContact : kReferenceCut);
+  const double step = finest_ / reference_cut();
   Candidate first{as_in_scene(best_, step)}, second{as_in_scene(other_, step)};
   reference_ = measure_candidate(first);
   SamplePtr beside = measure_candidate(second);
@@ -244,8 +295,8 @@ bool Campaign::decides(const Run& run, const Run& tighter) const {
   return run.change <= std::max(kDecides * error_of(tighter, q), result_.doubt(tighter, q));
 }
 
-// One step with newton_tolerance from that of the scene down, until the step decides.
-void Campaign::measure_grid(Integrator integrator, double step) {
+// One step with newton_tolerance from that of the scene down, until the step decides; returns where it does.
+Campaign::SamplePtr Campaign::measure_grid(Integrator integrator, double step) {
   std::vector<Run> runs;
   std::vector<SamplePtr> samples;
   const Quantity q = deciding_quantity(result_);
@@ -266,16 +317,49 @@ void Campaign::measure_grid(Integrator integrator, double step) {
   const auto tightest = std::find_if(samples.rbegin(), samples.rend(), [](const SamplePtr& s) { return s != nullptr; });
   for (std::size_t k = 0; k < runs.size(); ++k)
     if (samples[k]) runs[k].left = at(difference(*samples[k], **tightest), q);
+  const auto decided = std::ranges::find_if(runs, &Run::step_decides);
+  SamplePtr exact = decided == runs.end() ? nullptr : samples[static_cast<std::size_t>(decided - runs.begin())];
   result_.runs.insert(result_.runs.end(), std::make_move_iterator(runs.begin()), std::make_move_iterator(runs.end()));
+  return exact;
+}
+
+// All fixed steps. The shortest one checks the reference; the one before it shows how far off it is itself.
+void Campaign::measure_steps(Integrator integrator) {
+  SamplePtr before, last;
+  double step_before = 0, step_last = 0;
+  for (const double step : steps_) {
+    SamplePtr exact = measure_grid(integrator, step);
+    if (!exact) continue;
+    before = std::exchange(last, std::move(exact));
+    step_before = std::exchange(step_last, step);
+  }
+  if (!before || step_last > finest_) return;
+  CrossCheck check{.setting = as_in_scene(integrator, step_last)};
+  check.apart = difference(*last, *reference_);
+  const Errors change = difference(*before, *last);
+  const double ratio = error_ratio(integrator, step_before / step_last);
+  for (std::size_t q = 0; q < kQuantities; ++q) check.doubt[q] = change[q] / (ratio - 1) + last->spread[q];
+  result_.cross_checks.push_back(check);
+}
+
+// As planned, or half a decade apart; that of the scene is among them.
+std::vector<double> Campaign::tolerances_of(Integrator integrator) const {
+  std::set<double, std::greater<>> tolerances;
+  for (int k = 0; !plan_.tolerances && k < (result_.contact ? kTolerancesWithContact : kTolerances); ++k)
+    tolerances.insert(kLargestTolerance * std::pow(10.0, -0.5 * k));
+  if (plan_.tolerances) tolerances.insert(plan_.tolerances->begin(), plan_.tolerances->end());
+  if (scene_.time.tolerance && integrator == scene_.time.integrator) tolerances.insert(*scene_.time.tolerance);
+  return {tolerances.begin(), tolerances.end()};
 }
 
 void Campaign::measure_tolerances(Integrator integrator) {
-  for (int k = 0; k < (result_.contact ? kTolerancesWithContact : kTolerances); ++k) {
+  for (const double tolerance : tolerances_of(integrator)) {
     Run tried{.axis = Axis::tolerance, .setting = as_in_scene(integrator, scene_step_)};
-    tried.setting.tolerance = kLargestTolerance * std::pow(10.0, -0.5 * k);
+    tried.setting.tolerance = tolerance;
     run(tried, reference_);
     result_.runs.push_back(std::move(tried));
-    if (result_.runs.back().failed() || result_.runs.back().work.steps > steps_of(finest_)) return;
+    const Run& last = result_.runs.back();
+    if (!plan_.tolerances && (last.failed() || last.work.steps > steps_of(finest_))) return;
   }
 }
 
@@ -290,20 +374,27 @@ void Campaign::measure_linear() {
 
 // From fine to coarse, each held against the one before; listed from coarse to fine.
 void Campaign::measure_meshes() {
-  SamplePtr finer;
+  std::map<double, SamplePtr> by_refinement;  // factors are multiples of an eighth, exact in binary
   const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
-  for (double refinement : kRefinements) {
+  std::set<double> asked, all(std::begin(kRefinements), std::end(kRefinements));
+  if (plan_.meshes) {
+    asked.insert(plan_.meshes->begin(), plan_.meshes->end());
+    all = asked;
+    for (const double refinement : asked) all.insert(2 * refinement);
+  }
+  for (const double refinement : all | std::views::reverse) {
     if (!can_refine(scene_, refinement)) continue;
-    Run tried{.axis = Axis::mesh, .setting = as_in_scene(best_, 0.5 * scene_step_)};
+    Run tried{.axis = Axis::mesh, .setting = as_in_scene(result_.reference.setting.integrator, 0.5 * scene_step_)};
     tried.setting.newton_tolerance = std::max(kLeastNewton, kNewtonOfMeshes * tried.setting.newton_tolerance);
     tried.setting.refinement = refinement;
-    const SamplePtr against = std::move(finer);
-    finer = run(tried, against, against ? same_in_twice_as_fine(with(tried.setting)) : std::vector<std::size_t>{});
-    if (!against && !tried.failed()) {
-      // The finest is there for the next one alone.
-      if (refinement == kRefinements[0]) continue;
-      tried.failure = "nothing finer to compare with";
-    }
+    const auto twice = by_refinement.find(2 * refinement);
+    const SamplePtr against = twice == by_refinement.end() ? nullptr : twice->second;
+    by_refinement[refinement] =
+        run(tried, against, against ? same_in_twice_as_fine(with(tried.setting)) : std::vector<std::size_t>{});
+    // The finest are there for others alone.
+    const bool extra = plan_.meshes ? !asked.contains(refinement) : refinement == kRefinements[0];
+    if (extra && !tried.failed()) continue;
+    if (!against && !tried.failed()) tried.failure = "nothing finer to compare with";
     result_.runs.insert(result_.runs.begin() + first, std::move(tried));
   }
 }
@@ -311,16 +402,16 @@ void Campaign::measure_meshes() {
 Accuracy Campaign::measure() {
   // About: three tolerances for each step; references with three runs at twice their step.
   constexpr double kRunsOfAStep = 3, kRunsOfAReference = 3;
-  for (double step = finest_; step < 1.5 * kCoarsest * scene_step_; step *= 2)
-    work_ += std::size(kIntegrators) * kRunsOfAStep * work_of(as_in_scene(best_, step));
+  for (const double step : steps_)
+    work_ += static_cast<double>(integrators_.size()) * kRunsOfAStep * work_of(as_in_scene(best_, step));
   work_ *= 1.5;
-  work_ += 2 * kRunsOfAReference *
-           work_of(as_in_scene(best_, finest_ / (result_.contact ? kReferenceCutWithContact : kReferenceCut)));
+  work_ += 2 * kRunsOfAReference * work_of(as_in_scene(best_, finest_ / reference_cut()));
   measure_references();
-  for (Integrator integrator : kIntegrators) {
-    for (int k = kSteps; k-- > 0;) measure_grid(integrator, finest_ * std::pow(2.0, k));
+  for (const Integrator integrator : integrators_) {
+    measure_steps(integrator);
     measure_tolerances(integrator);
   }
+  raise_uncertainty(result_.uncertainty, result_.cross_checks);
   measure_linear();
   measure_meshes();
   return std::move(result_);
@@ -328,67 +419,8 @@ Accuracy Campaign::measure() {
 
 }  // namespace
 
-Errors Candidate::doubt() const {
-  Errors doubt{};
-  for (std::size_t q = 0; q < kQuantities; ++q) doubt[q] = std::hypot(step[q], solver[q], spread[q]);
-  return doubt;
-}
-
-double control_of(const Run& run) {
-  switch (run.axis) {
-    case Axis::grid:
-      return run.setting.step;
-    case Axis::tolerance:
-      return run.setting.tolerance.value_or(0);
-    case Axis::linear:
-      return run.setting.linear_tolerance;
-    case Axis::mesh:
-      return 1 / run.setting.refinement;
-  }
-  return 0;
-}
-
-double expected_order(const Run& run) {
-  const double order = run.setting.integrator == Integrator::implicit_euler ? 1 : 2;
-  switch (run.axis) {
-    case Axis::grid:
-      return order;
-    case Axis::tolerance:
-      return order / (order + 1);
-    case Axis::mesh:
-      return 1;
-    case Axis::linear:
-      return 0;
-  }
-  return 0;
-}
-
-std::vector<Quantity> quantities_of(const Accuracy& accuracy) {
-  if (!accuracy.contact)
-    return {Quantity::position, Quantity::velocity, Quantity::energy, Quantity::drift, Quantity::centre};
-  return {Quantity::centre, Quantity::energy, Quantity::drift, Quantity::shadow, Quantity::top, Quantity::rest_energy};
-}
-
-Quantity deciding_quantity(const Accuracy& accuracy) {
-  return quantities_of(accuracy).front();
-}
-
-std::vector<const Run*> Accuracy::series(Axis axis, Integrator integrator) const {
-  std::vector<const Run*> found;
-  for (const Run& run : runs)
-    if (run.axis == axis && run.setting.integrator == integrator) found.push_back(&run);
-  return found;
-}
-
-std::vector<const Run*> Accuracy::decided(Integrator integrator) const {
-  std::vector<const Run*> found;
-  for (const Run* run : series(Axis::grid, integrator))
-    if (run->step_decides) found.push_back(run);
-  return found;
-}
-
-Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each) {
-  return Campaign(scene, each).measure();
+Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each, const AccuracyPlan& plan) {
+  return Campaign(scene, each, plan).measure();
 }
 
 }  // namespace weft::bench

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/accuracy_plan.hpp"
 #include "bench/trajectory.hpp"
 #include "scene/scene.hpp"
 
@@ -46,6 +47,7 @@ struct Run {
   bool step_decides = false;
   Work work = {};  ///< the least CPU time of two runs or of the starts
   int particles = 0;
+  std::vector<double> start_errors = {};  ///< of each start by itself, in the deciding quantity
 
   bool failed() const { return !failure.empty(); }
 };
@@ -63,7 +65,7 @@ double expected_order(const Run& run);
 struct Candidate {
   Setting setting;
   std::string failure = {};
-  Errors step{};    ///< difference to twice its step
+  Errors step{};    ///< its own, from the difference to twice its step and half of its order
   Errors solver{};  ///< what newton_tolerance a tenth as large changes at twice its step
   Errors spread{};  ///< how far one start is from the median
   double energies_in_play = 0;
@@ -72,16 +74,26 @@ struct Candidate {
   Errors doubt() const;
 };
 
+/// The finest run of an integrator in which the step decides: it bounds how far off the reference can be.
+struct CrossCheck {
+  Setting setting;
+  Errors apart{};  ///< from the reference
+  Errors doubt{};  ///< how far it may be off itself: by half of its order from the next longer step, and by its starts
+};
+
 struct Accuracy {
   bool contact = false;         ///< whether anything can touch anything in the scene
+  int starts = 1;               ///< of each setting
+  double cloth_size = 0;        ///< longest side of the box around the largest cloth at the start [m]
   int frames = 0;               ///< after the start
   double duration = 0;          ///< [s]
   double largest_energy = 0;    ///< the energies in play [J]
   Candidate reference, second;  ///< the better known one, and the one that it is checked against
   Errors apart{};               ///< how far these two are apart; 0 where the second failed
-  Errors uncertainty{};         ///< of the reference: its doubt, and what the doubt of the second does not explain
-  Setting of_scene;             ///< as the scene stands, its step such that frames are cut evenly
-  std::vector<Run> runs;        ///< by axis and integrator, each series from coarse to fine
+  Errors uncertainty{};         ///< of the reference: its doubt, and what the second and the cross checks add
+  std::vector<CrossCheck> cross_checks;
+  Setting of_scene;       ///< as the scene stands, its step such that frames are cut evenly
+  std::vector<Run> runs;  ///< by axis and integrator, each series from coarse to fine
 
   /// What an error may be wrong by.
   double doubt(const Run& run, Quantity quantity) const {
@@ -91,6 +103,8 @@ struct Accuracy {
   bool resolved(const Run& run, Quantity quantity) const { return error_of(run, quantity) > 3 * doubt(run, quantity); }
   /// The runs of one series; of the grid those of all steps.
   std::vector<const Run*> series(Axis axis, scene::Integrator integrator) const;
+  /// With the settings of the scene; null where it was not measured.
+  const Run* as_it_stands() const;
   /// Of the grid: for each step the first run in which it decides.
   std::vector<const Run*> decided(scene::Integrator integrator) const;
 };
@@ -106,11 +120,15 @@ extern const char* const kSwingingSheet;
 /// Told after each run, with the share of the work that is done.
 using EachRun = std::function<void(const Run& run, double done)>;
 
+/// Raises the uncertainty of a reference to what the own doubts of its cross checks do not explain.
+void raise_uncertainty(Errors& uncertainty, const std::vector<CrossCheck>& cross_checks);
+
 /// Runs the scene some hundred times; with contact from several starts that differ by micrometres, of which the median
 /// counts. Two references are made independently: midpoint (with contact, which it does not damp, BDF2) and BDF2 (with
 /// contact Euler), with steps an eighth (with contact a half) of the finest measured and solved so exactly that a
-/// tenfold smaller newton_tolerance changes less than a tenth of what the step does. The better known one is taken.
-/// Throws Error(simulation_failed) where both fail.
-Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each = {});
+/// tenfold smaller newton_tolerance changes less than a tenth of what the step does. The better known one is taken,
+/// and held against the finest runs of each integrator. Throws Error(simulation_failed) where both fail, and
+/// Error(usage) where the plan does not suit the scene.
+Accuracy measure_accuracy(const scene::Scene& scene, const EachRun& each = {}, const AccuracyPlan& plan = {});
 
 }  // namespace weft::bench

@@ -101,11 +101,25 @@ std::string candidate_text(const Candidate& candidate) {
                      1e3 * candidate.setting.step, candidate.setting.newton_tolerance);
 }
 
+std::string cross_checks_text(const Accuracy& accuracy) {
+  if (accuracy.cross_checks.empty())
+    return "\nNo integrator has two steps that decide: nothing else checks the reference.\n";
+  const Quantity q = deciding_quantity(accuracy);
+  Table table{{"finest run", label(q) + " from the reference", "its own doubt", "not explained"}};
+  for (const CrossCheck& check : accuracy.cross_checks) {
+    const double apart = at(check.apart, q), doubt = at(check.doubt, q);
+    table.push_back({fmt::format("{}, {:.4g} ms", name_of(check.setting.integrator), 1e3 * check.setting.step),
+                     fmt::format("{:.1e}", apart), fmt::format("{:.1e}", doubt),
+                     apart > doubt ? fmt::format("{:.1e}", apart - doubt) : "0"});
+  }
+  return "\n" + markdown(table);
+}
+
 std::string reference_text(const Accuracy& accuracy) {
   const Candidate &first = accuracy.reference, &second = accuracy.second;
   const bool checked = second.failure.empty();
   const Errors of_second = second.doubt();
-  Table table{{"quantity", "twice its step", "newton_tolerance × 10", "starts", "the second: all three", "apart",
+  Table table{{"quantity", "its step", "newton_tolerance × 10", "starts", "the second: all three", "apart",
                "uncertainty", "marked ~ up to"}};
   for (Quantity q : quantities_of(accuracy)) {
     std::vector<std::string> row{label(q)};
@@ -118,13 +132,35 @@ std::string reference_text(const Accuracy& accuracy) {
     table.push_back(std::move(row));
   }
   return fmt::format(
-      "{}. The second, made independently: {}{}. The better known one is taken. Its uncertainty is what twice its "
-      "step, "
-      "a tenfold larger newton_tolerance and the starts change together, or where the second is further off than its "
-      "own "
-      "doubt explains, the rest. Errors below three times it and the spread of the starts are marked with ~.\n\n{}",
+      "{}. The second, made independently: {}{}. The better known one is taken. Its uncertainty is what its step "
+      "leaves (from twice its step, by half of its order), what a tenfold larger newton_tolerance changes, and the "
+      "starts, "
+      "together. If the second, or the finest run of an "
+      "integrator, is further off than its own doubt explains, the uncertainty is at least the rest. Errors below "
+      "three times it and the spread of the starts are marked with ~.\n\n{}{}",
       candidate_text(first), candidate_text(second),
-      checked ? "" : " (failed: " + second.failure + "; nothing checks the first)", markdown(table));
+      checked ? "" : " (failed: " + second.failure + "; nothing checks the first)", markdown(table),
+      cross_checks_text(accuracy));
+}
+
+// What one start leads to and another: the whole distribution, of all runs with the solver settings of the scene.
+Table starts_table(const Accuracy& accuracy) {
+  const Quantity q = deciding_quantity(accuracy);
+  std::vector<const Run*> runs = with_solver_of_scene(accuracy);
+  for (const Run* run : of_axis(accuracy, Axis::tolerance)) runs.push_back(run);
+  Table table{{"integrator", "setting", "least", "median", "largest", "error of the medians"}};
+  for (const Run* run : runs) {
+    if (run->failed() || run->start_errors.empty()) continue;
+    std::vector<double> errors = run->start_errors;
+    std::ranges::sort(errors);
+    const std::size_t n = errors.size();
+    std::vector<std::string> row{std::string(name_of(run->setting.integrator)), control_text(*run)};
+    for (const double error : {errors.front(), 0.5 * (errors[(n - 1) / 2] + errors[n / 2]), errors.back()})
+      row.push_back(fmt::format("{:.1e}", error));
+    row.push_back(error_text(accuracy, *run, q));
+    table.push_back(std::move(row));
+  }
+  return table;
 }
 
 std::string failures_text(const Accuracy& accuracy) {
@@ -137,6 +173,13 @@ std::string failures_text(const Accuracy& accuracy) {
 // What is not known is left out.
 std::string number(double value) {
   return std::isfinite(value) ? fmt::format("{:.6g}", value) : std::string();
+}
+
+// Of the deciding quantity.
+std::string starts_text(const Run& run) {
+  std::string text;
+  for (const double error : run.start_errors) text += (text.empty() ? "" : ";") + number(error);
+  return text;
 }
 
 }  // namespace
@@ -165,7 +208,7 @@ std::vector<const Run*> with_solver_of_scene(const Accuracy& accuracy) {
 Table accuracy_table(const Accuracy& accuracy) {
   Table table{{"axis", "integrator", "step_s", "tolerance_m", "newton_tolerance", "linear_tolerance", "refinement",
                "particles", "steps", "rejected_steps", "newton_iterations", "linear_iterations", "cpu_s",
-               "expected_order", "step_decides", "tenfold_tighter_changes", "left_by_solver"}};
+               "expected_order", "step_decides", "tenfold_tighter_changes", "left_by_solver", "errors_of_starts"}};
   for (std::size_t q = 0; q < kQuantities; ++q) {
     table[0].push_back(label(static_cast<Quantity>(q)));
     table[0].push_back(fmt::format("{} doubt", name_of(static_cast<Quantity>(q))));
@@ -189,7 +232,8 @@ Table accuracy_table(const Accuracy& accuracy) {
                                  fmt::format("{:.3g}", expected_order(run)),
                                  run.step_decides ? "yes" : "no",
                                  number(run.change),
-                                 number(run.left)};
+                                 number(run.left),
+                                 starts_text(run)};
     for (std::size_t q = 0; q < kQuantities; ++q) {
       row.push_back(run.failed() ? "" : number(run.errors[q]));
       row.push_back(run.failed() ? "" : number(accuracy.doubt(run, static_cast<Quantity>(q))));
@@ -204,17 +248,21 @@ std::string accuracy_markdown(const std::string& title, const Accuracy& accuracy
                               const std::string& settings_plot) {
   const Quantity decides = deciding_quantity(accuracy);
   std::string text = fmt::format(
-      "# Error against run time: {}\n\n{}\n![Errors against CPU time]({})\n\n![Steps, solver and mesh]({})\n\n"
+      "# Error against run time: {}\n\n**{}**\n\n{}\n![Errors against CPU time]({})\n\n![Steps, solver and "
+      "mesh]({})\n\n"
       "{:.3g} s in {} frames. {}Energies are in shares of the {:.3g} J in play. In parentheses the exponent observed "
       "since the row above.\n\n## The reference\n\n{}\n## Steps and newton_tolerance\n\nError of the {} and CPU time. "
       "* "
       "marks where newton_tolerance a tenth as large changes less than a tenth of the error, or less than is known of "
       "it: the step decides.\n\n",
-      title, conclusion(accuracy), work_plot, settings_plot, accuracy.duration, accuracy.frames,
-      accuracy.contact ? "With contact paths part: errors are those of the median of several starts. Energy: largest "
-                         "of all frames; the rest: of the last frame. "
-                       : "Position and velocity: root of the mean square over the mass, the largest of all frames, as "
-                         "with energy; energy drift and centre of mass: of the last frame. ",
+      title, recommendation(accuracy), conclusion(accuracy), work_plot, settings_plot, accuracy.duration,
+      accuracy.frames,
+      accuracy.contact
+          ? fmt::format("With contact the motion is chaotic: errors are those of the medians over {} starts, "
+                        "1 µm apart. Energy: largest of all frames; the rest: of the last frame. ",
+                        accuracy.starts)
+          : std::string("Position and velocity: root of the mean square over the mass, the largest of all "
+                        "frames, as with energy; energy drift and centre of mass: of the last frame. "),
       accuracy.largest_energy, reference_text(accuracy), label(decides));
   for (Integrator integrator : kIntegrators)
     if (!accuracy.series(Axis::grid, integrator).empty()) text += markdown(grid_table(accuracy, integrator)) + "\n";
@@ -227,6 +275,9 @@ std::string accuracy_markdown(const std::string& title, const Accuracy& accuracy
   section("Steps chosen by time.tolerance", of_axis(accuracy, Axis::tolerance));
   section("linear_tolerance, at the scene's step", of_axis(accuracy, Axis::linear), false);
   section("Meshes: difference to the mesh with twice the cells along each side", of_axis(accuracy, Axis::mesh));
+  if (accuracy.starts > 1)
+    text += fmt::format("## What the start decides\n\nError of the {} of single starts against the reference.\n\n{}\n",
+                        label(decides), markdown(starts_table(accuracy)));
   return text + failures_text(accuracy) +
          "The preconditioner of the linear solver is chosen by the program; `bench_solver` compares solvers.\n";
 }

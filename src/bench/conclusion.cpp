@@ -13,6 +13,10 @@ namespace {
 
 using scene::Integrator;
 
+// Share of the cloth's size by which it may be off, for the setting that is recommended.
+constexpr double kWanted = 0.01;
+// The settings of the scene are kept where they take no more CPU time than so many times the least.
+constexpr double kKeep = 1.1;
 // Accuracies asked for [m].
 constexpr double kTargets[] = {1e-2, 1e-3, 1e-4};
 // Largest share of a target that the reference itself may be uncertain by.
@@ -37,6 +41,38 @@ bool finer(const Run& a, const Run& b) {
 // At most, with all that is not known of it.
 double bound_of(const Accuracy& accuracy, const Run& run, Quantity quantity) {
   return error_of(run, quantity) + accuracy.doubt(run, quantity);
+}
+
+// Whether the run is known to reach the target, and not by luck: whatever is solved more exactly reaches it too.
+bool is_good(const Accuracy& accuracy, const Run& run, Quantity quantity, double target) {
+  const auto reaches = [&](const Run& r) { return bound_of(accuracy, r, quantity) <= target; };
+  return in_the_race(run) && reaches(run) && std::ranges::all_of(accuracy.runs, [&](const Run& other) {
+           return other.failed() || !finer(other, run) || reaches(other);
+         });
+}
+
+// In four digits, rounded up: with a step rounded down a frame would take one step more.
+double shown_step(double step) {
+  const double scale = std::pow(10, 3 - std::floor(std::log10(step)));
+  return std::ceil(step * scale - 1e-6) / scale;
+}
+
+// As the scene file spells it.
+std::string keys_text(const Setting& s) {
+  return fmt::format("`time.integrator = \"{}\"`, `{}`, `solver.newton_tolerance = {:.3g}`", name_of(s.integrator),
+                     s.tolerance ? fmt::format("time.tolerance = {:.3g}", *s.tolerance)
+                                 : fmt::format("time.step = {:.4g}", shown_step(s.step)),
+                     s.newton_tolerance);
+}
+
+std::string off_text(const Accuracy& accuracy, const Run& run, Quantity quantity) {
+  return fmt::format("{:.2g} CPU s, the {} off by at most {:.2g} mm", run.work.cpu_s, name_of(quantity),
+                     1e3 * bound_of(accuracy, run, quantity));
+}
+
+std::string stands_text(const Accuracy& accuracy, const Run* stands, Quantity quantity) {
+  if (stands == nullptr) return "the settings of the scene were not measured, or do not reach its end";
+  return fmt::format("the settings of the scene take {}", off_text(accuracy, *stands, quantity));
 }
 
 std::string cheapest_text(const Accuracy& accuracy, Quantity quantity, double target) {
@@ -103,10 +139,13 @@ std::string cost_of_a_digit(const Accuracy& accuracy, Quantity quantity) {
   for (const Run* run : front(accuracy, quantity))
     if (accuracy.resolved(*run, quantity)) line.add(*run, quantity);
   std::string each;
-  for (Integrator integrator : kIntegrators)
+  for (Integrator integrator : kIntegrators) {
+    if (accuracy.series(Axis::grid, integrator).empty() && accuracy.series(Axis::tolerance, integrator).empty())
+      continue;
     each += fmt::format("{}{} {} and {}", each.empty() ? "" : ", ", name_of(integrator),
                         digit_of_series(accuracy, accuracy.decided(integrator), quantity),
                         digit_of_series(accuracy, accuracy.series(Axis::tolerance, integrator), quantity));
+  }
   return fmt::format(
       "The CPU time for one more digit, along the cheapest settings: {} (by integrator, steps that decide and "
       "tolerances: "
@@ -120,6 +159,10 @@ std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
   for (const Run& run : accuracy.runs) {
     if (run.failed()) continue;
     if (run.axis == Axis::mesh && run.setting.refinement == 1) left["the mesh"] = error_of(run, quantity);
+    if (accuracy.of_scene.tolerance) {
+      if (&run == accuracy.as_it_stands()) left["the step"] = error_of(run, quantity);  // and the solver
+      continue;
+    }
     if (run.axis != Axis::grid || run.setting.integrator != accuracy.of_scene.integrator ||
         run.setting.step != accuracy.of_scene.step)
       continue;
@@ -134,24 +177,27 @@ std::string what_is_left(const Accuracy& accuracy, Quantity quantity) {
   const auto largest =
       std::max_element(left.begin(), left.end(), [](const auto& a, const auto& b) { return a.second < b.second; });
   return fmt::format(
-      "As the scene stands ({}, {:.4g} ms, newton_tolerance {:g}) {}, {}, {} (difference to twice the cells): {}.",
-      name_of(accuracy.of_scene.integrator), 1e3 * accuracy.of_scene.step, accuracy.of_scene.newton_tolerance,
-      "are left by " + text("the step"), text("the solver"), text("the mesh"),
+      "As the scene stands ({}, {}, newton_tolerance {:g}) {}, {}, {} (difference to twice the cells): {}.",
+      name_of(accuracy.of_scene.integrator),
+      accuracy.of_scene.tolerance ? fmt::format("tolerance {:.3g} m", *accuracy.of_scene.tolerance)
+                                  : fmt::format("{:.4g} ms", 1e3 * accuracy.of_scene.step),
+      accuracy.of_scene.newton_tolerance, "are left by " + text("the step"), text("the solver"), text("the mesh"),
       largest == left.end() ? std::string("none is known") : fmt::format("the largest is due to {}", largest->first));
+}
+
+bool is_still(const Accuracy& accuracy) {
+  const Quantity quantity = deciding_quantity(accuracy);
+  return std::ranges::all_of(accuracy.runs, [&](const Run& run) {
+    return run.failed() || bound_of(accuracy, run, quantity) < kNegligibleMotion;
+  });
 }
 
 }  // namespace
 
 const Run* cheapest(const Accuracy& accuracy, Quantity quantity, double target) {
-  const auto reaches = [&](const Run& run) { return bound_of(accuracy, run, quantity) <= target; };
   const Run* best = nullptr;
-  for (const Run& run : accuracy.runs) {
-    if (!in_the_race(run) || !reaches(run) || (best != nullptr && run.work.cpu_s >= best->work.cpu_s)) continue;
-    // Not by luck: whatever is solved more exactly reaches it too.
-    if (std::all_of(accuracy.runs.begin(), accuracy.runs.end(),
-                    [&](const Run& other) { return other.failed() || !finer(other, run) || reaches(other); }))
-      best = &run;
-  }
+  for (const Run& run : accuracy.runs)
+    if ((best == nullptr || run.work.cpu_s < best->work.cpu_s) && is_good(accuracy, run, quantity, target)) best = &run;
   return best;
 }
 
@@ -170,12 +216,39 @@ std::vector<const Run*> front(const Accuracy& accuracy, Quantity quantity) {
   return front;
 }
 
+std::string recommendation(const Accuracy& accuracy) {
+  const Quantity quantity = deciding_quantity(accuracy);
+  if (is_still(accuracy)) return "Nothing moves: there is no error to measure.";
+  const double target = kWanted * accuracy.cloth_size;
+  const std::string wanted = fmt::format("{:.2g} mm (1 % of the cloth's size)", 1e3 * target);
+  const Run* best = cheapest(accuracy, quantity, target);
+  const Run* stands = accuracy.as_it_stands();
+  if (best == nullptr) {
+    const auto exact = front(accuracy, quantity);
+    if (exact.empty()) return "No setting that was tried reaches the end of the scene.";
+    return fmt::format("No setting that was tried is known to keep the {} within {}. The most exact one is {}: {}; {}.",
+                       name_of(quantity), wanted, keys_text(exact.back()->setting),
+                       off_text(accuracy, *exact.back(), quantity), stands_text(accuracy, stands, quantity));
+  }
+  // Of settings that cost about the same, one that leaves the solver as it is.
+  for (const Run& run : accuracy.runs)
+    if (best->setting.newton_tolerance != accuracy.of_scene.newton_tolerance &&
+        run.setting.newton_tolerance == accuracy.of_scene.newton_tolerance &&
+        run.work.cpu_s <= kKeep * best->work.cpu_s && is_good(accuracy, run, quantity, target))
+      best = &run;
+  if (stands != nullptr && stands->work.cpu_s <= kKeep * best->work.cpu_s &&
+      is_good(accuracy, *stands, quantity, target))
+    return fmt::format(
+        "Keep the settings of the scene, {}: {}, where {} are wanted. No other takes less than {:.2g} CPU s.",
+        keys_text(stands->setting), off_text(accuracy, *stands, quantity), wanted,
+        std::min(stands->work.cpu_s, best->work.cpu_s));
+  return fmt::format("Use {}: {}, where {} are wanted; {}.", keys_text(best->setting),
+                     off_text(accuracy, *best, quantity), wanted, stands_text(accuracy, stands, quantity));
+}
+
 std::string conclusion(const Accuracy& accuracy) {
   const Quantity quantity = deciding_quantity(accuracy);
-  if (std::all_of(accuracy.runs.begin(), accuracy.runs.end(), [&](const Run& run) {
-        return run.failed() || bound_of(accuracy, run, quantity) < kNegligibleMotion;
-      }))
-    return "Nothing moves: there is no error to measure.\n";
+  if (is_still(accuracy)) return "";
   return which_setting(accuracy, quantity) + " " + cost_of_a_digit(accuracy, quantity) + " " +
          what_is_left(accuracy, quantity) + "\n";
 }

@@ -153,6 +153,17 @@ Errors compare(const Trajectory& run, const Trajectory& reference, const std::ve
   return errors;
 }
 
+double cloth_size(const frame::FrameSnapshot& snapshot) {
+  double largest = 0;
+  for (std::size_t s = 0; s < snapshot.surfaces.size(); ++s) {
+    if (snapshot.surfaces[s]->kind != frame::ObjectKind::cloth) continue;
+    Eigen::AlignedBox3d box;
+    for (const Vec3& x : snapshot.states[s].positions) box.extend(x);
+    if (!box.isEmpty()) largest = std::max(largest, box.sizes().maxCoeff());
+  }
+  return largest;
+}
+
 Functionals median(const std::vector<Functionals>& samples) {
   const auto of = [&](const auto& number) {
     std::vector<double> values;
@@ -174,6 +185,7 @@ Functionals median(const std::vector<Functionals>& samples) {
 }
 
 bool can_refine(const scene::Scene& scene, double refinement) {
+  if (std::floor(refinement * kFinestCut) != refinement * kFinestCut) return false;
   const auto whole = [&](int particles) {
     const int eighths = (particles - 1) * static_cast<int>(refinement * kFinestCut);
     return eighths % kFinestCut == 0 && eighths >= 2 * kFinestCut;

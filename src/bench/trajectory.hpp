@@ -99,6 +99,9 @@ Errors compare(const Functionals& run, const Functionals& reference);
 /// are the same. Velocities that one of the two has not are not compared.
 Errors compare(const Trajectory& run, const Trajectory& reference, const std::vector<std::size_t>& same = {});
 
+/// Longest side of the box around the largest cloth [m].
+double cloth_size(const frame::FrameSnapshot& snapshot);
+
 /// The median of each number.
 Functionals median(const std::vector<Functionals>& samples);
 

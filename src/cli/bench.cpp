@@ -4,6 +4,7 @@
 
 #include "bench/accuracy_report.hpp"
 #include "bench/fabrics.hpp"
+#include "bench/html.hpp"
 #include "bench/report.hpp"
 #include "bench/scene_stability_report.hpp"
 #include "bench/speed_report.hpp"
@@ -147,7 +148,7 @@ ExitCode bench_scene_stability(const BenchOptions& options, const std::filesyste
   const std::string name = "stability_" + scene.name, picture = name + ".svg", title = title_of(scene);
   PathLedger paths;
   add_inputs(paths, scene);
-  check_outputs(paths, options, folder, {name + ".md", name + ".csv", picture});
+  check_outputs(paths, options, folder, {name + ".md", name + ".html", name + ".csv", picture});
   const StopSignals signals("what was measured is written");
   RunProgress progress("stability");
   const bench::SceneStability stability = bench::measure_scene_stability(
@@ -158,9 +159,12 @@ ExitCode bench_scene_stability(const BenchOptions& options, const std::filesyste
       },
       [&] { return signals.requested().load(); });
   write_file(folder / (name + ".csv"), bench::csv(bench::trial_table(stability)));
-  write_file(folder / picture, bench::trial_svg(title, stability));
-  write_file(folder / (name + ".md"), bench::scene_stability_markdown(title, stability, picture));
-  print("{}\nwritten to {}\n", bench::margin_sentence(stability), (folder / (name + ".md")).string());
+  const std::string plot = bench::trial_svg(title, stability);
+  const std::string text = bench::scene_stability_markdown(title, stability, picture);
+  write_file(folder / picture, plot);
+  write_file(folder / (name + ".md"), text);
+  write_file(folder / (name + ".html"), bench::html_page(title, text, [&](const std::string&) { return plot; }));
+  print("{}\nwritten to {}\n", bench::margin_sentence(stability), (folder / (name + ".html")).string());
   return signals.requested() ? ExitCode::interrupted : ExitCode::ok;
 }
 
@@ -171,21 +175,28 @@ ExitCode bench_accuracy(const BenchOptions& options, const std::filesystem::path
   const std::string work = name + ".svg", settings = name + "_settings.svg";
   PathLedger paths;
   if (!options.scene.empty()) add_inputs(paths, scene);
-  check_outputs(paths, options, folder, {name + ".md", name + ".csv", work, settings});
+  check_outputs(paths, options, folder, {name + ".md", name + ".html", name + ".csv", work, settings});
   // So that CPU seconds mean the same everywhere.
   set_thread_count(1);
   RunProgress progress("accuracy");
-  const bench::Accuracy accuracy = bench::measure_accuracy(scene, [&](const bench::Run& run, double done) {
+  const auto report = [&](const bench::Run& run, double done) {
     progress(done, fmt::format("{}, {:.3g} {}: {}", name_of(run.setting.integrator),
                                run.setting.tolerance ? 1e3 * *run.setting.tolerance : 1e3 * run.setting.step,
                                run.setting.tolerance ? "mm" : "ms",
                                run.failed() ? run.failure : fmt::format("{:.2f} CPU s", run.work.cpu_s)));
-  });
+  };
+  const bench::Accuracy accuracy = bench::measure_accuracy(scene, report, options.plan);
+  const std::string work_plot = bench::work_svg(title, accuracy), settings_plot = bench::settings_svg(title, accuracy);
+  const std::string text = bench::accuracy_markdown(title, accuracy, work, settings);
   write_file(folder / (name + ".csv"), bench::csv(bench::accuracy_table(accuracy)));
-  write_file(folder / work, bench::work_svg(title, accuracy));
-  write_file(folder / settings, bench::settings_svg(title, accuracy));
-  write_file(folder / (name + ".md"), bench::accuracy_markdown(title, accuracy, work, settings));
-  print("{}written to {}\n", bench::conclusion(accuracy), (folder / (name + ".md")).string());
+  write_file(folder / work, work_plot);
+  write_file(folder / settings, settings_plot);
+  write_file(folder / (name + ".md"), text);
+  write_file(folder / (name + ".html"), bench::html_page(title, text, [&](const std::string& plot) {
+               return plot == work ? work_plot : settings_plot;
+             }));
+  print("{}\n{}written to {}\n", bench::recommendation(accuracy), bench::conclusion(accuracy),
+        (folder / (name + ".html")).string());
   return ExitCode::ok;
 }
 

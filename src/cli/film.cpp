@@ -1,11 +1,11 @@
 #include "cli/film.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
 #include <optional>
 #include <thread>
 #include <utility>
 
+#include "bench/trajectory.hpp"
 #include "cli/stats.hpp"
 #include "core/bounded_queue.hpp"
 #include "core/log.hpp"
@@ -25,18 +25,6 @@ struct DrawnFrame {
   frame::SnapshotPtr snapshot;
   Picture picture;
 };
-
-// Longest side of the box around the largest cloth [m].
-double cloth_size(const frame::FrameSnapshot& snapshot) {
-  double largest = 0;
-  for (std::size_t s = 0; s < snapshot.surfaces.size(); ++s) {
-    if (snapshot.surfaces[s]->kind != frame::ObjectKind::cloth) continue;
-    Eigen::AlignedBox3d box;
-    for (const Vec3& x : snapshot.states[s].positions) box.extend(x);
-    if (!box.isEmpty()) largest = std::max(largest, box.sizes().maxCoeff());
-  }
-  return largest;
-}
 
 // A frame goes through make_frames(), draw_frames() and write_frames(), each in a thread of its own. Fields of a
 // FrameRecord are written by the stage they belong to; the queues order writes before reads.
@@ -97,7 +85,7 @@ class Film {
         break;
       }
       MadeFrame made = source.next();  // simulated, or read
-      if (frame == made_.begin) result_.cloth_size = cloth_size(*made.snapshot);
+      if (frame == made_.begin) result_.cloth_size = bench::cloth_size(*made.snapshot);
       if (parts_.look) parts_.look(made);
       if (parts_.store) parts_.store->keep(made);  // so that it is not simulated again
       for (const std::string& warning : made.report.warnings) log::warn(warning);

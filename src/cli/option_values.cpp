@@ -46,6 +46,14 @@ double parse_factor(const char* option, const std::string& text) {
   return *value;
 }
 
+double parse_length(const char* option, const std::string& text) {
+  constexpr double kLeast = 1e-9, kMost = 1;
+  const auto value = number_in<double>(text);
+  if (!value || !(*value >= kLeast && *value <= kMost))
+    throw Error(ExitCode::usage, "{}: expected lengths from {:g} to {:g} m, got {}", option, kLeast, kMost, text);
+  return *value;
+}
+
 double parse_fps(const std::string& text) {
   constexpr double kMost = 1000;
   const auto value = number_in<double>(text);

@@ -34,6 +34,8 @@ int parse_integer(const char* option, const std::string& text, int low, int high
 double parse_share(const char* option, const std::string& text);
 /// How many times something: above 0, as far as anyone would go.
 double parse_factor(const char* option, const std::string& text);
+/// A length in metres, from a nanometre to a metre.
+double parse_length(const char* option, const std::string& text);
 double parse_fps(const std::string& text);
 
 /// `0.5,1,2`: ascending, each once.

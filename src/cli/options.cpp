@@ -70,15 +70,23 @@ void check_unknown(const CLI::App& command, const std::string& prefix) {
   throw Error(ExitCode::usage, "{}: {}; see {} --help", prefix, error.what(), prefix);
 }
 
-BenchOptions checked(BenchOptions bench, const std::string& option_of_speed) {
+std::string_view name_of(BenchOptions::Kind kind) {
+  return kind == BenchOptions::Kind::speed ? "speed" : "accuracy";  // those that have options of their own
+}
+
+BenchOptions checked(BenchOptions bench, const std::vector<BenchOption>& options) {
   using Kind = BenchOptions::Kind;
   if (bench.kind == Kind::fabrics && (!bench.scene.empty() || !bench.overrides.empty()))
     throw Error(ExitCode::usage, "weft bench fabrics: expected no SCENE and no --set, its scenes are its own");
   if (bench.kind == Kind::stability && bench.scene.empty() && !bench.overrides.empty())
     throw Error(ExitCode::usage,
                 "weft bench stability: expected a SCENE for --set, the built-in scenes are as they are");
-  if (bench.kind != Kind::speed && !option_of_speed.empty())
-    throw Error(ExitCode::usage, "weft bench: {} is for weft bench speed", option_of_speed);
+  for (const BenchOption& option : options) {
+    if (std::ranges::find(option.kinds, bench.kind) != option.kinds.end()) continue;
+    std::vector<std::string_view> names;
+    for (const Kind kind : option.kinds) names.push_back(name_of(kind));
+    throw Error(ExitCode::usage, "weft bench: {} is for weft bench {}", option.name, fmt::join(names, " or "));
+  }
   return bench;
 }
 
@@ -130,7 +138,7 @@ Command parse_command_line(const std::vector<std::string>& arguments) {
   if (name == "completion") return PrintText{completion(parser.app, parser.shell)};
   if (name == "man") return PrintText{manual(parser.app)};
   if (name == "schema") return parser.schema;
-  if (name == "bench") return checked(parser.bench, parser.option_of_speed);
+  if (name == "bench") return checked(parser.bench, parser.bench_options);
   if (name == "diff") return parser.diff;
   if (name == "accept") return parser.accept;
   if (name == "review") return parser.review;

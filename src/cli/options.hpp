@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "bench/accuracy_plan.hpp"
 #include "cli/frame_range.hpp"
 #include "cli/output_target.hpp"
 #include "cli/sweep_plan.hpp"
@@ -148,8 +149,15 @@ struct BenchOptions {
   std::vector<int> threads;  ///< empty: 1, and all cores
   FrameSelection frames;     ///< as typed
   std::optional<render::Quality> drawing;
+  bench::AccuracyPlan plan;      ///< of accuracy
   std::filesystem::path output;  ///< folder; empty: output/bench
   bool overwrite = false;
+};
+
+/// An option of weft bench that is not for every kind.
+struct BenchOption {
+  std::string name;
+  std::vector<BenchOptions::Kind> kinds;
 };
 
 struct DiffOptions {

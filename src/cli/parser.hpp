@@ -26,7 +26,7 @@ struct Parser {
   SchemaOptions schema;
   DoctorOptions doctor;
   BenchOptions bench;
-  std::string option_of_speed;  // one that was given; empty: none
+  std::vector<BenchOption> bench_options;  // those that were given and are not for every kind
   DiffOptions diff;
   AcceptOptions accept;
   ReviewOptions review;

@@ -10,6 +10,10 @@ constexpr std::array kBenches{Choice<BenchOptions::Kind>{"stability", BenchOptio
                               Choice<BenchOptions::Kind>{"accuracy", BenchOptions::Kind::accuracy},
                               Choice<BenchOptions::Kind>{"speed", BenchOptions::Kind::speed},
                               Choice<BenchOptions::Kind>{"fabrics", BenchOptions::Kind::fabrics}};
+constexpr std::array kIntegrators{Choice<scene::Integrator>{"implicit_euler", scene::Integrator::implicit_euler},
+                                  Choice<scene::Integrator>{"implicit_midpoint", scene::Integrator::implicit_midpoint},
+                                  Choice<scene::Integrator>{"bdf2", scene::Integrator::bdf2}};
+constexpr int kMostStarts = 100;
 constexpr std::array kFormats{Choice<exporter::Format>{"ply", exporter::Format::ply},
                               Choice<exporter::Format>{"obj", exporter::Format::obj},
                               Choice<exporter::Format>{"pc2", exporter::Format::pc2},
@@ -17,6 +21,12 @@ constexpr std::array kFormats{Choice<exporter::Format>{"ply", exporter::Format::
                               Choice<exporter::Format>{"usd", exporter::Format::usd},
                               Choice<exporter::Format>{"usdz", exporter::Format::usdz},
                               Choice<exporter::Format>{"blender", exporter::Format::blender}};
+
+// `none`, or a list.
+std::vector<double> parse_values(const char* option, const std::string& text,
+                                 double (*parse)(const char*, const std::string&)) {
+  return text == "none" ? std::vector<double>() : parse_list<double>(option, text, parse);
+}
 
 }  // namespace
 
@@ -61,13 +71,41 @@ void Parser::add_bench() {
   add_value(command, "-o,--output", "DIR", "Folder for tables and plots [output/bench]",
             [this](const std::string& text) { bench.output = text; });
   command.add_flag("--overwrite", bench.overwrite, "Replace files that exist already");
-  const auto of_speed = [&](const char* name, const char* value, const char* description,
-                            std::function<void(const std::string&)> read) {
-    add_value(command, name, value, description, [this, name, read](const std::string& text) {
+  using Kind = BenchOptions::Kind;
+  const auto only_of = [&](std::vector<Kind> kinds, const char* name, const char* value, const char* description,
+                           std::function<void(const std::string&)> read) {
+    add_value(command, name, value, description, [this, name, read, kinds](const std::string& text) {
       read(text);
-      option_of_speed = name;
+      bench_options.push_back({name, kinds});
     });
   };
+  const auto of_speed = [&](const char* name, const char* value, const char* description,
+                            std::function<void(const std::string&)> read) {
+    only_of({Kind::speed}, name, value, description, std::move(read));
+  };
+  only_of({Kind::accuracy}, "--integrators", "NAME,NAME,...",
+          "Of accuracy: time.integrator [implicit_euler,implicit_midpoint,bdf2]", [this](const std::string& text) {
+            bench.plan.integrators = parse_list<scene::Integrator>(
+                "--integrators", text,
+                [](const char* option, const std::string& part) { return parse_choice(option, part, kIntegrators); });
+          });
+  only_of(
+      {Kind::speed, Kind::accuracy}, "--steps", "F,F,...",
+      "Of speed and accuracy: time.step, of speed also time.tolerance, times that of the scene [0.5,1,2; of accuracy "
+      "0.125 to 4]",
+      [this](const std::string& text) {
+        bench.steps = parse_list<double>("--steps", text, parse_factor);
+        bench.plan.steps = bench.steps;
+      });
+  only_of(
+      {Kind::accuracy}, "--tolerances", "M,M,...|none", "Of accuracy: time.tolerance in m [1e-3 downwards]",
+      [this](const std::string& text) { bench.plan.tolerances = parse_values("--tolerances", text, parse_length); });
+  only_of({Kind::accuracy}, "--meshes", "F,F,...|none",
+          "Of accuracy: cells along each side, times those of the scene [0.25,0.5,1]",
+          [this](const std::string& text) { bench.plan.meshes = parse_values("--meshes", text, parse_factor); });
+  only_of({Kind::accuracy}, "--starts", "N",
+          "Of accuracy: runs of each setting, their starts moved by 1 µm from one to the next [1; with contact 3]",
+          [this](const std::string& text) { bench.plan.starts = parse_integer("--starts", text, 1, kMostStarts); });
   of_speed("--sizes", "F,F,...", "Of speed: particles along each side, times those of the scene [0.5,1,2,4]",
            [this](const std::string& text) { bench.sizes = parse_list<double>("--sizes", text, parse_factor); });
   of_speed("--threads", "N,N,...", "Of speed: numbers of threads [1 and all cores]", [this](const std::string& text) {
@@ -75,8 +113,6 @@ void Parser::add_bench() {
       return parse_integer(option, part, 1, kMaxThreads);
     });
   });
-  of_speed("--steps", "F,F,...", "Of speed: time.step, or time.tolerance, times that of the scene [0.5,1,2]",
-           [this](const std::string& text) { bench.steps = parse_list<double>("--steps", text, parse_factor); });
   of_speed("--frames", "A:B", "Of speed: frames to measure, from A up to but without B [1:9]",
            [this](const std::string& text) {
              bench.frames = parse_frames(text);
@@ -93,6 +129,7 @@ void Parser::add_bench() {
       "  weft bench stability -o stability\n"
       "  weft bench stability scenes/falling_band.toml --set time.duration=0.8 -o stability\n"
       "  weft bench accuracy scenes/falling_band.toml --set time.duration=0.8 -o accuracy\n"
+      "  weft bench accuracy flag.toml --integrators implicit_euler,bdf2 --steps 0.5,1,2 --meshes none -o steps\n"
       "  weft bench speed scenes/falling_band.toml --sizes 0.5,1,2 --frames 20:40 -o speed");
 }
 

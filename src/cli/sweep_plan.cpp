@@ -49,6 +49,14 @@ std::vector<std::string> split_values(const std::string& text) {
   return values;
 }
 
+// Spreadsheets begin UTF-8 with a byte order mark, which is no part of the first key. Of UTF-16 the mark is an error.
+std::string without_byte_order_mark(const fs::path& file, const std::string& text) {
+  if (text.starts_with("\xFF\xFE") || text.starts_with("\xFE\xFF"))
+    throw Error(ExitCode::asset_unreadable, "{}:1:1: expected UTF-8, got UTF-16; save the table as CSV UTF-8",
+                file.string());
+  return text.starts_with("\xEF\xBB\xBF") ? text.substr(3) : text;
+}
+
 // Fields of one line; those in quotes may hold commas, and quotes twice (RFC 4180).
 std::vector<std::string> csv_fields(const std::string& line) {
   std::vector<std::string> fields(1);
@@ -191,7 +199,8 @@ std::vector<Changes> read_list(const fs::path& file) {
   return parse_list(file, read_file(file, scene::kMaxFileSize));
 }
 
-std::vector<Changes> parse_list(const fs::path& file, const std::string& text) {
+std::vector<Changes> parse_list(const fs::path& file, const std::string& raw) {
+  const std::string text = without_byte_order_mark(file, raw);
   std::vector<Changes> rows = file.extension() == ".toml" ? read_toml(file, text) : read_csv(file, text);
   if (rows.empty()) throw Error(ExitCode::asset_unreadable, "{}: names no run", file.string());
   if (rows.size() > kMostRuns)

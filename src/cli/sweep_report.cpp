@@ -47,21 +47,32 @@ std::string largest(const Json& stats, const char* key) {
   return most ? fmt::format("{:.4g}", *most) : "";
 }
 
-std::string error_of(const Json& stats) {
-  if (const Json all = at(stats, {"error", "all", "position_m"}); all.is_number()) return text_of(all);
-  const Json steps = at(stats, {"totals", "error_estimate_m"}), solver = at(stats, {"totals", "solver_error_m"});
-  if (!steps.is_number() || !solver.is_number()) return "";
-  return fmt::format("{:.4g}", steps.get<double>() + solver.get<double>());
+/// Whether the error may be compared with that of another run; empty without --error.
+std::string comparable_of(const Json& stats) {
+  const Json comparable = at(stats, {"error", "comparable"});
+  if (!comparable.is_boolean()) return "";
+  return comparable.get<bool>() ? "yes" : "no";
 }
 
-/// Newton iterations, rejected steps, largest strain, energy at the end, error; empty where there is no frame.
+/// Newton iterations, rejected steps, largest strain, energy at the end, error and whether it is comparable; empty
+/// where there is no frame.
 std::vector<std::string> figures_of(const Json& stats) {
   const Json& frames = frames_of(stats);
-  if (frames.empty()) return std::vector<std::string>(5);
+  if (frames.empty()) return std::vector<std::string>(6);
   double iterations = 0;
   for (const Json& frame : frames) iterations += value_or(frame, "newton_iterations", 0.0);
-  return {fmt::format("{}", iterations), text_of(at(stats, {"totals", "rejected_steps"})), largest(stats, "max_strain"),
-          text_of(at(frames.back(), {"kinetic_energy_j"})), error_of(stats)};
+  return {fmt::format("{}", iterations),
+          text_of(at(stats, {"totals", "rejected_steps"})),
+          largest(stats, "max_strain"),
+          text_of(at(frames.back(), {"kinetic_energy_j"})),
+          text_of(at(stats, {"error", "all", "position_m"})),
+          comparable_of(stats)};
+}
+
+/// "simulation 1.2 s, drawing 0.8 s", of CPU time.
+std::string costs_of(const Json& stats) {
+  return fmt::format("simulation {} s, drawing {} s", text_of(at(stats, {"totals", "simulate_cpu"})),
+                     text_of(at(stats, {"totals", "render_cpu"})));
 }
 
 std::optional<image::Image> picture_of(const std::filesystem::path& file, std::optional<int> frame) {
@@ -98,11 +109,9 @@ int columns_of(const std::vector<SweepResult>& results) {
 }  // namespace
 
 std::string label_of(const SweepRun& run) {
-  constexpr std::size_t kLongest = 200;  // letters; the table has the whole values
   std::string label;
   for (const auto& [key, value] : run.difference)
     label += fmt::format("{}{}={}", label.empty() ? "" : "  ", key, value);
-  if (label.size() > kLongest) label = label.substr(0, kLongest) + " ...";
   return label.empty() ? "as it is" : label;
 }
 
@@ -112,8 +121,9 @@ bench::Table sweep_table(const std::vector<SweepResult>& results) {
     for (const auto& [key, value] : result.run.difference)
       if (std::ranges::find(keys, key) == keys.end()) keys.push_back(key);
   bench::Table table{keys};
-  for (const char* column : {"exit code", "CPU s", "frames", "Newton iterations", "rejected steps", "largest strain",
-                             "kinetic energy at the end J", "error m", "run"})
+  for (const char* column :
+       {"exit code", "CPU s", "simulation CPU s", "drawing CPU s", "frames", "Newton iterations", "rejected steps",
+        "largest strain", "kinetic energy at the end J", "error m", "comparable", "run"})
     table.front().emplace_back(column);
   for (const SweepResult& result : results) {
     std::vector<std::string>& row = table.emplace_back();
@@ -124,7 +134,8 @@ bench::Table sweep_table(const std::vector<SweepResult>& results) {
     }
     const Json& frames = frames_of(result.stats);
     row.push_back(fmt::format("{}", static_cast<int>(result.code)));
-    row.push_back(text_of(at(result.stats, {"totals", "cpu"})));
+    for (const char* key : {"cpu", "simulate_cpu", "render_cpu"})
+      row.push_back(text_of(at(result.stats, {"totals", key})));
     row.push_back(fmt::format("{}", frames.size()));
     for (std::string& figure : figures_of(result.stats)) row.push_back(std::move(figure));
     row.push_back(result.run.name);
@@ -143,11 +154,9 @@ void write_sweep_sheet(const std::filesystem::path& file, const std::vector<Swee
   std::vector<image::SheetPicture> pictures;
   for (std::size_t i = 0; i < results.size(); ++i) {
     const bool fits = found[i] && found[i]->width == none.width && found[i]->height == none.height;
-    const std::string cost = text_of(at(results[i].stats, {"totals", "cpu"}));
     const bool good = results[i].code == ExitCode::ok;
-    pictures.push_back(
-        {fits ? *found[i] : none, label_of(results[i].run),
-         good ? fmt::format("{} CPU s", cost) : fmt::format("exit {}", static_cast<int>(results[i].code))});
+    pictures.push_back({fits ? *found[i] : none, label_of(results[i].run),
+                        good ? costs_of(results[i].stats) : fmt::format("exit {}", static_cast<int>(results[i].code))});
   }
   image::write_png(file, image::contact_sheet(pictures, columns_of(results), heading));
 }

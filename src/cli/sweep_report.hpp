@@ -20,12 +20,12 @@ struct SweepResult {
   ExitCode code = ExitCode::ok;
 };
 
-/// A row for each run: its values; CPU time; largest strain; kinetic energy at the end, which tells whether it rests;
-/// the error that it tells of itself, from companions where they were asked for.
+/// A row for each run: its values, then the columns that scenes/data.md describes. What a run did not report is empty.
 bench::Table sweep_table(const std::vector<SweepResult>& results);
 
-/// A picture of each run with its values and its cost; grey where there is none. Of the last frame that is there,
-/// without `frame`: the k-th of those that were drawn. Writes nothing where no run has a picture.
+/// A picture of each run with its values and the CPU time of simulation and drawing; grey where there is none. Of the
+/// last frame that is there, without `frame`: the k-th of those that were drawn. Writes nothing where no run has a
+/// picture.
 void write_sweep_sheet(const std::filesystem::path& file, const std::vector<SweepResult>& results,
                        const std::string& heading, std::optional<int> frame);
 

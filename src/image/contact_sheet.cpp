@@ -1,6 +1,8 @@
 #include "image/contact_sheet.hpp"
 
 #include <algorithm>
+#include <string_view>
+#include <vector>
 
 #include "core/error.hpp"
 #include "image/text.hpp"
@@ -16,7 +18,8 @@ struct Layout {
       : text(std::clamp(width / 24, 9, 28)), heading(text * 4 / 3), gap(text), caption(text * 2) {}
   int text, heading;
   int gap;      // around pictures
-  int caption;  // height of the line below each
+  int caption;  // height of the first line below each
+  int line() const { return text * 5 / 4; }
 };
 
 void paste(Image& onto, const Image& image, int x, int y) {
@@ -24,14 +27,43 @@ void paste(Image& onto, const Image& image, int x, int y) {
     std::copy_n(image.pixel(0, row), 3 * static_cast<std::size_t>(image.width), onto.pixel(x, y + row));
 }
 
-// As much of the text as there is room for.
-std::string fitting(const Font& font, std::string text, int room) {
-  if (font.width(text) <= room) return text;
-  while (!text.empty() && font.width(text + "…") > room) {
-    while (text.size() > 1 && (text.back() & 0xC0) == 0x80) text.pop_back();  // the rest of a character of UTF-8
-    text.pop_back();
+// Bytes of the longest start of `text` that fits; at least one character.
+std::size_t fitting(const Font& font, std::string_view text, int room) {
+  std::size_t length =
+      std::min(text.size(), 4 * static_cast<std::size_t>(std::max(1, room)));  // at most 4 bytes a pixel
+  const auto is_continued = [&](std::size_t at) { return at < text.size() && (text[at] & 0xC0) == 0x80; };  // UTF-8
+  while (length > 1 && (is_continued(length) || font.width(text.substr(0, length)) > room)) --length;
+  while (is_continued(length)) ++length;
+  return length;
+}
+
+// Bounds the height of a sheet whose labels are whole tables.
+constexpr std::size_t kMostLines = 60;
+
+// Lines no wider than `room`. They end at blanks; a word that is too long for a line goes on in the next one.
+std::vector<std::string> wrapped(const Font& font, std::string_view text, int room) {
+  std::vector<std::string> lines;
+  while (!text.empty()) {
+    if (lines.size() == kMostLines) {
+      lines.back() = "…";
+      break;
+    }
+    std::size_t length = fitting(font, text, room);
+    const std::size_t blank = length < text.size() ? text.rfind(' ', length) : std::string_view::npos;
+    if (blank != std::string_view::npos && blank > 0) length = blank;
+    const std::string_view line = text.substr(0, length);
+    lines.emplace_back(line.substr(0, line.find_last_not_of(' ') + 1));
+    text.remove_prefix(length);
+    text.remove_prefix(std::min(text.find_first_not_of(' '), text.size()));
   }
-  return text + "…";
+  return lines;
+}
+
+// The lines below a picture; `right` shares the last one, or has one of its own.
+std::vector<std::string> caption_lines(const Font& font, const SheetPicture& picture, int width, int gap) {
+  std::vector<std::string> lines = wrapped(font, picture.left, width);
+  if (lines.empty() || font.width(lines.back()) + gap + font.width(picture.right) > width) lines.emplace_back();
+  return lines;
 }
 
 }  // namespace
@@ -43,22 +75,28 @@ Image contact_sheet(std::span<const SheetPicture> pictures, int columns, const s
   const int rows = (static_cast<int>(pictures.size()) + columns - 1) / columns;
   const Layout layout(width);
   const int top = 2 * layout.gap + layout.heading;
-
-  Image sheet(layout.gap + columns * (width + layout.gap), top + rows * (height + layout.caption) + layout.gap / 2);
-  for (std::size_t i = 0; i < sheet.rgb.size(); ++i) sheet.rgb[i] = kPaper[i % 3];
   const Font heading_font(layout.heading), font(layout.text);
+  std::vector<std::vector<std::string>> captions;
+  std::size_t most_lines = 1;
+  for (const SheetPicture& picture : pictures) {
+    captions.push_back(caption_lines(font, picture, width, layout.gap / 2));
+    most_lines = std::max(most_lines, captions.back().size());
+  }
+  const int caption = layout.caption + (static_cast<int>(most_lines) - 1) * layout.line();
+
+  Image sheet(layout.gap + columns * (width + layout.gap), top + rows * (height + caption) + layout.gap / 2);
+  for (std::size_t i = 0; i < sheet.rgb.size(); ++i) sheet.rgb[i] = kPaper[i % 3];
   heading_font.draw(sheet, layout.gap, layout.gap + layout.heading * 4 / 5, heading, kInk);
   for (std::size_t i = 0; i < pictures.size(); ++i) {
     const SheetPicture& picture = pictures[i];
     if (picture.image.width != width || picture.image.height != height)
       throw Error(ExitCode::internal, "contact sheet: expected pictures of one size");
     const int x = layout.gap + static_cast<int>(i) % columns * (width + layout.gap);
-    const int y = top + static_cast<int>(i) / columns * (height + layout.caption);
+    const int y = top + static_cast<int>(i) / columns * (height + caption);
     paste(sheet, picture.image, x, y);
-    const int baseline = y + height + layout.text * 5 / 4;
-    const int right = font.width(picture.right);
-    font.draw(sheet, x, baseline, fitting(font, picture.left, width - right - layout.gap / 2), kInk);
-    font.draw(sheet, x + width - right, baseline, picture.right, kFaintInk);
+    int baseline = y + height;
+    for (const std::string& line : captions[i]) font.draw(sheet, x, baseline += layout.line(), line, kInk);
+    font.draw(sheet, x + width - font.width(picture.right), baseline, picture.right, kFaintInk);
   }
   return sheet;
 }

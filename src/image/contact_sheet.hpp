@@ -10,7 +10,7 @@ namespace weft::image {
 
 struct SheetPicture {
   Image image;
-  std::string left, right;  ///< written below it, at either side
+  std::string left, right;  ///< written below it: `left` in as many lines as it needs, `right` at the end of the last
 };
 
 /// Lays out pictures of one size row by row, under a heading. The text grows with the pictures.

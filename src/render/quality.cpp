@@ -2,8 +2,8 @@
 
 namespace weft::render {
 
-// What each stage costs in either stands in tests/bench/README.md. Shadow maps of 1536 texels cost 4 CPU ms more and
-// look the same.
+// What each stage costs: tests/bench/history.md, render. Shadow maps of 1536 texels cost 4 CPU ms more and look the
+// same.
 QualitySettings quality_settings(Quality quality) {
   switch (quality) {
     case Quality::draft:

@@ -141,7 +141,8 @@ TEST(Options, OfSpeedAreListsAndForSpeedAlone) {
               std::string("--frames: expected A:B with A from 1, for frame 0 takes no time and each needs the one "
                           "before, got ") +
                   wrong);
-  EXPECT_EQ(refusal({"bench", "accuracy", "--steps", "1,2"}), "weft bench: --steps is for weft bench speed");
+  EXPECT_EQ(refusal({"bench", "stability", "--steps", "1,2"}),
+            "weft bench: --steps is for weft bench speed or accuracy");
   EXPECT_EQ(refusal({"bench", "sped"}),
             "WHAT: expected stability or accuracy or speed or fabrics, got sped; did you mean speed?");
 }

@@ -97,6 +97,8 @@ TEST(StatsJson, EachKeyIsDocumented) {
   EXPECT_EQ(documented_keys(page, "Keys of one of `objects`"), keys_of(stats.at("objects").at(0)));
   EXPECT_EQ(documented_keys(page, "Keys of `totals`"), keys_of(stats.at("totals")));
   EXPECT_EQ(documented_keys(page, "Keys of one of `frames`"), keys_of(stats.at("frames").at(1)));
+  EXPECT_EQ(documented_keys(page, "Keys of `error`"), keys_of(stats.at("error")));
+  EXPECT_EQ(documented_keys(page, "Keys of its `all`"), keys_of(stats.at("error").at("all")));
 }
 
 TEST(Summary, NamesTheFramesOfTheExtremes) {

@@ -1,5 +1,6 @@
 // weft sweep: which runs there are, and what becomes of them.
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/file.h>
@@ -7,9 +8,11 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <sstream>
 
 #include "cli/cached_run.hpp"
 #include "cli/sweep_plan.hpp"
+#include "cli/sweep_report.hpp"
 #include "image/png.hpp"
 
 namespace weft::cli {
@@ -92,12 +95,87 @@ TEST_F(SweepList, OfCsvAndTomlIsTheSame) {
   EXPECT_EQ(names(plan_sweep(expected, {{"s", {"3", "4"}}})).front(), "b=1e-6_w=1,2_s=3");
 }
 
+TEST_F(SweepList, OfASpreadsheetHasTheKeysWithoutItsByteOrderMark) {
+  const std::vector<Changes> expected{{{"a.b", "1"}}};
+  EXPECT_EQ(read("l.csv",
+                 "\xEF\xBB\xBF"
+                 "a.b\r\n1\r\n"),
+            expected);
+  EXPECT_EQ(read("l.toml",
+                 "\xEF\xBB\xBF"
+                 "[[run]]\na.b = 1\n"),
+            expected);
+  support::expect_error(ExitCode::asset_unreadable,
+                        "l.csv:1:1: expected UTF-8, got UTF-16; save the table as CSV UTF-8", [&] {
+                          read("l.csv", std::string("\xFF\xFE"
+                                                    "a\0",
+                                                    4));
+                        });
+}
+
 TEST_F(SweepList, MistakesNameTheirLine) {
   support::expect_error(ExitCode::asset_unreadable, "l.csv:3: expected 2 values as in the first line, got 1",
                         [&] { read("l.csv", "a,b\n1,2\n3\n"); });
   support::expect_error(ExitCode::asset_unreadable, "l.toml:2:", [&] { read("l.toml", "[[run]]\na = = 1\n"); });
   support::expect_error(ExitCode::asset_unreadable, "expected a table [[run]]", [&] { read("l.toml", "a = 1\n"); });
   support::expect_error(ExitCode::asset_unreadable, "names no run", [&] { read("l.csv", "a,b\n"); });
+}
+
+SweepResult made_up_result() {
+  SweepResult result;
+  result.run.difference = {{"bend", "1e-6"}};
+  result.stats = nlohmann::ordered_json::parse(
+      R"({"totals":{"cpu":9,"simulate_cpu":2.5,"render_cpu":4.25,"rejected_steps":1,"error_estimate_m":5,"solver_error_m":6},
+          "frames":[{"newton_iterations":3,"max_strain":0.02,"kinetic_energy_j":0.5},
+                    {"newton_iterations":4,"max_strain":0.01,"kinetic_energy_j":0.25}]})");
+  return result;
+}
+
+std::string cell_of(const bench::Table& table, const std::string& column) {
+  const auto at = std::ranges::find(table[0], column);
+  return at == table[0].end() ? "no such column" : table[1][static_cast<std::size_t>(at - table[0].begin())];
+}
+
+TEST(SweepTable, HasSimulationAndDrawingApart) {
+  const bench::Table table = sweep_table({made_up_result()});
+  EXPECT_EQ(cell_of(table, "CPU s"), "9");
+  EXPECT_EQ(cell_of(table, "simulation CPU s"), "2.5");
+  EXPECT_EQ(cell_of(table, "drawing CPU s"), "4.25");
+  EXPECT_EQ(cell_of(table, "Newton iterations"), "7");
+  EXPECT_EQ(cell_of(table, "largest strain"), "0.02");
+  EXPECT_EQ(cell_of(table, "kinetic energy at the end J"), "0.25");
+}
+
+TEST(SweepTable, KeepsWhetherAnErrorIsComparableAndSumsUpNoErrorsOfSteps) {
+  SweepResult result = made_up_result();
+  EXPECT_EQ(cell_of(sweep_table({result}), "error m"), "");
+  EXPECT_EQ(cell_of(sweep_table({result}), "comparable"), "");
+  result.stats["error"] = {{"comparable", false}, {"all", {{"position_m", 0.003}}}};
+  EXPECT_EQ(cell_of(sweep_table({result}), "error m"), "0.003");
+  EXPECT_EQ(cell_of(sweep_table({result}), "comparable"), "no");
+  result.stats["error"]["comparable"] = true;
+  EXPECT_EQ(cell_of(sweep_table({result}), "comparable"), "yes");
+}
+
+TEST(SweepTable, EachColumnIsDocumented) {
+  const std::string page = support::read_bytes(WEFT_SOURCE_DIR "/scenes/data.md");
+  std::vector<std::string> columns = sweep_table({made_up_result()}).front();
+  columns.erase(columns.begin());  // the key that is varied
+  const std::size_t begin = page.find("## Columns of a sweep"), table = page.find("|---|", begin);
+  ASSERT_NE(begin, std::string::npos);
+  std::istringstream lines(page.substr(table, page.find("\n\n", table) - table));
+  std::vector<std::string> documented;
+  for (std::string line; std::getline(lines, line);)
+    if (const std::size_t open = line.find('`'); open != std::string::npos)
+      documented.push_back(line.substr(open + 1, line.find('`', open + 1) - open - 1));
+  EXPECT_EQ(documented, columns);
+}
+
+TEST(SweepLabels, AreNotCut) {
+  SweepRun run;
+  for (int i = 0; i < 50; ++i) run.difference.emplace_back(fmt::format("key{}", i), "0.123");
+  EXPECT_NE(label_of(run).find("key0=0.123  key1=0.123"), std::string::npos);
+  EXPECT_TRUE(label_of(run).ends_with("key49=0.123"));
 }
 
 class Sweeps : public CachedRun {
@@ -120,7 +198,8 @@ TEST_F(Sweeps, HaveTheVideosOfSingleRunsASheetATableAndAPage) {
                "--set", "time.step=0.01"});
   EXPECT_EQ(decoded("w/radius=0.11_step=0.01/s.mp4"), decoded("one.mp4"));
   const std::string csv = table();
-  EXPECT_TRUE(csv.starts_with("radius,step,exit code,CPU s,frames,Newton iterations,")) << csv;
+  EXPECT_TRUE(csv.starts_with("radius,step,exit code,CPU s,simulation CPU s,drawing CPU s,frames,Newton iterations,"))
+      << csv;
   EXPECT_NE(csv.find("\n0.11,0.01,0,"), std::string::npos) << csv;
   EXPECT_EQ(std::ranges::count(csv, '\n'), 5);
   const image::Image sheet = image::read_png(folder_ / "w/sheet.png");
@@ -158,7 +237,7 @@ TEST_F(Sweeps, NameTheRunsThatFailAndKeepTheOthers) {
   EXPECT_EQ(outcome.exit_code, 2) << outcome.err;
   EXPECT_NE(outcome.err.find("exit code 2: weft: --camera: expected w, got v"), std::string::npos) << outcome.err;
   EXPECT_NE(outcome.err.find("weft: 1 of 2 runs failed:\n"), std::string::npos) << outcome.err;
-  EXPECT_NE(table().find(",2,,0,,,,,,\"camera="), std::string::npos) << "figures of no frame: " << table();
+  EXPECT_NE(table().find(",2,,,,0,,,,,,,\"camera="), std::string::npos) << "figures of no frame: " << table();
   EXPECT_TRUE(fs::exists(folder_ / "w/sheet.png"));
 }
 

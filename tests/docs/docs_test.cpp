@@ -1,13 +1,16 @@
 // Holds the documentation against the sources, after showing on small made-up pages that each check sees what it is
 // for.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <filesystem>
+#include <sstream>
 #include <string>
 #include <vector>
 
 #include "architecture/source_tree.hpp"
+#include "core/version.hpp"
 #include "docs/generated.hpp"
 #include "docs/markdown.hpp"
 #include "docs/names.hpp"
@@ -87,6 +90,71 @@ TEST(GeneratedParts, AreReplacedAndTheRestIsKept) {
                      "<!-- end -->\nb\n"));
   EXPECT_THROW(regenerated(kRoot, "README.md", "<!-- generated: nonsense -->\n<!-- end -->\n"), std::runtime_error);
   EXPECT_THROW(regenerated(kRoot, "README.md", "<!-- generated: fabrics -->\n"), std::runtime_error);
+}
+
+class MeasuredTables : public MadePages {
+ protected:
+  std::string page(const std::string& part) {
+    return regenerated(folder_, "README.md", "<!-- generated: measured " + part + " -->\n<!-- end -->\n");
+  }
+};
+
+TEST_F(MeasuredTables, HaveTheirCommandVersionMachineAndDateAbove) {
+  const std::string version = kVersion;
+  write("a.md", "# `weft x`, table y\n\nweft " + version +
+                    " of commit 0123abc, two cores, 2026-11-26\n\n| n | m |\n|---|---|\n| 1 | 2 |\n\nmore\n");
+  EXPECT_EQ(page("a.md"), "<!-- generated: measured a.md -->\n\n`weft x`, table y \\\nweft " + version +
+                              " of commit 0123abc, two cores, 2026-11-26\n\n| n | m |\n|---|---|\n| 1 | 2 |\n\n"
+                              "<!-- end -->\n");
+  EXPECT_NE(page("a.md: m").find("\n\n| n | m |\n|---|---|\n| 1 | 2 |\n"), std::string::npos);
+  for (const std::string& wrong :
+       {"# weft x\n\nweft " + version + " of commit 0123abc, two cores, 2026-11-26\n\n",
+        "# `weft x`\n\nweft " + version + " of commit 0123abc, 2026-11-26\n\n",
+        "# `weft x`\n\nweft " + version + ", two cores, 2026-11-26\n\n",
+        "# `weft x`\n\nweft " + version + " of commit 0123abc, two cores\n\n",
+        std::string("# `weft x`\n\nweft 0.0.1 of commit 0123abc, two cores, 2026-11-26\n\n")}) {
+    write("b.md", wrong + "| n | m |\n|---|---|\n| 1 | 2 |\n");
+    EXPECT_THROW(page("b.md"), std::runtime_error) << wrong;
+  }
+}
+
+// "12: what stands there" for each table that no measured file prints.
+std::string written_tables(const std::string& text) {
+  std::string found;
+  std::istringstream lines(text);
+  bool measured = false, in_table = false;
+  int number = 0;
+  for (std::string line; std::getline(lines, line);) {
+    ++number;
+    if (line.starts_with("<!-- generated: measured ")) measured = true;
+    if (line.starts_with("<!-- end -->")) measured = false;
+    if (line.starts_with("|") && !in_table && !measured) found += fmt::format("{}: {}\n", number, line);
+    in_table = line.starts_with("|");
+  }
+  return found;
+}
+
+TEST(MeasuredPage, TablesWrittenByHandAreReported) {
+  EXPECT_EQ(written_tables("<!-- generated: measured a.md -->\n| a |\n|---|\n| b |\n<!-- end -->\n\n| c |\n|---|\n"),
+            "7: | c |\n");
+}
+
+TEST(MeasuredPage, HasTablesOfNamedCommandsAlone) {
+  const std::string text = read_file(kRoot / "tests/bench/README.md");
+  EXPECT_EQ(written_tables(text), "");
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 350);
+}
+
+// Measured files without a place on the page would age unseen.
+TEST(MeasuredPage, ShowsOrLinksEachMeasuredFile) {
+  const std::string text = read_file(kRoot / "tests/bench/README.md");
+  for (const auto& entry : fs::directory_iterator(kRoot / "tests/bench/measured")) {
+    const std::string file = "measured/" + entry.path().filename().string();
+    EXPECT_NE(text.find(file), std::string::npos) << file;
+    EXPECT_NO_THROW(
+        regenerated(kRoot, "tests/bench/README.md", "<!-- generated: measured " + file + " -->\n<!-- end -->\n"))
+        << file << " has no command, version, machine or date";
+  }
 }
 
 TEST(Documentation, IsAsNinjaDocsPrintsIt) {

@@ -12,6 +12,7 @@
 
 #include "architecture/source_tree.hpp"
 #include "cli/options.hpp"
+#include "core/version.hpp"
 #include "docs/markdown.hpp"
 #include "docs/scene_keys.hpp"
 #include "scene/fabrics.hpp"
@@ -188,10 +189,45 @@ std::vector<std::string> chosen(const std::vector<std::string>& row, const std::
   return cells;
 }
 
-// "FILE FILE ... : COLUMN, COLUMN": side by side the rows that the first tables of all these files have in common.
+// Of a measured file: its first line, a heading with the command, and the line that names program, machine and date.
+std::string origin(const fs::path& file) {
+  static const std::regex kOrigin(
+      R"(^# (`[^`]+`[^\n]*)\n\nweft ([0-9.]+) of commit ([0-9a-f]{7,40}), ([^\n]+), (20\d\d-\d\d-\d\d)\n\n)");
+  const std::string text = read_file(file);
+  std::smatch match;
+  if (!std::regex_search(text, match, kOrigin))
+    throw std::runtime_error(
+        file.string() +
+        ": expected '# `COMMAND`' and 'weft VERSION of commit HASH, MACHINE, YYYY-MM-DD' above the "
+        "table");
+  if (match[2] != kVersion)
+    throw std::runtime_error(fmt::format("{}: expected figures of weft {}, got those of {}: measure again",
+                                         file.string(), kVersion, match[2].str()));
+  return fmt::format("{} \\\nweft {} of commit {}, {}, {}", match[1].str(), match[2].str(), match[3].str(),
+                     match[4].str(), match[5].str());
+}
+
+std::string side_by_side(const fs::path& folder, const std::string& arguments);
+
+// "FILE FILE ...[: COLUMN, COLUMN]": where the tables come from, then side by side the rows that the first tables of
+// all these files have in common; without columns the first table of one file.
+std::string measured(const fs::path& folder, const std::string& arguments) {
+  std::istringstream files(arguments.substr(0, arguments.find(": ")));
+  std::string text;
+  for (std::string file; files >> file;) text += origin(folder / file) + "\n\n";
+  if (arguments.find(": ") != std::string::npos) return text + side_by_side(folder, arguments);
+  const auto rows = printed_table(folder / arguments);
+  for (const auto& row : rows) {
+    text += fmt::format("| {} |\n", fmt::join(row, " | "));
+    if (&row != &rows.front()) continue;
+    for (std::size_t i = 0; i < row.size(); ++i) text += "|---";
+    text += "|\n";
+  }
+  return text;
+}
+
 std::string side_by_side(const fs::path& folder, const std::string& arguments) {
   const auto colon = arguments.find(": ");
-  if (colon == std::string::npos) throw std::runtime_error("expected FILES: COLUMNS, got " + arguments);
   std::istringstream files(arguments.substr(0, colon)), names(arguments.substr(colon + 2));
   std::vector<std::string> columns;
   for (std::string name; std::getline(names >> std::ws, name, ',');) columns.push_back(name);
@@ -229,8 +265,8 @@ std::string print(const fs::path& root, const fs::path& file, const std::string&
   if (name == "modules") return modules(root);
   if (name == "scene keys") return scene_keys();
   if (name == "pattern keys") return pattern_keys();
-  const std::string measured = "measured ";
-  if (name.starts_with(measured)) return side_by_side(root / file.parent_path(), name.substr(measured.size()));
+  const std::string prefix = "measured ";
+  if (name.starts_with(prefix)) return measured(root / file.parent_path(), name.substr(prefix.size()));
   throw std::runtime_error(file.string() + ": nothing prints '" + name + "'");
 }
 

@@ -91,6 +91,11 @@ Run run(const Scene& scene) {
   return result;
 }
 
+void print_row(const char* what, std::vector<double> values) {
+  std::ranges::sort(values);
+  fmt::print("| {} | {:.2f} | {:.2f} | {:.2f} |\n", what, values.front(), values[values.size() / 2], values.back());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -103,6 +108,8 @@ int main(int argc, char** argv) {
   fmt::print("{:>4} {:18} {:>9} {:>9} {:>6} {:>9} {:>9} {:>9} {:>3} {:>6} {:>7} {:>5}\n", "", "scene", "steps mm",
              "solver mm", "ratio", "turned", "mirrored", "fps x4", "rej", "newton", "stretch", "pairs");
   int loose = 0, apart = 0, all_rejected = 0;
+  std::vector<double> ratios, farthest, iterations, stretches;
+  int all_farther = 0;
   std::size_t all_pairs = 0;
   long all_newton = 0, all_taken = 0;
   for (unsigned number = first; number < first + count; ++number) {
@@ -125,6 +132,11 @@ int main(int argc, char** argv) {
     const double differences[] = {rms_apart(base.last, back), rms_apart(base.last, flipped),
                                   rms_apart(base.last, as_finer.last)};
     const bool is_apart = *std::ranges::max_element(differences) > base.steps + base.solver;
+    ratios.push_back(base.solver / base.steps);
+    farthest.push_back(std::max(differences[0], differences[1]) / (base.steps + base.solver));
+    iterations.push_back(static_cast<double>(base.newton) / base.taken);
+    stretches.push_back(base.stretch);
+    all_farther += differences[2] > 0;
     loose += base.solver > base.steps;
     apart += is_apart;
     all_pairs += base.pairs, all_rejected += base.rejected, all_newton += base.newton, all_taken += base.taken;
@@ -137,8 +149,15 @@ int main(int argc, char** argv) {
                                         : "");
     std::fflush(stdout);
   }
+  fmt::print("\n| of {} scenes | least | median | largest |\n|---|---|---|---|\n", count);
+  print_row("solver error over step error", ratios);
+  print_row("Newton iterations a step", iterations);
+  print_row("longest thread", stretches);
+  print_row("turned or mirrored: distance at the end over both errors", farthest);
   fmt::print(
-      "{} scenes: solver beyond steps in {}, variants farther apart than both in {}; {} pairs, {} rejected, {:.2f} "
-      "Newton iterations a step\n",
-      count, loose, apart, all_pairs, all_rejected, static_cast<double>(all_newton) / static_cast<double>(all_taken));
+      "\nSolver error beyond step error in {}; turned or mirrored farther apart than both errors in {}; other bits "
+      "with "
+      "four times the frames in {}; {} pairs, {} rejected steps, {:.2f} Newton iterations a step.\n",
+      loose, apart, all_farther, all_pairs, all_rejected,
+      static_cast<double>(all_newton) / static_cast<double>(all_taken));
 }
