@@ -42,19 +42,22 @@ HIDE = 'while [ "$1" != -- ]; do if [ -d "$1" ]; then mount --bind "$0/folder" "
 
 
 def libraries(*programs):
+    """Those that the loader finds, by name."""
     listed = subprocess.run(["ldd", *programs], capture_output=True, text=True, check=False).stdout
-    return {os.path.realpath(path) for path in re.findall(r"(/\S+) \(0x", listed)}
+    return dict(re.findall(r"(\S+) => (/\S+) ", listed))
 
 
 def only_of_weft(weft):
-    """The folder of the program, and libraries that nothing needs which a node of Slurm runs."""
-    opened = [path for name in ("libOSMesa.so.8", "libEGL.so.1") for path in glob.glob(f"/usr/lib/x86_64-linux-gnu/{name}")]
+    """The folder of the program, and what it names or opens itself and nothing needs which a node of Slurm runs."""
+    named = subprocess.run(["readelf", "-dW", weft], capture_output=True, text=True, check=True).stdout
+    found = {path for name, path in libraries(weft).items() if f"[{name}]" in named}
+    for name in ("libOSMesa.so.8", "libEGL.so.1"):
+        found.update(glob.glob(f"/usr/lib/x86_64-linux-gnu/{name}"))
     others = [shutil.which(name) for name in ("slurmd", "slurmstepd", "sbatch", "munged", "sh", "tar", "rm", "mount")]
-    others += glob.glob("/usr/lib/x86_64-linux-gnu/slurm-wlm/*.so") + ["/usr/sbin/slurmstepd"]
-    found = (libraries(weft, weft + "-tools", *opened) | set(map(os.path.realpath, opened))) - libraries(
-        *(name for name in others if name and os.path.exists(name)))
+    others += glob.glob("/usr/lib/x86_64-linux-gnu/slurm-wlm/*.so")
+    found -= set(libraries(*filter(None, others)).values())
     assert any("libavcodec" in path for path in found), found
-    return [os.path.dirname(weft), *sorted(found)]
+    return [os.path.dirname(weft), *map(os.path.realpath, sorted(found))]
 
 
 def check(source, weft, start, folder):
