@@ -53,7 +53,7 @@ COMMANDS = (("doctor",),
             ("diff", "cube.mp4", "cube.mp4"),
             ("diff", "gltf", "gltf"),
             ("run", "cube.toml", "-o", "cube.mov", "--frames", "0:2"))
-MADE = ("cube.mp4", "cube.mov", "gltf/00000.png", "gltf/00004.png", "sweep/sheet.png", "sweep/density=0.2/cube.mp4")
+MADE = ("cube.mp4", "cube.mov", "gltf/00000.png", "gltf/00004.png", "sweep/density=0.2/cube.mp4")
 
 
 def run(*words, **options):
@@ -66,7 +66,7 @@ def prepare(folder, weft):
     """Scenes of a cube from an OBJ file, and of what an export holds from a glTF file."""
     os.mkdir(folder)
     for name, text in (("cube.obj", CUBE), ("cube.toml", SCENE),
-                       ("cube_gltf.toml", SCENE.replace("cube.obj", "ball/s.gltf"))):
+                       ("cube_gltf.toml", SCENE.replace("cube.obj", "ball/s.glb"))):
         with open(os.path.join(folder, name), "w", encoding="utf-8") as file:
             file.write(text)
     with open(os.path.join(folder, "s.toml"), "w", encoding="utf-8") as file:
