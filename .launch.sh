@@ -19,22 +19,39 @@ quietly() {
   "$@" </dev/null >"$folder/launch.log" 2>&1 || { cat "$folder/launch.log" >&2; return 1; }
 }
 
+# choose CHOICE...: of each A|B|C the first that apt knows; what stands for it may be several packages, joined by commas.
+choose() {
+  for choices; do
+    while [ "${choices#*|}" != "$choices" ] && ! apt-cache show "${choices%%[|,]*}" >/dev/null 2>&1; do
+      choices=${choices#*|}
+    done
+    echo "${choices%%|*}" | tr , ' '
+  done
+}
+
 # need_packages KIND...: installs the packages of these kinds in .packages that are missing. Apt does not inherit the
 # lock: the daemons that a package may start would hold it for ever.
 need_packages() {
   command -v dpkg-query >/dev/null || return 0  # not Debian: CMake will name what it cannot find
   missing=$(dpkg-query -W -f '${Package} ${db:Status-Status}\n' | awk -v kinds=" $* " '
     NR == FNR { if ($2 == "installed") installed[$1]; next }
-    NF && index(kinds, " " $1 " ") && !($2 in installed) { printf " %s", $2 }' - "$root/.packages")
+    NF && index(kinds, " " $1 " ") {
+      for (i = split($2, choices, "|"); i > 0; i--) {
+        absent = 0
+        for (k = split(choices[i], packages, ","); k > 0; k--) absent += !(packages[k] in installed)
+        if (!absent) next
+      }
+      printf " %s", $2
+    }' - "$root/.packages")
   [ -n "$missing" ] || return 0
+  # shellcheck disable=SC2046,SC2086 # one word for each package
   [ "$(id -u)" = 0 ] || die 2 "Debian packages are missing; install them and call again:
-  sudo apt-get update && sudo apt-get install --no-install-recommends$missing"
-  say "installing$missing"
+  sudo apt-get update && sudo apt-get install --no-install-recommends "$(choose $missing)
   export DEBIAN_FRONTEND=noninteractive
-  # shellcheck disable=SC2086 # one word for each package
-  { quietly apt-get -q -o DPkg::Lock::Timeout=600 update &&
+  # shellcheck disable=SC2086
+  { quietly apt-get -q -o DPkg::Lock::Timeout=600 update && missing=$(choose $missing) && say "installing" $missing &&
     quietly apt-get -q -y -o DPkg::Lock::Timeout=600 install --no-install-recommends $missing; } 9>&- ||
-    die 2 "apt-get could not install$missing"
+    die 2 "apt-get could not install" $missing
 }
 
 # configure [-DNAME=VALUE...]: runs CMake where that was not done yet, where the tree has moved since, or where an

@@ -11,6 +11,7 @@
 #include <cstring>
 
 #include "core/error.hpp"
+#include "core/installation.hpp"
 
 namespace weft::cli {
 namespace {
@@ -27,8 +28,8 @@ void become(const std::vector<char*>& arguments, Outputs outputs, pid_t parent) 
   // posix_spawn cannot ask for this.
   if (::prctl(PR_SET_PDEATHSIG, SIGKILL) != 0) return;
   if (::getppid() != parent) ::_exit(127);  // killed before it was asked for
-  const int input = ::open("/dev/null", O_RDONLY | O_CLOEXEC);
-  if (input < 0 || ::dup2(input, STDIN_FILENO) < 0) return;
+  int input[2];  // without /dev/null, which the root of a container may lack; at its end once this program is another
+  if (::pipe2(input, O_CLOEXEC) != 0 || ::dup2(input[0], STDIN_FILENO) < 0) return;
   if (outputs.out >= 0 && ::dup2(outputs.out, STDOUT_FILENO) < 0) return;
   if (outputs.err >= 0 && ::dup2(outputs.err, STDERR_FILENO) < 0) return;
   ::execvp(arguments[0], arguments.data());
@@ -64,7 +65,10 @@ int start(std::vector<std::string> words, Outputs outputs, pid_t& process) {
 }  // namespace
 
 std::filesystem::path own_program() {
-  std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
+  std::filesystem::path program = own_installation().program;
+  if (program.empty())
+    throw Error(ExitCode::usage,
+                "/proc/self/exe: cannot be read: expected /proc to be mounted, to start this program again");
   if (program.filename() == kToolsName) program.replace_filename("weft");
   return program;
 }

@@ -2,6 +2,7 @@
 // stopped; all that is known of them lies in the folder of the sweep, which the machines share.
 #include <algorithm>
 #include <map>
+#include <optional>
 #include <sstream>
 
 #include "cache/reader.hpp"
@@ -9,6 +10,7 @@
 #include "cli/commands.hpp"
 #include "cli/estimate.hpp"
 #include "cli/farm_scripts.hpp"
+#include "cli/program_archive.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/standard_output.hpp"
 #include "cli/sweep_report.hpp"
@@ -98,9 +100,11 @@ class Farm {
 
   ExitCode submit() {
     PathLedger paths;
+    if (!options_.program.empty()) paths.reads(options_.program, "the program");
     plan_.jobs = read_sweep(options_.sweep, paths);
     check_sweep_folder(options_.sweep, paths);
     paths.check_writable();
+    if (!options_.program.empty()) program_.emplace(options_.program);
     std::map<std::string, int> states;
     if (!options_.dry_run && !active_jobs(folder_, states).empty())
       throw Error(ExitCode::output_failed, "{}: has jobs that wait or run; weft farm cancel {} ends them",
@@ -230,8 +234,9 @@ class Farm {
                           plan_.needs.simulate_minutes, plan_.needs.draw_minutes, plan_.part, plan_.needs.memory));
   }
 
-  void write() const {
+  void write() {
     fs::create_directories(folder_ / "farm/log");
+    if (program_) write_program();
     write_sweep_index(options_.sweep, plan_.jobs);
     for (const std::size_t i : plan_.submitted) fs::create_directories(folder_ / plan_.jobs[i].run.name);
     for (const auto& [name, text] :
@@ -243,9 +248,17 @@ class Farm {
     write_file(folder_ / "farm/jobs", "");
   }
 
+  // Not what a task has unpacked already.
+  void write_program() {
+    plan_.archive = program_->fingerprint();
+    const fs::path tar = folder_ / program_tar(plan_.archive);
+    if (!fs::exists(fs::path(tar).replace_extension()) && !fs::exists(tar)) program_->write_tar(tar);
+  }
+
   const FarmOptions& options_;
   const fs::path folder_;
   FarmPlan plan_;
+  std::optional<ProgramArchive> program_;
 };
 
 }  // namespace

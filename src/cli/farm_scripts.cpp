@@ -80,16 +80,23 @@ std::string array_text(const std::vector<std::size_t>& indices) {
 
 }  // namespace
 
+std::string program_tar(const std::string& archive) {
+  return "farm/program/" + archive + ".tar";
+}
+
 std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
   const SweepOptions& sweep = options.sweep;
   const std::vector<std::string>& passed_on = sweep.passed_on;
+  const std::string unpacked =
+      plan.archive.empty() ? "" : fs::path(program_tar(plan.archive)).replace_extension().string();
+  const std::string program = plan.archive.empty() ? own_program().string() : "./" + unpacked + "/weft/bin/weft";
   std::string text = fmt::format(
       "#!/bin/sh\n# A task of the runs in this folder, by Weft {}; farm/tasks.tsv has all of them.\n"
-      "weft=${{WEFT:-{}}}\ncd {} || exit 6\nretries={}\nframes_each={}\n",
-      kVersion, quoted(own_program().string()), quoted(fs::absolute(sweep.output).lexically_normal().string()),
+      "weft=${{WEFT:-{}}}\ncd {} || exit 6\nunpacked={}\nretries={}\nframes_each={}\n",
+      kVersion, quoted(program), quoted(fs::absolute(sweep.output).lexically_normal().string()), quoted(unpacked),
       options.retries, plan.part);
   const auto define = [&](const char* name, const std::vector<std::string>& words) {
-    fmt::format_to(std::back_inserter(text), "{}() {{ exec \"$weft\"{} \"$@\"; }}\n", name, quoted(words));
+    fmt::format_to(std::back_inserter(text), "{}() {{ unpack && exec \"$weft\"{} \"$@\"; }}\n", name, quoted(words));
   };
   const auto with = [](std::vector<std::string> words, const std::vector<std::string>& more) {
     words.insert(words.end(), more.begin(), more.end());
@@ -106,7 +113,7 @@ std::string task_script(const FarmOptions& options, const FarmPlan& plan) {
       "\ntask=$1 run=${2:-$SLURM_ARRAY_TASK_ID} part=${3:-$SLURM_ARRAY_TASK_ID}\n"
       "case $run in *+) run=$((${run%+} + SLURM_ARRAY_TASK_ID)) ;; esac # from this one on\n"
       "label=$task${run:+_$run}\n"
-      "case $task in\n  draw) label=${label}_$part ;;\n  report) label=report ;;\nesac\n"
+      "case $task in\n  draw) label=${label}_$part ;;\n  report | unpack) label=$task ;;\nesac\n"
       "exec >>\"farm/log/$label.log\" 2>&1\n\n"
       "case $run in\n";
   for (std::size_t i = 0; i < plan.jobs.size(); ++i) {
@@ -129,6 +136,11 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
       quoted(fs::absolute(options.sweep.output).lexically_normal().string()), options.threads, plan.needs.memory,
       quoted(options.for_scheduler), embedded("submit.sh"));
   const auto out = std::back_inserter(text);
+  std::string after;
+  if (!plan.archive.empty()) {
+    fmt::format_to(out, "hand_in unpack unpack --time={}\nunpack=$job\n", plan.needs.draw_minutes);
+    after = " --dependency=\"afterok:$unpack\"";
+  }
   // Of the simulations in one array, each run waits for its own.
   for (std::size_t at = 0; at < plan.submitted.size();) {
     const std::size_t base = plan.submitted[at];
@@ -136,8 +148,8 @@ std::string submit_script(const FarmOptions& options, const FarmPlan& plan) {
     std::size_t end = at;
     for (; end < plan.submitted.size() && plan.submitted[end] - base < kArray; ++end)
       offsets.push_back(plan.submitted[end] - base);
-    fmt::format_to(out, "hand_in simulate 'simulate {}+' --time={} --array={}\nsimulate=$job\n", base,
-                   plan.needs.simulate_minutes, array_text(offsets));
+    fmt::format_to(out, "hand_in simulate 'simulate {}+' --time={} --array={}{}\nsimulate=$job\n", base,
+                   plan.needs.simulate_minutes, array_text(offsets), after);
     for (; at < end; ++at) {
       const std::size_t run = plan.submitted[at];
       fmt::format_to(out,
@@ -157,8 +169,9 @@ std::string task_list(const FarmOptions& options, const FarmPlan& plan) {
   const auto add = [&](const std::string& name, const std::string& before, const std::string& words) {
     fmt::format_to(std::back_inserter(text), "{}\t{}\tsh {} {}\n", name, before, script, words);
   };
+  if (!plan.archive.empty()) add("unpack", "", "unpack");
   for (const std::size_t run : plan.submitted) {
-    add(fmt::format("simulate_{}", run), "", fmt::format("simulate {}", run));
+    add(fmt::format("simulate_{}", run), plan.archive.empty() ? "" : "unpack", fmt::format("simulate {}", run));
     std::string parts;
     for (int part = 0; part < plan.parts(run); ++part) {
       const std::string name = fmt::format("draw_{}_{}", run, part);

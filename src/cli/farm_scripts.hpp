@@ -23,10 +23,14 @@ struct FarmPlan {
   std::vector<FrameRange> frames;      ///< of each that are drawn
   std::vector<std::size_t> submitted;  ///< of jobs: those to do, ascending
   int part = 50;                       ///< frames of a drawing task
+  std::string archive;                 ///< fingerprint of the program that tasks unpack; empty: they run this one
   Needs needs;
 
   int parts(std::size_t job) const { return (frames[job].count() + part - 1) / part; }
 };
+
+/// Of an archive, in the folder of the runs; without its ending: what a task has unpacked.
+std::string program_tar(const std::string& archive);
 
 /// `farm/task.sh`: with paths that hold on all machines that share the folder.
 std::string task_script(const FarmOptions& options, const FarmPlan& plan);

@@ -91,7 +91,8 @@ BenchOptions checked(BenchOptions bench, const std::vector<BenchOption>& options
 }
 
 SweepOptions checked(SweepOptions sweep) {
-  if (sweep.axes.empty() && sweep.list.empty())
+  // Of a farm, a scene alone is a run to report on.
+  if (sweep.axes.empty() && sweep.list.empty() && !sweep.gather)
     throw Error(ExitCode::usage, "weft sweep: expected --set KEY=A,B,... or --list; see weft sweep --help");
   return sweep;
 }
@@ -102,6 +103,9 @@ FarmOptions checked(FarmOptions farm) {
     throw Error(ExitCode::usage, "weft farm submit: expected -o DIR, a folder that all machines share");
   if (!submits && !farm.sweep.output.empty())
     throw Error(ExitCode::usage, "weft farm: -o is for weft farm submit; expected the folder of the runs alone");
+  if (!submits && !farm.program.empty())
+    throw Error(ExitCode::usage,
+                "weft farm: --program is for weft farm submit, which writes it into the folder of the runs");
   if (!submits) farm.sweep.output = farm.sweep.scene;
   return farm;
 }

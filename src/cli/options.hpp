@@ -114,6 +114,7 @@ struct FarmOptions {
   int retries = 3;                         ///< of a task that was killed or found no room
   std::optional<int> memory, minutes;      ///< of a task [MB, min]; else from a trial
   std::vector<std::string> for_scheduler;  ///< options of sbatch
+  std::filesystem::path program;           ///< archive that tasks unpack and run; empty: this program, where it lies
   bool dry_run = false;                    ///< writes the scripts and prints them
 };
 

@@ -101,6 +101,9 @@ void Parser::add_farm() {
             [this](const std::string& text) { farm.memory = parse_integer("--memory", text, 1, 100'000'000); });
   add_value(command, "--time", "MINUTES", "Of a task at most, after which it goes on in a new place [from a trial]",
             [this](const std::string& text) { farm.minutes = parse_integer("--time", text, 2, 10'000'000); });
+  add_value(command, "--program", "FILE.tar.zst",
+            "Archive of ninja bundle that tasks unpack and run [this program, installed on all machines]",
+            [this](const std::string& text) { farm.program = text; });
   command.add_option("--sbatch", farm.for_scheduler, "An option for sbatch, as --sbatch=--partition=long; repeatable")
       ->type_name("OPTION")
       ->allow_extra_args(false);
@@ -109,6 +112,7 @@ void Parser::add_farm() {
       "\nExamples:\n"
       "  weft farm submit scenes/catwalk.toml -o catwalk --threads 4\n"
       "  weft farm submit scenes/falling_band.toml --set cloth.band.material.bend=1e-6,1e-5,1e-4 -o bends\n"
+      "  weft farm submit scenes/catwalk.toml -o catwalk --program weft-x86_64.tar.zst\n"
       "  weft farm status bends\n"
       "  weft farm cancel bends\n"
       "\nEach run is simulated by one task, drawn by several, joined by one, and a last one makes sheet, table and "

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <signal.h>
+#include <sys/prctl.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -15,6 +16,7 @@
 #include "cli/failure.hpp"
 #include "cli/standard_output.hpp"
 #include "core/input_file.hpp"
+#include "core/installation.hpp"
 #include "core/log.hpp"
 #include "garment/pattern.hpp"
 #include "scene/loader.hpp"
@@ -79,6 +81,9 @@ int run_program(int argc, char** argv, ExitCode (*run_other)(const Command& comm
     // a file.
     ::signal(SIGPIPE, SIG_IGN);
     ::signal(SIGXFSZ, SIG_IGN);
+    // Of an archive the process bears the name of its loader.
+    if (const Installation own = own_installation(); !own.libraries.empty())
+      ::prctl(PR_SET_NAME, own.code.filename().c_str());
     const std::vector<std::string> arguments(argv + (argc > 0 ? 1 : 0), argv + argc);
     const Command command = parse_command_line(arguments);
     if (!std::holds_alternative<PrintText>(command)) check_working_folder();

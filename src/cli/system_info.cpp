@@ -7,6 +7,7 @@
 #include <iterator>
 
 #include "cli/child_process.hpp"
+#include "core/installation.hpp"
 
 namespace weft::cli {
 
@@ -20,7 +21,7 @@ std::string cpu_model() {
 }
 
 std::string program_fingerprint() {
-  std::ifstream program(own_program(), std::ios::binary);
+  std::ifstream program(own_installation().code.replace_filename(own_program().filename()), std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(program), {}};
   return fmt::format("{:016x}", XXH3_64bits(bytes.data(), bytes.size()));
 }

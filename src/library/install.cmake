@@ -19,6 +19,7 @@ target_link_options(weft_shared PRIVATE -Wl,--as-needed -Wl,-z,defs)
 set_target_properties(weft_shared PROPERTIES OUTPUT_NAME weft EXPORT_NAME weft VERSION ${PROJECT_VERSION} SOVERSION
                       ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
 
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME library)
 install(TARGETS weft_shared EXPORT Weft LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
 install(DIRECTORY library/include/weft DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 set(config_folder ${CMAKE_INSTALL_LIBDIR}/cmake/Weft)
@@ -27,11 +28,13 @@ write_basic_package_version_file(${CMAKE_CURRENT_BINARY_DIR}/WeftConfigVersion.c
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/WeftConfigVersion.cmake DESTINATION ${config_folder})
 
 if(WEFT_PYTHON)
+  set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME python)
   set(WEFT_PYTHON_FOLDER lib/python3/dist-packages CACHE STRING "Where the Python module is installed, below the prefix")
   install(DIRECTORY python/weft DESTINATION ${WEFT_PYTHON_FOLDER})
   install(TARGETS weft_extension LIBRARY DESTINATION ${WEFT_PYTHON_FOLDER}/weft)
 endif()
 
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME program)
 # The program writes its own manual page, completions and schema.
 install(TARGETS weft weft_tools_program RUNTIME)
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/scenes DESTINATION ${CMAKE_INSTALL_DATADIR}/weft)
@@ -51,16 +54,26 @@ install_output(${CMAKE_INSTALL_DATADIR}/bash-completion/completions/weft complet
 install_output(${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions/_weft completion zsh)
 install_output(${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d/weft.fish completion fish)
 
-# A Debian package: cpack --config build/CPackConfig.cmake
+# A Debian package: ninja package
 set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_DIRECTORY ${CMAKE_BINARY_DIR}/packages)
 set(CPACK_PACKAGE_CONTACT "Weft")
 set(CPACK_PACKAGE_DESCRIPTION_SUMMARY "Simulation and rendering of cloth")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6 | libegl1")  # opened at run time
+set(CPACK_DEBIAN_PACKAGE_DEPENDS "libosmesa6 | libegl1, libosmesa6 | libgl1-mesa-dri")  # opened at run time
 if(WEFT_PYTHON)
   string(APPEND CPACK_DEBIAN_PACKAGE_DEPENDS ", python3, python3-numpy")
 endif()
 include(CPack)
+
+# One archive that needs nothing of the machine that it runs on: ninja bundle
+add_executable(weft_start EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/.packaging/start.c)
+target_compile_options(weft_start PRIVATE -march=x86-64 -Wall -Wextra)  # an older CPU is named by the program
+target_link_options(weft_start PRIVATE -static)
+add_custom_target(bundle
+                  COMMAND ${PROJECT_SOURCE_DIR}/.packaging/bundle.sh ${CMAKE_BINARY_DIR} $<TARGET_FILE:weft_start>
+                          ${CPACK_PACKAGE_DIRECTORY}
+                  DEPENDS weft weft_tools_program weft_start VERBATIM USES_TERMINAL)

@@ -61,8 +61,9 @@ def free_port():
 
 
 class Slurm:
-    def __init__(self, folder, nodes):
-        self.folder, self.nodes, self.processes = folder, nodes, {}
+    def __init__(self, folder, nodes, before=()):
+        """`before`: words before the command that starts a node."""
+        self.folder, self.nodes, self.before, self.processes = folder, nodes, before, {}
         lines = [f"NodeName={node} NodeHostname={socket.gethostname()} NodeAddr=127.0.0.1 Port={free_port()} CPUs=2 "
                  "RealMemory=8000" for node in nodes]
         self.configuration = os.path.join(folder, "slurm.conf")
@@ -90,7 +91,7 @@ class Slurm:
                                                     start_new_session=True)
 
     def start_node(self, node):
-        self.start(node, "slurmd", "-D", "-c", "-N", node, "-f", self.configuration)
+        self.start(node, *self.before, "slurmd", "-D", "-c", "-N", node, "-f", self.configuration)
 
     def idle(self):
         told = subprocess.run(["sinfo", "-h", "-N", "-o", "%N %T"], capture_output=True, text=True, check=False).stdout

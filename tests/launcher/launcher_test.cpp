@@ -150,6 +150,22 @@ TEST_F(Launcher, RootGetsOnlyTheMissingPackagesInstalled) {
   EXPECT_EQ(outcome.err, "weft: installing libx-dev\nweft: building\n");
 }
 
+TEST_F(Launcher, TakesTheFirstChoiceOfPackagesThatThereIs) {
+  write(tree_ / ".packages", "build g++\nbuild libold6|libnew1,libnew-driver   # x\n");
+  write_script(folder_ / "fakes/apt-cache", "[ \"$2\" != \"$(cat \"$FAKES/dropped\")\" ]\n");
+  const auto installs = [&](const std::string& installed, const std::string& dropped) {
+    fs::remove_all(tree_ / "build");
+    make_installed(installed);
+    write(folder_ / "fakes/dropped", dropped);
+    return launch().err;
+  };
+  EXPECT_EQ(installs("g++\n", ""), "weft: installing libold6\nweft: building\n");
+  EXPECT_EQ(installs("g++\n", "libold6"), "weft: installing libnew1 libnew-driver\nweft: building\n");
+  EXPECT_EQ(installs("g++\nlibnew1\n", "libold6"), "weft: installing libnew1 libnew-driver\nweft: building\n");
+  for (const char* installed : {"g++\nlibold6\n", "g++\nlibnew1\nlibnew-driver\n"})
+    EXPECT_EQ(installs(installed, ""), "weft: building\n") << "nothing is missing";
+}
+
 TEST_F(Launcher, OthersAreToldThePackagesAndTheCommand) {
   make_installed("");
   write(folder_ / "fakes/uid", "1000\n");

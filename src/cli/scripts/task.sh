@@ -1,4 +1,4 @@
-# The rest is the same for all: task.sh simulate RUN | draw RUN PART | join RUN | report
+# The rest is the same for all: task.sh unpack | simulate RUN | draw RUN PART | join RUN | report
 #
 # A task that is whole already ends at once, one that was stopped goes on, and two at once do no harm: what is written
 # gets its name when it is whole. Numbers that are left out are those of the task in an array of Slurm.
@@ -34,7 +34,22 @@ attempt() {
   done
 }
 
+# The archive that submit was given, once for all tasks: what it holds gets its name when it is whole. Of two that unpack at
+# once, the second removes its own.
+unpack() {
+  if [ -z "$unpacked" ] || [ -d "$unpacked" ]; then return 0; fi
+  new=$unpacked.new.$(uname -n).$$
+  if rm -rf "$new" && mkdir "$new" && tar -xf "$unpacked.tar" -C "$new" && mv "$new" "$unpacked"; then
+    rm -rf "$unpacked"/*.new.* "$unpacked".new.* "$unpacked.tar"
+  elif ! [ -d "$unpacked" ]; then
+    rm -rf "$new"
+    echo "weft: farm/task.sh: expected the program in $unpacked.tar, which cannot be unpacked; weft farm submit writes it anew"
+    return 6
+  fi
+}
+
 case $task in
+  unpack) attempt unpack ;;
   simulate)
     mkdir -p "$name"
     attempt simulate "$@" --cache "$name/cache" --stats "$name/$scene.json" --frames "$begin:$end:$step" --resume \
@@ -49,7 +64,7 @@ case $task in
   join) attempt join "$name/frames" --frames "$begin:$end:$step" -o "$name/$scene.mp4" --overwrite ;;
   report) attempt report ;;
   *)
-    echo "expected simulate, draw, join or report, got $task" >&2
+    echo "expected unpack, simulate, draw, join or report, got $task" >&2
     code=2
     ;;
 esac

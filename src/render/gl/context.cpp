@@ -4,8 +4,10 @@
 #include <filesystem>
 #include <fstream>
 #include <string_view>
+#include <system_error>
 
 #include "core/error.hpp"
+#include "core/installation.hpp"
 
 namespace weft::render {
 namespace {
@@ -15,8 +17,18 @@ const char* text(const Gl& gl, GLenum name) {
   return found ? found : "unknown";
 }
 
+/// An archive may bring Mesa behind EGL: libEGL and Mesa look for each other's files in places of the system otherwise.
+void use_own_mesa() {
+  const std::filesystem::path libraries = own_installation().libraries, vendor = libraries / "egl_vendor.json";
+  std::error_code none;
+  if (libraries.empty() || !std::filesystem::exists(vendor, none)) return;
+  setenv("__EGL_VENDOR_LIBRARY_FILENAMES", vendor.c_str(), 1);
+  setenv("LIBGL_DRIVERS_PATH", (libraries / "dri").c_str(), 1);
+}
+
 /// Mesa reads these once, when the first context of the process is made.
 void set_rasteriser_environment(int threads) {
+  use_own_mesa();
   setenv("LIBGL_ALWAYS_SOFTWARE", "1", 0);  // EGL would choose a graphics card: other pictures, and no such threads
   // 512-bit vectors together with 4x multisampling crash llvmpipe of Mesa 22.3; its own choice is right everywhere.
   const char* width = std::getenv("LP_NATIVE_VECTOR_WIDTH");

@@ -1,0 +1,29 @@
+"""The archive of `ninja bundle`, for the tests that need one."""
+import os
+import shutil
+import subprocess
+
+
+def missing():
+    """Why no archive can be made or tried here; empty where all is well."""
+    for tool in ("zstd", "unshare", "chroot"):
+        if not shutil.which(tool):
+            return f"{tool} is not found: apt-get install zstd util-linux coreutils"
+    if os.geteuid() != 0 or subprocess.run(["unshare", "--mount", "true"], check=False).returncode:
+        return "roots and mounts of one's own take root"
+    return ""
+
+
+def make(source, weft, start, folder, *opengl):
+    """Its path. Compressed little, which takes less time."""
+    build = os.path.dirname(os.path.dirname(weft))
+    done = subprocess.run([os.path.join(source, ".packaging/bundle.sh"), build, start, folder, *opengl],
+                          env={**os.environ, "ZSTD_CLEVEL": "1"}, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    print(done.stdout.strip())
+    return os.path.join(folder, "weft-x86_64.tar.zst")
+
+
+def unpack(archive, folder):
+    os.makedirs(folder)
+    subprocess.run(f"zstd -dc '{archive}' | tar -xf - -C '{folder}'", shell=True, check=True)
