@@ -8,6 +8,7 @@
 #include "solver/linear_system.hpp"
 #include "solver/preconditioner.hpp"
 #include "solver/product.hpp"
+#include "solver/rank_one.hpp"
 #include "solver/row_chunks.hpp"
 
 namespace weft::solver {
@@ -69,7 +70,12 @@ class Recurrence {
   void begin(std::span<const Vec3> b, std::span<const Vec3> x, std::span<const Vec3> start, Progress& progress);
   void begin_along(std::span<const Vec3> start);
   End iterate(const LinearGoal& goal, int max_iterations, Progress& progress);
-  double multiply() { return product_.multiply(p_, q_, moved_); }
+  double multiply() {
+    const double curvature = product_.multiply(p_, q_, moved_);
+    return curvature + rank_one_.multiply(p_, q_);
+  }
+  void apply_levels_and_factor(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, bool with_factor);
+  void precondition_rank_one(bool with_factor);
   void advance(double alpha, Progress& progress);
   double apply_preconditioner(std::span<Quad<Real>> z, bool with_factor);
   bool make_factor();
@@ -80,6 +86,7 @@ class Recurrence {
   RowChunks rows_;  // of those selected
   Product<Real> product_;
   Preconditioner<Real> preconditioner_;
+  RankOneTerms<Real> rank_one_;
   IncompleteCholesky factor_;                                                   // in double only
   enum class Factor { not_made, made, none } factor_state_ = Factor::not_made;  // of the system as prepared
   std::vector<Part> factor_parts_;                                              // scratch
