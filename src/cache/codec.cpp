@@ -242,12 +242,26 @@ void serialize(Archive& archive, frame::FrameReport& report) {
     serialize_values(archive, stage->wall_s, stage->cpu_s);
   for (double* number : {&report.error_estimate, &report.solver_error, &report.min_distance, &report.max_strain,
                          &report.stretch_share, &report.kinetic_energy, &report.potential_energy,
-                         &report.elastic_energy, &report.pin_work, &report.solver_work})
+                         &report.elastic_energy, &report.air_energy, &report.pin_work, &report.solver_work})
     archive.value(*number);
   for (int* number : {&report.steps, &report.rejected_steps, &report.inexact_steps, &report.newton_iterations,
                       &report.linear_iterations, &report.proximities, &report.constraints, &report.pinched_pairs,
                       &report.lagging_particles})
     archive.value(*number);
+  serialize_each(
+      archive, report.enclosed,
+      [&](frame::EnclosedAir& air) {
+        serialize_plain(archive, air.cloth);
+        serialize_values(archive, air.volume, air.pressure);
+      },
+      3 * sizeof(double));
+  serialize_each(
+      archive, report.attachments,
+      [&](frame::AttachmentLoad& attachment) {
+        serialize_plain(archive, attachment.name);
+        serialize_values(archive, attachment.load, attachment.holds);
+      },
+      2 * sizeof(double));
   serialize_each(
       archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); }, sizeof(std::size_t));
 }

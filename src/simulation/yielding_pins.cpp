@@ -50,7 +50,7 @@ YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environ
     const auto begin = static_cast<std::size_t>(first_particle[about.cloth]);
     const std::size_t count = environment.cloths[about.cloth].start.size();
     double weight = 0;
-    for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * scene.physics.gravity.norm();
+    for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * scene.physics.largest_gravity();
     load_.push_back(kLoad * weight);
   }
 }

@@ -41,6 +41,24 @@ const std::vector<Malformed> kMalformed = {
                  7),
      "s.toml: expected text, got binary data (byte 0 at offset 5)\n"},
     {"InvalidUtf8", "title = '\xc3\x28'\n", "s.toml:1:9: not TOML: Encountered invalid utf-8 sequence\n"},
+    // Air, fans and attachments.
+    {"QuantityOfAnotherControl", "[[cloth]]\nname = 'a'\npressure = { control = 'air', gauge = 3 }\n",
+     "s.toml:3:31: cloth.a.pressure.gauge: unknown key of a air; it belongs to gauge\n"},
+    {"NegativeFill", "[[cloth]]\nname = 'a'\npressure = { control = 'fill', fill = -1 }\n",
+     "s.toml:3:39: cloth.a.pressure.fill: expected >= 0, got -1\n"},
+    {"PressureKeysOutOfOrder", "[[cloth]]\nname = 'a'\npressure.keys = [{ time = 1, gauge = 3 }, { time = 0.5 }]\n",
+     "s.toml:3:52: cloth.a.pressure.keys.1.time: expected > 1 s, later than the keys before, got 0.5\n"},
+    {"PhysicsKeysOutOfOrder", kBand + "[physics]\nkeys = [{ time = 1 }, { time = 1, wind = [1, 0, 0] }]\n",
+     "s.toml:3:32: physics.keys.1.time: expected > 1 s, later than the keys before, got 1\n"},
+    {"FanWithoutAPlace", kBand + "[[fan]]\nname = 'f'\ndirection = [0, 0, 0]\n",
+     "s.toml:2:1: fan.f.position: expected [x, y, z], each from -100000 to 100000 m, here or in the first of its keys, "
+     "got none\ns.toml:4:13: fan.f.direction: expected a value other than zero, got [0, 0, 0]\n"},
+    {"AttachmentToNothing", kBand + "[[attach]]\nname = 'peg'\ncloth = 'bond'\nto = 'line'\n",
+     "s.toml:4:9: attach.peg.cloth: expected the name of a cloth, got \"bond\"; did you mean band?\n"
+     "s.toml:5:6: attach.peg.to: expected the name of a cloth, obstacle or character, got \"line\"\n"},
+    {"AttachmentToItself", kBand + "[[attach]]\nname = 'peg'\ncloth = 'band'\nto = 'band'\nbegin = 2\nrelease = 1\n",
+     "s.toml:5:6: attach.peg.to: expected another object than the cloth itself, got \"band\"\n"
+     "s.toml:7:11: attach.peg.release: expected > 2 s, when it begins, got 1\n"},
     // Pictures and cameras.
     {"PictureThatIsNone", "[[cloth]]\nname = 'a'\nlook.image = '/etc/passwd'\n",
      "s.toml:3:14: cloth.a.look.image: expected a picture (PNG, JPEG or TGA), got \"/etc/passwd\": it begins like no "
