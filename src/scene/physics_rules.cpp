@@ -69,6 +69,7 @@ const Table& physics_rules() {
           .vector("wind", &Physics::wind, kXyz, kWind, "m/s", "velocity of the air")
           .table("gusts", &Physics::gusts, gust_rules())
           .choice("interpolation", &Physics::interpolation, kInterpolations, "between its keys")
+          .by_default("cubic")
           .written_if([](Physics& physics) { return !physics.keys.empty(); })
           .list(Type::keys, "keys", &Physics::keys, physics_key_rules(),
                 [](Physics& physics, std::size_t i) {

@@ -29,7 +29,7 @@ struct Hanging {
   std::vector<FrameReport> reports;
   std::vector<double> lowest;  // [m]
 };
-Hanging hang(const scene::Scene& scene) {
+Hanging hang_up(const scene::Scene& scene) {
   Simulation simulation(scene);
   Hanging result;
   for (int frame = 1; frame < scene.frame_count(); ++frame) {
@@ -42,7 +42,7 @@ Hanging hang(const scene::Scene& scene) {
 constexpr double kWeight = 0.2 * 0.15 * 9.81;  // [N]
 
 TEST(Attachments, BearTheWeightThatHangsOnThem) {
-  const Hanging hanging = hang(towel("stiffness = 500\n"));
+  const Hanging hanging = hang_up(towel("stiffness = 500\n"));
   const frame::AttachmentLoad& peg = hanging.reports.back().attachments.at(0);
   EXPECT_EQ(peg.name, "peg");
   EXPECT_TRUE(peg.holds);
@@ -52,16 +52,16 @@ TEST(Attachments, BearTheWeightThatHangsOnThem) {
 }
 
 TEST(Attachments, BreakUnderTheLoadThatTheyBearAndHoldBelow) {
-  const Hanging holding = hang(towel("breaking_load = 1.0\n"));
+  const Hanging holding = hang_up(towel("breaking_load = 1.0\n"));
   EXPECT_TRUE(holding.reports.back().attachments.at(0).holds);
-  const Hanging breaking = hang(towel("breaking_load = 0.15\n"));
+  const Hanging breaking = hang_up(towel("breaking_load = 0.15\n"));
   EXPECT_FALSE(breaking.reports.back().attachments.at(0).holds);
   EXPECT_EQ(breaking.reports.back().attachments.at(0).load, 0);
   EXPECT_LT(breaking.lowest.back(), 0.65 - 0.4 * 9.81);  // a fall of a second is 4.9 m
 }
 
 TEST(Attachments, LetGoInTime) {
-  const Hanging released = hang(towel("release = 0.6\n"));
+  const Hanging released = hang_up(towel("release = 0.6\n"));
   EXPECT_NEAR(released.lowest[14], 0.65, 0.002);
   EXPECT_TRUE(released.reports[13].attachments.at(0).holds);
   EXPECT_FALSE(released.reports[15].attachments.at(0).holds);
@@ -69,7 +69,7 @@ TEST(Attachments, LetGoInTime) {
 }
 
 TEST(Attachments, BeginWhereTheClothIsThen) {
-  const Hanging begun = hang(towel("begin = 0.2\n"));
+  const Hanging begun = hang_up(towel("begin = 0.2\n"));
   EXPECT_FALSE(begun.reports[3].attachments.at(0).holds);
   EXPECT_TRUE(begun.reports[5].attachments.at(0).holds);
   const double fallen = 0.5 * 9.81 * 0.04;

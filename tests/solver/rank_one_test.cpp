@@ -18,7 +18,7 @@ void add_term(LinearSystem& system, Index begin, Index end, double stiffness, Ra
   system.rank_one_terms.push_back({begin, random.vectors(end - begin), stiffness});
 }
 
-Eigen::MatrixXd dense(const LinearSystem& system) {
+Eigen::MatrixXd dense_with_products(const LinearSystem& system) {
   Eigen::MatrixXd sum = testing::dense_with_terms(system);
   for (const RankOneTerm& term : system.rank_one_terms) {
     Eigen::VectorXd d = Eigen::VectorXd::Zero(sum.rows());
@@ -28,9 +28,9 @@ Eigen::MatrixXd dense(const LinearSystem& system) {
   return sum;
 }
 
-Eigen::VectorXd direct_solution(const LinearSystem& system, std::span<const Vec3> b) {
+Eigen::VectorXd dense_solution(const LinearSystem& system, std::span<const Vec3> b) {
   const Eigen::MatrixXd s = projection(system), identity = Eigen::MatrixXd::Identity(s.rows(), s.cols());
-  return Eigen::MatrixXd(s * dense(system) * s + (identity - s)).ldlt().solve(s * flat(b));
+  return Eigen::MatrixXd(s * dense_with_products(system) * s + (identity - s)).ldlt().solve(s * flat(b));
 }
 
 TEST(RankOneTerms, AreSolvedExactlyHoweverStiffTheyAre) {
@@ -47,7 +47,7 @@ TEST(RankOneTerms, AreSolvedExactlyHoweverStiffTheyAre) {
       ConjugateGradient cg;
       cg.prepare(system);
       EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x).converged);
-      const Eigen::VectorXd expected = direct_solution(system, b);
+      const Eigen::VectorXd expected = dense_solution(system, b);
       EXPECT_LT((flat(x) - expected).norm(), 1e-9 * expected.norm()) << stiffness;  // 1e-10 measured at 1e6
     }
 }
@@ -89,7 +89,7 @@ TEST(RankOneTerms, OfOtherPartsDoNotCountAndThoseOfOwnPartsDo) {
     if (c.particle >= system.parts[1].begin && c.particle < system.parts[1].end) held.constraints.push_back(c);
   for (Index i = 0; i < system.matrix.rows(); ++i)
     if (i < system.parts[1].begin || i >= system.parts[1].end) held.constraints.push_back({i, Mat3::Zero()});
-  const Eigen::VectorXd expected = direct_solution(held, b);
+  const Eigen::VectorXd expected = dense_solution(held, b);
   EXPECT_LT((flat(x) - expected).norm(), 1e-9 * expected.norm());
 }
 
