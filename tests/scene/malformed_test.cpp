@@ -52,7 +52,7 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:3:32: physics.keys.1.time: expected > 1 s, later than the keys before, got 1\n"},
     {"FanWithoutAPlace", kBand + "[[fan]]\nname = 'f'\ndirection = [0, 0, 0]\n",
      "s.toml:2:1: fan.f.position: expected [x, y, z], each from -100000 to 100000 m, here or in the first of its keys, "
-     "got none\ns.toml:4:13: fan.f.direction: expected a value other than zero, got [0, 0, 0]\n"},
+     "got none\ns.toml:4:13: fan.f.direction: expected at least one number that is not 0, got 0 in all\n"},
     {"AttachmentToNothing", kBand + "[[attach]]\nname = 'peg'\ncloth = 'bond'\nto = 'line'\n",
      "s.toml:4:9: attach.peg.cloth: expected the name of a cloth, got \"bond\"; did you mean band?\n"
      "s.toml:5:6: attach.peg.to: expected the name of a cloth, obstacle or character, got \"line\"\n"},
