@@ -270,7 +270,7 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
   EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
   EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
-  EXPECT_EQ(scene_.obstacles[7].line, 153) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].line, 188) << "where the scene names its file";
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 
