@@ -113,9 +113,8 @@ const std::vector<Malformed> kMalformed = {
     {"KeyOfAnotherLight", kFloor + "[[light]]\nname = 'sun'\ncone_angle = 30\n",
      "s.toml:4:1: light.sun.cone_angle: unknown key of a sun; it belongs to spot\n"},
     {"KeyWithOddCharacters", kFloor + "\"a b\\u0007\" = 3\n",
-     "s.toml:2:1: \"a b\\x07\": unknown key; known here: up, title, time, physics, solver, contact, render, obstacle, "
-     "character, "
-     "cloth, camera, light\n"},
+     "s.toml:2:1: \"a b\\x07\": unknown key; known here: up, title, time, physics, solver, contact, render, fan, "
+     "obstacle, character, cloth, attach, camera, light\n"},
     {"MissingName", "[[cloth]]\nsize = 1\n",
      "s.toml:1:1: cloth.0.name: expected a name of letters, digits, _ and -, starting with a letter, at most 64 long, "
      "got none\n"},
