@@ -235,21 +235,36 @@ void serialize(Archive& archive, frame::Light& light) {
   serialize_finite(archive, light.softness);
 }
 
-// Its frame and time are those of the snapshot.
+// Its frame and time are those of the snapshot. All members are named, so that a new one does not compile before it is
+// written too; the format then has another version.
 template <class Archive>
 void serialize(Archive& archive, frame::FrameReport& report) {
-  for (StageTime* stage : {&report.simulate, &report.collide, &report.forces, &report.preconditioner, &report.linear})
+  auto& [frame, time, simulate, collide, forces, preconditioner, linear, steps, rejected_steps, inexact_steps,
+         error_estimate, solver_error, newton_iterations, linear_iterations, proximities, constraints, min_distance,
+         max_strain, stretch_share, kinetic_energy, potential_energy, elastic_energy, air_energy, pin_work, solver_work,
+         pinched_pairs, lagging_particles, enclosed, attachments, warnings] = report;
+  for (StageTime* stage : {&simulate, &collide, &forces, &preconditioner, &linear})
     serialize_values(archive, stage->wall_s, stage->cpu_s);
-  for (double* number : {&report.error_estimate, &report.solver_error, &report.min_distance, &report.max_strain,
-                         &report.stretch_share, &report.kinetic_energy, &report.potential_energy,
-                         &report.elastic_energy, &report.pin_work, &report.solver_work})
-    archive.value(*number);
-  for (int* number : {&report.steps, &report.rejected_steps, &report.inexact_steps, &report.newton_iterations,
-                      &report.linear_iterations, &report.proximities, &report.constraints, &report.pinched_pairs,
-                      &report.lagging_particles})
-    archive.value(*number);
+  serialize_values(archive, error_estimate, solver_error, min_distance, max_strain, stretch_share, kinetic_energy,
+                   potential_energy, elastic_energy, air_energy, pin_work, solver_work, steps, rejected_steps,
+                   inexact_steps, newton_iterations, linear_iterations, proximities, constraints, pinched_pairs,
+                   lagging_particles);
   serialize_each(
-      archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); }, sizeof(std::size_t));
+      archive, enclosed,
+      [&](frame::EnclosedAir& air) {
+        serialize_plain(archive, air.cloth);
+        serialize_values(archive, air.volume, air.pressure);
+      },
+      3 * sizeof(double));
+  serialize_each(
+      archive, attachments,
+      [&](frame::AttachmentLoad& attachment) {
+        serialize_plain(archive, attachment.name);
+        serialize_values(archive, attachment.load, attachment.holds);
+      },
+      2 * sizeof(double));
+  serialize_each(
+      archive, warnings, [&](std::string& text) { serialize_plain(archive, text); }, sizeof(std::size_t));
 }
 
 // What is shared and what a frame has of its own, but for the points of its surfaces.

@@ -100,6 +100,13 @@ StepTotals total_steps(const std::vector<FrameRecord>& frames) {
 
 Json frame_json(const FrameRecord& record) {
   const simulation::FrameReport& report = record.report;
+  Json enclosed = Json::array();
+  for (const frame::EnclosedAir& air : report.enclosed)
+    enclosed.push_back(
+        {{"cloth", air.cloth}, {"volume_m3", finite(air.volume)}, {"pressure_pa", finite(air.pressure)}});
+  Json attachments = Json::array();
+  for (const frame::AttachmentLoad& one : report.attachments)
+    attachments.push_back({{"name", one.name}, {"load_n", finite(one.load)}, {"holds", one.holds}});
   return {{"frame", report.frame},
           {"time_s", report.time},
           {"written", record.written},
@@ -125,11 +132,14 @@ Json frame_json(const FrameRecord& record) {
           {"stretch_share", finite(report.stretch_share)},
           {"kinetic_energy_j", finite(report.kinetic_energy)},
           {"elastic_energy_j", finite(report.elastic_energy)},
+          {"air_energy_j", finite(report.air_energy)},
           {"potential_energy_j", finite(report.potential_energy)},
           {"pin_work_j", finite(report.pin_work)},
           {"solver_work_j", finite(report.solver_work)},
           {"pinched_pairs", report.pinched_pairs},
-          {"lagging_particles", report.lagging_particles}};
+          {"lagging_particles", report.lagging_particles},
+          {"enclosed_air", std::move(enclosed)},
+          {"attachments", std::move(attachments)}};
 }
 
 Json stats_json(const RunReport& report) {

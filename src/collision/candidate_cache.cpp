@@ -56,10 +56,9 @@ CandidatePairs& CandidateCache::collect(std::span<const Vec3> x_t0, std::span<co
   for (std::size_t i = 0; i < x_t0.size(); ++i)
     if (!is_clear(bodies_.body_of(static_cast<Index>(i))))
       way = std::max(way, (high_t1[i] - x_t0[i]).cwiseMax(x_t0[i] - low_t1[i]).maxCoeff());
-  const double margin =
-      (0.5 + (parameters_.reuse && way < numerics.contact.candidate_margin * reach_ ? numerics.contact.candidate_margin
-                                                                                    : 0.0)) *
-      reach_;
+  // Pairs of slow steps are listed for several of them.
+  const double verlet_margin = 2 * numerics.contact.margin * reach_;
+  const double margin = 0.5 * reach_ + (parameters_.reuse && way < verlet_margin ? verlet_margin : 0.0);
   refit(motion, margin);
   pairs_.clear();
   for (const auto& [a, b] : wanted_) a == b ? broad_phase_.self_pairs(a, pairs_) : broad_phase_.pairs(a, b, pairs_);

@@ -38,9 +38,8 @@ double stiffness_share(const Proximity& proximity) {
   const auto& outside = proximity.outside_wedge;
   double least = 1;
   for (double weight : proximity.weights) least = std::min(least, std::abs(weight));
-  return ramp(numerics.contact.flat_fold, numerics.contact.sharp_fold, -outside[0] - outside[1]) *
-         ramp(-numerics.contact.wedge_fade, 0, -std::max(outside[0], outside[1])) *
-         ramp(0, numerics.contact.end_fade, least);
+  return ramp(numerics.contact.flat_fold, 2 * numerics.contact.fade, -outside[0] - outside[1]) *
+         ramp(-numerics.contact.fade, 0, -std::max(outside[0], outside[1])) * ramp(0, numerics.contact.fade, least);
 }
 
 // Friction of a pair: the geometric mean of both coefficients, or what the pair has of its own.

@@ -34,9 +34,8 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
   const double reach = candidates_.reach();
   if (parameters.search.coherence)
-    coherence_.emplace(
-        bodies_.surfaces(), candidates_.wanted(), x,
-        CoherenceParameters{reach, numerics.contact.coherence_margin * reach, numerics.contact.flat_fold});
+    coherence_.emplace(bodies_.surfaces(), candidates_.wanted(), x,
+                       CoherenceParameters{reach, 0.5 * numerics.contact.margin * reach, numerics.contact.flat_fold});
 }
 
 void Engine::forget() {
@@ -74,7 +73,7 @@ void Engine::collect_by(std::span<const Vec3> x_t0, const Collect& list_pairs) {
 // Features that may come within the reach not far from x. Of the pairs only those whose separating planes leave them
 // near can have some.
 void Engine::gather(std::span<const Vec3> x) {
-  const double skin = numerics.contact.feature_margin * candidates_.reach();
+  const double skin = numerics.contact.margin * candidates_.reach();
   const auto is_near = [&] {
     for (std::size_t v = 0; v < x.size(); ++v)
       if (!((x[v] - gathered_at_[v]).squaredNorm() <= skin * skin) && !candidates_.is_kept_clear(v, x[v])) return false;

@@ -27,8 +27,6 @@ struct Numerics {
     double factor_weight = 16;
     /// First shift of an indefinite factorisation, relative to the diagonal. 0.1: a third more iterations.
     double factor_shift = 1e-3;
-    /// Goal, relative to the solution, from which the incomplete factor is made at once.
-    double tight_goal = 1e-3;
     /// The last iterations, at least, and as a fraction of all, whose gain estimates the error. Fewer: solves end on a
     /// plateau.
     int least_delay = 3;
@@ -60,9 +58,9 @@ struct Numerics {
     int clamped_iterations = 2;
     /// Iterations after which the trajectory is checked for contacts that only the solve reveals.
     int check_after = 4;
-    /// Iterations after which all blocks are solved together: those that press on each other may chase each other.
-    int solve_together_after = 10;
-    /// Iterations after which an invisible velocity, and half of Euler's velocity error, may be left.
+    /// Linearisations of a step in which friction follows the normal forces, and after which an invisible velocity, and
+    /// half of Euler's velocity error, may be left; after half as many all blocks are solved together. More: friction
+    /// and normal forces, and cloths that press on each other, chase each other.
     int patience = 20;
     double velocity_ratio = 0.5;
     /// How long a wrong velocity counts [s]: half of this, the time of a swing of 1 m, and in steps. Shorter: the
@@ -106,32 +104,27 @@ struct Numerics {
   struct Contact {
     /// Detection distance, relative to the largest activation distance. Smaller: contacts show late in a step.
     double detection = 1.5;
-    /// Verlet margins, in detection distances: of candidate pairs in slow steps, of near features, of kept closest
-    /// points
-    /// (`search.coherence`). Larger: longer lists; smaller: more searches.
-    double candidate_margin = 0.5;
-    double feature_margin = 0.25;
-    double coherence_margin = 0.125;
+    /// Verlet margin of near features, in detection distances; of candidate pairs in slow steps twice, of kept closest
+    /// points (`search.coherence`) half of it. Larger: longer lists; smaller: more searches.
+    double margin = 0.25;
     /// Contact thickness, in particle spacings, at most. Larger: a sheared sheet pushes against itself.
     double thickness_of_spacing = 0.25;
     /// Stiffness in m/h² (particle mass, `time.step`): what arrives stops within a hundredth of its step's trajectory.
     double inertial_stiffness = 100;
     /// Stiffening as the gap closes, k d (1 + stiffening (d/r)⁴). 10: tips press through; 1000: more iterations.
     double stiffening = 100;
-    /// Folds of two edges, as a sum of sines of half the angles, without contact and with all of it; sine outside of a
-    /// wedge, and part of an edge at its ends, over which an edge pair fades out. 0: contacts switch on and off.
+    /// Fold of two edges, as a sum of sines of half the angles, below which they have no contact. Larger: creases that
+    /// cross are kept apart by planes alone.
     double flat_fold = 0.05;
-    double sharp_fold = 0.2;
-    double wedge_fade = 0.1;
-    double end_fade = 0.1;
+    /// An edge pair fades out over twice this fold, over this sine outside of its wedge, and over this part of an edge
+    /// at its ends. 0: contacts switch on and off.
+    double fade = 0.1;
     /// Slip velocity below which friction sticks [m/s], and in particle spacings per second if that is more. Larger:
     /// cloth creeps down slopes; smaller: a stiffer system.
     double stick_velocity = 2e-4;
     double stick_spacings = 0.002;
     /// Slip velocity, in stick velocities, from which friction is no longer static.
     double slide_velocity = 5;
-    /// Linearisations of a step in which friction follows the normal forces. More: both chase each other.
-    int force_updates = 20;
     /// Times in a step that a contact which slides back sticks again.
     int returns = 2;
     /// Stiffness of a contact with a moving obstacle for each time that its cloth was pushed apart, and how often.
@@ -150,10 +143,8 @@ struct Numerics {
     double restored_gap = 2e-4;
     /// Halvings of a trajectory in which planes are searched. 0: a tenth more iterations.
     int halvings = 3;
-    /// Rounds of pushing; of backtracking by halves until round; of backtracking alone until all goes back.
-    int push_rounds = 24;
-    int half_rounds = 36;
-    int rounds = 60;
+    /// Rounds of pushing apart; then half as many of backtracking by halves. Fewer: tight cloth is stretched.
+    int rounds = 24;
     /// Distance between an obstacle's arc and its chord, in detection distances, above which a step is halved.
     double sagitta = 0.25;
     /// Motion of an obstacle in a step, in detection distances, below which shorter steps find no more space.
@@ -164,10 +155,6 @@ struct Numerics {
   struct Walls {
     /// Part of a missing distance that a step restores (Eq. 4).
     double correction = 0.2;
-    /// Violation that is worth another solve [m].
-    double passed = 2e-5;
-    /// Displacement that tells whether a wall holds [m].
-    double nudge = 1e-4;
     /// Sine of an angle between walls below which they are one.
     double same_direction = 0.05;
     /// Changes between sticking and sliding within one step; solves of a step; walls of a particle.
@@ -203,8 +190,7 @@ struct Numerics {
 
   /// Pins that obstacles keep from their place (src/simulation/yielding_pins.cpp).
   struct Pins {
-    /// Distance [m], or part of the way of its place, at which a particle is held again.
-    double arrived = 1e-4;
+    /// Part of the way of its place in a step at which a particle is held again.
     double arrived_fraction = 0.5;
     /// Velocity of its return [m/s], the least that forces are divided by [m/s], and its duration in steps.
     double return_velocity = 1;
@@ -218,13 +204,11 @@ struct Numerics {
 
   /// Energy without a source (src/simulation/energy_bound.cpp), relative to the energy in play.
   struct Energy {
-    /// Gain from which a run fails, and is warned of.
+    /// Gain from which a run fails, and work of the residual that is warned of; and gain that is warned of.
     double failing_gain = 0.3;
     double doubtful_gain = 0.1;
     /// Energy that is no error [J/kg]: lifts cloth by 1 cm.
     double negligible = 0.1;
-    /// Work of the residual that is warned of.
-    double residual_work = 0.3;
   } energy;
 };
 

@@ -228,11 +228,10 @@ std::string nearest_row(const scene::ClothPart& part, const ClothObject& object)
 
 }  // namespace
 
-void choose_particles(const scene::Cloth& cloth, const assets::LoadedMesh& file, const std::string& where,
-                      ClothObject& object) {
+void choose_particles(const scene::Scene& scene, const scene::Cloth& cloth, const assets::LoadedMesh& file,
+                      const std::string& where, ClothObject& object) {
   const Chooser choose(cloth, file, object);
-  const auto part_of = [&](const scene::ClothPart& part, const char* kind, std::size_t number, double least) {
-    const std::string key = fmt::format("{}.{}.{}", where, kind, number);
+  const auto part_at = [&](const scene::ClothPart& part, const std::string& key, double least) {
     std::vector<Chosen> chosen = choose.part(part, key);
     std::erase_if(chosen, [&](const Chosen& one) { return one.share < least; });
     if (chosen.empty())
@@ -241,6 +240,9 @@ void choose_particles(const scene::Cloth& cloth, const assets::LoadedMesh& file,
                   nearest_row(part, object));
     return chosen;
   };
+  const auto part_of = [&](const scene::ClothPart& part, const char* kind, std::size_t number, double least) {
+    return part_at(part, fmt::format("{}.{}.{}", where, kind, number), least);
+  };
   for (std::size_t p = 0; p < cloth.pins.size(); ++p) {
     const scene::Pin& pin = cloth.pins[p];
     std::vector<Chosen>& chosen = object.pins.emplace_back(part_of(pin, "pin", p, pin.strength ? kLeastShare : kHeld));
@@ -248,6 +250,10 @@ void choose_particles(const scene::Cloth& cloth, const assets::LoadedMesh& file,
   }
   for (std::size_t w = 0; w < cloth.weights.size(); ++w)
     object.weights.push_back(part_of(cloth.weights[w], "weight", w, kLeastShare));
+  for (const scene::Attachment& attachment : scene.attachments)
+    if (attachment.cloth == cloth.name)
+      object.attachments.push_back(
+          part_at(attachment, fmt::format("{}: attach.{}", scene.file.string(), attachment.name), kLeastShare));
 }
 
 }  // namespace weft::environment

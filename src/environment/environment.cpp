@@ -316,7 +316,7 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wea
       use_pattern(scene, cloth, where, wearers, object);
       break;
   }
-  choose_particles(cloth, file, where, object);
+  choose_particles(scene, cloth, file, where, object);
   if (meets_obstacles(scene) && scene::rectangle_particles(cloth) == 0) check_triangles(object.sheet, where);
   for (Vec3& x : object.mesh.positions) x = cloth.pose.position + cloth.pose.rotation * x;
   object.start = start_positions(cloth, object.mesh);

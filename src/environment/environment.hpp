@@ -44,6 +44,7 @@ struct ClothObject {
   /// two halves of a square.
   double spacing = 0;
   std::vector<std::vector<Chosen>> pins, weights;  ///< particles of each of the scene; of a pin its part comes first
+  std::vector<std::vector<Chosen>> attachments;    ///< likewise, of those in scene.attachments that name this cloth
   std::vector<Vec3> start;                         ///< positions of the particles [m]
   Vec3 velocity{0, 0, 0};                          ///< of all of them [m/s]
   double put_on = 0;      ///< time after the start of the simulation, its preroll included, at which it comes [s]

@@ -9,6 +9,20 @@
 
 namespace weft::frame {
 
+/// Air that a cloth encloses.
+struct EnclosedAir {
+  std::string cloth;
+  double volume = 0;    ///< [m³]
+  double pressure = 0;  ///< above that outside [Pa]
+};
+
+/// What an attachment bears.
+struct AttachmentLoad {
+  std::string name;
+  double load = 0;  ///< sum of the forces of its springs, at the end of the frame [N]
+  bool holds = false;
+};
+
 /// What the computation of one frame took and found.
 struct FrameReport {
   int frame = 0;
@@ -30,12 +44,15 @@ struct FrameReport {
   double max_strain = 0;      ///< largest |length / rest length - 1| of a weft or warp edge, of all its steps
   double stretch_share = 0;   ///< largest extension as a share of material.max_stretch, of all its steps
   double kinetic_energy = 0;  ///< [J]
-  double potential_energy = 0;  ///< of gravity, zero at the origin [J]
-  double elastic_energy = 0;    ///< stretch, shear and bending [J]
-  double pin_work = 0;          ///< that pins have done on the cloth since the frame before [J]
-  double solver_work = 0;       ///< likewise, by what the solver has left of the equation of motion [J]
-  int pinched_pairs = 0;        ///< most triangles of cloth at once that have no room and are in an obstacle
-  int lagging_particles = 0;    ///< most at once that something kept from where a pin was to hold them
+  double potential_energy = 0;        ///< of gravity, zero at the origin [J]
+  double elastic_energy = 0;          ///< stretch, shear and bending [J]
+  double air_energy = 0;              ///< of the air that cloths enclose [J]
+  double pin_work = 0;                ///< that pins have done on the cloth since the frame before [J]
+  double solver_work = 0;             ///< likewise, by what the solver has left of the equation of motion [J]
+  int pinched_pairs = 0;              ///< most triangles of cloth at once that have no room and are in an obstacle
+  int lagging_particles = 0;          ///< most at once that something kept from where a pin was to hold them
+  std::vector<EnclosedAir> enclosed;  ///< of each cloth with pressure
+  std::vector<AttachmentLoad> attachments;  ///< of each in the scene
   /// Of what begins or ends: "frame 37: 'sheet' has no room between ..., near (x, y, z) m".
   std::vector<std::string> warnings;
 };

@@ -179,7 +179,7 @@ bool Stepper::is_solved(int iterations, double h) const {
   if (parameters_.position_tolerance > 0) most = std::min(most, parameters_.position_tolerance / carried_on(h));
   return std::ranges::all_of(parts_, [&](const PartState& part) {
     return part.left <= std::max(part.allowed, most) &&
-           (part.slides <= part.may_slide || iterations >= numerics.newton.solve_together_after);
+           (part.slides <= part.may_slide || iterations >= numerics.newton.patience / 2);
   });
 }
 
@@ -187,7 +187,7 @@ bool Stepper::is_solved(int iterations, double h) const {
 void Stepper::select_unsolved(int iterations) {
   unsolved_.clear();
   for (std::size_t p = 0; p < parts_.size(); ++p)
-    if (iterations >= numerics.newton.solve_together_after || parts_[p].excess() > numerics.newton.linear_fraction)
+    if (iterations >= numerics.newton.patience / 2 || parts_[p].excess() > numerics.newton.linear_fraction)
       unsolved_.push_back(p);
 }
 

@@ -62,6 +62,8 @@ const Object& Frame::object(std::string_view name) const {
 namespace weft::library {
 
 Report report_of(const frame::FrameReport& report) {
+  std::vector<EnclosedAir> enclosed;
+  for (const frame::EnclosedAir& air : report.enclosed) enclosed.push_back({air.cloth, air.volume, air.pressure});
   return {.wall_s = report.simulate.wall_s,
           .cpu_s = report.simulate.cpu_s,
           .steps = report.steps,
@@ -76,11 +78,13 @@ Report report_of(const frame::FrameReport& report) {
           .kinetic_energy = report.kinetic_energy,
           .potential_energy = report.potential_energy,
           .elastic_energy = report.elastic_energy,
+          .air_energy = report.air_energy,
           .pin_work = report.pin_work,
           .error_estimate = report.error_estimate,
           .solver_error = report.solver_error,
           .pinched_pairs = report.pinched_pairs,
           .lagging_particles = report.lagging_particles,
+          .enclosed_air = std::move(enclosed),
           .warnings = report.warnings};
 }
 

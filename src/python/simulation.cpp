@@ -153,6 +153,10 @@ void bind_scene(py::module_& module) {
 }
 
 void bind_frame(py::module_& module) {
+  py::class_<EnclosedAir>(module, "EnclosedAir", "Air that a cloth encloses; SI units.")
+      .def_readonly("cloth", &EnclosedAir::cloth)
+      .def_readonly("volume", &EnclosedAir::volume)
+      .def_readonly("pressure", &EnclosedAir::pressure);
   py::class_<Report>(module, "Report", "What the computation of a frame took and found; SI units.")
       .def_readonly("wall_s", &Report::wall_s)
       .def_readonly("cpu_s", &Report::cpu_s)
@@ -168,11 +172,13 @@ void bind_frame(py::module_& module) {
       .def_readonly("kinetic_energy", &Report::kinetic_energy)
       .def_readonly("potential_energy", &Report::potential_energy)
       .def_readonly("elastic_energy", &Report::elastic_energy)
+      .def_readonly("air_energy", &Report::air_energy)
       .def_readonly("pin_work", &Report::pin_work)
       .def_readonly("error_estimate", &Report::error_estimate)
       .def_readonly("solver_error", &Report::solver_error)
       .def_readonly("pinched_pairs", &Report::pinched_pairs)
       .def_readonly("lagging_particles", &Report::lagging_particles)
+      .def_readonly("enclosed_air", &Report::enclosed_air)
       .def_readonly("warnings", &Report::warnings);
   py::class_<FrameObject>(module, "Object",
                           "A cloth or body in one frame. Arrays are views that cannot be written to; they stay valid.")

@@ -176,6 +176,24 @@ void check_friction_pairs(const Scene& scene, Findings& findings) {
   }
 }
 
+void check_attachments(const Scene& scene, Findings& findings) {
+  const std::vector<std::string> cloths = names_of(scene.cloths), all = names_of_all(scene);
+  for (std::size_t i = 0; i < scene.attachments.size(); ++i) {
+    const Attachment& attachment = scene.attachments[i];
+    const std::string& path = findings.entry("attach", i);
+    check_reference(attachment.cloth, cloths, "a cloth", path + ".cloth", findings);
+    check_reference(attachment.to, all, "a cloth, obstacle or character", path + ".to", findings);
+    if (attachment.cloth == attachment.to && !attachment.to.empty())
+      findings.report(path + ".to",
+                      fmt::format("expected another object than the cloth itself, got {}", in_quotes(attachment.to)));
+    if (attachment.release >= 0 && attachment.release <= attachment.begin)
+      findings.report(path + ".release",
+                      fmt::format("expected > {} s, when it begins, got {}", attachment.begin, attachment.release));
+    for (const Cloth& cloth : scene.cloths)
+      if (cloth.name == attachment.cloth) check_part(cloth, attachment, path, findings);
+  }
+}
+
 /// What a cloth is worn over: cloths of the scene, and not around in a circle.
 void check_layers(const Scene& scene, Findings& findings) {
   const std::vector<std::string> names = names_of(scene.cloths);
@@ -218,6 +236,7 @@ void check_cloths(const Scene& scene, Findings& findings) {
     if (cloth.rest == ClothRest::mesh && cloth.uv_scale)
       findings.report(path + ".uv_scale", "expected none beside rest = \"mesh\", got one");
     check_look(cloth, path, findings);
+    check_times(cloth.pressure.keys, path + ".pressure", findings);
     for (std::size_t p = 0; p < cloth.pins.size(); ++p) {
       check_pin(scene, cloth, cloth.pins[p], findings.entry(path + ".pin", p), findings);
     }
@@ -317,8 +336,12 @@ void check(const Scene& scene, Findings& findings) {
     findings.report("time.duration",
                     fmt::format("expected at most {} frames (duration * fps), got {:.0f}", kMaxFrames, frames));
   }
+  check_times(scene.physics.keys, "physics", findings);
+  for (std::size_t i = 0; i < scene.fans.size(); ++i)
+    check_times(scene.fans[i].keys, findings.entry("fan", i), findings);
   check_cloths(scene, findings);
   check_layers(scene, findings);
+  check_attachments(scene, findings);
   check_friction_pairs(scene, findings);
   check_obstacles(scene, findings);
   check_characters(scene, findings);

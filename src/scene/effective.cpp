@@ -52,6 +52,7 @@ class Writer {
     for_rules(table, target, [&](const Rule& rule) {
       const std::string inner = path.empty() ? rule.key : path + "." + rule.key;
       if (rule.type == Type::table) {
+        if (rule.count && rule.count(target) == 0) return;
         text += fmt::format("\n[{}]\n", inner);
         write(*rule.table, rule.inner(target), inner);
       } else if (rule.type == Type::list) {

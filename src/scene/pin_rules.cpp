@@ -94,4 +94,30 @@ const Table& weight_rules() {
   return kTable;
 }
 
+const Table& attachment_rules() {
+  static const Table kTable =
+      TableBuilder<Attachment>("Part of a cloth that springs tie to another cloth or to a body: a button, peg or tack.")
+          .plain(Type::name, "name", &Attachment::name, "unlike that of any other attachment")
+          .need(Need::required)
+          .plain(Type::text, "cloth", &Attachment::cloth, "cloth of which the part is")
+          .need(Need::required)
+          .plain(Type::text, "to", &Attachment::to,
+                 "cloth, obstacle or character to whose nearest places its particles are tied when it begins")
+          .need(Need::required)
+          .with(part_rows<Attachment>)
+          .number("stiffness", &Attachment::stiffness, above(0, 1e9), "N/m",
+                  "of the spring of each particle, times its share")
+          .number("length", &Attachment::length, within(0, 1e4), "m", "up to which a spring is slack")
+          .by_default("as far apart as its ends are when it begins")
+          .number("begin", &Attachment::begin, kMoment, "s", "time at which it is tied")
+          .by_default("the start of the simulation")
+          .written_if([](Attachment& attachment) { return attachment.begin > kMoment.low; })
+          .number("release", &Attachment::release, within(-1, 1e5), "s", "time at which it is let go; negative: never")
+          .number("breaking_load", &Attachment::breaking_load, above(0, 1e9), "N",
+                  "force of all its springs together above which it breaks")
+          .by_default("none: it never breaks")
+          .build();
+  return kTable;
+}
+
 }  // namespace weft::scene

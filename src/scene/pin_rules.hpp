@@ -7,5 +7,6 @@ namespace weft::scene {
 
 const Table& pin_rules();
 const Table& weight_rules();
+const Table& attachment_rules();
 
 }  // namespace weft::scene

@@ -72,7 +72,7 @@ struct Rule {
 
   const Table* table = nullptr;                     ///< of a table, list or keys: the rules of an entry
   std::function<void*(void*)> inner;                ///< table: its struct
-  std::function<std::size_t(void*)> count;          ///< list, keys: number of entries to write
+  std::function<std::size_t(void*)> count;          ///< list, keys: number of entries to write; table: 0 to write none
   std::function<void*(void*, std::size_t)> entry;   ///< list, keys: an entry
   std::function<void*(void*, std::size_t)> append;  ///< list, keys: makes entry i, filled with its defaults
 };

@@ -8,7 +8,9 @@
 #include "scene/common_rules.hpp"
 #include "scene/contact_rules.hpp"
 #include "scene/material_rules.hpp"
+#include "scene/physics_rules.hpp"
 #include "scene/pin_rules.hpp"
+#include "scene/pressure_rules.hpp"
 #include "scene/rule.hpp"
 #include "scene/table_builder.hpp"
 #include "scene/view_rules.hpp"
@@ -44,29 +46,6 @@ const Table& time_rules() {
                   "method of time integration; the midpoint rule damps nothing, so that steps in which something is "
                   "near are "
                   "those of bdf2")
-          .build();
-  return kTable;
-}
-
-const Table& gust_rules() {
-  static const Table kTable =
-      TableBuilder<Gusts>("Turbulence of the air: eddies that the wind carries along, the same in every run.")
-          .number("speed", &Gusts::speed, within(0, 1000), "m/s",
-                  "root mean square of each component beside the wind; 0 for none")
-          .number("size", &Gusts::size, above(0, 1e5), "m", "of the eddies that carry most (integral length)")
-          .whole_number("seed", &Gusts::seed, within(0, 1e9), "another one gives other gusts")
-          .build();
-  return kTable;
-}
-
-const Table& physics_rules() {
-  static const Table kTable =
-      TableBuilder<Physics>("The world around the cloth.")
-          .vector("gravity", &Physics::gravity, kXyz, within(-1e5, 1e5), "m/s²", "acceleration of free fall")
-          .by_default("9.81 m/s² against the up axis")
-          .number("air_density", &Physics::air_density, within(0, 1000), "kg/m³", "0 leaves the air out")
-          .vector("wind", &Physics::wind, kXyz, within(-1000, 1000), "m/s", "velocity of the air")
-          .table("gusts", &Physics::gusts, gust_rules())
           .build();
   return kTable;
 }
@@ -237,6 +216,9 @@ const Table& cloth_rules() {
                 "the mesh or pattern");
           })
           .vector("velocity", &Cloth::velocity, kXyz, within(-1e4, 1e4), "m/s", "at the start")
+          .vector("spin", &Cloth::spin, kXyz, within(-36000, 36000), "degrees/s",
+                  "at the start, about its centre of mass: a vector along the axis")
+          .written_if([](Cloth& cloth) { return cloth.spin != Vec3::Zero(); })
           .choice("start", &Cloth::start, {"as_given", "untangle"},
                   "where it touches or crosses itself, other cloth or an obstacle, which a run cannot begin with: "
                   "refused as it is given, or taken apart before the first step")
@@ -250,6 +232,8 @@ const Table& cloth_rules() {
           .number("start_noise", &Cloth::start_noise, within(0, 1000), "m",
                   "most that a particle is off its place at the start, along each axis; the same in every run")
           .table("material", &Cloth::material, material_rules())
+          .table("pressure", &Cloth::pressure, pressure_rules())
+          .written_if([](Cloth& cloth) { return cloth.pressure.acts(); })
           .table("look", &Cloth::look, cloth_look_rules())
           .not_simulated()
           .list(Type::list, "pin", &Cloth::pins, pin_rules())
@@ -373,9 +357,11 @@ const Table& scene_rules() {
                                   .table("solver", &Scene::solver, solver_rules())
                                   .table("contact", &Scene::contact, contact_rules())
                                   .table("render", &Scene::render, render_rules())
+                                  .list(Type::list, "fan", &Scene::fans, fan_rules())
                                   .list(Type::list, "obstacle", &Scene::obstacles, obstacle_rules())
                                   .list(Type::list, "character", &Scene::characters, character_rules())
                                   .list(Type::list, "cloth", &Scene::cloths, cloth_rules(), append_cloth)
+                                  .list(Type::list, "attach", &Scene::attachments, attachment_rules())
                                   .list(Type::list, "camera", &Scene::cameras, camera_rules(), append_camera)
                                   .not_simulated()
                                   .list(Type::list, "light", &Scene::lights, light_rules(), append_light)

@@ -12,6 +12,9 @@
 
 #include "core/threads.hpp"
 #include "core/types.hpp"
+#include "scene/keyed.hpp"
+#include "scene/physics.hpp"
+#include "scene/pressure.hpp"
 
 namespace weft::scene {
 
@@ -24,7 +27,6 @@ inline const std::string& name_of(Integrator integrator) {
   return kIntegratorNames[static_cast<std::size_t>(integrator)];
 }
 
-enum class Interpolation { linear, cubic };
 enum class HeatQuantity { none, strain, speed };
 enum class Response { springs, velocity_constraints };
 
@@ -36,20 +38,6 @@ struct Time {
   std::optional<double> tolerance =
       std::nullopt;  ///< instead of `step`: local error of the positions of a cloth in one step [m]
   Integrator integrator = Integrator::implicit_euler;
-};
-
-/// Turbulence of the air, beside its mean velocity.
-struct Gusts {
-  double speed = 0;  ///< root mean square of each component [m/s]; 0: none
-  double size = 1;   ///< of the eddies that carry most: integral length [m]
-  int seed = 0;      ///< another one gives other gusts
-};
-
-struct Physics {
-  Vec3 gravity{0, 0, -9.81};  ///< [m/s²]; the default follows the up axis
-  double air_density = 1.2;   ///< [kg/m³]; 0 leaves the air out
-  Vec3 wind{0, 0, 0};         ///< velocity of the air [m/s]
-  Gusts gusts;
 };
 
 struct Solver {
@@ -224,6 +212,15 @@ struct Weight : ClothPart {
   double mass = 0.1;  ///< [kg]
 };
 
+/// Springs from particles of a cloth to the nearest places of another cloth or of a body: buttons, pegs, tacks.
+struct Attachment : ClothPart {
+  std::string name, cloth, to;
+  double stiffness = 10000;             ///< of the spring of each particle, times its share [N/m]
+  std::optional<double> length;         ///< up to which it is slack [m]; none: as far apart as when it begins
+  double begin = -1e5, release = -1;    ///< [s]; release negative: never
+  std::optional<double> breaking_load;  ///< of all its springs together, above which it is gone [N]; none: never
+};
+
 enum class ClothStart { as_given, untangle };
 enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern };
 enum class ClothRest { automatic, mesh, uv };
@@ -248,11 +245,13 @@ struct Cloth {
   int line = 0, column = 0;               ///< where the scene names it, for errors of its file
   Pose pose;               ///< of the middle of the sheet, which lies in its x-y plane, weft along x, warp along y
   Vec3 velocity{0, 0, 0};  ///< at the start [m/s]
+  Vec3 spin{0, 0, 0};      ///< at the start, about its centre of mass: along the axis [degrees/s]
   Vec2 start_scale{1, 1};  ///< lengths along weft and warp at the start, times those at rest
   ClothStart start = ClothStart::as_given;  ///< where it touches or crosses something
   std::vector<std::string> over;            ///< cloths that are put on before it, and stay inside of it
   double start_noise = 0;                   ///< most that a particle is off its place at the start, along each axis [m]
   Material material;
+  Pressure pressure;
   Look look;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
@@ -482,9 +481,11 @@ struct Scene {
   UpAxis up = UpAxis::z;
   Time time;
   Physics physics;
+  std::vector<Fan> fans;
   Solver solver;
   Contact contact;
   std::vector<Cloth> cloths;
+  std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
   std::vector<Character> characters;
   std::vector<Camera> cameras;

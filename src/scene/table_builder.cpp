@@ -134,7 +134,9 @@ void RowBuilder::add_variant(std::string_view name, const RowBuilder& rows) {
 
 void RowBuilder::write_if(Flag when) {
   Rule& rule = last();
-  if (rule.count) {
+  if (rule.type == Type::table) {
+    rule.count = [when = std::move(when)](void* s) { return std::size_t{when(s)}; };
+  } else if (rule.count) {
     rule.count = [when = std::move(when), count = rule.count](void* s) { return when(s) ? count(s) : 0; };
   } else {
     rule.get = [when = std::move(when), get = rule.get](void* s) { return when(s) ? get(s) : Value{}; };

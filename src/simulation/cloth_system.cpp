@@ -99,11 +99,6 @@ double ease(double s) {
 
 }  // namespace
 
-bool blows_in_gusts(const scene::Scene& scene) {
-  const auto is_blown = [&](const scene::Cloth& cloth) { return meets_air(cloth.material, scene.physics); };
-  return scene.physics.gusts.speed > 0 && std::ranges::any_of(scene.cloths, is_blown);
-}
-
 bool bends(const scene::Material& material) {
   return material.bend > 0;
 }
@@ -141,6 +136,7 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     first += static_cast<Index>(masses.size());
   }
   first_.push_back(first);
+  inflation_ = Inflation(scene, environment, first_);
   cut_groups(environment);
 
   const solver::Assembly assembly(lay_out_matrix());
@@ -282,6 +278,14 @@ void ClothSystem::sew(double t) {
   }
 }
 
+void ClothSystem::inflate(double t, std::span<const Vec3> x) {
+  if (inflation_.empty()) return;
+  inflation_.begin_step(begin_ + t, x, [&](std::size_t cloth) {
+    return std::ranges::none_of(sewing_,
+                                [&](const Sewing& sewing) { return sewing.cloth == cloth && sewing.share < 1; });
+  });
+}
+
 bool ClothSystem::hold(std::span<const integrator::HeldParticle> pinned) {
   std::vector<char> held(held_.size());
   for (const integrator::HeldParticle& particle : pinned) held[particle.constraint.particle] = 1;
@@ -302,6 +306,7 @@ void ClothSystem::serialize(Archive& archive) {
     sewing.use_share(sewing.share);
     if (sewing.ties != nullptr) sewing.ties->use(begin_ + sewing.time, sewing.share);
   }
+  inflation_.serialize(archive);
 }
 
 template void ClothSystem::serialize(ByteWriter&);

@@ -13,6 +13,7 @@
 #include "forces/triangle_membrane.hpp"
 #include "integrator/system.hpp"
 #include "scene/scene.hpp"
+#include "simulation/inflation.hpp"
 #include "solver/linear_system.hpp"
 
 namespace weft::forces {
@@ -25,9 +26,6 @@ namespace weft::simulation {
 /// Whether cloth of this material has bending at all. Without rigidity there is nothing that the viscosity and the
 /// friction of a fabric could damp.
 bool bends(const scene::Material& material);
-
-/// Whether the air acts on any cloth of the scene, and has gusts.
-bool blows_in_gusts(const scene::Scene& scene);
 
 /// Whether the threads of this material lock.
 bool locks(const scene::Material& material);
@@ -45,6 +43,8 @@ class ClothSystem {
   /// Least distance between neighbouring particles of all cloths [m].
   double spacing() const { return spacing_; }
 
+  /// In the steps from here on [m/s²].
+  void use_gravity(const Vec3& gravity) { gravity_ = gravity; }
   /// Takes the weight off what is being sewn: it would fall before it fits.
   void take_weight_off(std::span<Vec3> force) const;
 
@@ -75,14 +75,21 @@ class ClothSystem {
   /// Gives cloths that are being sewn the rest shape that they have at time t of the simulation [s].
   void sew(double t);
 
+  /// Air that cloths enclose, in the step that ends at time t of the simulation [s]; after sew(t). `x`: its start [m].
+  void inflate(double t, std::span<const Vec3> x);
+  const Inflation& inflation() const { return inflation_; }
+  Inflation& inflation() { return inflation_; }
+
   /// Which particles pins hold from now on; whether that is a change, and with it the stiffness at the borders of pins.
   bool hold(std::span<const integrator::HeldParticle> pinned);
 
-  /// What lasts from frame to frame: how far cloths are sewn.
+  /// What lasts from frame to frame: how far cloths are sewn, and what air they enclose.
   template <class Archive>
   void serialize(Archive& archive);
 
   double elastic_energy(std::span<const Vec3> x) const;
+  /// Of the air that cloths enclose [J].
+  double air_energy(std::span<const Vec3> x) const { return inflation_.energy(x); }
   double kinetic_energy(std::span<const Vec3> v) const;
   /// Of gravity, zero at the origin [J].
   double potential_energy(std::span<const Vec3> x, const Vec3& gravity) const;
@@ -128,6 +135,7 @@ class ClothSystem {
     void use_share(double new_share);
   };
   std::vector<Sewing> sewing_;
+  Inflation inflation_;
   std::vector<char> held_;  // per particle: by a pin
   Vec3 gravity_;
   double begin_;  // of the run, in the time of the scene [s]

@@ -6,6 +6,7 @@
 
 #include "environment/acting.hpp"
 #include "environment/environment.hpp"
+#include "environment/weather.hpp"
 #include "scene/layers.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
@@ -58,9 +59,27 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
   items.push_back(of_cloths(
       "force: air", scene, [&](const Cloth& c) { return scene.physics.air_density > 0 && c.material.drag > 0; },
       "air_density or drag is zero"));
-  items.push_back(when("force: gusts", blows_in_gusts(scene),
+  items.push_back(when("force: gusts", environment::blows_in_gusts(scene),
                        fmt::format("{:g} m/s, eddies of {:g} m", scene.physics.gusts.speed, scene.physics.gusts.size),
                        "physics.gusts.speed, air_density or drag is zero"));
+}
+
+// Parts that only scenes which name them list.
+void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
+  const auto counted = [](std::size_t count, const char* what) {
+    return fmt::format("{} {}{}", count, what, count == 1 ? "" : "s");
+  };
+  if (const auto count = std::ranges::count_if(scene.cloths, [](const Cloth& c) { return c.pressure.acts(); }))
+    items.push_back({"force: pressure of enclosed air", true,
+                     fmt::format("{} of {}", count, counted(scene.cloths.size(), "cloth"))});
+  if (!scene.attachments.empty())
+    items.push_back({"force: attachments", true, counted(scene.attachments.size(), "attachment")});
+  if (!scene.physics.keys.empty())
+    items.push_back({"force: keyed gravity and wind", true, counted(scene.physics.keys.size(), "key")});
+  if (!scene.fans.empty()) {
+    const bool acts = environment::air_acts(scene);
+    items.push_back({"force: fans", acts, acts ? counted(scene.fans.size(), "fan") : "air_density or drag is zero"});
+  }
 }
 
 void plan_constraints(const Scene& scene, std::vector<PlanItem>& items) {
@@ -172,6 +191,7 @@ std::vector<PlanItem> plan(const Scene& scene) {
   std::vector<PlanItem> items;
   plan_preparation(scene, items);
   plan_forces(scene, items);
+  plan_named(scene, items);
   plan_constraints(scene, items);
   plan_collisions(scene, items);
   plan_characters(scene, items);

@@ -37,8 +37,16 @@ void serialize(Archive& archive, FrameReport& report) {
   serialize_values(archive, report.frame, report.time, report.steps, report.rejected_steps, report.inexact_steps,
                    report.error_estimate, report.solver_error, report.newton_iterations, report.linear_iterations,
                    report.proximities, report.constraints, report.min_distance, report.max_strain, report.stretch_share,
-                   report.kinetic_energy, report.potential_energy, report.elastic_energy, report.pin_work,
-                   report.solver_work, report.pinched_pairs, report.lagging_particles);
+                   report.kinetic_energy, report.potential_energy, report.elastic_energy, report.air_energy,
+                   report.pin_work, report.solver_work, report.pinched_pairs, report.lagging_particles);
+  serialize_each(archive, report.enclosed, [&](frame::EnclosedAir& air) {
+    serialize_plain(archive, air.cloth);
+    serialize_values(archive, air.volume, air.pressure);
+  });
+  serialize_each(archive, report.attachments, [&](frame::AttachmentLoad& attachment) {
+    serialize_plain(archive, attachment.name);
+    serialize_values(archive, attachment.load, attachment.holds);
+  });
   serialize_each(archive, report.warnings, [&](std::string& text) { serialize_plain(archive, text); });
 }
 
@@ -204,8 +212,11 @@ FrameReport Simulation::Impl::advance() {
 void Simulation::Impl::measure_energies(FrameReport& report) const {
   const Moment& now = steps->progress().now;
   report.kinetic_energy = steps->cloth().kinetic_energy(now.v);
-  report.potential_energy = steps->cloth().potential_energy(now.particles(), scene.physics.gravity);
+  report.potential_energy = steps->cloth().potential_energy(now.particles(), steps->weather().gravity(report.time));
   report.elastic_energy = steps->cloth().elastic_energy(now.particles());
+  report.air_energy = steps->cloth().air_energy(now.particles());
+  report.enclosed = steps->cloth().inflation().measure(now.particles());
+  report.attachments = steps->attachments().measure();
 }
 
 void Simulation::Impl::measure(FrameReport& report) const {

@@ -11,52 +11,13 @@
 #include "core/numerics.hpp"
 #include "core/parallel.hpp"
 #include "core/timer.hpp"
+#include "simulation/step_settings.hpp"
 
 namespace weft::simulation {
 namespace {
 
 // Times what was told of before, from which on it is told of again.
 constexpr double kToldAgain = 1.5;
-
-integrator::Method method_of(scene::Integrator integrator) {
-  switch (integrator) {
-    case scene::Integrator::implicit_euler:
-      return integrator::Method::implicit_euler;
-    case scene::Integrator::implicit_midpoint:
-      return integrator::Method::implicit_midpoint;
-    case scene::Integrator::bdf2:
-      return integrator::Method::bdf2;
-  }
-  return integrator::Method::implicit_euler;
-}
-
-integrator::NewtonParameters newton_of(const scene::Scene& scene) {
-  return {scene.solver.newton_tolerance, scene.solver.newton_iterations, scene.solver.linear_tolerance,
-          scene.solver.linear_iterations, scene.time.tolerance.value_or(0)};
-}
-
-std::optional<integrator::StepControl> step_control_of(const scene::Scene& scene) {
-  if (!scene.time.tolerance) return std::nullopt;
-  // The first step is one of Euler's, whose error in free fall is ½ h² g.
-  const double first = std::sqrt(2 * *scene.time.tolerance / std::max(scene.physics.gravity.norm(), 1.0));
-  return integrator::StepControl(method_of(scene.time.integrator), *scene.time.tolerance, first);
-}
-
-std::vector<Index> first_particles(const ClothSystem& cloth) {
-  std::vector<Index> first;
-  for (std::size_t c = 0; c < cloth.cloths(); ++c) first.push_back(cloth.first_particle(c));
-  return first;
-}
-
-Moment start_of(const environment::Environment& environment, double t) {
-  Moment start;
-  start.placed_for = t;
-  for (const environment::ClothObject& cloth : environment.cloths) {
-    start.x.insert(start.x.end(), cloth.start.begin(), cloth.start.end());
-    start.v.insert(start.v.end(), cloth.start.size(), cloth.velocity);
-  }
-  return start;
-}
 
 }  // namespace
 
@@ -66,19 +27,24 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
       cloth_(scene, environment),
       problem_(cloth_),
       pins_(scene, environment, first_particles(cloth_), cloth_.masses()),
-      progress_{start_of(environment, start), step_control_of(scene), std::numeric_limits<double>::infinity()},
+      progress_{start_of(scene, environment, cloth_, start), step_control_of(scene),
+                std::numeric_limits<double>::infinity()},
       stepper_(method_of(scene.time.integrator), newton_of(scene)),
-      told_shares_(cloth_.cloths(), 0) {
+      told_shares_(cloth_.cloths(), 0),
+      attachments_(scene, environment, first_particles(cloth_)),
+      weather_(scene),
+      gravity_(weather_.gravity(start)) {
   Moment& now = progress_.now;
   pins_.begin_step(start, 0, now.x);
   held_ = pins_.held();
   cloth_.hold(held_);
   for (const integrator::HeldParticle& particle : held_) now.v[particle.constraint.particle] = particle.v_end;
-  if (blows_in_gusts(scene)) gusts_.emplace(scene.physics.gusts, scene.physics.wind);
   if (CollisionStage::needed(scene)) {
     collisions_.emplace(scene, environment, cloth_.masses(), now);
     problem_.use_contacts(&collisions_->response());
   }
+  if (!attachments_.empty()) problem_.use_attachments(attachments_);
+  cloth_.inflate(start - start_, now.particles());
   next_ = now;
 }
 
@@ -93,6 +59,8 @@ void StepLoop::take_over(const StepLoop& before, std::span<const std::size_t> cl
     told_shares_[cloths[c]] = before.told_shares_[c];
   }
   if (collisions_ && before.collisions_) collisions_->take_over(*before.collisions_, cloths);
+  cloth_.inflation().take_over(before.cloth_.inflation(), cloths);
+  attachments_.take_over(before.attachments_, cloths);
   next_ = progress_.now;
 }
 
@@ -125,8 +93,9 @@ bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // Velocity constraints let go and stick again step by step.
   const bool by_steps = scene_.contact.response == scene::Response::velocity_constraints;
-  if (scene_.time.integrator != scene::Integrator::implicit_euler || by_steps || gusts_ ||
-      whole > (1 + 1e-9) * numerics.steps.longest_rest || whole > progress_.longest || !is_slow(progress_.now) ||
+  if (scene_.time.integrator != scene::Integrator::implicit_euler || by_steps || !weather_.stays(t, t + whole) ||
+      whole > (1 + 1e-9) * numerics.steps.longest_rest || whole > progress_.longest ||
+      !cloth_.inflation().stays(t, t + whole) || !attachments_.stay(t, t + whole) || !is_slow(progress_.now) ||
       !has_settled())
     return false;
   for (int s = 1; s <= steps; ++s) {
@@ -251,14 +220,17 @@ StepLoop::Rejection StepLoop::torn(double h, bool solved) {
   return fmt::format("threads are stretched to {:.2g} times their max_stretch at once", share);
 }
 
-// The air at the stage of a step, and where unchanged velocities would take particles until then.
-void StepLoop::blow(double t, double h) {
+// Gravity of the step from t over h, and the air where unchanged velocities lead particles until its stage.
+void StepLoop::update_weather(double t, double h) {
   const double later = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
+  gravity_ = weather_.gravity(t + later);
+  cloth_.use_gravity(gravity_);
+  if (!weather_.is_local()) return;
   const Moment& now = progress_.now;
   std::vector<solver::Quad<double>> air(now.v.size());
   parallel_for(air.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i)
-      air[i] = solver::quad_of<double>(scene_.physics.wind + gusts_->at(now.x[i] + later * now.v[i], t + later));
+      air[i] = solver::quad_of<double>(weather_.air(now.x[i] + later * now.v[i], t + later));
   });
   problem_.blow(std::move(air));
 }
@@ -276,12 +248,13 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   const Moment& now = progress_.now;
   held_ = pins_.held();
   problem_.begin_step(t + h - start_, now.particles(), held_, pins_.pulls());
+  attachments_.begin_step(t, t + h, now.particles());
   Start start = Start::unchanged_velocity;
   if (collisions_) {
     const Stopwatch watch(report.collide);
     if (collisions_->begin_step(t, h, held_, progress_.now, next_)) start = Start::next;
   }
-  if (gusts_) blow(t, h);
+  update_weather(t, h);
   if (!collisions_) return reason_of(solve(h, start, false, report));
   collision::ContactResponse& response = collisions_->response();
   const auto force_on = [&](Index particle) { return stepper_.constraint_force(particle, cloth_.masses()[particle]); };
@@ -361,15 +334,16 @@ StepLoop::Rejection StepLoop::correct(double h, int retries, bool last_try, bool
 
 // [J]
 double StepLoop::energy(const Moment& moment) const {
-  return cloth_.elastic_energy(moment.particles()) + cloth_.kinetic_energy(moment.v) +
-         cloth_.potential_energy(moment.particles(), scene_.physics.gravity);
+  return cloth_.elastic_energy(moment.particles()) + cloth_.air_energy(moment.particles()) +
+         attachments_.energy(moment.particles()) + cloth_.kinetic_energy(moment.v) +
+         cloth_.potential_energy(moment.particles(), gravity_);
 }
 
 // Of the energy in play, what `next_` has more than `before` [J]. At rest the motion of a step of free fall counts.
 double StepLoop::added_share(double before, double h) const {
   double mass = 0;
   for (const double m : cloth_.masses()) mass += m;
-  const double fall = h * scene_.physics.gravity.norm();
+  const double fall = h * gravity_.norm();
   const double motion = std::max(cloth_.kinetic_energy(progress_.now.v), 0.5 * mass * fall * fall);
   return (energy(next_) - before) / (motion + cloth_.elastic_energy(progress_.now.particles()));
 }
@@ -386,7 +360,7 @@ integrator::Method StepLoop::method() const {
 integrator::StepReport StepLoop::solve(double h, integrator::Stepper::Start start, bool look, FrameReport& report) {
   stepper_.use(method());
   const integrator::StepReport step =
-      stepper_.step(problem_, progress_.now, h, scene_.physics.gravity, held_, next_, start,
+      stepper_.step(problem_, progress_.now, h, gravity_, held_, next_, start,
                     look ? numerics.newton.check_after : std::numeric_limits<int>::max());
   report.newton_iterations += step.newton_iterations;
   report.linear_iterations += step.linear_iterations;
@@ -410,6 +384,7 @@ void StepLoop::accept(double h, FrameReport& report) {
   count_work(measure_work(stepper_, pins_.held(), cloth_.masses(), progress_.now, next_), report);
   stepper_.accept(progress_.now, h);
   pins_.accept();
+  attachments_.accept(next_.particles());
   if (collisions_) collisions_->accept();
   std::swap(progress_.now, next_);
   progress_.longest *= numerics.steps.recovery;
@@ -451,6 +426,7 @@ void StepLoop::serialize(Archive& archive) {
   if constexpr (Archive::kReads) require(progress_.longest > 0, "a step length");
   cloth_.serialize(archive);
   pins_.serialize(archive);
+  attachments_.serialize(archive);
   for (double& share : told_shares_) {
     archive.value(share);
     if constexpr (Archive::kReads) require(share >= 0, "a share of a limit to stretch");

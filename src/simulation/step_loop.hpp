@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "environment/environment.hpp"
-#include "environment/gusts.hpp"
+#include "environment/weather.hpp"
 #include "integrator/step_control.hpp"
 #include "integrator/stepper.hpp"
 #include "scene/scene.hpp"
@@ -63,6 +63,8 @@ class StepLoop {
   }
 
   const ClothSystem& cloth() const { return cloth_; }
+  const environment::Weather& weather() const { return weather_; }
+  const Attachments& attachments() const { return attachments_; }
   const StepProblem& problem() const { return problem_; }
   /// Particles that are held, by pins or by the response to contacts.
   std::size_t held() const { return held_.size(); }
@@ -101,7 +103,7 @@ class StepLoop {
   Rejection attempt(double t, double h, int retries, bool last_try, FrameReport& report);
   Rejection attempt_with(double t, double h, int retries, bool last_try, bool may_give_way, FrameReport& report);
   bool is_short_enough(int retries, bool last_try) const;
-  void blow(double t, double h);
+  void update_weather(double t, double h);
   Rejection correct(double h, int retries, bool last_try, bool may_give_way);
   Rejection torn(double h, bool solved);
   double energy(const Moment& moment) const;
@@ -130,7 +132,9 @@ class StepLoop {
   std::vector<double> told_shares_;            // of its limit, that each cloth was last told of; 0: it was not
   std::vector<integrator::HeldParticle> held_;
   std::optional<CollisionStage> collisions_;
-  std::optional<environment::Gusts> gusts_;
+  Attachments attachments_;
+  environment::Weather weather_;
+  Vec3 gravity_;  // of the step at hand [m/s²]
 };
 
 }  // namespace weft::simulation

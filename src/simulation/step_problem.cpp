@@ -37,6 +37,7 @@ void StepProblem::begin_step(double t, std::span<const Vec3> x, std::span<const 
   pulls_ = pulls;
   forget();
   cloth_.sew(t);
+  cloth_.inflate(t, x);
   if (cloth_.hold(pinned)) memory_.rate = 0;  // what the matrix begins with has changed
   memory_.contacts = {};
   cloth_.begin_locks(x, memory_.locks);
@@ -48,6 +49,7 @@ void StepProblem::blow(SolveMemory::Quads air) {
 
 void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force) {
   add_cloth_forces(at, force);
+  cloth_.inflation().add_forces(at.x, force);
   add_pulls(at, force);
   if (contacts_ != nullptr) contacts_->add_forces(at.x_end, memory_.contacts, force);
 }
@@ -55,6 +57,7 @@ void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force
 void StepProblem::linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
   add_cloth_forces(at, force);
   if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
+  cloth_.inflation().add_forces(at.x, force);
   add_pulls(at, force);
   if (contacts_ != nullptr) contacts_->add_linear_forces(at.x_end, memory_.contacts, force);
 }
@@ -69,12 +72,14 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   put_together(at, iteration);
   add_cloth_forces(at, force);
   if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
+  cloth_.inflation().linearise(at.x, force, system);
   add_pulls(at, force);
   system.terms.clear();
   system.diagonal_terms.clear();
   for (const Pull& pull : pulls_)
     system.diagonal_terms.push_back(
         {pull.particle, (at.end_rate * pull.stiffness + at.rate * pull.damping) * Mat3::Identity()});
+  if (attachments_ != nullptr) attachments_->add_terms(at.x_end, at.end_rate, system);
   if (contacts_ == nullptr) return;
   contacts_->update(at.x_end, memory_.contacts);
   contacts_->linearise(at.x_end, at.end_rate, memory_.contacts, force, system);
@@ -88,6 +93,7 @@ bool StepProblem::contact_forces(const integrator::StagePoint& at, std::span<Vec
 }
 
 void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const {
+  if (attachments_ != nullptr) attachments_->add_forces(at.x_end, force);
   for (const Pull& pull : pulls_)
     force[pull.particle] +=
         pull.stiffness * (pull.x - at.x_end[pull.particle]) + pull.damping * (pull.v - at.v[pull.particle]);

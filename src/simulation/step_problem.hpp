@@ -8,6 +8,7 @@
 #include "collision/response/contact_response.hpp"
 #include "forces/stretch_limit.hpp"
 #include "integrator/system.hpp"
+#include "simulation/attachments.hpp"
 #include "simulation/cloth_system.hpp"
 
 namespace weft::simulation {
@@ -46,6 +47,9 @@ class StepProblem final : public integrator::System {
   /// What the cloth meets, or nullptr where the scene has nothing. Must outlive the steps.
   void use_contacts(const collision::ContactResponse* contacts) { contacts_ = contacts; }
 
+  /// Springs between cloths and to bodies. Must outlive the steps.
+  void use_attachments(const Attachments& attachments) { attachments_ = &attachments; }
+
   /// Before the first solve of a step that ends at time t [s] of the simulation, with what pins hold until then: sews
   /// cloth on to there, and friction goes by the loads at the start, threads lock by their tensions there (at x). The
   /// next linearisation puts the matrix together anew. `pulls` must outlive the step.
@@ -58,11 +62,11 @@ class StepProblem final : public integrator::System {
   /// Within a step, where its contacts are others now: their loads are followed for half as many updates as those of
   /// the first ones, or more if there were less so far.
   void forget_contacts() {
-    memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.contact.force_updates / 2)};
+    memory_.contacts = {{}, {}, {}, std::min(memory_.contacts.updates, numerics.newton.patience / 2)};
   }
 
   /// Before a step is solved anew: friction goes by the loads of its start, whatever they become.
-  void keep_loads() { memory_.contacts = {{}, {}, {}, numerics.contact.force_updates}; }
+  void keep_loads() { memory_.contacts = {{}, {}, {}, numerics.newton.patience}; }
 
   const SolveMemory& memory() const { return memory_; }
 
@@ -88,6 +92,7 @@ class StepProblem final : public integrator::System {
 
   ClothSystem& cloth_;
   const collision::ContactResponse* contacts_ = nullptr;
+  const Attachments* attachments_ = nullptr;
   std::span<const Pull> pulls_;
   SolveMemory::Quads air_;
   SolveMemory memory_;

@@ -10,7 +10,14 @@
 #include "core/numerics.hpp"
 
 namespace weft::simulation {
-namespace {}  // namespace
+namespace {
+
+// From its place, at which a particle is held again [m].
+double arrived_distance() {
+  return 0.5 * numerics.separation.restored_gap;
+}
+
+}  // namespace
 
 YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environment& environment,
                            const std::vector<Index>& first_particle, std::span<const double> masses)
@@ -26,7 +33,7 @@ YieldingPins::YieldingPins(const scene::Scene& scene, const environment::Environ
     const auto begin = static_cast<std::size_t>(first_particle[about.cloth]);
     const std::size_t count = environment.cloths[about.cloth].start.size();
     double weight = 0;
-    for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * scene.physics.gravity.norm();
+    for (std::size_t i = begin; i < begin + count; ++i) weight += masses[i] * scene.physics.largest_gravity();
     load_.push_back(numerics.pins.weights * weight);
   }
 }
@@ -46,9 +53,8 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   if (any_lagged)
     for (const integrator::HeldParticle& start : at_start_) {
       const auto i = static_cast<std::size_t>(start.constraint.particle);
-      const double near =
-          std::max(numerics.pins.arrived,
-                   numerics.pins.arrived_fraction * h * std::min(start.v_end.norm(), numerics.pins.return_velocity));
+      const double near = std::max(arrived_distance(), numerics.pins.arrived_fraction * h *
+                                                           std::min(start.v_end.norm(), numerics.pins.return_velocity));
       lags_[i] = lagged_[i] != 0 && (x[i] - start.x_end).norm() > near;
     }
   held_.clear();

@@ -93,7 +93,7 @@ LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal&
   Progress progress;
   progress.parts.resize(all_parts_.size());
   End end = End::needs_double;
-  if (is_single_ && goal.relative >= numerics.linear.tight_goal) {
+  if (is_single_ && goal.relative >= kTightGoal) {
     end = prepared(single_).solve(b, goal, max_iterations, x, start, parts, progress);
     filter(x);
     copy_into(single_.recurrence.residual(), residual_);

@@ -33,6 +33,14 @@ struct DiagonalTerm {
   Mat3 stiffness = Mat3::Zero();  ///< symmetric, positive semidefinite [N/m]
 };
 
+/// stiffness · d dᵀ over the rows of one part: what a quantity of all its particles adds, such as the enclosed volume
+/// (d its derivative). Few, and dense, so that they are kept out of the matrix.
+struct RankOneTerm {
+  Index begin = 0;              ///< first row
+  std::vector<Vec3> direction;  ///< d, of each row from there on
+  double stiffness = 0;         ///< at least 0
+};
+
 /// Groups that the particles are cut into, or smaller groups.
 struct Grouping {
   std::vector<Index> of;  ///< group of each member, 0 to count − 1
@@ -50,6 +58,7 @@ struct LinearSystem {
   std::vector<Part> parts;  ///< all rows, in their order; empty: they are one part
   std::vector<StencilTerm> terms;
   std::vector<DiagonalTerm> diagonal_terms;
+  std::vector<RankOneTerm> rank_one_terms;
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
   /// What errors of solutions are weighed with, a weight of each row; no more than the matrix, as rate² M is no more
   /// than rate² M + K. Empty: their energy counts instead.

@@ -79,13 +79,20 @@ void Recurrence<Real>::prepare(const LinearSystem& system, Sums sums) {
   std::iota(all_parts_.begin(), all_parts_.end(), std::size_t{0});
   product_.prepare(system);
   preconditioner_.prepare(system, sums);
+  rank_one_.prepare(system);
   factor_state_ = Factor::not_made;
 }
 
 template <class Real>
 std::span<const Quad<Real>> Recurrence<Real>::precondition(std::span<const Vec3> b) {
   take<Real>(b, q_);
+  if (!rank_one_.empty()) {
+    selected_ = all_parts_;
+    rank_one_.select(selected_);
+    precondition_rank_one(false);
+  }
   preconditioner_.apply(q_, z_, all_parts_);
+  rank_one_.correct(z_);
   return z_;
 }
 
@@ -96,18 +103,32 @@ bool Recurrence<Real>::make_factor() {
   return factor_state_ == Factor::made;
 }
 
-// z = P⁻¹ r, with or without the factor; returns r·z.
 template <class Real>
-double Recurrence<Real>::apply_preconditioner(std::span<Quad<Real>> z, bool with_factor) {
-  preconditioner_.apply(r_, z, selected_);
+void Recurrence<Real>::apply_levels_and_factor(std::span<const Quad<Real>> r, std::span<Quad<Real>> z,
+                                               bool with_factor) {
+  preconditioner_.apply(r, z, selected_);
   if constexpr (std::is_same_v<Real, double>) {
     if (with_factor) {
       factor_parts_.clear();
       for (std::size_t part : selected_) factor_parts_.push_back(parts_[part]);
-      factor_.add(numerics.linear.factor_weight, r_, z, factor_parts_);
+      factor_.add(numerics.linear.factor_weight, r, z, factor_parts_);
       product_.filter(z);
     }
   }
+}
+
+// Before the preconditioner is applied to the selected parts, with or without the factor.
+template <class Real>
+void Recurrence<Real>::precondition_rank_one(bool with_factor) {
+  rank_one_.use(
+      [&](std::span<const Quad<Real>> r, std::span<Quad<Real>> z) { apply_levels_and_factor(r, z, with_factor); });
+}
+
+// z = P⁻¹ r, with or without the factor; returns r·z.
+template <class Real>
+double Recurrence<Real>::apply_preconditioner(std::span<Quad<Real>> z, bool with_factor) {
+  apply_levels_and_factor(r_, z, with_factor);
+  rank_one_.correct(z);
   const auto of_parts = rows_.sums([&](std::size_t first, std::size_t end) {
     Quad<double> of_chunk{};
     for (std::size_t i = first; i < end; ++i) of_chunk += products(r_[i], z[i]);
@@ -124,6 +145,7 @@ void Recurrence<Real>::begin(std::span<const Vec3> b, std::span<const Vec3> x, s
                              Progress& progress) {
   along_ = along_energy_ = 0;
   product_.select(selected_);
+  rank_one_.select(selected_);
   moved_.resize(selected_.size());
   rz_.resize(selected_.size());
   for (auto* vector : {&x_, &p_, &q_}) std::fill(vector->begin(), vector->end(), Quad<Real>{});
@@ -190,11 +212,12 @@ void Recurrence<Real>::advance(double alpha, Progress& progress) {
 template <class Real>
 End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progress& progress) {
   constexpr bool kSingle = std::is_same_v<Real, float>;
-  if (goal.relative < numerics.linear.tight_goal && goal.absolute.empty()) progress.with_factor = true;
+  if (goal.relative < kTightGoal && goal.absolute.empty()) progress.with_factor = true;
   if (progress.with_factor) {
     if (kSingle) return End::needs_double;
     progress.with_factor = make_factor();
   }
+  precondition_rank_one(progress.with_factor);
   double rz = apply_preconditioner(p_, progress.with_factor);
   progress.nothing_left = rz <= (kSingle ? kRoundedEnergy * along_energy_ : 0);
   if (progress.nothing_left) return End::converged;
@@ -212,6 +235,7 @@ End Recurrence<Real>::iterate(const LinearGoal& goal, int max_iterations, Progre
       restart = progress.with_factor = factor_pays(progress.paced_from, far);
       if (restart && kSingle) return End::needs_double;
       if (restart) restart = progress.with_factor = make_factor();
+      if (restart) precondition_rank_one(true);
       progress.paced_from = far;
     }
     const double rz_before = std::exchange(rz, apply_preconditioner(z_, progress.with_factor));

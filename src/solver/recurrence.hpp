@@ -8,9 +8,15 @@
 #include "solver/linear_system.hpp"
 #include "solver/preconditioner.hpp"
 #include "solver/product.hpp"
+#include "solver/rank_one.hpp"
 #include "solver/row_chunks.hpp"
 
 namespace weft::solver {
+
+/// Part of a solution that single precision leaves without telling it from roundings: in the energy norm 6e-8 times the
+/// root of the largest stiffness that it is used for, and a factor of five. Tighter goals are worth an incomplete
+/// factor.
+inline constexpr double kTightGoal = 1e-3;
 
 /// How exact the solution x must be in each part of the system: its error e as measured below is at most the larger of
 /// a share of ‖x‖_A, of what the iteration adds to its start, and of an absolute size.
@@ -69,7 +75,12 @@ class Recurrence {
   void begin(std::span<const Vec3> b, std::span<const Vec3> x, std::span<const Vec3> start, Progress& progress);
   void begin_along(std::span<const Vec3> start);
   End iterate(const LinearGoal& goal, int max_iterations, Progress& progress);
-  double multiply() { return product_.multiply(p_, q_, moved_); }
+  double multiply() {
+    const double curvature = product_.multiply(p_, q_, moved_);
+    return curvature + rank_one_.multiply(p_, q_);
+  }
+  void apply_levels_and_factor(std::span<const Quad<Real>> r, std::span<Quad<Real>> z, bool with_factor);
+  void precondition_rank_one(bool with_factor);
   void advance(double alpha, Progress& progress);
   double apply_preconditioner(std::span<Quad<Real>> z, bool with_factor);
   bool make_factor();
@@ -80,6 +91,7 @@ class Recurrence {
   RowChunks rows_;  // of those selected
   Product<Real> product_;
   Preconditioner<Real> preconditioner_;
+  RankOneTerms<Real> rank_one_;
   IncompleteCholesky factor_;                                                   // in double only
   enum class Factor { not_made, made, none } factor_state_ = Factor::not_made;  // of the system as prepared
   std::vector<Part> factor_parts_;                                              // scratch

@@ -17,7 +17,7 @@ namespace {
 
 using scene::Integrator;
 
-scene::Scene small_sheet(const std::vector<std::string>& more = {}) {
+scene::Scene tiny_sheet(const std::vector<std::string>& more = {}) {
   std::vector<std::string> overrides{"cloth.sheet.particles=5", "time.duration=0.08"};
   overrides.insert(overrides.end(), more.begin(), more.end());
   return support::scene_of_text(kSwingingSheet, overrides);
@@ -37,7 +37,7 @@ TEST(AccuracyPlan, MeasuresWhatItNamesAndNothingElse) {
   plan.tolerances = {1e-4};
   plan.meshes = {1};
   plan.starts = 2;
-  const Accuracy accuracy = measure_accuracy(small_sheet(), {}, plan);
+  const Accuracy accuracy = measure_accuracy(tiny_sheet(), {}, plan);
   EXPECT_EQ(controls(accuracy, Axis::grid), (std::set<double>{0.005, 0.01}));
   EXPECT_EQ(controls(accuracy, Axis::tolerance), (std::set<double>{1e-4}));
   EXPECT_EQ(controls(accuracy, Axis::mesh), (std::set<double>{1}));
@@ -53,7 +53,7 @@ TEST(AccuracyPlan, LeavesAxesOut) {
   plan.steps = {1};
   plan.tolerances.emplace();
   plan.meshes.emplace();
-  const Accuracy accuracy = measure_accuracy(small_sheet(), {}, plan);
+  const Accuracy accuracy = measure_accuracy(tiny_sheet(), {}, plan);
   EXPECT_TRUE(of_axis(accuracy, Axis::tolerance).empty());
   EXPECT_TRUE(of_axis(accuracy, Axis::mesh).empty());
   EXPECT_TRUE(accuracy.cross_checks.empty()) << "a single step shows nothing of its own error";
@@ -66,7 +66,7 @@ TEST(AccuracyPlan, HoldsTheSceneAsItStandsWhateverItsStep) {
     plan.integrators = {Integrator::implicit_euler};
     plan.tolerances.emplace();
     plan.meshes.emplace();
-    const Accuracy accuracy = measure_accuracy(small_sheet({fmt::format("time.step={}", step)}), {}, plan);
+    const Accuracy accuracy = measure_accuracy(tiny_sheet({fmt::format("time.step={}", step)}), {}, plan);
     const bench::Run* stands = accuracy.as_it_stands();
     ASSERT_NE(stands, nullptr) << step;
     EXPECT_EQ(stands->work.steps, 2 * steps_a_frame) << "in two frames";
@@ -75,7 +75,7 @@ TEST(AccuracyPlan, HoldsTheSceneAsItStandsWhateverItsStep) {
   plan.integrators = {Integrator::implicit_euler};
   plan.steps = {0.5};
   plan.tolerances = {1e-4};
-  const Accuracy accuracy = measure_accuracy(small_sheet({"time.tolerance=3e-4"}), {}, plan);
+  const Accuracy accuracy = measure_accuracy(tiny_sheet({"time.tolerance=3e-4"}), {}, plan);
   ASSERT_NE(accuracy.as_it_stands(), nullptr);
   EXPECT_EQ(accuracy.as_it_stands()->setting.tolerance, 3e-4);
 }
@@ -90,7 +90,7 @@ TEST(AccuracyPlan, IsRefusedWhereItDoesNotSuitTheScene) {
   AccuracyPlan odd;
   odd.meshes = {0.3};
   support::expect_error(ExitCode::usage, "--meshes: expected factors that give whole numbers of cells",
-                        [&] { measure_accuracy(small_sheet(), {}, odd); });
+                        [&] { measure_accuracy(tiny_sheet(), {}, odd); });
 }
 
 TEST(AccuracyReference, IsAsUncertainAsItsCrossChecksShow) {
@@ -106,7 +106,7 @@ TEST(AccuracyReference, IsAsUncertainAsItsCrossChecksShow) {
 }
 
 // A sheet of 1 m. Euler with errors 1/n and costs n, BDF2 with 1/n² and costs 2 n; the scene has Euler at 10 ms.
-Accuracy made_up_accuracy() {
+Accuracy accuracy_of_one_metre() {
   Accuracy accuracy;
   accuracy.cloth_size = 1;
   accuracy.uncertainty.fill(1e-6);
@@ -128,7 +128,7 @@ Accuracy made_up_accuracy() {
 }
 
 TEST(Recommendation, IsTheFirstLineAndNamesKeysAndCosts) {
-  Accuracy accuracy = made_up_accuracy();
+  Accuracy accuracy = accuracy_of_one_metre();
   EXPECT_EQ(recommendation(accuracy),
             "Use `time.integrator = \"bdf2\"`, `time.step = 0.01`, `solver.newton_tolerance = 0.1`: 6 CPU s, the "
             "position off by at most 5 mm, where 10 mm (1 % of the cloth's size) are wanted; the settings of the scene "
@@ -146,7 +146,7 @@ TEST(Recommendation, IsTheFirstLineAndNamesKeysAndCosts) {
 }
 
 TEST(Recommendation, LeavesTheSolverAsItIsAtTheSameCost) {
-  Accuracy accuracy = made_up_accuracy();
+  Accuracy accuracy = accuracy_of_one_metre();
   for (bench::Run& run : accuracy.runs) run.setting.newton_tolerance = 0.01;
   accuracy.runs.push_back(accuracy.runs[5]);
   accuracy.runs.back().setting.newton_tolerance = 0.1;
@@ -159,7 +159,7 @@ TEST(Recommendation, LeavesTheSolverAsItIsAtTheSameCost) {
 
 // 25 frames a second in three steps: 0.01333 s would take four.
 TEST(Recommendation, RoundsStepsUp) {
-  Accuracy accuracy = made_up_accuracy();
+  Accuracy accuracy = accuracy_of_one_metre();
   for (bench::Run& run : accuracy.runs) run.setting.step = 1.0 / 75;
   accuracy.runs.resize(1);
   accuracy.runs[0].errors.fill(1e-4);

@@ -150,7 +150,7 @@ TEST(StepControl, PassesAJumpOfVelocityInABoundedNumberOfSteps) {
   EXPECT_LT(tries, 200);
   // And one that no step meets is passed with the least one.
   const auto wall = [&](double t, double h) { return t <= 0.5 && t + h > 0.5 ? 1 : 5 * h * h; };
-  EXPECT_DOUBLE_EQ(std::ranges::min(lengths(Method::implicit_euler, 5e-4, wall, 1)), StepControl::kLeastStep);
+  EXPECT_DOUBLE_EQ(std::ranges::min(lengths(Method::implicit_euler, 5e-4, wall, 1)), numerics.steps.least);
 }
 
 TEST(StepControl, DoesNotGrowAtOnceAfterAStepWasDoneAgain) {

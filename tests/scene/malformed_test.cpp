@@ -41,6 +41,24 @@ const std::vector<Malformed> kMalformed = {
                  7),
      "s.toml: expected text, got binary data (byte 0 at offset 5)\n"},
     {"InvalidUtf8", "title = '\xc3\x28'\n", "s.toml:1:9: not TOML: Encountered invalid utf-8 sequence\n"},
+    // Air, fans and attachments.
+    {"QuantityOfAnotherControl", "[[cloth]]\nname = 'a'\npressure = { control = 'air', gauge = 3 }\n",
+     "s.toml:3:31: cloth.a.pressure.gauge: unknown key of a air; it belongs to gauge\n"},
+    {"NegativeFill", "[[cloth]]\nname = 'a'\npressure = { control = 'fill', fill = -1 }\n",
+     "s.toml:3:39: cloth.a.pressure.fill: expected >= 0, got -1\n"},
+    {"PressureKeysOutOfOrder", "[[cloth]]\nname = 'a'\npressure.keys = [{ time = 1, gauge = 3 }, { time = 0.5 }]\n",
+     "s.toml:3:52: cloth.a.pressure.keys.1.time: expected > 1 s, later than the keys before, got 0.5\n"},
+    {"PhysicsKeysOutOfOrder", kBand + "[physics]\nkeys = [{ time = 1 }, { time = 1, wind = [1, 0, 0] }]\n",
+     "s.toml:3:32: physics.keys.1.time: expected > 1 s, later than the keys before, got 1\n"},
+    {"FanWithoutAPlace", kBand + "[[fan]]\nname = 'f'\ndirection = [0, 0, 0]\n",
+     "s.toml:2:1: fan.f.position: expected [x, y, z], each from -100000 to 100000 m, here or in the first of its keys, "
+     "got none\ns.toml:4:13: fan.f.direction: expected at least one number that is not 0, got 0 in all\n"},
+    {"AttachmentToNothing", kBand + "[[attach]]\nname = 'peg'\ncloth = 'bond'\nto = 'line'\n",
+     "s.toml:4:9: attach.peg.cloth: expected the name of a cloth, got \"bond\"; did you mean band?\n"
+     "s.toml:5:6: attach.peg.to: expected the name of a cloth, obstacle or character, got \"line\"\n"},
+    {"AttachmentToItself", kBand + "[[attach]]\nname = 'peg'\ncloth = 'band'\nto = 'band'\nbegin = 2\nrelease = 1\n",
+     "s.toml:5:6: attach.peg.to: expected another object than the cloth itself, got \"band\"\n"
+     "s.toml:7:11: attach.peg.release: expected > 2 s, when it begins, got 1\n"},
     // Pictures and cameras.
     {"PictureThatIsNone", "[[cloth]]\nname = 'a'\nlook.image = '/etc/passwd'\n",
      "s.toml:3:14: cloth.a.look.image: expected a picture (PNG, JPEG or TGA), got \"/etc/passwd\": it begins like no "
@@ -95,9 +113,8 @@ const std::vector<Malformed> kMalformed = {
     {"KeyOfAnotherLight", kFloor + "[[light]]\nname = 'sun'\ncone_angle = 30\n",
      "s.toml:4:1: light.sun.cone_angle: unknown key of a sun; it belongs to spot\n"},
     {"KeyWithOddCharacters", kFloor + "\"a b\\u0007\" = 3\n",
-     "s.toml:2:1: \"a b\\x07\": unknown key; known here: up, title, time, physics, solver, contact, render, obstacle, "
-     "character, "
-     "cloth, camera, light\n"},
+     "s.toml:2:1: \"a b\\x07\": unknown key; known here: up, title, time, physics, solver, contact, render, fan, "
+     "obstacle, character, cloth, attach, camera, light\n"},
     {"MissingName", "[[cloth]]\nsize = 1\n",
      "s.toml:1:1: cloth.0.name: expected a name of letters, digits, _ and -, starting with a letter, at most 64 long, "
      "got none\n"},

@@ -99,7 +99,8 @@ bool is_plain_value(const std::string& path, const Rule& rule) {
   return rule.type != Type::name && rule.type != Type::file && rule.type != Type::texts && !path.ends_with("follow") &&
          !path.ends_with("edge") && !path.ends_with("panel") && !path.ends_with("vertex_group") &&
          !path.ends_with("vertex_color") && !path.ends_with("fade") && !path.ends_with("grow") &&
-         path != "render.camera" && !path.ends_with("shape") && !path.ends_with("kind") && !path.ends_with("source");
+         path != "render.camera" && path != "physics.interpolation" && !path.ends_with("shape") &&
+         !path.ends_with("kind") && !path.ends_with("source");
 }
 
 TEST(Rules, EachKeyChangesTheSceneAndItsHash) {

@@ -38,6 +38,47 @@ TEST_F(EveryKey, OfTheRootFillsItsMember) {
   EXPECT_EQ(scene_.frame_count(), 76);
 }
 
+TEST_F(EveryKey, OfPressureKeysFansAndAttachmentsFillsItsMember) {
+  const Pressure& gauge = scene_.cloths[0].pressure;
+  EXPECT_EQ(gauge.control, PressureControl::gauge);
+  EXPECT_EQ(gauge.value, 31);
+  EXPECT_EQ(gauge.interpolation, Interpolation::linear);
+  ASSERT_EQ(gauge.keys.size(), 2u);
+  EXPECT_EQ(gauge.keys[1].time, 0.6);
+  EXPECT_EQ(gauge.keys[1].value, 41);  // as the key before
+  EXPECT_EQ(scene_.cloths[1].pressure.control, PressureControl::air);
+  EXPECT_EQ(scene_.cloths[1].pressure.value, 0.02);
+  EXPECT_EQ(scene_.cloths[0].spin, Vec3(10, 20, 30));
+
+  ASSERT_EQ(scene_.physics.keys.size(), 2u);
+  EXPECT_EQ(scene_.physics.interpolation, Interpolation::linear);
+  EXPECT_EQ(scene_.physics.keys[0].wind, Vec3(1, 2, 3));  // that of the table
+  EXPECT_EQ(scene_.physics.keys[1].gravity, Vec3(0, -2, 0));
+  EXPECT_EQ(scene_.physics.keys[1].wind, Vec3(3, 2, 1));
+
+  ASSERT_EQ(scene_.fans.size(), 2u);
+  EXPECT_EQ(scene_.fans[0].radius, 0.3);
+  EXPECT_EQ(scene_.fans[0].angle, 33);
+  EXPECT_EQ(scene_.fans[0].falloff, 0.5);
+  ASSERT_EQ(scene_.fans[0].keys.size(), 2u);
+  EXPECT_EQ(scene_.fans[0].keys[1].position, Vec3(1, 2, 3));
+  EXPECT_EQ(scene_.fans[0].keys[1].speed, 8);
+  EXPECT_EQ(scene_.fans[1].keys.front().direction, Vec3(0, 1, 0));
+  EXPECT_EQ(scene_.fans[1].keys.front().speed, 3);
+
+  ASSERT_EQ(scene_.attachments.size(), 1u);
+  const Attachment& button = scene_.attachments[0];
+  EXPECT_EQ(button.name, "button");
+  EXPECT_EQ(button.cloth, "sheet");
+  EXPECT_EQ(button.to, "napkin");
+  EXPECT_EQ(button.low, Vec2(0.9, 0.9));
+  EXPECT_EQ(button.stiffness, 700);
+  EXPECT_EQ(button.length, 0.004);
+  EXPECT_EQ(button.begin, 0.2);
+  EXPECT_EQ(button.release, 2.1);
+  EXPECT_EQ(button.breaking_load, 12);
+}
+
 TEST_F(EveryKey, OfTimePhysicsSolverAndContactFillsItsMember) {
   EXPECT_EQ(scene_.time.duration, 2.5);
   EXPECT_EQ(scene_.time.fps, 30);
@@ -229,7 +270,7 @@ TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   EXPECT_FALSE(std::get<Plane>(shape(6)).infinite);
   EXPECT_EQ(std::get<MeshFile>(shape(7)).path, kFolder + "triangle.obj");
   EXPECT_EQ(std::get<MeshFile>(shape(7)).scale, 0.01);
-  EXPECT_EQ(scene_.obstacles[7].line, 153) << "where the scene names its file";
+  EXPECT_EQ(scene_.obstacles[7].line, 188) << "where the scene names its file";
   EXPECT_EQ(scene_.obstacles[7].column, 8);
 }
 

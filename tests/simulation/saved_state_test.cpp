@@ -100,6 +100,60 @@ keys = [
 ]
 )";
 
+// Two sheets that are buttoned to each other and pegged to a rail, one peg of which breaks; a fan, keys of gravity and
+// wind. Pressure bulges the larger one.
+constexpr const char* kWashing = R"(
+[time]
+duration = 1
+[physics]
+keys = [{ time = 0.2, wind = [0, 0, 0] }, { time = 0.5, wind = [0, 3, 0], gravity = [0, 0, -6] }]
+[[fan]]
+name = "fan"
+position = [0.5, -0.6, 0.8]
+direction = [-0.4, 1, 0]
+keys = [{ time = 0.1, speed = 0 }, { time = 0.6, speed = 7 }]
+[[cloth]]
+name = "towel"
+size = [0.4, 0.4]
+particles = [11, 11]
+position = [0, 0, 0.75]
+rotation = [90, 0, 0]
+spin = [0, 0, 40]
+pressure.keys = [{ time = 0, gauge = 0 }, { time = 0.5, gauge = 6 }]
+[[cloth]]
+name = "patch"
+size = [0.2, 0.2]
+particles = [6, 6]
+position = [0, -0.03, 0.7]
+rotation = [90, 0, 0]
+[[obstacle]]
+name = "rail"
+shape = "box"
+size = [0.6, 0.02, 0.02]
+interpolation = "linear"
+keys = [{ time = 0, position = [0, 0, 0.98] }, { time = 1, position = [0.1, 0, 1.0] }]
+[[attach]]
+name = "left"
+cloth = "towel"
+to = "rail"
+low = [0, 1]
+high = [0.1, 1]
+[[attach]]
+name = "right"
+cloth = "towel"
+to = "rail"
+low = [0.9, 1]
+high = [1, 1]
+breaking_load = 0.3
+[[attach]]
+name = "button"
+cloth = "patch"
+to = "towel"
+low = [0.4, 0.9]
+high = [0.6, 1]
+begin = 0.1
+)";
+
 // A flag in the wind, triangles, with colours of strain and a pin that lets go.
 constexpr const char* kFlag = R"(
 [time]
@@ -161,6 +215,7 @@ INSTANTIATE_TEST_SUITE_P(
         Kind{"at_rest_velocity_cones", kAtRest, {"contact.search.velocity_cones=true"}, {20, {5, 10, 18}}},
         Kind{"gusts_one_thread_then_three", kFlag, {"physics.gusts.speed=1.5"}, {14, kSome, 3}},
         Kind{"flag", kFlag, {}, {14, {0, 3, 5, 9}}},
+        Kind{"washing_one_thread_then_three", kWashing, {}, {18, {0, 2, 3, 9, 14}, 3}},
         Kind{"preroll", kDrape, {"time.preroll=0.4"}, {14, {4, 9, 10, 12}}}),
     [](const auto& kind) { return std::string(kind.param.name); });
 
@@ -263,6 +318,23 @@ ratio = 0.85
       "[[obstacle]]\nname = 'post'\nshape = 'cylinder'\nradius = 0.1\nheight = 1.2\n"
       "position = [0, 0, 0.4]\nsegments = 24\n");
   EXPECT_EQ(continue_runs(scene, {17, {3, 9, 11, 14}}).difference, "");
+}
+
+// Closed at 0.3 s; states before and after know what air it has.
+TEST_F(SavedGarment, KeepsTheAirThatItWasClosedWith) {
+  support::write_bytes(folder_ / "tube.toml", testing::kTube + R"([[seam]]
+a = "front.hem"
+b = "back.hem"
+[[seam]]
+a = "front.top"
+b = "back.top"
+)");
+  const scene::Scene scene = support::scene_of_text(
+      "[physics]\ngravity = [0, 0, -2]\n[[cloth]]\nname = 'bag'\nshape = 'pattern'\nfile = '" +
+      (folder_ / "tube.toml").string() +
+      "'\nedge_length = 0.06\nsewing = 0.3\npressure = { control = 'fill', keys = [{ time = 0.2, fill = 1 }, { time = "
+      "0.5, fill = 1.3 }] }\n[time]\nduration = 0.6\n");
+  EXPECT_EQ(continue_runs(scene, {13, {3, 7, 8, 11}}).difference, "");
 }
 
 // Open from 0.12 s on, closed again from 0.24 s on: states before, between, while it closes, and after.

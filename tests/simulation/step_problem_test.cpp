@@ -201,7 +201,7 @@ TEST_F(StepProblems, CountUpdatesOfFrictionOverAllSolvesOfAStep) {
 TEST_F(StepProblems, FollowLoadsOfContactsThatAreOthersWithinAStep) {
   StepProblem problem = this->problem();
   for (int update = 0; update < 25; ++update) linearise(problem, moved(0, 0.01));
-  EXPECT_GE(problem.memory().contacts.updates, collision::ContactSet::kLoadUpdates);
+  EXPECT_GE(problem.memory().contacts.updates, numerics.newton.patience);
   problem.forget_contacts();
   linearise(problem, x_);
   const double load = problem.memory().contacts.loads[0];

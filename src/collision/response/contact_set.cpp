@@ -139,9 +139,9 @@ void ContactSet::update(std::span<const Vec3> x_end, ContactLag& lag) const {
     const double depth = contact.range - contact.normal.dot(relative);
     const double force = tangent_force(load_at(contact, lag.depths[c]), lag.depths[c], depth);
     lag.depths[c] = depth_with(contact, force, std::max(depth, lag.depths[c]));
-    if (lag.updates < numerics.contact.force_updates) lag.loads[c] = force;
+    if (lag.updates < numerics.newton.patience) lag.loads[c] = force;
     if (!contact.against_obstacle || contact.static_friction == 0) return;
-    if (lag.updates < numerics.contact.force_updates)
+    if (lag.updates < numerics.newton.patience)
       follow(contact, slip_of(contact, relative) / stick_slip_, lag.frictions[c]);
     else
       lag.frictions[c].sticks = false;
@@ -177,7 +177,7 @@ ContactSet::Response ContactSet::respond(std::size_t index, Law law, std::span<c
   }
   response.slope = load.slope;
   response.force = load.force * contact.normal;
-  const bool follows = law == Law::itself && lag.updates < numerics.contact.force_updates;
+  const bool follows = law == Law::itself && lag.updates < numerics.newton.patience;
   const double friction_load = follows ? load.force : lag.loads[index];
   if (contact.static_friction == 0 || friction_load == 0) return response;
 

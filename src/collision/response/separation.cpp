@@ -250,11 +250,14 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
   if (!goes_on) rides_.assign(x_t0.size(), kAtStart);
   look_again(step);
   step.report.corrected_pairs = static_cast<int>(failing_.size());
+  // Rounds of pushing, half as many of backtracking by halves, and as many of backtracking entirely, before all go
+  // back.
+  const int rounds = numerics.separation.rounds, by_halves = rounds + rounds / 2;
   for (round_ = 1; !failing_.empty(); ++round_) {
-    bool changed = round_ >= numerics.separation.rounds && backtrack_all(step);
-    const bool last = round_ > numerics.separation.half_rounds;
+    bool changed = round_ >= by_halves + rounds && backtrack_all(step);
+    const bool last = round_ > by_halves;
     for (const CornerPair& pair : failing_) {
-      if (round_ <= numerics.separation.push_rounds && !rides(pair)) {
+      if (round_ <= rounds && !rides(pair)) {
         if (find_certificate(pair, step.start_of(pair), x_t1)) continue;  // an earlier push of this round was enough
         if (push_apart(pair, step) && (changed = true)) continue;
         if (give_way(pair, step) && (changed = true) && push_apart(pair, step)) continue;
@@ -271,7 +274,7 @@ SeparationReport Separation::enforce(std::span<const Vec3> x_t0, std::span<Vec3>
       step.report.stuck = failing_.front();
       return step.report;
     }
-    if (!changed) round_ = numerics.separation.half_rounds;
+    if (!changed) round_ = by_halves;
     look_again(step);
   }
   step.report.separated = true;

@@ -9,6 +9,14 @@
 namespace weft::collision {
 namespace {
 
+// How far a force points beyond a wall, to tell whether the wall holds, and violations that are worth another solve
+// [m].
+double nudge() {
+  return 0.5 * numerics.separation.restored_gap;
+}
+double passed_gap() {
+  return 0.1 * numerics.separation.restored_gap;
+}
 // Cosine from which two walls of a particle are taken for one.
 constexpr double kSameWall = 1 - 1e-6;
 
@@ -157,8 +165,8 @@ void VelocityConstraints::prepare(std::span<const Vec3> x_t0, std::span<const Ve
     const double push = particle.memory.push.norm();
     const Vec3 guess = x_t1[i] - x_t0[i];
     Held held;
-    const Vec3 u = project(
-        particle, push > 0 ? Vec3(guess - numerics.walls.nudge / push * particle.memory.push) : guess, false, held);
+    const Vec3 u =
+        project(particle, push > 0 ? Vec3(guess - nudge() / push * particle.memory.push) : guess, false, held);
     if (held.count == 0) {
       particle.memory = {};
       continue;
@@ -198,7 +206,7 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   Held next;
   if (memory.state == State::away) {
     const Vec3 held_at = project(particle, u, false, next);
-    if (next.load() < numerics.walls.passed) return false;
+    if (next.load() < passed_gap()) return false;
     hold(particle, held_at, next);
     return particle.flips++ < numerics.walls.flips;
   }
@@ -210,8 +218,7 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   memory.push = force - left;
   memory.load = size * pushing.load();
   const double push = memory.push.norm();
-  const Vec3 held_at =
-      project(particle, push > 0 ? Vec3(u - numerics.walls.nudge / push * memory.push) : u, false, next);
+  const Vec3 held_at = project(particle, push > 0 ? Vec3(u - nudge() / push * memory.push) : u, false, next);
   if (next.count == 0) {
     if (left.norm() > negligible && particle.flips++ >= numerics.walls.flips) return false;
     memory = {};
@@ -225,7 +232,7 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   const Wall& wall = walls_[main_wall(particle)];
   const double limit = (memory.state == State::sticking ? wall.static_friction : wall.friction) * memory.load;
   if (memory.state == State::sticking) {
-    const bool slips = left.norm() > limit, passes = passed.load() >= numerics.walls.passed;
+    const bool slips = left.norm() > limit, passes = passed.load() >= passed_gap();
     if (!(slips || passes) || particle.flips++ >= numerics.walls.flips) return false;
     if (slips) {
       memory.state = State::sliding;
@@ -243,8 +250,7 @@ bool VelocityConstraints::revise(Touched& particle, const Vec3& x_end, const Vec
   particle.slow = limit > 0 && !other_load && !other_walls && !fast;
   hold(particle, held_at, next);
   particle.friction_load = memory.load;
-  const bool matters =
-      other_load || (other_walls && (passed.load() >= numerics.walls.passed || left.norm() > negligible));
+  const bool matters = other_load || (other_walls && (passed.load() >= passed_gap() || left.norm() > negligible));
   return matters && particle.flips++ < numerics.walls.flips;
 }
 

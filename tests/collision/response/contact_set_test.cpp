@@ -212,7 +212,7 @@ TEST(ContactSet, FrictionGoesByTheLoadOfTheLastUpdateAfterTheFirstAndInTheEndKee
     return std::max(0.0, load_at(at) + slope_at(at) * kRange * (depth - at));
   };
   EXPECT_NEAR(tangential(), mu * tangent(0.6, 0.2), 1e-12);
-  for (int k = 2; k < ContactSet::kLoadUpdates - 1; ++k) contacts.update(x, lag);
+  for (int k = 2; k < numerics.newton.patience - 1; ++k) contacts.update(x, lag);
   EXPECT_NEAR(tangential(), mu * load_at(0.2), 1e-3 * mu * load_at(0.2));  // how exact depths are made
   // Up to a number of updates, so that load and slip do not chase each other for ever; the next step begins anew.
   contacts.update(x, lag);
@@ -230,7 +230,7 @@ TEST(ContactSet, FrictionOfAContactThatIsNewInAStepBeginsWithTheLoadOfItsStart) 
   const VertexOnFace pair(0.4);
   ContactSet contacts = pair.set();
   ContactLag lag;
-  lag.updates = ContactSet::kLoadUpdates;
+  lag.updates = numerics.newton.patience;
   contacts.update(pair.x, lag);
   lag.loads[0] = 7;
   contacts.add(pair.contact);
@@ -390,7 +390,7 @@ TEST(ContactSet, SlipThatTurnsBackSticksTwiceInAStep) {
   for (int turn = 0; turn < 3; ++turn) {
     slip = -slip;
     pair.update(slip);
-    const bool sticks = turn < ContactSet::kMostReturns;
+    const bool sticks = turn < numerics.contact.returns;
     EXPECT_EQ(pair.lag.frictions[0].sticks, sticks) << turn;
     // From no friction on along its tangent, or as it slides.
     EXPECT_NEAR(pair.friction(slip).dot(pair.along), sticks ? -0.4 * 2 * slip : std::copysign(0.4, -slip), 1e-12);
@@ -406,7 +406,7 @@ TEST(ContactSet, SlipThatTurnsBackSticksTwiceInAStep) {
 TEST(ContactSet, FrictionThatIsNotFoundInManyUpdatesSlidesOn) {
   Slipping pair;
   pair.update(0);
-  for (int k = 1; k < ContactSet::kLoadUpdates; ++k) pair.update(0.5 + 0.01 * k);
+  for (int k = 1; k < numerics.newton.patience; ++k) pair.update(0.5 + 0.01 * k);
   EXPECT_TRUE(pair.lag.frictions[0].sticks);
   const Vec3 drag = pair.lag.frictions[0].drag;
   pair.update(0.2).update(0.3);

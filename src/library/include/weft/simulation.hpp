@@ -38,26 +38,35 @@ struct Object {
   std::span<const Triangle> triangles;  ///< the same in all frames
 };
 
+/// Air that a cloth encloses.
+struct EnclosedAir {
+  std::string cloth;
+  double volume = 0;    ///< [m³]
+  double pressure = 0;  ///< above that outside [Pa]
+};
+
 /// What the computation of a frame took and found. In frame 0: the energies of the start.
 struct Report {
   double wall_s = 0, cpu_s = 0;  ///< of simulating this frame [s]
   int steps = 0;                 ///< time steps that were accepted
   int rejected_steps = 0;        ///< time steps that were done again, shorter
   int newton_iterations = 0;
-  int linear_iterations = 0;    ///< of conjugate gradients
-  int near_pairs = 0;           ///< vertex-face and edge-edge pairs within the detection distance, at the end
-  int constraints = 0;          ///< contacts that push, and particles that pins hold, at the end
-  double min_distance = 0;      ///< of two surfaces [m]; infinite if none is within the detection distance
-  double max_strain = 0;        ///< largest |length / rest length - 1| in all its steps
-  double stretch_ratio = 0;     ///< largest extension over the `max_stretch` of its fabric, in all its steps
-  double kinetic_energy = 0;    ///< [J]
-  double potential_energy = 0;  ///< of gravity, 0 at the origin [J]
-  double elastic_energy = 0;    ///< stretch, shear and bending [J]
-  double pin_work = 0;          ///< of pins on the cloth in this frame [J]
-  double error_estimate = 0;    ///< sum over the steps of the local error of positions, estimated [m]
-  double solver_error = 0;      ///< likewise, of what the solver left [m]
-  int pinched_pairs = 0;        ///< most triangle pairs at once that obstacles leave no space
-  int lagging_particles = 0;    ///< most particles at once that something keeps from where a pin holds them
+  int linear_iterations = 0;              ///< of conjugate gradients
+  int near_pairs = 0;                     ///< vertex-face and edge-edge pairs within the detection distance, at the end
+  int constraints = 0;                    ///< contacts that push, and particles that pins hold, at the end
+  double min_distance = 0;                ///< of two surfaces [m]; infinite if none is within the detection distance
+  double max_strain = 0;                  ///< largest |length / rest length - 1| in all its steps
+  double stretch_ratio = 0;               ///< largest extension over the `max_stretch` of its fabric, in all its steps
+  double kinetic_energy = 0;              ///< [J]
+  double potential_energy = 0;            ///< of gravity, 0 at the origin [J]
+  double elastic_energy = 0;              ///< stretch, shear and bending [J]
+  double air_energy = 0;                  ///< of the air that cloths enclose [J]
+  double pin_work = 0;                    ///< of pins on the cloth in this frame [J]
+  double error_estimate = 0;              ///< sum over the steps of the local error of positions, estimated [m]
+  double solver_error = 0;                ///< likewise, of what the solver left [m]
+  int pinched_pairs = 0;                  ///< most triangle pairs at once that obstacles leave no space
+  int lagging_particles = 0;              ///< most particles at once that something keeps from where a pin holds them
+  std::vector<EnclosedAir> enclosed_air;  ///< of each cloth with pressure
   std::vector<std::string> warnings;
 };
 

@@ -1,0 +1,11 @@
+// The rules of gravity and air.
+#pragma once
+
+#include "scene/rule.hpp"
+
+namespace weft::scene {
+
+const Table& physics_rules();
+const Table& fan_rules();
+
+}  // namespace weft::scene

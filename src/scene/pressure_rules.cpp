@@ -1,0 +1,70 @@
+#include "scene/pressure_rules.hpp"
+
+#include "scene/common_rules.hpp"
+#include "scene/pressure.hpp"
+#include "scene/table_builder.hpp"
+
+namespace weft::scene {
+namespace {
+
+/// What a scene writes for one PressureControl.
+struct Quantity {
+  const char* key;
+  Range range;
+  const char* unit;
+  const char* documentation;
+};
+
+Table key_table(const Quantity& quantity) {
+  return TableBuilder<PressureKey>("The air inside at a time.")
+      .number("time", &PressureKey::time, kMoment, "s", "later than the key before")
+      .need(Need::required)
+      .number(quantity.key, &PressureKey::value, quantity.range, quantity.unit, quantity.documentation)
+      .by_default("that of the key before; of the first key, that of the table")
+      .build();
+}
+
+/// The value and its keys.
+void quantity_rows(TableBuilder<Pressure>& rows, const Quantity& quantity, const Table& keys) {
+  rows.number(quantity.key, &Pressure::value, quantity.range, quantity.unit, quantity.documentation)
+      .choice("interpolation", &Pressure::interpolation, kInterpolations, "between its keys")
+      .list(Type::keys, "keys", &Pressure::keys, keys, [](Pressure& pressure, std::size_t i) {
+        pressure.keys.push_back(i == 0 ? PressureKey{0, pressure.value} : PressureKey(pressure.keys.back()));
+      });
+}
+
+}  // namespace
+
+const Table& pressure_rules() {
+  // Silk bursts at some kPa; air of a cubic kilometre keeps all sums finite.
+  static const Quantity kGauge = {"gauge", within(-1e6, 1e6), "Pa",
+                                  "pressure inside above that outside; negative: it draws the cloth in"};
+  static const Quantity kAir = {"air", within(-1e9, 1e9), "m³",
+                                "air pumped in since the cloth is closed, as volume at the pressure outside; negative: "
+                                "pumped out"};
+  static const Quantity kFill = {"fill", within(0, 1e6), "",
+                                 "air inside, as ratio of what the cloth encloses when it is closed"};
+  static const Table kGaugeKeys = key_table(kGauge), kAirKeys = key_table(kAir), kFillKeys = key_table(kFill);
+  using Rows = TableBuilder<Pressure>;
+  static const Table kTable =
+      TableBuilder<Pressure>(
+          "Air that the cloth encloses, from the start or, if it is sewn, from the end of sewing. Openings count as "
+          "closed by the fan of triangles to the middle of their border.")
+          .choice_by(
+              "control", {"gauge", "air", "fill"},
+              "what the scene gives: the pressure, or the amount of air, whose pressure times volume stays the same "
+              "(isothermal, 101325 Pa outside)",
+              [](Pressure& p) { return static_cast<std::size_t>(p.control); },
+              [](Pressure& p, std::size_t index) {
+                p.control = static_cast<PressureControl>(index);
+                p.value = p.control == PressureControl::fill ? 1 : 0;
+              })
+          .selects()
+          .variant("gauge", Rows().with([](auto& rows) { quantity_rows(rows, kGauge, kGaugeKeys); }))
+          .variant("air", Rows().with([](auto& rows) { quantity_rows(rows, kAir, kAirKeys); }))
+          .variant("fill", Rows().with([](auto& rows) { quantity_rows(rows, kFill, kFillKeys); }))
+          .build();
+  return kTable;
+}
+
+}  // namespace weft::scene

@@ -1,0 +1,10 @@
+// The rules of the air inside a cloth.
+#pragma once
+
+#include "scene/rule.hpp"
+
+namespace weft::scene {
+
+const Table& pressure_rules();
+
+}  // namespace weft::scene

@@ -1,0 +1,225 @@
+#include "simulation/attachments.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "collision/proximity/surface_point.hpp"
+#include "core/archive.hpp"
+
+namespace weft::simulation {
+namespace {
+
+template <class Objects>
+int object_named(const Objects& objects, const std::string& name) {
+  const auto found = std::ranges::find(objects, name, [](const auto& object) { return object.name; });
+  return found == objects.end() ? -1 : static_cast<int>(found - objects.begin());
+}
+
+}  // namespace
+
+Attachments::Attachments(const scene::Scene& scene, const environment::Environment& environment,
+                         std::span<const Index> first_particle)
+    : environment_(&environment), first_(first_particle.begin(), first_particle.end()) {
+  std::vector<std::size_t> seen(environment.cloths.size(), 0);  // of each cloth's attachments
+  for (const scene::Attachment& of_scene : scene.attachments) {
+    const int own = object_named(environment.cloths, of_scene.cloth);
+    if (own < 0) continue;  // of a cloth that is not there yet
+    const auto& chosen = environment.cloths[own].attachments[seen[own]++];
+    Attachment attachment;
+    attachment.name = of_scene.name;
+    attachment.cloth = object_named(environment.cloths, of_scene.to);
+    attachment.body = object_named(environment.bodies, of_scene.to);
+    if (attachment.cloth < 0 && attachment.body < 0) continue;
+    attachment.begin = of_scene.begin;
+    attachment.release = of_scene.release >= 0 ? of_scene.release : std::numeric_limits<double>::infinity();
+    attachment.length = of_scene.length;
+    attachment.breaking_load = of_scene.breaking_load;
+    for (const environment::Chosen& one : chosen)
+      attachment.springs.push_back(
+          {.particle = first_[own] + one.particle, .stiffness = of_scene.stiffness * one.share});
+    attachments_.push_back(std::move(attachment));
+  }
+}
+
+bool Attachments::holds_at(const Attachment& attachment, double t) const {
+  return attachment.state != State::broken && t >= attachment.begin && t <= attachment.release;
+}
+
+// Of a body at time t [m].
+Vec3 Attachments::corner(std::size_t body, Index vertex, double t) const {
+  const environment::BodyObject& object = environment_->bodies[body];
+  if (object.character) return environment_->vertex(body, static_cast<std::size_t>(vertex), t).position;
+  const environment::PoseSample pose = environment_->pose(body, t);
+  return pose.position + pose.rotation * object.mesh.positions[static_cast<std::size_t>(vertex)];
+}
+
+// To the nearest places on its target at time t, cloths being at x.
+void Attachments::tie(Attachment& attachment, double t, std::span<const Vec3> x) const {
+  std::vector<Vec3> of_target;
+  const bool is_cloth = attachment.cloth >= 0;
+  const Index first = is_cloth ? first_[attachment.cloth] : 0;
+  if (is_cloth) {
+    const auto own = x.subspan(first, environment_->cloths[attachment.cloth].start.size());
+    of_target.assign(own.begin(), own.end());
+  } else {
+    of_target.resize(environment_->bodies[attachment.body].mesh.positions.size());
+    environment_->place(static_cast<std::size_t>(attachment.body), t, of_target);
+  }
+  const auto& triangles = is_cloth ? environment_->cloths[attachment.cloth].mesh.topology.triangles
+                                   : environment_->bodies[attachment.body].mesh.topology.triangles;
+  for (Spring& spring : attachment.springs) {
+    const Vec3& own = x[spring.particle];
+    const collision::SurfacePoint nearest = collision::nearest_point(own, triangles, of_target);
+    Vec3 place = Vec3::Zero();
+    for (std::size_t k = 0; k < 3; ++k) {
+      spring.corners[k] = first + nearest.face[k];
+      spring.weights[k] = nearest.weights[k];
+      place += nearest.weights[k] * of_target[nearest.face[k]];
+    }
+    spring.length = attachment.length.value_or((place - own).norm());
+  }
+  attachment.state = State::tied;
+}
+
+void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x) {
+  for (Attachment& attachment : attachments_) {
+    if (attachment.state == State::tied && t1 < attachment.begin) attachment.state = State::open;  // a shorter step
+    attachment.holds = holds_at(attachment, t1);
+    if (!attachment.holds) continue;
+    if (attachment.state == State::open) tie(attachment, t0, x);
+    if (attachment.body < 0) continue;
+    for (Spring& spring : attachment.springs) {
+      spring.place.setZero();
+      for (std::size_t k = 0; k < 3; ++k)
+        spring.place += spring.weights[k] * corner(attachment.body, spring.corners[k], t1);
+    }
+  }
+}
+
+bool Attachments::stay(double t0, double t1) const {
+  return std::ranges::all_of(attachments_, [&](const Attachment& attachment) {
+    if (holds_at(attachment, t0) != holds_at(attachment, t1)) return false;
+    if (attachment.body < 0 || !holds_at(attachment, t1)) return true;
+    return std::ranges::all_of(attachment.springs, [&](const Spring& spring) {
+      return std::ranges::all_of(spring.corners, [&](Index vertex) {
+        return corner(attachment.body, vertex, t0) == corner(attachment.body, vertex, t1);
+      });
+    });
+  });
+}
+
+Vec3 Attachments::place_of(const Attachment& attachment, const Spring& spring, std::span<const Vec3> x) const {
+  if (attachment.cloth < 0) return spring.place;
+  return spring.weights[0] * x[spring.corners[0]] + spring.weights[1] * x[spring.corners[1]] +
+         spring.weights[2] * x[spring.corners[2]];
+}
+
+Attachments::Pull Attachments::pull(const Attachment& attachment, const Spring& spring, std::span<const Vec3> x) const {
+  const Vec3 along = place_of(attachment, spring, x) - x[spring.particle];
+  const double length = along.norm();
+  if (length <= spring.length) return {};
+  return {along / length, spring.stiffness * (length - spring.length), length};
+}
+
+// body(attachment, spring, pull) for all springs that pull.
+template <class Body>
+void Attachments::for_each_pull(std::span<const Vec3> x, const Body& body) const {
+  for (const Attachment& attachment : attachments_) {
+    if (!attachment.holds) continue;
+    for (const Spring& spring : attachment.springs)
+      if (const Pull now = pull(attachment, spring, x); now.force > 0) body(attachment, spring, now);
+  }
+}
+
+void Attachments::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const {
+  for_each_pull(x_end, [&](const Attachment& attachment, const Spring& spring, const Pull& now) {
+    force[spring.particle] += now.force * now.along;
+    if (attachment.cloth < 0) return;
+    for (std::size_t k = 0; k < 3; ++k) force[spring.corners[k]] -= spring.weights[k] * now.force * now.along;
+  });
+}
+
+void Attachments::add_terms(std::span<const Vec3> x_end, double end_rate, solver::LinearSystem& system) const {
+  for_each_pull(x_end, [&](const Attachment& attachment, const Spring& spring, const Pull& now) {
+    // Positive semidefinite: the spring is in tension.
+    const double lateral = now.force / now.length;
+    const Mat3 stiffness =
+        end_rate * ((spring.stiffness - lateral) * now.along * now.along.transpose() + lateral * Mat3::Identity());
+    if (attachment.cloth < 0) {
+      system.diagonal_terms.push_back({spring.particle, stiffness});
+      return;
+    }
+    system.terms.push_back({{spring.particle, spring.corners[0], spring.corners[1], spring.corners[2]},
+                            {1, -spring.weights[0], -spring.weights[1], -spring.weights[2]},
+                            stiffness});
+  });
+}
+
+double Attachments::energy(std::span<const Vec3> x_end) const {
+  double sum = 0;
+  for_each_pull(x_end, [&](const Attachment&, const Spring& spring, const Pull& now) {
+    sum += 0.5 * now.force * now.force / spring.stiffness;
+  });
+  return sum;
+}
+
+void Attachments::accept(std::span<const Vec3> x) {
+  for (Attachment& attachment : attachments_) {
+    attachment.load = 0;
+    if (!attachment.holds) continue;
+    for (const Spring& spring : attachment.springs) attachment.load += pull(attachment, spring, x).force;
+    if (attachment.breaking_load && attachment.load > *attachment.breaking_load) attachment.state = State::broken;
+  }
+}
+
+std::vector<frame::AttachmentLoad> Attachments::measure() const {
+  std::vector<frame::AttachmentLoad> loads;
+  for (const Attachment& attachment : attachments_)
+    loads.push_back({attachment.name, attachment.load, attachment.holds && attachment.state == State::tied});
+  return loads;
+}
+
+void Attachments::take_over(const Attachments& there, std::span<const std::size_t> cloths) {
+  for (const Attachment& before : there.attachments_) {
+    const auto found = std::ranges::find(attachments_, before.name, &Attachment::name);
+    if (found == attachments_.end()) continue;
+    found->state = before.state, found->holds = before.holds, found->load = before.load;
+    for (std::size_t s = 0; s < before.springs.size(); ++s) {
+      Spring& spring = found->springs[s];
+      const Index particle = spring.particle;
+      spring = before.springs[s];
+      spring.particle = particle;
+      if (before.cloth < 0) continue;
+      const Index shift = first_[cloths[before.cloth]] - there.first_[before.cloth];
+      for (Index& corner : spring.corners) corner += shift;
+    }
+  }
+}
+
+template <class Archive>
+void Attachments::serialize(Archive& archive) {
+  for (Attachment& attachment : attachments_) {
+    serialize_values(archive, attachment.state, attachment.holds, attachment.load);
+    if constexpr (Archive::kReads) require(attachment.state <= State::broken, "an attachment");
+    const std::size_t count = attachment.cloth >= 0
+                                  ? static_cast<std::size_t>(first_.back()) + environment_->cloths.back().start.size()
+                                  : environment_->bodies[attachment.body].mesh.positions.size();
+    for (Spring& spring : attachment.springs) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        serialize_values(archive, spring.corners[k], spring.weights[k]);
+        if constexpr (Archive::kReads)
+          require(spring.corners[k] >= 0 && static_cast<std::size_t>(spring.corners[k]) < count &&
+                      std::isfinite(spring.weights[k]),
+                  "a place of an attachment");
+      }
+      archive.value(spring.length);
+      if constexpr (Archive::kReads) require(spring.length >= 0, "a length of an attachment");
+    }
+  }
+}
+
+template void Attachments::serialize(ByteWriter&);
+template void Attachments::serialize(ByteReader&);
+
+}  // namespace weft::simulation

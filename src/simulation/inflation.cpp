@@ -1,0 +1,155 @@
+#include "simulation/inflation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/archive.hpp"
+#include "core/error.hpp"
+
+namespace weft::simulation {
+namespace {
+
+// Ratio of the volume to that of the air at the pressure outside, below which the pressure goes on in a straight line:
+// 1/V has no bound, and a line search may come to a volume of zero. Cloth that contact keeps apart encloses more.
+constexpr double kLeastVolume = 1e-3;
+
+environment::Spline<1> air_track_of(const scene::Pressure& pressure) {
+  using Track = environment::Spline<1>;
+  std::vector<double> times;
+  std::vector<Track::Value> values;
+  for (const scene::PressureKey& key : pressure.keys) {
+    times.push_back(key.time);
+    values.emplace_back(key.value);
+  }
+  if (times.empty()) return {pressure.interpolation, {0}, {Track::Value(pressure.value)}};
+  return {pressure.interpolation, std::move(times), std::move(values)};
+}
+
+}  // namespace
+
+Inflation::Inflation(const scene::Scene& scene, const environment::Environment& environment,
+                     std::span<const Index> first_particle) {
+  for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
+    const scene::Pressure& pressure = scene.cloths[c].pressure;
+    if (!pressure.acts()) continue;
+    const environment::ClothObject& object = environment.cloths[c];
+    Cloth& cloth = cloths_.emplace_back(Cloth{object.name,
+                                              fmt::format("{}:{}:{}: cloth.{}.pressure", scene.file.string(),
+                                                          scene.cloths[c].line, scene.cloths[c].column, object.name),
+                                              c,
+                                              first_particle[c],
+                                              first_particle[c] + static_cast<Index>(object.start.size()),
+                                              {object.mesh.topology.triangles, object.start},
+                                              pressure.control,
+                                              air_track_of(pressure)});
+    cloth.gradient.resize(object.start.size());
+  }
+}
+
+// As volume at the pressure outside [m³].
+double Inflation::Cloth::air() const {
+  return std::max(0.0, control == scene::PressureControl::fill ? value * closed_with : closed_with + value);
+}
+
+// Above that outside [Pa].
+double Inflation::Cloth::pressure(double at_volume) const {
+  if (closed_with == kOpen) return 0;
+  if (control == scene::PressureControl::gauge) return value;
+  const double amount = air(), least = kLeastVolume * amount;
+  if (amount == 0) return -kAmbientPressure;
+  const double ratio = at_volume > least ? amount / at_volume : (2 - at_volume / least) / kLeastVolume;
+  return kAmbientPressure * (ratio - 1);
+}
+
+// −dp/dV [Pa/m³].
+double Inflation::Cloth::stiffness(double at_volume) const {
+  if (closed_with == kOpen || control == scene::PressureControl::gauge || air() == 0) return 0;
+  const double amount = air(), v = std::max(at_volume, kLeastVolume * amount);
+  return kAmbientPressure * amount / (v * v);
+}
+
+// [J]
+double Inflation::Cloth::energy(double at_volume) const {
+  if (closed_with == kOpen) return 0;
+  if (control == scene::PressureControl::gauge) return -value * at_volume;
+  const double amount = air(), least = kLeastVolume * amount;
+  if (amount == 0) return kAmbientPressure * at_volume;
+  const double v = std::max(at_volume, least), beyond = at_volume - v;  // beyond: on the straight line, negative
+  return kAmbientPressure * (v - amount - amount * std::log(v / amount)) - pressure(v) * beyond +
+         0.5 * stiffness(v) * beyond * beyond;
+}
+
+void Inflation::begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed) {
+  for (Cloth& cloth : cloths_) {
+    cloth.value = cloth.track.at(t).value[0];
+    if (!is_closed(cloth.number)) {
+      cloth.closed_with = kOpen;
+    } else if (cloth.closed_with == kOpen) {
+      const double volume = cloth.evaluate(x);
+      if (cloth.control != scene::PressureControl::gauge && cloth.volume.is_flat(volume))
+        throw Error(ExitCode::scene_invalid,
+                    "{}: expected cloth that encloses a volume when it is closed, for an amount of air, got {:.3g} m³; "
+                    "close it, or give its pressure (control = \"gauge\")",
+                    cloth.where, volume);
+      cloth.closed_with = std::max(0.0, volume);
+    }
+  }
+}
+
+bool Inflation::stays(double t0, double t1) const {
+  return std::ranges::all_of(cloths_,
+                             [&](const Cloth& cloth) { return cloth.track.at(t0).value == cloth.track.at(t1).value; });
+}
+
+void Inflation::add_forces(std::span<const Vec3> x, std::span<Vec3> force) const {
+  for (const Cloth& cloth : cloths_) {
+    const double pressure = cloth.pressure(cloth.evaluate(x));
+    if (pressure == 0) continue;
+    for (Index i = cloth.first; i < cloth.end; ++i) force[i] += pressure * cloth.gradient[i - cloth.first];
+  }
+}
+
+void Inflation::linearise(std::span<const Vec3> x, std::span<Vec3> force, solver::LinearSystem& system) const {
+  add_forces(x, force);
+  system.rank_one_terms.clear();
+  for (const Cloth& cloth : cloths_)
+    if (const double stiffness = cloth.stiffness(cloth.evaluate(x)); stiffness > 0)
+      system.rank_one_terms.push_back({cloth.first, cloth.gradient, stiffness});
+}
+
+double Inflation::energy(std::span<const Vec3> x) const {
+  double sum = 0;
+  for (const Cloth& cloth : cloths_) sum += cloth.energy(cloth.evaluate(x));
+  return sum;
+}
+
+std::vector<frame::EnclosedAir> Inflation::measure(std::span<const Vec3> x) const {
+  std::vector<frame::EnclosedAir> measured;
+  for (const Cloth& cloth : cloths_) {
+    const double volume = cloth.evaluate(x);
+    measured.push_back({cloth.name, volume, cloth.pressure(volume)});
+  }
+  return measured;
+}
+
+void Inflation::take_over(const Inflation& there, std::span<const std::size_t> numbers) {
+  for (const Cloth& before : there.cloths_)
+    for (Cloth& cloth : cloths_)
+      if (cloth.number == numbers[before.number]) cloth.closed_with = before.closed_with, cloth.value = before.value;
+}
+
+template <class Archive>
+void Inflation::serialize(Archive& archive) {
+  for (Cloth& cloth : cloths_) {
+    serialize_values(archive, cloth.value, cloth.closed_with);
+    if constexpr (Archive::kReads)
+      require(std::isfinite(cloth.value) && (cloth.closed_with == kOpen || cloth.closed_with >= 0), "enclosed air");
+  }
+}
+
+template void Inflation::serialize(ByteWriter&);
+template void Inflation::serialize(ByteReader&);
+
+}  // namespace weft::simulation

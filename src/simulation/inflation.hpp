@@ -1,0 +1,79 @@
+// Air that cloths enclose: its pressure, its force, its energy.
+#pragma once
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "environment/environment.hpp"
+#include "environment/spline.hpp"
+#include "forces/enclosed_volume.hpp"
+#include "frame/frame_report.hpp"
+#include "scene/scene.hpp"
+#include "solver/linear_system.hpp"
+
+namespace weft::simulation {
+
+/// The pressure p inside, above that outside, pushes with p ∂V/∂x. If the scene gives p, the energy is −p V. If it
+/// gives an amount of air, as volume A at the pressure p₀ outside, the air is isothermal: (p₀ + p) V = p₀ A, with the
+/// energy p₀ (V − A − A ln(V / A)).
+///
+/// The linear system gets −dp/dV ∂V/∂x ∂V/∂xᵀ. It does not get the change of ∂V/∂x, which is indefinite: a small part
+/// of the stiffness of cloth under tension (see Decisions in README.md).
+class Inflation {
+ public:
+  /// Pressure outside [Pa]: standard atmosphere.
+  static constexpr double kAmbientPressure = 101325;
+
+  Inflation() = default;
+  /// Of the cloths whose pressure acts; `first_particle`: of each cloth of the scene.
+  Inflation(const scene::Scene& scene, const environment::Environment& environment,
+            std::span<const Index> first_particle);
+
+  bool empty() const { return cloths_.empty(); }
+
+  /// For a step that ends at time t of the scene [s]. Cloth that is not closed yet, as is_closed(cloth) says, has no
+  /// pressure inside; what it encloses at x [m] when it is closed is its air. Throws Error(scene_invalid) if an amount
+  /// is given of cloth that then encloses nothing.
+  void begin_step(double t, std::span<const Vec3> x, const std::function<bool(std::size_t)>& is_closed);
+  /// Whether the scene gives the same at both times [s].
+  bool stays(double t0, double t1) const;
+
+  /// Positions, forces [N] and rows are those of all particles.
+  void add_forces(std::span<const Vec3> x, std::span<Vec3> force) const;
+  void linearise(std::span<const Vec3> x, std::span<Vec3> force, solver::LinearSystem& system) const;
+
+  /// Of all cloths [J].
+  double energy(std::span<const Vec3> x) const;
+  std::vector<frame::EnclosedAir> measure(std::span<const Vec3> x) const;
+
+  /// Cloths of another scene, the ones that `numbers` names here, keep the air that they have there.
+  void take_over(const Inflation& there, std::span<const std::size_t> numbers);
+
+  template <class Archive>
+  void serialize(Archive& archive);
+
+ private:
+  static constexpr double kOpen = -1;
+  struct Cloth {
+    std::string name;
+    std::string where;   // in the scene, for errors
+    std::size_t number;  // of the scene
+    Index first, end;    // particles
+    forces::EnclosedVolume volume;
+    scene::PressureControl control;
+    environment::Spline<1> track;
+    double value = 0;                      // of the track, in the step at hand
+    double closed_with = kOpen;            // volume at which it was closed [m³]; kOpen: it is not
+    mutable std::vector<Vec3> gradient{};  // scratch
+
+    double air() const;
+    double pressure(double at_volume) const;
+    double stiffness(double at_volume) const;
+    double energy(double at_volume) const;
+    double evaluate(std::span<const Vec3> x) const { return volume.evaluate(x.subspan(first, end - first), gradient); }
+  };
+  std::vector<Cloth> cloths_;
+};
+
+}  // namespace weft::simulation

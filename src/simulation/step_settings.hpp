@@ -1,0 +1,28 @@
+// What the steps of a scene are begun with: method, tolerances, and the state of the cloths.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "environment/environment.hpp"
+#include "integrator/step_control.hpp"
+#include "integrator/stepper.hpp"
+#include "scene/scene.hpp"
+#include "simulation/cloth_system.hpp"
+#include "simulation/collision_stage.hpp"
+
+namespace weft::simulation {
+
+integrator::Method method_of(scene::Integrator integrator);
+integrator::NewtonParameters newton_of(const scene::Scene& scene);
+/// Of a scene that has a tolerance instead of a step.
+std::optional<integrator::StepControl> step_control_of(const scene::Scene& scene);
+
+/// First particle of each cloth.
+std::vector<Index> first_particles(const ClothSystem& cloth);
+
+/// Where cloths start, as fast as the scene says, at time t [s].
+Moment start_of(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
+                double t);
+
+}  // namespace weft::simulation

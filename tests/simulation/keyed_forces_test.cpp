@@ -1,0 +1,123 @@
+// Forces that change with time and place, and spin at the start, against simple theory.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "simulation/scenes.hpp"
+#include "simulation/simulation.hpp"
+#include "support/scene_runs.hpp"
+
+namespace weft::simulation {
+namespace {
+
+Vec3 mean_velocity(const Simulation& simulation) {
+  const ParticleState state = simulation.state();
+  Vec3 momentum = Vec3::Zero();
+  double mass = 0;
+  for (std::size_t i = 0; i < state.masses.size(); ++i)
+    momentum += state.masses[i] * state.velocities[i], mass += state.masses[i];
+  return momentum / mass;
+}
+
+Vec3 velocity_at_end(const scene::Scene& scene) {
+  Simulation simulation(scene);
+  for (int frame = 1; frame < scene.frame_count(); ++frame) simulation.advance();
+  return mean_velocity(simulation);
+}
+
+TEST(KeyedForces, GravityThatGrowsAddsItsIntegralToTheVelocity) {
+  scene::Scene scene = testing::sheet_alone(0.3, 5, 0);
+  scene.time.integrator = scene::Integrator::implicit_midpoint;
+  scene.physics.interpolation = scene::Interpolation::linear;
+  scene.physics.keys = {{0.2, {0, 0, 0}, {0, 0, 0}}, {0.8, {0, 3, -6}, {0, 0, 0}}};
+  // The midpoint rule integrates what is linear in time exactly: ½ · 0.6 s of the last key, and 0.2 s of all of it.
+  EXPECT_LT((velocity_at_end(scene) - 0.5 * Vec3(0, 3, -6)).norm(), 1e-9);
+}
+
+TEST(KeyedForces, SheetThatFacesWindFromSomeTimeOnCatchesUpAsTheoryHasIt) {
+  scene::Scene scene = testing::sheet_alone(0.3, 5, 0);
+  scene.physics.air_density = 1.2;
+  scene.physics.gravity.setZero();
+  scene.time.duration = 0.6;
+  scene.time.step = 0.001;
+  scene.physics.interpolation = scene::Interpolation::linear;
+  constexpr double kWind = 8;
+  scene.physics.keys = {{0.2, {0, 0, 0}, {0, 0, 0}}, {0.2001, {0, 0, 0}, {0, 0, kWind}}};
+  // v' = a (w − v)², a = ρ c / (2 σ): w − v = w / (1 + a w t).
+  const double a = 1.2 * scene.cloths[0].material.drag / (2 * scene.cloths[0].material.density);
+  EXPECT_NEAR(velocity_at_end(scene).z() / (kWind - kWind / (1 + a * kWind * 0.4)), 1, 0.005);  // 0.002 measured
+  scene.time.duration = 0.16;
+  EXPECT_EQ(velocity_at_end(scene), Vec3(0, 0, 0));
+}
+
+TEST(KeyedForces, FanPushesWhatIsInItsConeWithTheDragOfItsJet) {
+  const auto after_a_millisecond = [](double x) {
+    scene::Scene scene = testing::sheet_alone(0.02, 3, 1.5);
+    scene.cloths[0].pose.position.x() = x;
+    scene.physics.air_density = 1.2;
+    scene.physics.gravity.setZero();
+    scene.time = {.duration = 0.001, .fps = 1000, .step = 0.001};
+    scene::Fan fan;
+    fan.keys = {{.time = 0, .position = {0, 0, 0}, .direction = {0, 0, 1}, .speed = 6}};
+    fan.radius = 0.2;
+    scene.fans = {fan};
+    return velocity_at_end(scene).z();
+  };
+  const double apex = 0.2 / std::tan(12 * std::numbers::pi / 180), jet = 6 * apex / (apex + 1.5);
+  EXPECT_NEAR(after_a_millisecond(0) / (1e-3 * 1.2 * jet * jet / (2 * 0.2)), 1, 0.03);  // 0.016: it moves, it is wide
+  EXPECT_EQ(after_a_millisecond(0.6), 0);
+}
+
+TEST(KeyedForces, SpinTurnsClothAboutItsCentreAndIsKept) {
+  scene::Scene scene = testing::sheet_alone(0.3, 9, 0.4);
+  scene.physics.gravity.setZero();
+  scene.time = {.duration = 0.2, .fps = 25, .step = 0.002, .integrator = scene::Integrator::implicit_midpoint};
+  scene.cloths[0].spin = {0, 0, 180};
+  scene.cloths[0].velocity = {0.5, 0, 0};
+  const auto angular_momentum = [](const Simulation& simulation) {
+    const ParticleState state = simulation.state();
+    Vec3 middle = Vec3::Zero(), sum = Vec3::Zero();
+    double mass = 0;
+    for (std::size_t i = 0; i < state.masses.size(); ++i)
+      middle += state.masses[i] * state.positions[i], mass += state.masses[i];
+    middle /= mass;
+    for (std::size_t i = 0; i < state.masses.size(); ++i)
+      sum += state.masses[i] * (state.positions[i] - middle).cross(state.velocities[i]);
+    return sum;
+  };
+  Simulation simulation(scene);
+  // Lumped masses of a square with n cells a side turn with m a² / 12 (1 + 2 / n²) about each axis in it.
+  const double inertia = 0.2 * 0.09 * 0.09 / 6 * (1 + 2.0 / 64);
+  const Vec3 start = angular_momentum(simulation);
+  EXPECT_LT((start - Vec3(0, 0, inertia * std::numbers::pi)).norm(), 1e-12);
+  EXPECT_LT((mean_velocity(simulation) - Vec3(0.5, 0, 0)).norm(), 1e-14);
+  const Vec3 corner = simulation.state().positions[0];
+  for (int frame = 1; frame < scene.frame_count(); ++frame) simulation.advance();
+  EXPECT_LT((angular_momentum(simulation) - start).norm(), 0.01 * start.norm());
+  // Turned by 36 degrees and moved by 0.1 m.
+  const Vec3 arm = corner - Vec3(0, 0, 0.4), there = simulation.state().positions[0] - Vec3(0.1, 0, 0.4);
+  const double angle = std::atan2(arm.cross(there).z(), arm.dot(there)) * 180 / std::numbers::pi;
+  EXPECT_NEAR(angle, 36, 1);
+}
+
+TEST(PlanOfNamedParts, ListsThemOnlyWhereASceneNamesThem) {
+  const auto named = [](const scene::Scene& scene) {
+    std::string parts;
+    for (const PlanItem& item : plan(scene))
+      for (const char* part : {"pressure", "keyed", "fans", "attachments"})
+        if (item.part.find(part) != std::string::npos) parts += item.part + ";";
+    return parts;
+  };
+  scene::Scene scene = testing::sheet_alone(0.3, 5, 0);
+  EXPECT_EQ(named(scene), "");
+  scene.cloths[0].pressure.value = 3;
+  scene.physics.keys = {{0, {0, 0, 0}, {0, 0, 0}}};
+  scene.fans.emplace_back();
+  scene.attachments.emplace_back();
+  EXPECT_EQ(named(scene),
+            "force: pressure of enclosed air;force: attachments;force: keyed gravity and wind;force: fans;");
+}
+
+}  // namespace
+}  // namespace weft::simulation

@@ -1,0 +1,97 @@
+// Terms that are outer products, in the product and in the preconditioner.
+#include "solver/rank_one.hpp"
+
+#include <gtest/gtest.h>
+
+#include "solver/block_systems.hpp"
+#include "solver/conjugate_gradient.hpp"
+
+namespace weft::solver {
+namespace {
+
+using testing::cut_groups;
+using testing::flat;
+using testing::projection;
+using testing::Random;
+
+void add_term(LinearSystem& system, Index begin, Index end, double stiffness, Random& random) {
+  system.rank_one_terms.push_back({begin, random.vectors(end - begin), stiffness});
+}
+
+Eigen::MatrixXd dense_with_products(const LinearSystem& system) {
+  Eigen::MatrixXd sum = testing::dense_with_terms(system);
+  for (const RankOneTerm& term : system.rank_one_terms) {
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(sum.rows());
+    d.segment(3 * term.begin, 3 * static_cast<Index>(term.direction.size())) = flat(term.direction);
+    sum += term.stiffness * d * d.transpose();
+  }
+  return sum;
+}
+
+Eigen::VectorXd dense_solution(const LinearSystem& system, std::span<const Vec3> b) {
+  const Eigen::MatrixXd s = projection(system), identity = Eigen::MatrixXd::Identity(s.rows(), s.cols());
+  return Eigen::MatrixXd(s * dense_with_products(system) * s + (identity - s)).ldlt().solve(s * flat(b));
+}
+
+TEST(RankOneTerms, AreSolvedExactlyHoweverStiffTheyAre) {
+  for (const double stiffness : {1e-3, 1.0, 1e3, 1e6})
+    for (const std::vector<Index>& counts : {std::vector<Index>{}, {20, 6}}) {
+      Random random(3);
+      constexpr Index kRows = 40;
+      LinearSystem system = testing::random_system(kRows, 30, random);
+      cut_groups(system, counts);
+      add_term(system, 0, kRows, stiffness, random);
+      add_term(system, 0, kRows, 10 * stiffness, random);
+      const auto b = random.vectors(kRows);
+      std::vector<Vec3> x(kRows);
+      ConjugateGradient cg;
+      cg.prepare(system);
+      EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x).converged);
+      const Eigen::VectorXd expected = dense_solution(system, b);
+      EXPECT_LT((flat(x) - expected).norm(), 1e-9 * expected.norm()) << stiffness;  // 1e-10 measured at 1e6
+    }
+}
+
+TEST(RankOneTerms, TakeNoMoreIterationsWhereTheyAreStiff) {
+  const auto iterations = [](double stiffness) {
+    Random random(7);
+    constexpr Index kRows = 200;
+    LinearSystem system = testing::random_system(kRows, 100, random);
+    cut_groups(system, {50, 12});
+    if (stiffness > 0) add_term(system, 0, kRows, stiffness, random);
+    const auto b = random.vectors(kRows);
+    std::vector<Vec3> x(kRows);
+    ConjugateGradient cg;
+    cg.prepare(system);
+    const LinearReport report = cg.solve(b, {1e-3}, 1000, x);
+    EXPECT_TRUE(report.converged && report.definite);
+    return report.iterations;
+  };
+  const int without = iterations(0);
+  for (const double stiffness : {1e-2, 1e2, 1e6}) EXPECT_LE(iterations(stiffness), without + 3) << stiffness;
+}
+
+TEST(RankOneTerms, OfOtherPartsDoNotCountAndThoseOfOwnPartsDo) {
+  Random random(31);
+  LinearSystem system = testing::system_of_parts(random);
+  cut_groups(system, {30, 6});
+  for (const Part& part : std::vector<Part>(system.parts)) add_term(system, part.begin, part.end, 1e3, random);
+  const auto b = random.vectors(system.matrix.rows());
+  std::vector<Vec3> x(b.size());
+  ConjugateGradient cg;
+  cg.prepare(system);
+  const std::vector<std::size_t> chosen{1};
+  EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x, {}, chosen).converged);
+  // As if all others were held.
+  LinearSystem held = system;
+  held.constraints.clear();
+  for (const ParticleConstraint& c : system.constraints)
+    if (c.particle >= system.parts[1].begin && c.particle < system.parts[1].end) held.constraints.push_back(c);
+  for (Index i = 0; i < system.matrix.rows(); ++i)
+    if (i < system.parts[1].begin || i >= system.parts[1].end) held.constraints.push_back({i, Mat3::Zero()});
+  const Eigen::VectorXd expected = dense_solution(held, b);
+  EXPECT_LT((flat(x) - expected).norm(), 1e-9 * expected.norm());
+}
+
+}  // namespace
+}  // namespace weft::solver
