@@ -5,7 +5,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <ranges>
 #include <set>
 #include <utility>
 
@@ -376,13 +375,13 @@ void Campaign::measure_linear() {
 void Campaign::measure_meshes() {
   std::map<double, SamplePtr> by_refinement;  // factors are multiples of an eighth, exact in binary
   const auto first = static_cast<std::ptrdiff_t>(result_.runs.size());
-  std::set<double> asked, all(std::begin(kRefinements), std::end(kRefinements));
+  std::set<double, std::greater<>> asked, all(std::begin(kRefinements), std::end(kRefinements));  // finest first
   if (plan_.meshes) {
     asked.insert(plan_.meshes->begin(), plan_.meshes->end());
     all = asked;
     for (const double refinement : asked) all.insert(2 * refinement);
   }
-  for (const double refinement : all | std::views::reverse) {
+  for (const double refinement : all) {
     if (!can_refine(scene_, refinement)) continue;
     Run tried{.axis = Axis::mesh, .setting = as_in_scene(result_.reference.setting.integrator, 0.5 * scene_step_)};
     tried.setting.newton_tolerance = std::max(kLeastNewton, kNewtonOfMeshes * tried.setting.newton_tolerance);

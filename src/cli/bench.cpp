@@ -159,7 +159,7 @@ ExitCode bench_scene_stability(const BenchOptions& options, const std::filesyste
       },
       [&] { return signals.requested().load(); });
   write_file(folder / (name + ".csv"), bench::csv(bench::trial_table(stability)));
-  const std::string plot = bench::trial_svg(title, stability);
+  std::string plot = bench::trial_svg(title, stability);
   const std::string text = bench::scene_stability_markdown(title, stability, picture);
   write_file(folder / picture, plot);
   write_file(folder / (name + ".md"), text);

@@ -30,7 +30,7 @@ using Changes = std::vector<std::pair<std::string, std::string>>;
 std::vector<Changes> read_list(const std::filesystem::path& file);
 
 /// The same of the text of a file, which the ending of its name says how to read.
-std::vector<Changes> parse_list(const std::filesystem::path& file, const std::string& text);
+std::vector<Changes> parse_list(const std::filesystem::path& file, const std::string& raw);
 
 struct SweepRun {
   Changes changes;     ///< all of them

@@ -76,7 +76,7 @@ double EnclosedVolume::evaluate(std::span<const Vec3> x, std::span<Vec3> gradien
   };
   // Differences to the vertex itself: their products stay exact far from the origin.
   const auto derivative = [&](std::size_t i) {
-    const Vec3 own = place(static_cast<Index>(i));
+    const Vec3& own = place(static_cast<Index>(i));
     Vec3 sum = Vec3::Zero();
     for (Index s = star_begin_[i]; s < star_begin_[i + 1]; ++s) {
       const auto& [j, k] = star_[index_of(s)];
