@@ -6,6 +6,8 @@
 #include <sstream>
 #include <vector>
 
+#include "core/markup.hpp"
+
 namespace weft::bench {
 namespace {
 
@@ -16,25 +18,10 @@ constexpr const char* kStyle =
     "th:first-child,td:first-child{text-align:left}th{background:#f4f4f2}svg{max-width:100%;height:auto}"
     "code{background:#f4f4f2}";
 
-std::string html_text(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else
-      safe += c;
-  }
-  return safe;
-}
-
 // `code` and **strong**.
 std::string inline_html(const std::string& text) {
   static const std::regex kStrong(R"(\*\*([^*]+)\*\*)"), kCode("`([^`]+)`");
-  return std::regex_replace(std::regex_replace(html_text(text), kCode, "<code>$1</code>"), kStrong,
+  return std::regex_replace(std::regex_replace(markup_text(text), kCode, "<code>$1</code>"), kStrong,
                             "<strong>$1</strong>");
 }
 
@@ -97,7 +84,7 @@ std::string html_page(const std::string& title, const std::string& markdown, con
   return fmt::format(
       "<!doctype html>\n<html lang=\"en\"><head><meta charset=\"utf-8\"><title>{}</title><style>{}</style></head>\n"
       "<body>\n{}</body></html>\n",
-      html_text(title), kStyle, body);
+      markup_text(title), kStyle, body);
 }
 
 }  // namespace weft::bench

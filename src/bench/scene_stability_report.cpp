@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/markup.hpp"
+
 namespace weft::bench {
 namespace {
 
@@ -26,19 +28,6 @@ const char* color_of(TrialVerdict verdict) {
       return "#dddddd";
   }
   return "#ffffff";
-}
-
-std::string xml_text(const std::string& text) {
-  std::string safe;
-  for (const char c : text) {
-    if (c == '&')
-      safe += "&amp;";
-    else if (c == '<')
-      safe += "&lt;";
-    else
-      safe += c;
-  }
-  return safe;
 }
 
 double newton_of(const Trial& trial) {
@@ -80,7 +69,7 @@ std::string cell(double x, double y, const Trial* trial) {
       "<rect x='{0:.0f}' y='{1:.0f}' width='{2:.0f}' height='{2:.0f}' fill='{3}' stroke='white'><title>{6}: "
       "{7}</title></rect>\n<text x='{4:.0f}' y='{5:.0f}' text-anchor='middle'>{8:.1f}</text>\n",
       x, y, kTrialCell, color_of(trial->verdict), x + 0.5 * kTrialCell, y + 0.6 * kTrialCell, describe(trial->verdict),
-      xml_text(what_of(*trial)), newton_of(*trial));
+      markup_text(what_of(*trial)), newton_of(*trial));
 }
 
 std::string label(double x, double y, const char* anchor, const std::string& text) {
@@ -163,7 +152,8 @@ Table trial_table(const SceneStability& stability) {
 }
 
 std::string trial_svg(const std::string& title, const SceneStability& stability) {
-  std::string body = label(kTrialLeft, 22, "start", xml_text(title) + ": one value at a time, times that of the scene");
+  std::string body =
+      label(kTrialLeft, 22, "start", markup_text(title) + ": one value at a time, times that of the scene");
   double y = kTrialTop;
   for (std::size_t a = 0; a < kVariedValues; ++a, y += kTrialCell + 18) {
     body += label(kTrialLeft - 8, y + 0.6 * kTrialCell, "end", std::string(name_of(static_cast<Varied>(a))));

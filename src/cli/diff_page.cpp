@@ -8,6 +8,7 @@ extern "C" {
 
 #include "cli/diff_report.hpp"
 #include "core/error.hpp"
+#include "core/markup.hpp"
 #include "core/version.hpp"
 #include "image/png.hpp"
 
@@ -63,17 +64,17 @@ void DiffPage::add_figure(const char* kind, const std::string& caption, const im
   sections_ += fmt::format(
       "<figure class=\"{0}\"><img alt=\"{0}\" src=\"data:image/png;base64,{1}\"><figcaption>{0}: "
       "{2}</figcaption></figure>\n",
-      kind, bytes, escaped(caption));
+      kind, bytes, markup_text(caption));
 }
 
 void DiffPage::add(const FileComparison& result, const std::string& description) {
   if (result.good()) {
-    good_ += fmt::format("<li>{}</li>\n", escaped(description));
+    good_ += fmt::format("<li>{}</li>\n", markup_text(description));
     return;
   }
   ++differing_;
-  sections_ += fmt::format("<section class=\"pair\">\n<h2>{}</h2>\n<p>{}</p>\n", escaped(result.name),
-                           escaped(description.substr(std::min(description.size(), result.name.size() + 2))));
+  sections_ += fmt::format("<section class=\"pair\">\n<h2>{}</h2>\n<p>{}</p>\n", markup_text(result.name),
+                           markup_text(description.substr(std::min(description.size(), result.name.size() + 2))));
   const bool compared = result.frames > 0;
   if (picture_bytes_ > kMostPictureBytes) {
     sections_ += "<p class=\"muted\">Without pictures: the page holds 100 MB of them already.</p>\n";
@@ -105,7 +106,7 @@ std::string DiffPage::html(const std::string& title) const {
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; img-src data:; "
       "style-src 'unsafe-inline'\">\n<title>{}</title>\n<style>{}</style>\n</head>\n<body>\n<main>\n"
       "<h1>{}</h1>\n{}{}</main>\n</body>\n</html>\n",
-      kVersion, escaped(title), kStyle, escaped(title), sections_, good);
+      kVersion, markup_text(title), kStyle, markup_text(title), sections_, good);
 }
 
 }  // namespace weft::cli

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "core/json.hpp"
+#include "core/markup.hpp"
 
 namespace weft::cli {
 namespace {
@@ -57,27 +58,6 @@ const char* name_of(Outcome outcome) {
 }
 
 }  // namespace
-
-std::string escaped(const std::string& text) {
-  // File names need not be UTF-8; what is not becomes U+FFFD.
-  const std::string valid = parse_json(json_text(text));
-  std::string safe;
-  for (const char c : valid) {
-    if (c == '<')
-      safe += "&lt;";
-    else if (c == '>')
-      safe += "&gt;";
-    else if (c == '&')
-      safe += "&amp;";
-    else if (c == '"')
-      safe += "&quot;";
-    else if (static_cast<unsigned char>(c) < 0x20)
-      safe += ' ';
-    else
-      safe += c;
-  }
-  return safe;
-}
 
 std::string annotation(const FileComparison& result, const std::string& description) {
   const auto quoted = [](const std::string& text, std::string_view special) {
@@ -140,8 +120,8 @@ std::string junit_xml(const std::vector<FileComparison>& results, const std::vec
   for (std::size_t i = 0; i < results.size(); ++i) {
     const fs::path name = results[i].name;
     const std::string folder = name.parent_path().string();
-    cases += fmt::format("  <testcase classname=\"{}\" name=\"{}\"", escaped(folder.empty() ? "." : folder),
-                         escaped(name.filename().string()));
+    cases += fmt::format("  <testcase classname=\"{}\" name=\"{}\"", markup_text(folder.empty() ? "." : folder),
+                         markup_text(name.filename().string()));
     if (results[i].good()) {
       cases += "/>\n";
       continue;
@@ -150,7 +130,7 @@ std::string junit_xml(const std::vector<FileComparison>& results, const std::vec
     ++(broken ? errors : failures);
     const char* kind = broken ? "error" : "failure";
     cases += fmt::format(">\n    <{} type=\"{}\" message=\"{}\"/>\n  </testcase>\n", kind, name_of(results[i].outcome),
-                         escaped(descriptions[i]));
+                         markup_text(descriptions[i]));
   }
   return fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuite name=\"weft diff\" tests=\"{}\" "

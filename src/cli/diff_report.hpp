@@ -20,9 +20,6 @@ Json describe_json(const compare::Limits& limits);
 Json describe_json(const compare::FileComparison& result, const compare::Limits& limits,
                    const std::filesystem::path& heatmap);
 
-/// Text for HTML and XML: five characters by name, and none of those that XML forbids.
-std::string escaped(const std::string& text);
-
 /// A line that GitHub Actions, and what speaks its language, shows at the reference, or at the test where there is
 /// none: paths from GITHUB_WORKSPACE on, if that is set. `description`: of the result.
 std::string annotation(const compare::FileComparison& result, const std::string& description);

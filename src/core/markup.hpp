@@ -1,0 +1,12 @@
+// Text for HTML, XML and SVG.
+#pragma once
+
+#include <string>
+
+namespace weft {
+
+/// `text` as the content of an element or of an attribute in double quotes. Control characters become spaces, and what
+/// is not UTF-8, as in names of files, becomes U+FFFD.
+std::string markup_text(const std::string& text);
+
+}  // namespace weft
