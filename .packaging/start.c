@@ -32,7 +32,7 @@ int main(int argc, char **argv) {
   char *loader = join(folder, "lib/ld-linux-x86-64.so.2");
   char *image = join(folder, program);
 
-  /* --argv0: the program learns from it where it was started (core/own_program.cpp). Nothing goes through the environment,
+  /* --argv0: the program learns from it where it was started (core/installation.cpp). Nothing goes through the environment,
    * which other programs would inherit. */
   /* $ORIGIN, as the loader takes a colon in the name of a folder as the end of it. */
   char *options[] = {loader, "--inhibit-cache", "--library-path", "$ORIGIN/../lib", "--argv0", self, image};

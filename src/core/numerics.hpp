@@ -14,7 +14,7 @@ struct Numerics {
     /// Multigrid: what a member takes from the neighbours of its aggregate. 0: aggregates move as wholes, and
     /// iterations grow with finer meshes.
     double interpolation = 0.6;
-    /// Stiffness between aggregates that is left from level to level. 1: aggregates are too stiff, iterations double.
+    /// Stiffness between aggregates that is left from level to level. 1: that of the sums, which is too stiff.
     double level_stiffness = 0.5;
     /// Weight of contacts on aggregates. 1: a quarter more iterations where much touches.
     double contact_weight = 2;
@@ -27,15 +27,17 @@ struct Numerics {
     double factor_weight = 16;
     /// First shift of an indefinite factorisation, relative to the diagonal. 0.1: a third more iterations.
     double factor_shift = 1e-3;
-    /// The last iterations, at least, and as a fraction of all, whose gain estimates the error. Fewer: solves end on a
-    /// plateau.
+    /// The last iterations whose gain estimates the error: so many at least, and one in so many of all. Fewer: solves
+    /// end on a plateau, and a viscosity of 1e3 N·s/m gains energy.
     int least_delay = 3;
     int delay_fraction = 5;
-    /// Error in the energy norm below which the mass-weighted norm may end a solve. 1: stiff motion is left unsolved.
+    /// Error in the energy norm, relative to the solution, below which the mass-weighted norm may end a solve. 0.5: a
+    /// viscosity of 1e3 N·s/m gains energy.
     double energy_first = 0.3;
     /// Aggregates on the coarsest level, at most; its dense factorisation costs 9 times their third power.
     int coarsest_aggregates = 70;
-    /// Length over width from which an aggregate grows in width only. Larger: strips of slender cells do not converge.
+    /// Length over width from which an aggregate grows in width only. Larger: strips of slender cells swing with 0.8 of
+    /// their energy.
     double slender_aggregate = 2;
   } linear;
 
@@ -81,7 +83,7 @@ struct Numerics {
 
   /// Step sizes from `time.tolerance` (src/integrator/step_control.cpp), and after rejections.
   struct Steps {
-    /// Error that is aimed at, relative to the tolerance. 1: every second step is rejected.
+    /// Error that is aimed at, relative to the tolerance. Nearer to 1: more steps are rejected.
     double aim = 0.7;
     /// Change of a step size that is not worth a new matrix.
     double kept_change = 0.1;
@@ -92,7 +94,7 @@ struct Numerics {
     double least = 1e-5;
     /// Length below which a step that is not solved ends the run [s].
     double shortest = 1e-7;
-    /// Growth from step to step after one was rejected. 2: cloth that is wrung is rejected again and again.
+    /// Growth from step to step after one was rejected. Larger: cloth that is wrung is rejected again and again.
     double recovery = 1.1;
     /// Cloth slower than this [m/s], and with no more acceleration than is visible, rests: a frame is one step.
     double rest_velocity = 0.02;
@@ -125,7 +127,8 @@ struct Numerics {
     double stick_spacings = 0.002;
     /// Slip velocity, in stick velocities, from which friction is no longer static.
     double slide_velocity = 5;
-    /// Times in a step that a contact which slides back sticks again.
+    /// Times in a step that a contact which slides back sticks again. 0: a catwalk takes half as many iterations again;
+    /// 20: friction of 10 does not settle.
     int returns = 2;
     /// Stiffness of a contact with a moving obstacle for each time that its cloth was pushed apart, and how often.
     double hardening = 3;
@@ -143,7 +146,8 @@ struct Numerics {
     double restored_gap = 2e-4;
     /// Halvings of a trajectory in which planes are searched. 0: a tenth more iterations.
     int halvings = 3;
-    /// Rounds of pushing apart; then half as many of backtracking by halves. Fewer: tight cloth is stretched.
+    /// Rounds of pushing apart; then half as many of backtracking by halves. Fewer: particles go back farther than
+    /// needed.
     int rounds = 24;
     /// Distance between an obstacle's arc and its chord, in detection distances, above which a step is halved.
     double sagitta = 0.25;
@@ -171,7 +175,8 @@ struct Numerics {
     /// Halvings before cloth counts as pinched, and before a diverging or overstretched solve is accepted.
     int halvings_before_pinch = 3;
     int halvings_before_stretch = 6;
-    /// Times that a solve continues from where cloth was pushed apart; without gain; and the gain that counts.
+    /// Times that a solve continues from where cloth was pushed apart (0: a ring takes four times the steps); on end
+    /// without gain; and the energy stored, relative to the least before, from which there is none.
     int restarts = 16;
     int idle_restarts = 2;
     double idle_energy = 0.9;
