@@ -93,13 +93,13 @@ bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // Velocity constraints let go and stick again step by step.
   const bool by_steps = scene_.contact.response == scene::Response::velocity_constraints;
-  if (scene_.time.integrator != scene::Integrator::implicit_euler || by_steps || !weather_.stays(t, t + whole) ||
-      whole > (1 + 1e-9) * numerics.steps.longest_rest || whole > progress_.longest ||
-      !cloth_.inflation().stays(t, t + whole) || !attachments_.stay(t, t + whole) || !is_slow(progress_.now) ||
+  if (scene_.time.integrator != scene::Integrator::implicit_euler || by_steps ||
+      whole > (1 + 1e-9) * numerics.steps.longest_rest || whole > progress_.longest || !is_slow(progress_.now) ||
       !has_settled())
     return false;
   for (int s = 1; s <= steps; ++s) {
     const double end = t + s * h;
+    if (!weather_.stays(t, end) || !cloth_.inflation().stays(t, end) || !attachments_.stay(t, end)) return false;
     if (!pins_.stay(t, end) || (collisions_ && !collisions_->bodies_stay(t, end, progress_.now, next_))) return false;
   }
   return true;

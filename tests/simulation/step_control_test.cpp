@@ -266,6 +266,14 @@ TEST(Rest, SeesWhatIsBackInPlaceWhenTheFrameEnds) {
   Simulation pulled(scene);
   EXPECT_EQ(steps_of(pulled, 50).back(), 1);
   EXPECT_EQ(pulled.advance().steps, 2);
+
+  scene = sheet_that_hangs();
+  scene.physics.interpolation = scene::Interpolation::linear;
+  for (const scene::PoseKey& key : there_and_back(Vec3::Zero()))
+    scene.physics.keys.push_back({key.time, scene.physics.gravity + 100 * key.pose.position, scene.physics.wind});
+  Simulation shaken(scene);
+  EXPECT_EQ(steps_of(shaken, 50).back(), 1);
+  EXPECT_EQ(shaken.advance().steps, 2);
 }
 
 // A strip of felt in cells of 3 by 27 mm, thrown while it hangs. Friction of its bending flips with some micrometres a
