@@ -45,7 +45,7 @@ struct FrameReport {
   double stretch_share = 0;   ///< largest extension as a share of material.max_stretch, of all its steps
   double kinetic_energy = 0;  ///< [J]
   double potential_energy = 0;        ///< of gravity, zero at the origin [J]
-  double elastic_energy = 0;          ///< stretch, shear and bending [J]
+  double elastic_energy = 0;          ///< stretch, shear, bending, attachments [J]
   double air_energy = 0;              ///< of the air that cloths enclose [J]
   double pin_work = 0;                ///< that pins have done on the cloth since the frame before [J]
   double solver_work = 0;             ///< likewise, by what the solver has left of the equation of motion [J]

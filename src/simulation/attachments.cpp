@@ -213,8 +213,9 @@ void Attachments::serialize(Archive& archive) {
                       std::isfinite(spring.weights[k]),
                   "a place of an attachment");
       }
-      archive.value(spring.length);
-      if constexpr (Archive::kReads) require(spring.length >= 0, "a length of an attachment");
+      serialize_values(archive, spring.length, spring.place.x(), spring.place.y(), spring.place.z());
+      if constexpr (Archive::kReads)
+        require(spring.length >= 0 && spring.place.allFinite(), "a length and a place of an attachment");
     }
   }
 }

@@ -26,9 +26,11 @@ bool is_driven_by_pins_alone(const scene::Scene& scene) {
   }
   const auto stands = [&](const scene::Obstacle& obstacle) { return !obstacle.collide || !moves(obstacle.motion); };
   if (!scene.characters.empty() || !std::ranges::all_of(scene.obstacles, stands)) return false;
-  // Springs that draw their ends together, and those that begin where cloth has moved to, bring energy.
-  if (std::ranges::any_of(scene.attachments, [](const scene::Attachment& one) { return one.length.has_value(); }))
-    return false;
+  // Attachments that draw their ends together, and bodies that move theirs, do work that is not counted.
+  for (const scene::Attachment& attachment : scene.attachments) {
+    const auto target = std::ranges::find(scene.obstacles, attachment.to, &scene::Obstacle::name);
+    if (attachment.length || (target != scene.obstacles.end() && moves(target->motion))) return false;
+  }
   if (scene.physics.keys.size() > 1 || !scene.fans.empty()) return false;
   return scene.physics.air_density == 0 || (scene.physics.wind == Vec3::Zero() && scene.physics.gusts.speed == 0);
 }

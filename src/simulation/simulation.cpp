@@ -213,7 +213,7 @@ void Simulation::Impl::measure_energies(FrameReport& report) const {
   const Moment& now = steps->progress().now;
   report.kinetic_energy = steps->cloth().kinetic_energy(now.v);
   report.potential_energy = steps->cloth().potential_energy(now.particles(), steps->weather().gravity(report.time));
-  report.elastic_energy = steps->cloth().elastic_energy(now.particles());
+  report.elastic_energy = steps->cloth().elastic_energy(now.particles()) + steps->attachments().energy(now.particles());
   report.air_energy = steps->cloth().air_energy(now.particles());
   report.enclosed = steps->cloth().inflation().measure(now.particles());
   report.attachments = steps->attachments().measure();

@@ -100,6 +100,28 @@ TEST(Attachments, FollowTheirBody) {
   EXPECT_NEAR(highest, 0.95 + 0.2, 0.01);
 }
 
+// The lift does work that is not counted: without contact between them it has to be told from its motion.
+TEST(Attachments, ToABodyThatLiftsAreNoEnergyWithoutASource) {
+  Simulation simulation(towel(
+      "release = 0\n",
+      "[[obstacle]]\nname = \"lift\"\nshape = \"sphere\"\nradius = 0.02\ncollide = false\nkeys = [{ time = 0, position "
+      "= [0, 0, 1] }, { time = 0.5, position = [0, 0, 3] }]\n[[attach]]\nname = \"hook\"\ncloth = \"towel\"\nto = "
+      "\"lift\"\nlow = [0, 1]\nhigh = [1, 1]\n"));
+  for (int frame = 0; frame < 15; ++frame) EXPECT_TRUE(simulation.advance().warnings.empty()) << frame;
+}
+
+// What attachments have stored is in the energies that a run reports.
+TEST(Attachments, StoreEnergyThatIsReported) {
+  scene::Scene scene = towel("length = 0\nstiffness = 1\n");
+  scene.cloths[0].pose.position.z() = 0.75;  // 0.07 m below the rail
+  scene.cloths[0].velocity = Vec3(0, 0, -1);
+  Simulation simulation(scene);
+  // Eleven springs of 1 N/m, the ones at the ends half. In a frame of 0.04 s the towel moves by 0.02 to 0.04 m.
+  const double energy = simulation.advance().elastic_energy;
+  EXPECT_GT(energy, 10 * 0.5 * 0.09 * 0.09);
+  EXPECT_LT(energy, 10 * 0.5 * 0.11 * 0.11);
+}
+
 // Two sheets above each other, buttoned at a corner; the upper one moves.
 constexpr const char* kButton =
     "[time]\nduration = 1\n[physics]\ngravity = [0, 0, 0]\nair_density = 0\n[contact]\nself = false\n"

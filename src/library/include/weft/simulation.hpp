@@ -59,7 +59,7 @@ struct Report {
   double stretch_ratio = 0;               ///< largest extension over the `max_stretch` of its fabric, in all its steps
   double kinetic_energy = 0;              ///< [J]
   double potential_energy = 0;            ///< of gravity, 0 at the origin [J]
-  double elastic_energy = 0;              ///< stretch, shear and bending [J]
+  double elastic_energy = 0;              ///< stretch, shear, bending, attachments [J]
   double air_energy = 0;                  ///< of the air that cloths enclose [J]
   double pin_work = 0;                    ///< of pins on the cloth in this frame [J]
   double error_estimate = 0;              ///< sum over the steps of the local error of positions, estimated [m]
