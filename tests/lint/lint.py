@@ -41,12 +41,12 @@ class Source:
                 self.flags.append(word)  # all share one precompiled header
 
     def names(self):
-        """What it declares in unnamed namespaces, and what it may call or name: what one source of a chunk declares
-        there no other one may use."""
+        """What it declares in unnamed namespaces or defines for another module, and what it may call or name: what one
+        source of a chunk declares so no other one may use."""
         text = self.path.read_text()
         outer = re.search(r"^namespace (weft\S*) \{", text, re.M)
         used = set(re.findall(r"(?<![\w.>:])(?:[a-z]\w*(?=\()|[A-Z]\w*|k[A-Z]\w*)", text))
-        names = set()
+        names = set(re.findall(r"^[\w:<>&* ]+ ((?:[a-z]\w*::)+[a-z]\w*)\(.*\{$", text, re.M))
         for part in re.findall(r"^namespace \{$(.*?)^\}  // namespace$", text, re.M | re.S):
             for line in re.findall(r"^(?!namespace|using \S+;)[\w\[].*$", part, re.M):
                 declared = re.match(r"(?:using|struct|class|enum class) (\w+)|.*?(\w+)(?:\(|\{| = |;|\[)", line)
