@@ -28,12 +28,9 @@ struct Numerics {
     /// First shift of an indefinite factorisation, relative to the diagonal. 0.1: a third more iterations.
     double factor_shift = 1e-3;
     /// The last iterations whose gain estimates the error: so many at least, and one in so many of all. Fewer: solves
-    /// end on a plateau, and a viscosity of 1e3 N·s/m gains energy.
+    /// end on a plateau, and a viscosity of 1e4 N·s/m gains energy.
     int least_delay = 3;
     int delay_fraction = 5;
-    /// Error in the energy norm, relative to the solution, below which the mass-weighted norm may end a solve. 0.5: a
-    /// viscosity of 1e3 N·s/m gains energy.
-    double energy_first = 0.3;
     /// Aggregates on the coarsest level, at most; its dense factorisation costs 9 times their third power.
     int coarsest_aggregates = 70;
     /// Length over width from which an aggregate grows in width only. Larger: strips of slender cells swing with 0.8 of
@@ -44,7 +41,7 @@ struct Numerics {
   /// Newton's method (src/integrator).
   struct Newton {
     /// What the linear solver may leave, relative to what Newton's method may; a block below that is not solved again.
-    double linear_fraction = 0.5;
+    double linear_fraction = 0.8;
     /// The same in the first iteration of the midpoint rule, which damps nothing; and its linear tolerance, relative to
     /// that of other methods. Larger: flat sheets fold in free fall.
     double undamped_fraction = 0.01;

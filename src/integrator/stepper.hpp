@@ -156,7 +156,7 @@ class Stepper {
             std::vector<solver::ParticleConstraint>& constraints);
   void list_parts(std::span<const double> masses, const State& now, const solver::LinearSystem& linear);
   std::span<const Vec3> likely_change(std::span<const double> masses, const State& now);
-  solver::LinearReport solve_linear(int iteration, std::span<const Vec3> start);
+  solver::LinearReport solve_linear(int iteration, std::span<const Vec3> start, std::span<const Vec3> x0);
   double search_along_delta(System& system, const State& now, const Stage& stage);
   enum class Equation { itself, linear };
   void linearise(System& system, const State& now, const Stage& stage, int iteration);
@@ -193,7 +193,8 @@ class Stepper {
   // Per part: energy norms that may be left, and velocities [m/s].
   std::vector<double> goals_, foreseen_, changes_, speeds_;
   std::vector<Past> past_;
-  std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, scratch_;
+  std::vector<Vec3> x_hat_, v_hat_, x_, v_, x_end_, constant_force_, force_, residual_, delta_, line_start_, motion_,
+      drift_, scratch_;
 };
 
 }  // namespace weft::integrator

@@ -82,24 +82,24 @@ std::span<const Vec3> ConjugateGradient::precondition(std::span<const Vec3> b) {
 }
 
 LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations,
-                                      std::span<Vec3> x, std::span<const Vec3> start) {
-  return solve(b, goal, max_iterations, x, start, all_parts_);
+                                      std::span<Vec3> x, const Directions& directions) {
+  return solve(b, goal, max_iterations, x, directions, all_parts_);
 }
 
 LinearReport ConjugateGradient::solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations,
-                                      std::span<Vec3> x, std::span<const Vec3> start,
+                                      std::span<Vec3> x, const Directions& directions,
                                       std::span<const std::size_t> parts) {
   std::fill(x.begin(), x.end(), Vec3::Zero());
   Progress progress;
   progress.parts.resize(all_parts_.size());
   End end = End::needs_double;
   if (is_single_ && goal.relative >= kTightGoal) {
-    end = prepared(single_).solve(b, goal, max_iterations, x, start, parts, progress);
+    end = prepared(single_).solve(b, goal, max_iterations, x, directions, parts, progress);
     filter(x);
     copy_into(single_.recurrence.residual(), residual_);
   }
   if (end == End::needs_double) {
-    end = prepared(double_).solve(b, goal, max_iterations, x, start, parts, progress);
+    end = prepared(double_).solve(b, goal, max_iterations, x, directions, parts, progress);
     copy_into(double_.recurrence.residual(), residual_);
   }
   LinearReport report{progress.iterations, {}, end == End::converged, end != End::indefinite};

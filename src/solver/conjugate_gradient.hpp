@@ -31,9 +31,7 @@ class ConjugateGradient {
   /// P⁻¹ b, roughly the solution for b, which obeys the constraints; valid until the next call.
   std::span<const Vec3> precondition(std::span<const Vec3> b);
 
-  /// x: the solution, until its error meets the goal, or after `max_iterations`. `start`, if there is one, is a
-  /// direction that the solution is looked for along first: x begins with the multiple of it that is best in the energy
-  /// norm, at the price of one product.
+  /// x: the solution, until its error meets the goal, or after `max_iterations`.
   ///
   /// The error is known from the iteration itself: each step takes α rᵀz off ‖e‖²_A, so what the last steps took was
   /// the square of the error before them, but for what is left (Hestenes & Stiefel 1952; Strakoš & Tichý, "Error
@@ -42,10 +40,10 @@ class ConjugateGradient {
   /// flat sheets folded in free fall. The energy of stiff contacts and threads counts as far as it moves mass: by the
   /// largest share of the metric in the energy of the last steps.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
-                     std::span<const Vec3> start = {});
+                     const Directions& directions = {});
   /// As if all particles outside of these parts were held: x is zero there, and residuals there do not count.
   LinearReport solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
-                     std::span<const Vec3> start, std::span<const std::size_t> parts);
+                     const Directions& directions, std::span<const std::size_t> parts);
   /// b − A x of the last solve, on the rows that it was for.
   std::span<const Vec3> residual() const { return residual_; }
 

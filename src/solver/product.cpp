@@ -94,6 +94,13 @@ void DifferenceMatrix::multiply(std::span<const Quad<float>> x, std::span<Quad<f
   }
 }
 
+Mat3 DifferenceMatrix::sum_of_row(std::size_t row) const {
+  Mat3 sum;
+  for (int k = 0; k < 8; ++k) sum(k % 3, k / 3) = octets_of_sum_[row][k];
+  sum(2, 2) = ninths_of_sum_[row];
+  return sum;
+}
+
 template <class Real>
 void Product<Real>::prepare(const LinearSystem& system) {
   const bool anew = system_ != &system;
@@ -177,6 +184,29 @@ double Product<Real>::multiply(std::span<const Quad<Real>> p, std::span<Quad<Rea
   }
   filter(q);
   return curvature;
+}
+
+template <class Real>
+Mat3 Product<Real>::sum_of_row(std::size_t row) const {
+  if constexpr (std::is_same_v<Real, float>) return matrix_.sum_of_row(row);
+  const auto index = static_cast<Index>(row);
+  Mat3 sum = Mat3::Zero();
+  system_->matrix.for_each_block(index, index + 1, [&](Index, Index, const Mat3& block) { sum += block; });
+  return sum;
+}
+
+template <class Real>
+std::vector<Mat3> Product<Real>::row_sums() const {
+  std::vector<Mat3> result(selected_.size());
+  for (int k = 0; k < 3; ++k) {
+    const auto columns = rows_.sums([&](std::size_t begin, std::size_t end) {
+      Vec3 sum = Vec3::Zero();
+      for (std::size_t row = begin; row < end; ++row) sum += sum_of_row(row).col(k);
+      return quad_of<double>(sum);
+    });
+    for (std::size_t part = 0; part < selected_.size(); ++part) result[part].col(k) = vec3_of(columns[part]);
+  }
+  return result;
 }
 
 template <class Real>

@@ -18,6 +18,8 @@ class DifferenceMatrix {
   /// Takes over the rows [begin, end).
   void take_rows(const BlockMatrix& matrix, std::size_t begin, std::size_t end);
   void multiply(std::span<const Quad<float>> x, std::span<Quad<float>> y, std::size_t begin, std::size_t end) const;
+  /// D_i.
+  Mat3 sum_of_row(std::size_t row) const;
 
  private:
   BlockMatrix::Pattern full_, isotropic_;  // without the diagonal
@@ -44,6 +46,9 @@ class Product {
   /// their order. p obeys the constraints.
   double multiply(std::span<const Quad<Real>> p, std::span<Quad<Real>> q, std::span<double> moved) const;
 
+  /// Of each selected part, the sum of all blocks of the matrix, terms and constraints apart.
+  std::vector<Mat3> row_sums() const;
+
   /// S b in place, on the rows of the selected parts.
   void filter(std::span<Quad<Real>> b) const;
 
@@ -58,6 +63,7 @@ class Product {
     QuadBlock<Real> block;
   };
   void read_matrix(bool anew);
+  Mat3 sum_of_row(std::size_t row) const;
 
   const LinearSystem* system_ = nullptr;
   std::vector<Part> parts_;  // as the matrix was read

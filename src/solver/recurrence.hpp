@@ -6,6 +6,7 @@
 
 #include "solver/incomplete_cholesky.hpp"
 #include "solver/linear_system.hpp"
+#include "solver/part_motions.hpp"
 #include "solver/preconditioner.hpp"
 #include "solver/product.hpp"
 #include "solver/rank_one.hpp"
@@ -23,6 +24,18 @@ inline constexpr double kTightGoal = 1e-3;
 struct LinearGoal {
   double relative = 0;
   std::span<const double> absolute = {};  ///< of each part of the system; empty: none
+};
+
+/// What is known of the solution beforehand; either may be missing.
+struct Directions {
+  /// Along which the solution is looked for first: x begins with the multiple of it that is best in the energy norm, at
+  /// the price of one product.
+  std::span<const Vec3> start = {};
+  /// Motion to which the solution is added. In the end, forces that are left do no work along the sum, and sum to zero
+  /// over each part that no constraint holds: Galerkin's condition for these directions of each part.
+  std::span<const Vec3> motion = {};
+  /// Another motion along which they do no work either; only beside the first.
+  std::span<const Vec3> drift = {};
 };
 
 /// What a solve has done so far, in whatever precision.
@@ -64,9 +77,9 @@ class Recurrence {
   /// P⁻¹ b, valid until the next call.
   std::span<const Quad<Real>> precondition(std::span<const Vec3> b);
 
-  /// Adds to x what solves A x = b on these parts, the others being held. `start`: see ConjugateGradient.
+  /// Adds to x what solves A x = b on these parts, the others being held.
   End solve(std::span<const Vec3> b, const LinearGoal& goal, int max_iterations, std::span<Vec3> x,
-            std::span<const Vec3> start, std::span<const std::size_t> parts, Progress& progress);
+            const Directions& directions, std::span<const std::size_t> parts, Progress& progress);
 
   /// b − A x of the last solve, on the rows that it was for.
   std::span<const Quad<Real>> residual() const { return r_; }
@@ -84,6 +97,9 @@ class Recurrence {
   void advance(double alpha, Progress& progress);
   double apply_preconditioner(std::span<Quad<Real>> z, bool with_factor);
   bool make_factor();
+  void balance(const Directions& directions, std::span<Vec3> x);
+  std::vector<double> dots(std::span<const Quad<Real>> a, std::span<const Quad<Real>> b) const;
+  std::vector<AlongMotions> along_motions(std::span<const Quad<Real>> v, bool has_second) const;
 
   const LinearSystem* system_ = nullptr;
   std::vector<Part> parts_;
@@ -92,6 +108,7 @@ class Recurrence {
   Product<Real> product_;
   Preconditioner<Real> preconditioner_;
   RankOneTerms<Real> rank_one_;
+  PartMotions part_motions_;
   IncompleteCholesky factor_;                                                   // in double only
   enum class Factor { not_made, made, none } factor_state_ = Factor::not_made;  // of the system as prepared
   std::vector<Part> factor_parts_;                                              // scratch

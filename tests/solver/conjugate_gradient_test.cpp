@@ -363,7 +363,7 @@ TEST(ConjugateGradient, MotionThatAllShareIsExactInSinglePrecisionHoweverStiffTh
   std::vector<Vec3> x(b.size());
   ConjugateGradient cg;
   cg.prepare(system);
-  const LinearReport report = cg.solve(b, {0.1}, 100, x, b);
+  const LinearReport report = cg.solve(b, {0.1}, 100, x, {.start = b});
   EXPECT_LE(report.iterations, 1);
   // Sums of eight blocks in double leave 1e-10 of 1e6, and numbers are rounded by 6e-8.
   for (const Vec3& v : x) EXPECT_LT((v - Vec3(1, 2, 3)).norm(), 1e-6);
@@ -380,11 +380,12 @@ TEST(ConjugateGradient, BeginsWithTheBestMultipleOfADirection) {
   std::vector<Vec3> half = exact;
   for (Vec3& v : half) v *= 0.5;
   const std::vector<double> allowed{1e-8};
-  const LinearReport report = cg.solve(b, {0, allowed}, 1000, x, half);
+  const LinearReport report = cg.solve(b, {0, allowed}, 1000, x, {.start = half});
   EXPECT_LE(report.iterations, 1);
   EXPECT_LT((testing::flat(x) - testing::flat(exact)).norm(), 1e-10 * testing::flat(exact).norm());
   // What constraints forbid is taken out of it, and a useless direction does no harm.
-  EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x, random.vectors(40)).converged);
+  const std::vector<Vec3> elsewhere = random.vectors(40);
+  EXPECT_TRUE(cg.solve(b, {1e-13}, 1000, x, {.start = elsewhere}).converged);
   EXPECT_LT((testing::flat(x) - testing::flat(exact)).norm(), 1e-10 * testing::flat(exact).norm());
 }
 

@@ -1,0 +1,169 @@
+#include "solver/part_motions.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace weft::solver {
+namespace {
+
+// Of the energy of a motion, what is left of it beside other directions below which it is one of them.
+constexpr double kSameDirection = 1e-4;
+
+constexpr int kSize = 3 + kMotions;
+using Block = Eigen::Matrix<double, kSize, kSize>;
+
+// What a term makes of the directions of a part: forces along them are this times its stiffness times a displacement.
+using OfTerm = Eigen::Matrix<double, kSize, 3>;
+
+// The blocks of terms between parts, the lower ones, and their products with the motions of all parts.
+class TermBlocks {
+ public:
+  explicit TermBlocks(std::size_t parts) : products(parts, PartMotions::Products::Zero()) {}
+
+  void add(std::span<const std::pair<int, OfTerm>> of_parts, const Mat3& stiffness) {
+    OfTerm all = OfTerm::Zero();
+    for (const auto& [part, of_part] : of_parts) all += of_part;
+    for (const auto& [row, of_row] : of_parts) {
+      const OfTerm forces = of_row * stiffness;
+      products[static_cast<std::size_t>(row)] += forces * all.bottomRows<kMotions>().transpose();
+      for (const auto& [column, of_column] : of_parts)
+        if (column <= row) block(row, column) += forces * of_column.transpose();
+    }
+  }
+  Block& block(int row, int column) { return blocks.try_emplace({row, column}, Block::Zero()).first->second; }
+
+  std::map<std::pair<int, int>, Block> blocks;
+  std::vector<PartMotions::Products> products;
+};
+
+// Numbers of the selected parts by particle; -1 for others.
+class Numbers {
+ public:
+  Numbers(std::vector<Part> parts, std::span<const std::size_t> selected)
+      : parts_(std::move(parts)), numbers_(parts_.size(), -1) {
+    for (std::size_t s = 0; s < selected.size(); ++s) numbers_[selected[s]] = static_cast<int>(s);
+  }
+  int of(Index particle) const {
+    const auto after = std::ranges::upper_bound(parts_, particle, {}, &Part::begin);
+    return numbers_[static_cast<std::size_t>(after - parts_.begin()) - 1];
+  }
+
+ private:
+  std::vector<Part> parts_;
+  std::vector<int> numbers_;
+};
+
+}  // namespace
+
+// Whether a direction of a part is new beside those before it.
+void PartMotions::find_used(std::size_t part, const Block& block) {
+  std::vector<int> used;
+  for (int k = 0; k < kSize; ++k) {
+    bool& is_used = is_used_[part][static_cast<std::size_t>(k)];
+    if (is_used && k >= 3) {
+      double shared = 0;
+      if (!used.empty()) {
+        const Eigen::VectorXd coupling = block(used, k);
+        shared = coupling.dot(Eigen::MatrixXd(block(used, used)).ldlt().solve(coupling));
+      }
+      is_used = block(k, k) - shared > kSameDirection * block(k, k);
+    }
+    if (is_used) used.push_back(k);
+  }
+}
+
+template <class Real>
+void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_t> selected,
+                          const std::array<std::span<const Quad<Real>>, kMotions>& motions,
+                          std::span<const Mat3> row_sums, std::span<const Products> products) {
+  const Numbers numbers(parts_of(system), selected);
+  std::array<bool, kSize> all;
+  for (int k = 0; k < kSize; ++k) all[static_cast<std::size_t>(k)] = k < 3 || !motions[k - 3].empty();
+  is_used_.assign(selected.size(), all);
+  for (const ParticleConstraint& c : system.constraints)
+    if (const int part = numbers.of(c.particle); part >= 0)
+      std::fill_n(is_used_[static_cast<std::size_t>(part)].begin(), 3, false);
+
+  const auto of_particle = [&](Index particle) {
+    OfTerm result = OfTerm::Zero();
+    result.template topRows<3>() = Mat3::Identity();
+    for (int m = 0; m < kMotions; ++m)
+      if (!motions[m].empty()) result.row(3 + m) = vec3_of(motions[m][static_cast<std::size_t>(particle)]);
+    return result;
+  };
+  TermBlocks terms(selected.size());
+  std::vector<std::pair<int, OfTerm>> of_parts;
+  for (const DiagonalTerm& term : system.diagonal_terms)
+    if (const int part = numbers.of(term.particle); part >= 0) {
+      of_parts.assign(1, {part, of_particle(term.particle)});
+      terms.add(of_parts, term.stiffness);
+    }
+  for (const StencilTerm& term : system.terms) {
+    of_parts.clear();
+    for (int k = 0; k < 4; ++k) {
+      const int part = term.weights[k] == 0 ? -1 : numbers.of(term.particles[k]);
+      if (part < 0) continue;
+      auto entry = std::ranges::find(of_parts, part, &std::pair<int, OfTerm>::first);
+      if (entry == of_parts.end()) entry = of_parts.insert(entry, {part, OfTerm::Zero()});
+      entry->second += term.weights[k] * of_particle(term.particles[k]);
+    }
+    terms.add(of_parts, term.stiffness);
+  }
+  for (const RankOneTerm& term : system.rank_one_terms) {
+    const int part = numbers.of(term.begin);
+    if (part < 0) continue;
+    AlongMotions along = AlongMotions::Zero();
+    for (std::size_t i = 0; i < term.direction.size(); ++i)
+      along += of_particle(term.begin + static_cast<Index>(i)) * term.direction[i];
+    terms.block(part, part) += term.stiffness * along * along.transpose();
+    terms.products[static_cast<std::size_t>(part)] +=
+        term.stiffness * along * along.template tail<kMotions>().transpose();
+  }
+
+  for (std::size_t s = 0; s < selected.size(); ++s) {
+    Block& block = terms.block(static_cast<int>(s), static_cast<int>(s));
+    const Products of_matrix = products[s] - terms.products[s];
+    block.topLeftCorner<3, 3>() += row_sums[s];
+    block.template rightCols<kMotions>() += of_matrix;
+    block.template bottomLeftCorner<kMotions, 3>() += of_matrix.template topRows<3>().transpose();
+    find_used(s, block);
+  }
+  const auto is_used = [&](int row) {
+    return is_used_[static_cast<std::size_t>(row / kSize)][static_cast<std::size_t>(row % kSize)];
+  };
+  std::vector<Eigen::Triplet<double>> entries;
+  for (const auto& [place, block] : terms.blocks)
+    for (int k = 0; k < kSize; ++k)
+      for (int l = 0; l < kSize; ++l) {
+        const int row = kSize * place.first + k, column = kSize * place.second + l;
+        if (is_used(row) && is_used(column)) entries.emplace_back(row, column, block(k, l));
+      }
+  const int size = kSize * static_cast<int>(selected.size());
+  for (int k = 0; k < size; ++k)
+    if (!is_used(k)) entries.emplace_back(k, k, 1);
+  Eigen::SparseMatrix<double> matrix(size, size);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  factor_.compute(matrix);
+}
+
+std::vector<AlongMotions> PartMotions::solve(std::span<const AlongMotions> forces) const {
+  Eigen::VectorXd right(kSize * std::ssize(forces));
+  for (std::size_t s = 0; s < forces.size(); ++s)
+    for (int k = 0; k < kSize; ++k)
+      right[kSize * static_cast<Eigen::Index>(s) + k] = is_used_[s][static_cast<std::size_t>(k)] ? forces[s][k] : 0;
+  const Eigen::VectorXd solution = factor_.solve(right);
+  std::vector<AlongMotions> result;
+  for (std::size_t s = 0; s < forces.size(); ++s)
+    result.emplace_back(solution.segment<kSize>(kSize * static_cast<Eigen::Index>(s)));
+  return result;
+}
+
+template void PartMotions::prepare<float>(const LinearSystem&, std::span<const std::size_t>,
+                                          const std::array<std::span<const Quad<float>>, kMotions>&,
+                                          std::span<const Mat3>, std::span<const Products>);
+template void PartMotions::prepare<double>(const LinearSystem&, std::span<const std::size_t>,
+                                           const std::array<std::span<const Quad<double>>, kMotions>&,
+                                           std::span<const Mat3>, std::span<const Products>);
+
+}  // namespace weft::solver

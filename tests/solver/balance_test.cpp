@@ -1,0 +1,104 @@
+// What solutions that end early leave: no work along the motion, and no resultant on free parts (Recurrence::balance).
+#include <gtest/gtest.h>
+
+#include "solver/block_systems.hpp"
+
+namespace weft::solver {
+namespace {
+
+using testing::dense_with_terms;
+using testing::flat;
+using testing::Random;
+using testing::system_of_parts;
+
+/// Three parts of twenty rows with terms between them; none of the first and last is held.
+LinearSystem system_with_free_parts(Random& random) {
+  LinearSystem system = system_of_parts(random);
+  std::erase_if(system.constraints, [](const auto& c) { return c.particle < 20 || c.particle >= 40; });
+  return system;
+}
+
+Vec3 sum_of(const Eigen::VectorXd& forces, Index begin, Index end) {
+  Vec3 sum = Vec3::Zero();
+  for (Index i = begin; i < end; ++i) sum += forces.segment<3>(3 * i);
+  return sum;
+}
+
+struct Left {
+  Eigen::VectorXd forces;  // on the free directions
+  double work = 0;         // along the motion with the solution
+  double error = 0;        // in the energy norm
+};
+
+Left left_by(const LinearSystem& system, std::span<const Vec3> b, std::span<const Vec3> motion,
+             std::span<const Vec3> x) {
+  const Eigen::MatrixXd s = testing::projection(system), a = dense_with_terms(system);
+  Left left;
+  left.forces = s * (flat(b) - a * flat(x));
+  left.work = left.forces.dot(flat(motion) + flat(x));
+  const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(s.rows(), s.cols());
+  const Eigen::VectorXd error = flat(x) - Eigen::MatrixXd(s * a * s + identity - s).ldlt().solve(s * flat(b));
+  left.error = std::sqrt(error.dot(a * error));
+  return left;
+}
+
+TEST(Balance, LeavesNoResultantOnFreePartsAndDoesNoWork) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    Random random(seed);
+    LinearSystem system = system_with_free_parts(random);
+    const auto b = random.vectors(system.matrix.rows()), motion = random.vectors(system.matrix.rows());
+    for (const bool single : {false, true}) {
+      system.metric.assign(single ? b.size() : 0, 1.0);
+      ConjugateGradient cg;
+      cg.prepare(system);
+      std::vector<Vec3> x(b.size()), without(b.size());
+      cg.solve(b, {}, 4, without);
+      cg.solve(b, {}, 4, x, {.motion = motion});
+      const Left balanced = left_by(system, b, motion, x), early = left_by(system, b, motion, without);
+      // Roundings of single precision, 6e-8 of forces of size 1 on twenty rows with stiffnesses up to 100.
+      const double roundings = single ? 1e-4 : 1e-11;
+      EXPECT_LT(sum_of(balanced.forces, 0, 20).norm(), roundings);
+      EXPECT_LT(sum_of(balanced.forces, 40, 60).norm(), roundings);
+      EXPECT_LT(std::abs(balanced.work), roundings);
+      EXPECT_GT(sum_of(early.forces, 0, 20).norm(), 0.01);
+      EXPECT_GT(std::abs(early.work), 0.01);
+      EXPECT_LT(balanced.error, early.error);
+    }
+  }
+}
+
+TEST(Balance, LeavesConstrainedDirectionsAndOtherPartsAsTheyAre) {
+  Random random(7);
+  const LinearSystem system = system_of_parts(random);
+  const auto b = random.vectors(system.matrix.rows()), motion = random.vectors(system.matrix.rows());
+  std::vector<Vec3> x(b.size());
+  ConjugateGradient cg;
+  cg.prepare(system);
+  const std::vector<std::size_t> parts{0, 2};
+  cg.solve(b, {}, 4, x, {.motion = motion}, parts);
+  for (std::size_t i = 20; i < 40; ++i) EXPECT_EQ(x[i], Vec3::Zero());
+  for (const ParticleConstraint& c : system.constraints) {
+    const Vec3& entry = x[c.particle];
+    EXPECT_LT((entry - c.free * entry).norm(), 1e-14 * (1 + entry.norm()));
+  }
+}
+
+// The motion is then one of the translations: two conditions are the same one.
+TEST(Balance, OfATranslationIsThatOfItsForcesAlone) {
+  Random random(8);
+  LinearSystem system = system_with_free_parts(random);
+  system.constraints.clear();
+  system.terms.clear();
+  const std::vector<Vec3> motion(static_cast<std::size_t>(system.matrix.rows()), Vec3(1e6, 2e6, 3e6));
+  const auto b = random.vectors(system.matrix.rows());
+  std::vector<Vec3> x(b.size());
+  ConjugateGradient cg;
+  cg.prepare(system);
+  cg.solve(b, {}, 4, x, {.motion = motion});
+  const Left left = left_by(system, b, std::vector<Vec3>(b.size(), Vec3::Zero()), x);
+  for (Index begin : {0, 20, 40}) EXPECT_LT(sum_of(left.forces, begin, begin + 20).norm(), 1e-9);
+  for (const Vec3& v : x) EXPECT_LT(v.norm(), 100);
+}
+
+}  // namespace
+}  // namespace weft::solver
