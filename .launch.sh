@@ -84,15 +84,15 @@ report_progress() {
   done
 }
 
-# build TARGET: with as many compilers at once as there are processors and 1.5 GB of free memory for each.
+# build TARGET...: with as many compilers at once as there are processors and 1.5 GB of free memory for each.
 build() {
   jobs=$(awk -v jobs="$(nproc)" '/^MemAvailable:/ { fit = int($2 / 1500000) }
                                  END { print fit < 1 ? 1 : fit < jobs ? fit : jobs }' /proc/meminfo)
   say "building"
   if [ -t 2 ]; then
-    ninja -C "$folder" -j "$jobs" "$1" >&2
+    ninja -C "$folder" -j "$jobs" "$@" >&2
   else
-    { NINJA_STATUS="[%f/%t] %e s: " ninja -C "$folder" -j "$jobs" "$1" </dev/null 2>&1; echo "exit $?"; } |
+    { NINJA_STATUS="[%f/%t] %e s: " ninja -C "$folder" -j "$jobs" "$@" </dev/null 2>&1; echo "exit $?"; } |
       tee "$folder/launch.log" | report_progress || { sed '$d' "$folder/launch.log" >&2; false; }
   fi || die 1 "the build failed"
 }

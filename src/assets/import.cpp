@@ -3,10 +3,13 @@
 #include <assimp/DefaultIOSystem.h>
 #include <assimp/importerdesc.h>
 #include <assimp/scene.h>
+#include <fmt/format.h>
 
 #include <assimp/Importer.hpp>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <cstring>
 #include <new>
 #include <stdexcept>
 #include <string>
@@ -14,6 +17,7 @@
 #include <system_error>
 
 #include "core/input_file.hpp"
+#include "core/nesting.hpp"
 
 namespace weft::assets {
 namespace {
@@ -51,27 +55,46 @@ std::optional<std::string> renamed_gltf(const std::filesystem::path& file) {
   return read_bytes(file);
 }
 
+/// The beginning of the JSON text of a glTF file; empty for all other files.
+std::string gltf_text(const std::filesystem::path& file) {
+  constexpr std::size_t kBeginning = 16 << 20;
+  // Of a binary file: "glTF", version, length; then the length of the JSON text, "JSON", the text.
+  constexpr std::size_t kLengthAt = 12, kTextAt = 20;
+  std::string bytes = read_start(file, kBeginning);
+  if (bytes.starts_with("glTF") && bytes.size() > kTextAt) {
+    std::uint32_t length = 0;
+    std::memcpy(&length, &bytes[kLengthAt], sizeof length);
+    return bytes.substr(kTextAt, length);
+  }
+  return file.extension() == ".gltf" ? bytes : std::string();
+}
+
 /// The compression that a glTF file cannot be read without; assimp 5.2 as packaged knows none, and takes what it finds
 /// in its place for vertices. Empty for all other files.
-std::string compression_of(const std::filesystem::path& file) {
-  constexpr std::size_t kBeginning = 16 << 20;  // JSON comes first
-  const std::string bytes = read_start(file, kBeginning);
-  const std::size_t begin = bytes.starts_with("glTF") || file.extension() == ".gltf"
-                                ? bytes.find("\"extensionsRequired\"")
-                                : std::string::npos;
-  if (begin == std::string::npos) return {};
-  const std::string_view required = std::string_view(bytes).substr(begin, bytes.find(']', begin) - begin);
+std::string_view compression_of(std::string_view gltf) {
+  const std::size_t begin = gltf.find("\"extensionsRequired\"");
+  if (begin == std::string_view::npos) return {};
+  const std::string_view required = gltf.substr(begin, gltf.find(']', begin) - begin);
   for (const char* name : {"KHR_draco_mesh_compression", "EXT_meshopt_compression"})
     if (required.find(name) != std::string_view::npos) return name;
   return {};
 }
 
+/// Throws std::runtime_error for what assimp cannot read.
+void check_gltf(const std::filesystem::path& file) {
+  const std::string text = gltf_text(file);
+  if (const std::string_view compression = compression_of(text); !compression.empty())
+    throw std::runtime_error("expected meshes without compression, got " + std::string(compression) +
+                             ", which is not read; export the file without it");
+  if (nests_too_deep(text))
+    throw std::runtime_error(
+        fmt::format("expected JSON of at most {} levels of lists and objects, got more", kMaxDepth));
+}
+
 }  // namespace
 
 const aiScene& import(Assimp::Importer& importer, const std::filesystem::path& file, unsigned steps) {
-  if (const std::string compression = compression_of(file); !compression.empty())
-    throw std::runtime_error("expected meshes without compression, got " + compression +
-                             ", which is not read; export the file without it");
+  check_gltf(file);
   importer.SetIOHandler(new RegularFiles);  // which the importer owns
   const aiScene* scene = nullptr;
   if (const auto ply = shielded_ply(file))

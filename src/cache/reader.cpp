@@ -76,7 +76,12 @@ std::string Reader::read_part(const char* name, Kind kind, std::optional<int> fr
 }
 
 std::string Reader::scene_text() const {
-  return read_file(folder_ / kSceneFile);
+  const fs::path file = folder_ / kSceneFile;
+  // Runs copy it beside what they draw: what a link leads to elsewhere must not get there.
+  std::error_code ignored;
+  if (fs::is_symlink(file, ignored))
+    throw Error(ExitCode::asset_unreadable, "{}: broken: expected a file of the cache, got a link", file.string());
+  return read_file(file, kLargestText);
 }
 
 std::vector<int> Reader::frames() const {

@@ -8,7 +8,16 @@ namespace weft {
 
 namespace fs = std::filesystem;
 
+namespace {
+Installation assumed;
+}  // namespace
+
+void set_own_installation(const Installation& installation) {
+  assumed = installation;
+}
+
 Installation own_installation() {
+  if (!assumed.program.empty()) return assumed;
   std::error_code none;
   const fs::path running = fs::read_symlink("/proc/self/exe", none);
   // bin/NAME of an archive starts lib/ld-linux-x86-64.so.2, which runs libexec/NAME and calls it bin/NAME

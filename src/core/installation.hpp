@@ -15,4 +15,7 @@ struct Installation {
 /// Of this process. All empty where /proc is not mounted.
 Installation own_installation();
 
+/// From now on own_installation() returns this. For tests, whose forks stand for the program; not for several threads.
+void set_own_installation(const Installation& installation);
+
 }  // namespace weft

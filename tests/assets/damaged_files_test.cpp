@@ -57,14 +57,14 @@ class DamagedFiles : public testing::TestWithParam<Format> {
 
 TEST_P(DamagedFiles, CutShortAnywhereAreLoadedOrRefused) {
   EXPECT_TRUE(try_to_load(whole_));
-  for (std::size_t length = 0; length < whole_.size(); length += 3) try_to_load(whole_.substr(0, length));
+  for (std::size_t length = 0; length < whole_.size(); length += 7) try_to_load(whole_.substr(0, length));
   EXPECT_FALSE(try_to_load(whole_.substr(0, whole_.size() / 4)));
 }
 
 TEST_P(DamagedFiles, WithBytesChangedAreLoadedOrRefused) {
   std::mt19937 random(20240601);
   int refused = 0;
-  for (int trial = 0; trial < 200; ++trial) {
+  for (int trial = 0; trial < 80; ++trial) {
     std::string bytes = whole_;
     const std::uint32_t changes = 1 + random() % 4;
     for (std::uint32_t k = 0; k < changes; ++k) bytes[random() % bytes.size()] = static_cast<char>(random() % 256);

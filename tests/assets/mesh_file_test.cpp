@@ -237,6 +237,16 @@ TEST_F(MeshFiles, OfCompressedGltfAreRefusedByTheNameOfTheCompression) {
   }
 }
 
+TEST_F(MeshFiles, OfGltfThatNestsTooDeepAreRefusedBeforeTheyAreRead) {
+  const std::string deep = R"({"asset": {"version": "2.0"}, "nodes": )" + std::string(300'000, '[');
+  const std::string words = "expected JSON of at most 128 levels of lists and objects, got more";
+  EXPECT_EQ(refusal("deep.gltf", deep), words);
+  std::string binary = glb_tetrahedron().substr(0, 20) + deep;
+  const auto length = static_cast<std::uint32_t>(deep.size());
+  std::memcpy(&binary[12], &length, sizeof length);
+  EXPECT_EQ(refusal("deep.glb", binary), words);
+}
+
 /// Two squares of 0.1 m side by side, so far apart.
 std::string two_squares(double apart) {
   const double x = 0.1 + apart;

@@ -56,6 +56,15 @@ TEST_F(CacheFolder, GivesBackWhatWasPutIn) {
   EXPECT_EQ(reader.manifest().scene_hash, kSampleHash);
 }
 
+TEST_F(CacheFolder, ASceneThatIsALinkElsewhereIsNotRead) {
+  fill(1);
+  support::write_bytes(folder_ / "secret", "secret");
+  fs::remove(cache() / kSceneFile);
+  fs::create_symlink("../secret", cache() / kSceneFile);
+  expect_error(ExitCode::asset_unreadable, "scene.effective.toml: broken: expected a file of the cache, got a link",
+               [&] { (void)Reader(cache()).scene_text(); });
+}
+
 TEST_F(CacheFolder, IsGoneOnWithByAnotherWriter) {
   fill(2);
   {

@@ -7,6 +7,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <array>
 #include <cstdlib>
 #include <cstring>
 #include <functional>
@@ -300,22 +301,23 @@ TEST_F(AnyInput, DoctorWithoutAPlaceForTemporaryFilesSaysSo) {
       << outcome.out;
 }
 
-// Right checksums, wrong content: every eight bytes of a frame replaced in turn by numbers that break something.
+// Right checksums, wrong content: eight bytes of a frame, one place after another, replaced by numbers that break
+// something, in turn.
 TEST_F(AnyInput, AFrameWithWildContentUnderARightChecksumIsDrawnOrNamed) {
   const std::string whole = support::read_bytes(folder_ / "c/frame_00001.weft");
   const cache::Content content = cache::unpack(whole);
   const auto try_frame = [&](const std::string& payload) {
     support::write_bytes(folder_ / "c/frame_00001.weft", cache::pack(content.label, payload));
     fs::remove(folder_ / "t.png");
-    const Outcome outcome = weft({"thumbnail", "c", "--frame", "1", "-o", "t.png"});
+    const Outcome outcome =
+        run_weft({"thumbnail", "c", "--frame", "1", "-o", "t.png", "--size", "64x36", "--quality", "draft"}, folder_);
     EXPECT_TRUE(outcome.exit_code == 0 || outcome.exit_code == 4) << outcome.exit_code << outcome.err;
   };
-  for (const double number : {1e308, -1e300, 0.0, 1e-310}) {
-    for (std::size_t at = 0; at + 8 <= std::min<std::size_t>(content.payload.size(), 240); at += 24) {
-      std::string payload = content.payload;
-      std::memcpy(&payload[at], &number, sizeof number);
-      try_frame(payload);
-    }
+  const std::array numbers{1e308, -1e300, 0.0, 1e-310};
+  for (std::size_t at = 0, k = 0; at + 8 <= std::min<std::size_t>(content.payload.size(), 240); at += 24, ++k) {
+    std::string payload = content.payload;
+    std::memcpy(&payload[at], &numbers[k % numbers.size()], sizeof(double));
+    try_frame(payload);
   }
   support::write_bytes(folder_ / "c/frame_00001.weft", whole);
 }

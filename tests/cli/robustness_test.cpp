@@ -159,8 +159,8 @@ TEST_F(Robustness, MachineWithoutAnEncoderIsToldSoAndDrawsPicturesAllTheSame) {
   const fs::path library = fs::path(WEFT_PROGRAM).parent_path() / "libweft_no_encoder.so";
   ASSERT_TRUE(fs::exists(library)) << library;
   ::setenv("LD_PRELOAD", library.c_str(), 1);
-  const Outcome run = run_weft(run_, folder_), doctor = run_weft({"doctor"}, folder_);
-  const Outcome pictures = run_weft(pictures_, folder_);
+  const Outcome run = Subprocess(run_, folder_).wait(), doctor = Subprocess({"doctor"}, folder_).wait();
+  const Outcome pictures = Subprocess(pictures_, folder_).wait();
   ::unsetenv("LD_PRELOAD");
   EXPECT_EQ(run.exit_code, 6);
   EXPECT_TRUE(contains(run.err, "this libavcodec has no libx264; install")) << run.err;

@@ -10,35 +10,63 @@
 #include <array>
 #include <cerrno>
 #include <chrono>
+#include <cstdio>
+#include <iterator>
 #include <stdexcept>
+
+#include "cli/program.hpp"
+#include "core/installation.hpp"
 
 namespace weft::cli {
 namespace {
 
-[[noreturn]] void become_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder, int out,
-                              int err, std::size_t file_size_limit) {
-  std::vector<char*> argv{const_cast<char*>(WEFT_PROGRAM)};
-  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
-  argv.push_back(nullptr);
+// In the child: standard input is empty, the outputs are the pipes.
+void prepare(const std::filesystem::path& folder, int out, int err, std::size_t file_size_limit) {
   const int in = ::open("/dev/null", O_RDONLY);
   if (in < 0 || ::dup2(in, 0) < 0 || ::dup2(out, 1) < 0 || ::dup2(err, 2) < 0 || ::chdir(folder.c_str()) != 0) {
     ::_exit(126);
   }
   const rlimit limit{file_size_limit, file_size_limit};
   if (file_size_limit > 0 && ::setrlimit(RLIMIT_FSIZE, &limit) != 0) ::_exit(126);
-  ::execv(WEFT_PROGRAM, argv.data());
-  ::_exit(127);
+}
+
+// If this process has more threads than the one that forks, the child may wait for a lock of one that it does not have.
+// The sanitizers report leaks only when a program ends by itself.
+bool can_run_in_fork() {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  return false;
+#else
+  const std::filesystem::directory_iterator threads("/proc/self/task");
+  return std::distance(begin(threads), end(threads)) == 1;
+#endif
+}
+
+[[noreturn]] void run_program_and_exit(const std::vector<char*>& argv) {
+  set_own_installation({WEFT_PROGRAM, WEFT_PROGRAM, {}});
+  const int code = run_program(static_cast<int>(argv.size()) - 1, const_cast<char**>(argv.data()), run_tool);
+  std::fflush(nullptr);
+  ::_exit(code);
 }
 
 }  // namespace
 
 Subprocess::Subprocess(const std::vector<std::string>& arguments, const std::filesystem::path& folder,
-                       std::size_t file_size_limit) {
+                       std::size_t file_size_limit, Start start) {
   std::array<int, 2> out{}, err{};
   if (::pipe2(out.data(), O_CLOEXEC) != 0 || ::pipe2(err.data(), O_CLOEXEC) != 0) throw std::runtime_error("pipe2");
+  std::vector<char*> argv{const_cast<char*>(WEFT_PROGRAM)};
+  for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
+  argv.push_back(nullptr);
+  const bool in_fork = start == Start::fork && can_run_in_fork();
+  std::fflush(nullptr);  // else the child would write it once more
   pid_ = ::fork();
   if (pid_ < 0) throw std::runtime_error("fork");
-  if (pid_ == 0) become_weft(arguments, folder, out[1], err[1], file_size_limit);
+  if (pid_ == 0) {
+    prepare(folder, out[1], err[1], file_size_limit);
+    if (in_fork) run_program_and_exit(argv);
+    ::execv(WEFT_PROGRAM, argv.data());
+    ::_exit(127);
+  }
   ::close(out[1]);
   ::close(err[1]);
   out_ = out[0];
@@ -99,7 +127,7 @@ Outcome Subprocess::wait() {
 }
 
 Outcome run_weft(const std::vector<std::string>& arguments, const std::filesystem::path& folder) {
-  return Subprocess(arguments, folder).wait();
+  return Subprocess(arguments, folder, 0, Subprocess::Start::fork).wait();
 }
 
 }  // namespace weft::cli

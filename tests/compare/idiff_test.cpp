@@ -45,10 +45,11 @@ class Idiff : public support::TestFolder {
     return judgement;
   }
 
-  void expect_same(const image::Image& a, const image::Image& b) const {
+  // Each question to idiff takes about 0.5 CPU s.
+  void expect_same(const image::Image& a, const image::Image& b, std::initializer_list<int> tolerances = {4}) const {
     image::write_png(folder_ / "a.png", a);
     image::write_png(folder_ / "b.png", b);
-    for (const int tolerance : {0, 4}) {
+    for (const int tolerance : tolerances) {
       constexpr double kBudget = 0.0125;
       const FileComparison result = compare_files(folder_ / "a.png", folder_ / "b.png", {tolerance, kBudget, 1});
       Judgement judgement = ask(tolerance, kBudget);
@@ -61,7 +62,9 @@ class Idiff : public support::TestFolder {
 
 TEST_F(Idiff, AgreesOnNoiseOfEveryAmount) {
   const image::Image picture = textured(80, 60, 1);
-  for (const int count : {0, 1, 60, 900}) expect_same(picture, with_noise(picture, count, 6, 11));
+  expect_same(picture, picture, {0});
+  for (const int count : {1, 900}) expect_same(picture, with_noise(picture, count, 6, 11));
+  expect_same(picture, with_noise(picture, 60, 6, 11), {0, 4});
   expect_same(picture, with_noise(picture, 60, 80, 11));
 }
 

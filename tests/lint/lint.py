@@ -1,8 +1,9 @@
 #!/usr/bin/env python3
 """Sources through clang as the build compiles them: those of src/ in clang-tidy (`tidy`), which also prints what the
-compiler warns of, those of tests/ as they are (`syntax`).
+compiler warns of, those of tests/ as they are (`syntax`). `changed` is `tidy` of what differs from the commit before
+the last one; without that commit, of everything.
 
-usage: lint.py BUILD syntax|tidy [PART OF A PATH...]
+usage: lint.py BUILD syntax|tidy|changed [PART OF A PATH...]
 
 Reads compile_commands.json of the build folder. Prints what is found; ends with 1 where there is anything.
 """
@@ -63,6 +64,37 @@ def compiled(entry):
     return [{**entry, "file": name} for name in re.findall(r'^#include "(.*\.cpp)"$', path.read_text(), re.M)]
 
 
+def changed_files():
+    """Files below src/ that the last commit or the working tree has changed; None if there is no commit before it."""
+    names = set()
+    for words in (["diff", "--name-only", "--relative", "HEAD~1", "--", "src"],
+                  ["ls-files", "--others", "--exclude-standard", "--", "src"]):
+        try:
+            run = subprocess.run(["git", *words], cwd=TREE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)
+        except OSError:
+            return None
+        if run.returncode:
+            return None
+        names.update(run.stdout.split())
+    return names
+
+
+def through_headers(names, paths):
+    """The sources among `names`, and for each header one that includes it, if need be through others."""
+    texts = {path: path.read_text() for path in [*paths, *sorted((TREE / "src").rglob("*.hpp"))]}
+    chosen = {path for path in paths if str(path.relative_to(TREE)) in names}
+    headers = sorted(TREE / name for name in names if name.endswith(".hpp"))
+    for header in headers:  # grows while it is read
+        line = f'#include "{header.relative_to(TREE / "src")}"'
+        including = sorted((path for path in texts if line in texts[path]), key=lambda path: path.stem != header.stem)
+        sources = [path for path in including if path.suffix == ".cpp"]
+        if sources and not chosen & set(sources):
+            chosen.add(sources[0])
+        elif not sources:
+            headers += [path for path in including[:1] if path not in headers]
+    return chosen
+
+
 def precompile(build, flags):
     header = build / "lint.hpp"
     header.write_text("".join(f"#include <{name}>\n" for name in PRECOMPILED))
@@ -107,6 +139,9 @@ def main():
     sources = [Source(entry) for name, entry in sorted(entries.items())
                if name.endswith(".cpp") and pathlib.Path(name).is_relative_to(root)
                and (not patterns or any(part in name for part in patterns))]
+    if kind == "changed" and (names := changed_files()) is not None:
+        chosen = through_headers(names, [source.path for source in sources])
+        sources = [source for source in sources if source.path in chosen]
     commands = (syntax_commands if kind == "syntax" else tidy_commands)(build, sources)
 
     def findings(command):

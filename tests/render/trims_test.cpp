@@ -226,7 +226,7 @@ TEST(Trims, ThreadOfDenimHasAColorOfItsOwn) {
 // where lines are not filtered.
 TEST(Trims, StitchesHaveNoBeats) {
   constexpr int kFiner = 6;
-  for (double distance = 0.26; distance < 21; distance *= 1.62) {
+  for (double distance = 0.26; distance < 21; distance *= 2.62) {
     const frame::FrameSnapshot snapshot = sewn_cloth(distance, true);
     const image::Image image = drawn(snapshot, 1), finer = drawn(snapshot, kFiner);
     double squares = 0, farthest = 0;

@@ -82,7 +82,7 @@ TEST(Weave, LiesAsTheThreadsOfTheFabricDo) {
 TEST(Weave, HasNoBeats) {
   constexpr int kFiner = 6;
   constexpr double kSpacing = 0.0006;
-  for (double distance = 0.26; distance < 21; distance *= 1.62) {
+  for (double distance = 0.26; distance < 21; distance *= 2.62) {
     const frame::FrameSnapshot snapshot = leaning_cloth(distance, kSpacing);
     const image::Image image = drawn(snapshot, 1), finer = drawn(snapshot, kFiner);
     double squares = 0;

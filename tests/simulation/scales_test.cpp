@@ -52,14 +52,16 @@ TEST_P(Tarpaulin, DrapesWithFewIterationsAndLittleStrain) {
   EXPECT_LT(tried, 1.2 * steps);
 }
 
+std::string name_of_scale(const ::testing::TestParamInfo<Scale>& instance) {
+  const Scale& scale = instance.param;
+  return std::to_string(std::lround(100 * scale.size)) + "cm" + (scale.is_time_scaled ? "TimeScaled" : "");
+}
+
 INSTANTIATE_TEST_SUITE_P(At, Tarpaulin,
-                         ::testing::Values(Scale{0.02, true, 25}, Scale{0.02, false, 25}, Scale{1, false, 25},
-                                           Scale{40, true, 25}, Scale{40, false, 60}),
-                         [](const auto& instance) {
-                           const Scale& scale = instance.param;
-                           return std::to_string(std::lround(100 * scale.size)) + "cm" +
-                                  (scale.is_time_scaled ? "TimeScaled" : "");
-                         });
+                         ::testing::Values(Scale{0.02, false, 25}, Scale{1, false, 25}, Scale{40, true, 25}),
+                         name_of_scale);
+INSTANTIATE_TEST_SUITE_P(SlowAt, Tarpaulin, ::testing::Values(Scale{0.02, true, 25}, Scale{40, false, 60}),
+                         name_of_scale);
 
 }  // namespace
 }  // namespace weft::simulation
