@@ -52,7 +52,7 @@ TEST_F(Diff, LimitsCanBeWidened) {
   expect({"diff", "a.png", "b.png", "--pixel-tolerance", "30", "--max-flip", "1", "--max-spot", "1"}, 0, "within");
   expect({"diff", "a.png", "b.png", "--pixel-budget", "1", "--max-flip", "1", "--max-spot", "1"}, 0, "within");
   expect({"diff", "a.png", "b.png", "--pixel-tolerance", "29", "--max-flip", "1", "--max-spot", "1"}, 7, "DIFFERS");
-  expect({"diff", "a.png", "b.png", "--pixel-tolerance", "30", "--max-spot", "1"}, 7, "(limit 0.0005)");
+  expect({"diff", "a.png", "b.png", "--pixel-tolerance", "30", "--max-spot", "1"}, 7, "(limit 0.00866)");
 }
 
 TEST_F(Diff, FoldersNameWhatIsMissingAndWhatIsSurplus) {
