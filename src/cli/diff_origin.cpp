@@ -32,7 +32,7 @@ KeyedValues metadata_of(const fs::path& file) {
 /// Written by the run beside its output; empty if it is not there.
 fs::path effective_scene_file(const fs::path& picture, const std::string& scene) {
   for (const std::string& name : {picture.stem().string(), scene}) {
-    const fs::path file = picture.parent_path() / (name + ".effective.toml");
+    fs::path file = picture.parent_path() / (name + ".effective.toml");
     if (!name.empty() && fs::is_regular_file(file)) return file;
   }
   return {};
