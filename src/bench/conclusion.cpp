@@ -66,8 +66,8 @@ std::string keys_text(const Setting& s) {
 }
 
 std::string off_text(const Accuracy& accuracy, const Run& run, Quantity quantity) {
-  return fmt::format("{:.2g} CPU s, the {} off by at most {:.2g} mm", run.work.cpu_s, name_of(quantity),
-                     1e3 * bound_of(accuracy, run, quantity));
+  return fmt::format("{:.2g} CPU s, the {} off by at most {:.2g} mm{}", run.work.cpu_s, name_of(quantity),
+                     1e3 * bound_of(accuracy, run, quantity), quantity == Quantity::centre ? " in the last frame" : "");
 }
 
 std::string stands_text(const Accuracy& accuracy, const Run* stands, Quantity quantity) {

@@ -5,16 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "cache/names.hpp"
 #include "cli/commands.hpp"
 #include "cli/enclosed.hpp"
 #include "cli/estimate.hpp"
+#include "cli/scene_changes.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/standard_output.hpp"
 #include "cli/table.hpp"
 #include "core/error.hpp"
+#include "core/input_file.hpp"
 #include "core/log.hpp"
 #include "environment/environment.hpp"
 #include "garment/pattern.hpp"
+#include "scene/document.hpp"
 #include "scene/loader.hpp"
 #include "simulation/simulation.hpp"
 
@@ -69,6 +73,23 @@ std::size_t count_scene_particles(const scene::Scene& scene, Mistakes& mistakes)
   return particles;
 }
 
+/// The effective scene that `against` names. Throws Error(scene_invalid), or Error(asset_unreadable).
+std::string scene_text_of(const std::filesystem::path& against) {
+  const bool is_cache = std::filesystem::is_directory(against);
+  if (is_cache || against.string().ends_with(".effective.toml"))
+    return read_file(is_cache ? against / cache::kSceneFile : against, scene::kMaxFileSize);
+  const scene::LoadResult loaded = scene::load(against);
+  if (!loaded.ok()) throw Error(ExitCode::scene_invalid, mistakes_text(loaded));
+  return scene::effective_scene(loaded.scene);
+}
+
+void print_changes(const std::filesystem::path& file, const scene::Scene& scene, const std::filesystem::path& against) {
+  const std::vector<std::string> lines =
+      scene_changes(scene_text_of(against), against, scene::effective_scene(scene), file);
+  if (lines.empty()) print("{}: the same as {}\n", file.string(), against.string());
+  for (const std::string& line : lines) print("{}: changed: {}\n", file.string(), line);
+}
+
 ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& options) {
   const scene::LoadResult loaded = scene::load(file, options.overrides);
   Mistakes mistakes;
@@ -89,6 +110,7 @@ ExitCode check_scene(const std::filesystem::path& file, const CheckOptions& opti
   print("{}: ok: {}\n", file.string(), describe_scene(loaded.scene, particles));
   for (const std::string& doubt : simulation::doubts(loaded.scene)) print("{}: note: {}\n", file.string(), doubt);
   for (const std::string& note : enclosed) print("{}: note: {}\n", file.string(), note);
+  if (!options.against.empty()) print_changes(file, loaded.scene, options.against);
   if (options.plan) print("{}", plan_table(loaded.scene));
   if (estimate) print("{}: {}\n", file.string(), describe(*estimate));
   return ExitCode::ok;

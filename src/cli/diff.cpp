@@ -6,6 +6,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/diff_limits.hpp"
+#include "cli/diff_origin.hpp"
 #include "cli/diff_page.hpp"
 #include "cli/diff_report.hpp"
 #include "cli/path_ledger.hpp"
@@ -171,6 +172,11 @@ ExitCode diff(const DiffOptions& options) {
     if (!heatmap.empty()) image::write_png(heatmap, compare::heat_map(result.worst.flip));
     json["results"].push_back(describe_json(result, pair.rules.limits, heatmap));
     lines.push_back(describe(result, pair.rules.limits));
+    if (result.outcome == Outcome::differs || result.outcome == Outcome::size || result.outcome == Outcome::frame_count)
+      if (const std::string origin = describe_origin_changes(*pair.reference, pair.test); !origin.empty()) {
+        json["results"].back()["origin"] = origin;
+        lines.back() += "; " + origin;
+      }
     if (!options.html.empty()) page.add(result, lines.back());
     // Thousands of pictures need not fit into memory.
     result.worst.flip = {};

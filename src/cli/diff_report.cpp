@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <cmath>
 #include <cstdlib>
 
 #include "core/json.hpp"
@@ -18,17 +17,19 @@ using Outcome = FileComparison::Outcome;
 // Each figure that is past its limit says so.
 std::string describe_figures(const FileComparison& result, const compare::Limits& limits) {
   const compare::Figures& f = result.worst.figures;
-  const auto limit = [](double figure, double most) { return figure > most ? fmt::format(" (limit {:g})", most) : ""; };
-  const auto pixels = static_cast<double>(f.pixels);
-  const double budget = std::floor(limits.pixel_budget * pixels);
-  const std::string of_pixels = static_cast<double>(f.pixels_over) > budget
-                                    ? fmt::format(" (limit {:g}: {:g} of all pixels)", budget, limits.pixel_budget)
-                                    : "";
+  const auto limit = [](double figure, double most) {
+    return figure > most ? fmt::format(" (limit {:.3g})", most) : "";
+  };
+  const double counted = compare::counted_pixels(f, limits), allowed = compare::allowed_pixels(f, limits);
+  std::string of_pixels;
+  if (counted < static_cast<double>(f.pixels_over))
+    of_pixels = fmt::format(", {} of them at edges, counted as {:.3g}", f.pixels_at_edges, counted);
+  if (counted > allowed) of_pixels += fmt::format(" (limit {:.3g}: {:g} of all pixels)", allowed, limits.pixel_budget);
   return fmt::format(
       "{} of {} pixels differ, {} by more than {} levels{}; at most {} at ({}, {}); FLIP {:.2g}{}, at most {:.2g}{}; "
       "SSIM {:.5f}",
-      f.pixels_changed, pixels, f.pixels_over, limits.pixel_tolerance, of_pixels, f.largest, f.largest_x, f.largest_y,
-      f.flip, limit(f.flip, limits.flip), f.spot, limit(f.spot, limits.spot), f.ssim);
+      f.pixels_changed, f.pixels, f.pixels_over, limits.pixel_tolerance, of_pixels, f.largest, f.largest_x, f.largest_y,
+      f.flip, limit(f.flip, compare::for_size(limits, f).flip), f.spot, limit(f.spot, limits.spot), f.ssim);
 }
 
 }  // namespace
@@ -96,13 +97,14 @@ Json describe_json(const FileComparison& result, const compare::Limits& limits, 
   json["pixels"] = f.pixels;
   json["pixels_changed"] = f.pixels_changed;
   json["pixels_over"] = f.pixels_over;
+  json["pixels_at_edges"] = f.pixels_at_edges;
   json["share_over"] = f.share_over();
   json["largest"] = f.largest;
   json["largest_at"] = {f.largest_x, f.largest_y};
   json["ssim"] = f.ssim;
   json["flip"] = f.flip;
   json["spot"] = f.spot;
-  json["limits"] = describe_json(limits);
+  json["limits"] = describe_json(compare::for_size(limits, f));
   if (!heatmap.empty()) json["heatmap"] = heatmap.string();
   return json;
 }

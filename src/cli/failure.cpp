@@ -4,6 +4,8 @@
 #include <new>
 #include <system_error>
 
+#include "core/log.hpp"
+
 namespace weft::cli {
 
 Failure describe_failure(const std::exception_ptr& exception) {
@@ -23,6 +25,11 @@ Failure describe_failure(const std::exception_ptr& exception) {
   } catch (...) {
     return {ExitCode::internal, "unexpected: an exception of unknown type"};
   }
+}
+
+void report(const Failure& failure) {
+  // Mistakes of a scene name their file first, as compilers do, so that editors can jump there.
+  log::info(failure.code == ExitCode::scene_invalid ? failure.text : "weft: " + failure.text);
 }
 
 }  // namespace weft::cli

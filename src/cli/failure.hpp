@@ -16,4 +16,7 @@ struct Failure {
 /// Any exception at all: those that are not an Error are our own fault.
 Failure describe_failure(const std::exception_ptr& exception);
 
+/// Prints it on standard error.
+void report(const Failure& failure);
+
 }  // namespace weft::cli

@@ -58,13 +58,17 @@ void add_process(CLI::App& command, SceneOptions& options) {
   command.add_flag("--overwrite", options.overwrite, "Replace files that exist already");
 }
 
-void add_common(CLI::App& command, SceneOptions& options, const char* what) {
-  command.add_option("SCENE", options.scene, what)->required()->type_name("");
+void add_scene_changes(CLI::App& command, SceneOptions& options) {
   add_value(command, "--fps", "N", "Frames a second [the scene's]",
             [&](const std::string& text) { options.fps = parse_fps(text); });
   add_overrides(command, options.overrides);
   add_picture(command, options);
   add_process(command, options);
+}
+
+void add_common(CLI::App& command, SceneOptions& options, const char* what) {
+  command.add_option("SCENE", options.scene, what)->required()->type_name("");
+  add_scene_changes(command, options);
 }
 
 void add_output(CLI::App& command, RunOptions& options) {

@@ -42,7 +42,9 @@ void add_backend(CLI::App& command, render::Backend& backend);
 void add_picture(CLI::App& command, SceneOptions& options);
 /// --threads, --progress, --overwrite.
 void add_process(CLI::App& command, SceneOptions& options);
-/// The scene, and all that changes how it is read or drawn.
+/// All that changes how a scene is read or drawn.
+void add_scene_changes(CLI::App& command, SceneOptions& options);
+/// The scene, and these.
 void add_common(CLI::App& command, SceneOptions& options, const char* what = "The scene, a TOML file");
 void add_output(CLI::App& command, RunOptions& options);
 void add_video(CLI::App& command, VideoOptions& options);

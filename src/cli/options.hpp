@@ -64,15 +64,18 @@ struct RenderOptions : RunOptions {
 struct CheckOptions {
   std::vector<std::filesystem::path> scenes;
   std::vector<std::string> overrides;
+  std::filesystem::path against;  ///< a scene, an effective scene or a cache; may be empty
   bool plan = false;
   bool estimate = false;  ///< also of time and memory
 };
 
 struct ThumbnailOptions {
-  SceneOptions common;
-  std::filesystem::path output;  ///< empty: output/<scene>.png
-  std::optional<int> frame;      ///< else the one that tells most
-  bool start = false;            ///< instead of a frame: the start, also one that is refused
+  SceneOptions common;                        ///< `scene` is set while one is drawn
+  std::vector<std::filesystem::path> scenes;  ///< or caches; one at least
+  /// A picture, or without an ending a folder, which gets <scene>.png of each; empty: output/<scene>.png.
+  std::filesystem::path output;
+  std::optional<int> frame;  ///< else the one that tells most
+  bool start = false;        ///< instead of a frame: the start, also one that is refused
 };
 
 struct SheetOptions {

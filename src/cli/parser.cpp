@@ -99,18 +99,21 @@ void Parser::add_render() {
 }
 
 void Parser::add_thumbnail() {
-  CLI::App& command = *app.add_subcommand("thumbnail", "Draw one still of a scene or a cache");
-  add_value(command, "-o,--output", "FILE.png", "The picture [output/<scene>.png]",
+  CLI::App& command = *app.add_subcommand("thumbnail", "Draw one still of each scene or cache");
+  command.add_option("SCENE", thumbnail.scenes, "Scenes, TOML files, or folders of caches")->required()->type_name("");
+  add_value(command, "-o,--output", "FILE.png|DIR", "The picture, or the folder of <scene>.png [output/<scene>.png]",
             [this](const std::string& text) { thumbnail.output = text; });
   add_value(command, "--frame", "N", "Which frame, counted from 0 [the one that tells most]",
             [this](const std::string& text) { thumbnail.frame = parse_integer("--frame", text, 0, 1'000'000'000); });
   command.add_flag("--start", thumbnail.start,
                    "Instead of a frame: how the scene is given, with all that touches or crosses marked in red");
-  add_common(command, thumbnail.common, kSceneOrCache);
+  add_scene_changes(command, thumbnail.common);
   command.footer(
       "\nExamples:\n"
       "  weft thumbnail scenes/falling_band.toml -o band.png --frame 60 --quality draft\n"
-      "  weft thumbnail dress.toml --start -o start.png");
+      "  weft thumbnail scenes/*.toml -o stills --size 320x180\n"
+      "  weft thumbnail dress.toml --start -o start.png\n"
+      "\nWhere a scene fails, the others are drawn; the exit code is that of the first that failed.");
 }
 
 void Parser::add_sheet() {

@@ -36,8 +36,13 @@ void Parser::add_check() {
   command.add_flag("--plan", check.plan, "Also print which parts the scene needs and which are left out");
   command.add_flag("--estimate", check.estimate,
                    "Also simulate some seconds, and tell what a run takes of time and memory");
+  add_value(command, "--against", "SCENE|CACHE",
+            "Also print what has changed since this scene, the .effective.toml of a run, or a cache",
+            [this](const std::string& text) { check.against = text; });
   add_overrides(command, check.overrides);
-  command.footer("\nExample:\n  weft check scenes/*.toml");
+  command.footer(
+      "\nExamples:\n  weft check scenes/*.toml\n"
+      "  weft check band.toml --against output/falling_band.effective.toml");
 }
 
 void Parser::add_schema() {
@@ -144,8 +149,10 @@ void Parser::add_diff() {
     add_value(command, name, "X", fmt::format("{} [{}]", what, most),
               [name, &most](const std::string& text) { most = parse_share(name, text); });
   };
-  add_share("--pixel-budget", diff.limits.pixel_budget, "Share of the pixels that may differ by more");
-  add_share("--max-flip", diff.limits.flip, "Largest mean of FLIP, 0 (looks the same) to 1");
+  add_share("--pixel-budget", diff.limits.pixel_budget,
+            "Share of the pixels that may differ by more; unless given, at edges a fortieth of them counts");
+  add_share("--max-flip", diff.limits.flip,
+            "Largest mean of FLIP, 0 (looks the same) to 1; unless given, wider below 640x360 pixels");
   add_share("--max-spot", diff.limits.spot, "Largest value of FLIP at any pixel");
   add_value(command, "--heatmap", "FILE.png|DIR", "Also paint where it differs; a video's worst frame",
             [this](const std::string& text) { diff.heatmap = text; });

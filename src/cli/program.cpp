@@ -60,11 +60,6 @@ void check_working_folder() {
     throw Error(ExitCode::usage, "the working folder cannot be used: {}; go to one that exists", error.message());
 }
 
-void report(const Failure& failure) {
-  // Mistakes of a scene name their file first, as compilers do, so that editors can jump there.
-  log::info(failure.code == ExitCode::scene_invalid ? failure.text : "weft: " + failure.text);
-}
-
 }  // namespace
 
 ExitCode become_tools(const Command& /*command*/, char** argv) {

@@ -6,7 +6,6 @@
 #include "cache/reader.hpp"
 #include "cli/cached_frames.hpp"
 #include "cli/scene_input.hpp"
-#include "cli/signals.hpp"
 #include "core/error.hpp"
 #include "simulation/simulation.hpp"
 
@@ -54,7 +53,6 @@ class SceneStills : public Stills {
     if (signals_.requested()) throw Error(ExitCode::interrupted, "interrupted at frame {}; no picture", frame_);
   }
 
-  const StopSignals signals_;
   const scene::Scene input_;
   std::optional<simulation::Simulation> simulation_;
   int frame_ = 0;  // of the simulation
@@ -84,7 +82,6 @@ class CacheStills : public Stills {
   }
 
  private:
-  const StopSignals signals_;
   const cache::Reader reader_;
 };
 

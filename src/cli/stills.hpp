@@ -10,6 +10,7 @@
 #include "cache/manifest.hpp"
 #include "cli/options.hpp"
 #include "cli/path_ledger.hpp"
+#include "cli/signals.hpp"
 #include "core/progress.hpp"
 #include "frame/frame_snapshot.hpp"
 #include "render/renderer.hpp"
@@ -34,6 +35,8 @@ class Stills {
   /// The camera, once all frames that are wanted were had: it has seen those of the cache, or those that were
   /// simulated.
   render::CameraPath camera();
+  /// Whether SIGINT or the like asked for an end.
+  bool is_stopped() const { return signals_.requested(); }
   /// In place of that of the scene; before the first frame.
   void set_size(const PictureSize& size);
 
@@ -41,6 +44,7 @@ class Stills {
   /// In their order.
   void show(const frame::FrameSnapshot& snapshot);
 
+  const StopSignals signals_;
   cache::Manifest scene_;
   render::Settings settings_;
   std::vector<int> frames_;

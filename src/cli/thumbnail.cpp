@@ -1,8 +1,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <functional>
 
 #include "cli/commands.hpp"
+#include "cli/failure.hpp"
 #include "cli/scene_input.hpp"
 #include "cli/stages.hpp"
 #include "cli/start_picture.hpp"
@@ -54,14 +56,29 @@ std::string describe_choice(const render::Saliency& saliency, std::size_t count)
                      count, 100 * saliency.coverage, saliency.folding, saliency.motion);
 }
 
+/// Without its folder.
+std::string picture_name(const ThumbnailOptions& options, const Stills& stills) {
+  return stills.scene().scene + (options.start ? ".start.png" : ".png");
+}
+
+bool is_folder(const std::filesystem::path& output) {
+  return !output.empty() && (!output.has_extension() || std::filesystem::is_directory(output));
+}
+
+/// Of several scenes, none is drawn after a signal that came while this one was.
+void check_stopped(const ThumbnailOptions& options, const Stills& stills) {
+  if (stills.is_stopped() && options.scenes.size() > 1)
+    throw Error(ExitCode::interrupted, "interrupted after {}", options.common.scene.string());
+}
+
 // The start as it is given, which a run may refuse: nothing is simulated.
-ExitCode thumbnail_of_start(const ThumbnailOptions& options) {
+void draw_thumbnail_of_start(const ThumbnailOptions& options) {
   if (options.frame || std::filesystem::is_directory(options.common.scene))
     throw Error(ExitCode::usage, "--start: expected a scene and no --frame, got {}",
                 options.frame ? "both" : "the cache " + options.common.scene.string());
   const std::unique_ptr<Stills> stills = open_stills(options.common);
   const std::filesystem::path file =
-      still_file(*stills, options.output, stills->scene().scene + ".start.png", options.common.overwrite);
+      still_file(*stills, options.output, picture_name(options, *stills), options.common.overwrite);
   const simulation::StartView start = simulation::view_start(load_scene(options.common));
   render::Settings settings = stills->settings();
   if (!start.places.empty() && !options.common.size) settings.height /= 2, settings.width /= 2;
@@ -76,19 +93,16 @@ ExitCode thumbnail_of_start(const ThumbnailOptions& options) {
   const Metadata about = describe_pictures(stills->scene(), settings, painter->description());
   image::write_png(file, image, describe_still(about, start.snapshot->frame, start.snapshot->time));
   log::info(fmt::format("{}: the start: {}", file.string(), said));
-  return ExitCode::ok;
+  check_stopped(options, *stills);
 }
 
-}  // namespace
-
-ExitCode thumbnail(const ThumbnailOptions& options) {
-  set_thread_count(options.common.threads);
-  if (options.start) return thumbnail_of_start(options);
+void draw_thumbnail(const ThumbnailOptions& options) {
+  if (options.start) return draw_thumbnail_of_start(options);
   const std::unique_ptr<Stills> stills = open_stills(options.common);
   const std::vector<int>& frames = stills->frames();
   if (options.frame) check_frame(*options.frame, *stills);
   const std::filesystem::path file =
-      still_file(*stills, options.output, stills->scene().scene + ".png", options.common.overwrite);
+      still_file(*stills, options.output, picture_name(options, *stills), options.common.overwrite);
   std::string text;
   {
     Progress progress(options.common.progress, {stills->cost(options.frame.value_or(frames.back())), 1, 1});
@@ -105,6 +119,78 @@ ExitCode thumbnail(const ThumbnailOptions& options) {
     if (!options.frame) text += describe_choice(choice.saliency, frames.size());
   }
   log::info(text);
+  check_stopped(options, *stills);
+}
+
+/// Draws one picture of each scene into a folder, and goes on where a scene fails.
+class Batch {
+ public:
+  explicit Batch(const ThumbnailOptions& options)
+      : options_(options), folder_(options.output.empty() ? "output" : options.output) {
+    if (!options.output.empty() && !is_folder(options.output))
+      throw Error(ExitCode::usage, "-o: expected a folder for the pictures of {} scenes, got {}", options.scenes.size(),
+                  options.output.string());
+  }
+
+  ExitCode run() {
+    const std::vector<ThumbnailOptions> drawings = plan();
+    std::size_t drawn = 0;
+    for (const ThumbnailOptions& drawing : drawings)
+      drawn += attempt(drawing.common.scene, [&] { draw_thumbnail(drawing); });
+    log::info(fmt::format("{} of {} pictures are drawn", drawn, options_.scenes.size()));
+    return code_;
+  }
+
+ private:
+  /// What can be read of all that is named, and where it goes: checked before the first is drawn.
+  std::vector<ThumbnailOptions> plan() {
+    std::vector<ThumbnailOptions> drawings;
+    PathLedger paths;
+    for (const std::filesystem::path& scene : options_.scenes) {
+      ThumbnailOptions one = options_;
+      one.common.scene = scene;
+      attempt(scene, [&] {
+        const std::unique_ptr<Stills> stills = open_stills(one.common);
+        one.output = folder_ / picture_name(one, *stills);
+        stills->add_inputs(paths);
+        drawings.push_back(one);
+      });
+    }
+    for (const ThumbnailOptions& drawing : drawings) paths.writes("-o", drawing.output);
+    paths.check_absent(options_.common.overwrite);
+    paths.check_writable();
+    return drawings;
+  }
+
+  /// Whether it went well. Reports a failure, and keeps its code if it is the first; throws on if it is an
+  /// interruption.
+  bool attempt(const std::filesystem::path& scene, const std::function<void()>& work) {
+    try {
+      work();
+      return true;
+    } catch (...) {
+      const Failure failure = describe_failure(std::current_exception());
+      if (failure.code == ExitCode::interrupted) throw;
+      report(failure);
+      log::info(fmt::format("{}: no picture, exit code {}", scene.string(), static_cast<int>(failure.code)));
+      if (code_ == ExitCode::ok) code_ = failure.code;
+      return false;
+    }
+  }
+
+  const ThumbnailOptions& options_;
+  const std::filesystem::path folder_;
+  ExitCode code_ = ExitCode::ok;
+};
+
+}  // namespace
+
+ExitCode thumbnail(const ThumbnailOptions& options) {
+  set_thread_count(options.common.threads);
+  if (options.scenes.size() > 1 || is_folder(options.output)) return Batch(options).run();
+  ThumbnailOptions one = options;
+  one.common.scene = options.scenes.front();
+  draw_thumbnail(one);
   return ExitCode::ok;
 }
 

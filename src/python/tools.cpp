@@ -113,6 +113,8 @@ void bind_difference(py::module_& module) {
       .def_property_readonly("pixels", figure(&Figures::pixels))
       .def_property_readonly("pixels_changed", figure(&Figures::pixels_changed))
       .def_property_readonly("pixels_over", figure(&Figures::pixels_over))
+      .def_property_readonly("pixels_at_edges", figure(&Figures::pixels_at_edges),
+                             "Of pixels_over; of the default budget they use a fortieth.")
       .def_property_readonly("largest", figure(&Figures::largest), "Difference of a channel, of 255.")
       .def_property_readonly("ssim", figure(&Figures::ssim), "Mean structural similarity, 1 where equal.")
       .def_property_readonly("flip", figure(&Figures::flip), "Mean of the FLIP map, 0 where equal.")

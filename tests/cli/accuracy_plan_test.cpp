@@ -135,6 +135,11 @@ TEST(Recommendation, IsTheFirstLineAndNamesKeysAndCosts) {
             "take 4 CPU s, the position off by at most 20 mm.");
   EXPECT_TRUE(accuracy_markdown("x", accuracy, "a", "b")
                   .starts_with("# Error against run time: x\n\n**" + recommendation(accuracy) + "**\n"));
+  Accuracy with_contact = accuracy;
+  with_contact.contact = true;
+  EXPECT_NE(recommendation(with_contact).find("the centre off by at most 5 mm in the last frame, where"),
+            std::string::npos)
+      << recommendation(with_contact);
   accuracy.of_scene.integrator = Integrator::bdf2;
   EXPECT_TRUE(recommendation(accuracy).starts_with("Keep the settings of the scene, `time.integrator = \"bdf2\"`"));
   accuracy.uncertainty.fill(0.5);

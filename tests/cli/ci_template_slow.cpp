@@ -23,9 +23,9 @@ class CiRepository : public support::TestFolder {
   }
 
   // What the workflow runs.
-  int check(const std::string& options = "") {
-    const std::string command =
-        fmt::format("cd '{}' && WEFT='{}' sh pictures.sh {} >log 2>&1", repo_.string(), WEFT_PROGRAM, options);
+  int check(const std::string& options = "", const std::string& environment = "") {
+    const std::string command = fmt::format("cd '{}' && {} WEFT='{}' sh pictures.sh {} >log 2>&1", repo_.string(),
+                                            environment, WEFT_PROGRAM, options);
     const int status = std::system(command.c_str());
     log_ = support::read_bytes(repo_ / "log");
     return WEXITSTATUS(status);
@@ -34,11 +34,12 @@ class CiRepository : public support::TestFolder {
   // With a change, which is then taken back: its exit code, that all that is named in `found` is in the log, and how
   // many pictures are as they were.
   void expect_caught(const char* what, const std::function<void()>& change, int code,
-                     const std::vector<std::string>& found, const std::string& options = "") {
+                     const std::vector<std::string>& found, const std::string& options = "",
+                     const std::string& environment = "") {
     SCOPED_TRACE(what);
     fs::copy(repo_, folder_ / "kept", fs::copy_options::recursive);
     change();
-    EXPECT_EQ(check(options), code) << log_;
+    EXPECT_EQ(check(options, environment), code) << log_;
     for (const std::string& words : found) EXPECT_NE(log_.find(words), std::string::npos) << words << "\n" << log_;
     fs::remove_all(repo_);
     fs::rename(folder_ / "kept", repo_);
@@ -58,6 +59,16 @@ class CiRepository : public support::TestFolder {
     for (int y = 40; y < 80; ++y) std::fill_n(picture.pixel(40, y), 3 * 40, std::uint8_t{255});
     image::write_png(repo_ / "all" / frame, picture, metadata);
     ASSERT_EQ(run_weft({"join", "all", "-o", "references/flag.mp4", "--overwrite"}, repo_).exit_code, 0);
+  }
+
+  // In the middle of the picture, where the cloth is, by 16 levels.
+  void make_hole(const std::string& file) const {
+    image::Image picture = image::read_png(repo_ / file);
+    for (int i = 0; i < 4; ++i) {
+      std::uint8_t* pixel = picture.pixel(240 + i % 2, 130 + i / 2);
+      for (int c = 0; c < 3; ++c) pixel[c] = static_cast<std::uint8_t>(pixel[c] ^ 16);
+    }
+    image::write_png(repo_ / file, picture);
   }
 
   // The same picture with other bytes: 16 bits a channel, no metadata.
@@ -82,7 +93,7 @@ TEST_F(CiRepository, CatchesWhatIsChangedAndPassesWhatIsNot) {
   ASSERT_EQ(check(), 0) << log_;
   EXPECT_NE(log_.find("\n9 of 9 are as their references\n"), std::string::npos) << log_;
 
-  // Six that a viewer would see.
+  // Nine that a viewer would see.
   expect_caught("physics", [&] { replace("scenes/flag.toml", "wind = [8, 2, 0]", "wind = [8, 3, 0]"); }, 7,
                 {"\nflag/00010.png: DIFFERS", "\nflag.mp4: 30 of 31 frames differ, the first is frame 1; ",
                  "\ndrapes/scarf.mp4: 0 of 21 frames differ"});
@@ -98,11 +109,21 @@ TEST_F(CiRepository, CatchesWhatIsChangedAndPassesWhatIsNot) {
   expect_caught("one frame of a video", [&] { change_frame("00015.png"); }, 7,
                 {"worst is frame 15: ", "8 of 9 are as their references"});
 
-  // Three that nobody sees.
+  expect_caught("a pin that is missing",
+                [&] { replace("scenes/flag.toml", "low = [0, 1]\nhigh = [0, 1]", "low = [0, 0]\nhigh = [0, 0]"); }, 7,
+                {"\nflag/00010.png: DIFFERS", "\ndrapes/scarf/00020.png: same"});
+  expect_caught("a colour, by 2 %", [&] { replace("scenes/flag.toml", "2f5fa8", "2f64a8"); }, 7,
+                {"\nflag/00000.png: DIFFERS", "\ndrapes/scarf/00020.png: same"});
+  expect_caught("a hole of four pixels", [&] { make_hole("references/drapes/scarf/00020.png"); }, 7,
+                {"\ndrapes/scarf/00020.png: DIFFERS: 4 of 129600 pixels differ", "\nflag/00020.png: same"});
+
+  // Four that nobody sees.
   expect_caught("a comment", [&] { replace("scenes/flag.toml", "# A flag", "# One flag"); }, 0, {"9 of 9"});
   expect_caught("another compression", [&] { compress_anew("references/flag/00010.png"); }, 0, {"9 of 9"});
   expect_caught(
       "threads", [] {}, 0, {"9 of 9"}, "--threads 1");
+  expect_caught(
+      "a CPU without AVX", [] {}, 0, {"9 of 9"}, "", "GALLIUM_OVERRIDE_CPU_CAPS=sse4.1");
 }
 
 TEST_F(CiRepository, GoesOnAfterASceneThatFails) {

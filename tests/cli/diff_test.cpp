@@ -37,7 +37,7 @@ TEST_F(Diff, ExitCodesTellEqualDifferentMissingAndUnreadable) {
   support::write_bytes(folder_ / "broken.png", "words");
   expect({"diff", "a.png", "a.png"}, 0, "a.png: same");
   expect({"diff", "a.png", "b.png"}, 7,
-         "b.png: DIFFERS: 768 of 768 pixels differ, 768 by more than 4 levels (limit 0: 2e-05 of all pixels)");
+         "b.png: DIFFERS: 768 of 768 pixels differ, 768 by more than 4 levels (limit 1: 2e-05 of all pixels)");
   expect({"diff", "a.png", "wide.png"}, 7, "wide.png: 40x24 pixels, the reference has 32x24");
   expect({"diff", "none.png", "a.png"}, 8, "none.png: the reference does not exist");
   expect({"diff", "a.png", "none.png"}, 4, "none.png: the picture to test does not exist");
@@ -52,7 +52,7 @@ TEST_F(Diff, LimitsCanBeWidened) {
   expect({"diff", "a.png", "b.png", "--pixel-tolerance", "30", "--max-flip", "1", "--max-spot", "1"}, 0, "within");
   expect({"diff", "a.png", "b.png", "--pixel-budget", "1", "--max-flip", "1", "--max-spot", "1"}, 0, "within");
   expect({"diff", "a.png", "b.png", "--pixel-tolerance", "29", "--max-flip", "1", "--max-spot", "1"}, 7, "DIFFERS");
-  expect({"diff", "a.png", "b.png", "--pixel-tolerance", "30", "--max-spot", "1"}, 7, "(limit 0.0005)");
+  expect({"diff", "a.png", "b.png", "--pixel-tolerance", "30", "--max-spot", "1"}, 7, "(limit 0.00866)");
 }
 
 TEST_F(Diff, FoldersNameWhatIsMissingAndWhatIsSurplus) {
@@ -251,6 +251,30 @@ TEST_F(Diff, PageShowsBeforeAfterAndDifferenceOfWhatDiffers) {
   ASSERT_EQ(std::system((decode + (folder_ / "after.png").string() + "'").c_str()), 0);
   EXPECT_EQ(image::read_png(folder_ / "after.png").rgb, image::read_png(folder_ / "out/f/<b>&.png").rgb);
   expect({"diff", "ref", "out", "--html", "page.html"}, 6, "page.html: exists already");
+}
+
+TEST_F(Diff, SaysWhatHasChangedInTheSceneBetweenTwoRuns) {
+  const auto draw = [&](const char* name, std::uint8_t level, const char* hash, const char* gl) {
+    image::Image image(32, 24);
+    std::fill(image.rgb.begin(), image.rgb.end(), level);
+    std::filesystem::create_directories((folder_ / name).parent_path());
+    image::write_png(folder_ / name, image, {{"scene", "s"}, {"scene_hash", hash}, {"gl", gl}});
+  };
+  draw("ref/00001.png", 100, "1", "Mesa 22");
+  draw("out/00001.png", 130, "2", "Mesa 22");
+  expect({"diff", "ref", "out"}, 7, "; the scene has changed\n");
+  support::write_bytes(folder_ / "ref/s.effective.toml",
+                       "[physics]\nwind = [8, 2.5, 0]\n[[cloth]]\nname = \"flag\"\nthickness = 1e-3\n");
+  support::write_bytes(
+      folder_ / "out/s.effective.toml",
+      "[physics]\nwind = [8, 3.5, 0]\n[[cloth]]\nname = \"flag\"\nover = \"shirt\"\nthickness = 1e-3\n");
+  expect({"diff", "ref", "out"}, 7,
+         "; the scene has changed: cloth.flag.over: none -> \"shirt\"; physics.wind: [8, 2.5, 0] -> [8, 3.5, 0]\n");
+  expect({"diff", "ref", "out", "--json"}, 7, "\"origin\": \"the scene has changed: cloth.flag.over");
+  draw("out/00001.png", 130, "1", "Mesa 25");
+  expect({"diff", "ref", "out"}, 7, "; the scene is the same; gl: Mesa 22 -> Mesa 25\n");
+  draw("out/00001.png", 100, "2", "Mesa 22");
+  expect({"diff", "ref", "out"}, 0, "00001.png: same\n");
 }
 
 TEST_F(Diff, AnnotationsNameTheFilesOfARepository) {

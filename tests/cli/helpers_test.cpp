@@ -157,6 +157,23 @@ TEST_F(Helpers, TwoDashesEndTheOptions) {
             std::string::npos);
 }
 
+TEST_F(Helpers, CheckSaysWhatHasChangedSinceAnotherScene) {
+  const auto check = [&](const char* changed, const char* against, int code, const std::string& words) {
+    const Outcome outcome = run_weft({"check", "s.toml", "--set", changed, "--against", against}, folder_);
+    EXPECT_EQ(outcome.exit_code, code) << outcome.err;
+    EXPECT_NE((outcome.out + outcome.err).find(words), std::string::npos) << words << "\n"
+                                                                          << outcome.out << outcome.err;
+  };
+  check("time.preroll=0", "s.toml", 0, "s.toml: the same as s.toml\n");
+  check("cloth.cloth.look.roughness=0.25", "s.toml", 0, "s.toml: changed: cloth.cloth.look.roughness: ");
+  expect_well({"simulate", "s.toml", "--cache", "c", "--frames", ":2"});
+  check("physics.gravity=[0,0,-5]", "c", 0, "changed: physics.gravity: [0, 0, -9.81] -> [0, 0, -5]\n");
+  support::write_bytes(folder_ / "old.toml", "[cloth]\n");
+  check("time.preroll=0", "old.toml", 3, "old.toml:1:1: cloth: expected a list of tables");
+  support::write_bytes(folder_ / "old.effective.toml", "words");
+  check("time.preroll=0", "old.effective.toml", 4, "old.effective.toml:1:");
+}
+
 TEST_F(Helpers, CheckEstimatesWhatARunTakes) {
   const Outcome outcome = run_weft({"check", "--estimate", "s.toml"}, folder_);
   EXPECT_EQ(outcome.exit_code, 0) << outcome.err;

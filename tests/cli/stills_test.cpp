@@ -34,6 +34,52 @@ TEST_F(Stills, SheetShowsEvenlySpacedFramesFromTheFirstToTheLast) {
   EXPECT_EQ(about("few.png").at("frames"), "0 1 2") << "a scene of three frames has no more";
 }
 
+TEST_F(Stills, OneCallDrawsAPictureOfEachSceneAndGoesOnAfterBrokenOnes) {
+  for (const char* name : {"b.toml", "deep/c.toml"}) {
+    fs::create_directories((folder_ / name).parent_path());
+    fs::copy_file(folder_ / "s.toml", folder_ / name);
+  }
+  support::write_bytes(folder_ / "broken.toml", "[cloth]\n");
+  expect_well({"simulate", "s.toml", "--cache", "cache_of_s", "--frames", ":3"});
+  const Outcome outcome = weft(
+      {"thumbnail", "broken.toml", "none.toml", "s.toml", "deep/c.toml", "b.toml", "--frame", "2", "-o", "stills"});
+  EXPECT_EQ(outcome.exit_code, 3) << outcome.err;
+  EXPECT_NE(outcome.err.find("broken.toml: no picture, exit code 3"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("none.toml: no picture, exit code 3"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.err.find("3 of 5 pictures are drawn"), std::string::npos) << outcome.err;
+  expect_well({"thumbnail", "s.toml", "--frame", "2", "-o", "one.png"});
+  for (const char* picture : {"stills/s.png", "stills/b.png", "stills/c.png"})
+    EXPECT_EQ(pixels(picture), pixels("one.png")) << picture;
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "stills"), {}), 3);
+  // One scene, which a pattern of the shell may come to, and a cache.
+  expect_well({"thumbnail", "s.toml", "--frame", "2", "-o", "more/of"});
+  EXPECT_EQ(pixels("more/of/s.png"), pixels("one.png"));
+  expect_well({"thumbnail", "b.toml", "cache_of_s", "--frame", "2"});
+  EXPECT_EQ(pixels("output/s.png"), pixels("output/b.png"));
+  expect_well({"thumbnail", "b.toml", "s.toml", "--start", "-o", "stills"});
+  EXPECT_EQ(about("stills/b.start.png").at("scene"), "b");
+}
+
+TEST_F(Stills, OfSeveralScenesNoneIsDrawnWhereAPictureWouldBeLost) {
+  fs::create_directories(folder_ / "deep");
+  fs::copy_file(folder_ / "s.toml", folder_ / "deep/s.toml");
+  fs::copy_file(folder_ / "s.toml", folder_ / "b.toml");
+  const auto expect_refused = [&](std::vector<std::string> arguments, int code, const std::string& words) {
+    arguments.insert(arguments.begin(), "thumbnail");
+    const Outcome outcome = weft(arguments);
+    EXPECT_EQ(outcome.exit_code, code) << outcome.err;
+    EXPECT_NE(outcome.err.find(words), std::string::npos) << outcome.err;
+  };
+  expect_refused({"s.toml", "deep/s.toml", "-o", "stills", "--overwrite"}, 2, "stills/s.png is what -o writes");
+  expect_refused({"s.toml", "b.toml", "-o", "one.png"}, 2,
+                 "-o: expected a folder for the pictures of 2 scenes, got one.png");
+  fs::create_directories(folder_ / "stills");
+  support::write_bytes(folder_ / "stills/b.png", "kept");
+  expect_refused({"s.toml", "b.toml", "-o", "stills"}, 6, "stills/b.png: exists already");
+  EXPECT_EQ(support::read_bytes(folder_ / "stills/b.png"), "kept");
+  EXPECT_FALSE(fs::exists(folder_ / "stills/s.png"));
+}
+
 TEST_F(Stills, FromACacheAreThoseFromTheScene) {
   expect_well({"simulate", "s.toml", "--cache", "c"});
   for (const char* input : {"s.toml", "c"}) {

@@ -1,0 +1,21 @@
+// What differs between two scenes.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+namespace weft::cli {
+
+using KeyedValues = std::map<std::string, std::string>;  ///< by key, as text
+
+/// "wind: [8, 2, 0] -> [8, 3, 0]" for each key that differs, in their order; what one of them lacks is "none".
+std::vector<std::string> list_changes(const KeyedValues& before, const KeyedValues& after);
+
+/// The same of two effective scenes, as TOML. Entries of lists go by name, as in --set. The files are for messages.
+/// Throws Error(asset_unreadable) for what is not TOML.
+std::vector<std::string> scene_changes(const std::string& before, const std::filesystem::path& before_file,
+                                       const std::string& after, const std::filesystem::path& after_file);
+
+}  // namespace weft::cli
