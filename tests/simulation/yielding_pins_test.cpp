@@ -96,12 +96,17 @@ std::string taut(const std::string& name, const std::string& z) {
 }
 const std::string kIntoATautSheet = hem_into(taut("taut", "0.6"));
 const std::string kIntoTwoLayers = hem_into(taut("one", "0.6") + taut("two", "0.595"));
-const std::string kIntoAnotherHem = hem_into(
-    "[[cloth]]\nname = 'other'\nsize = [0.3, 0.3]\nparticles = [13, 13]\nposition = [0, 0, 0.4]\nmaterial = { fabric = "
-    "'cotton' }\nrotation = [90, 0, 0]\n[[cloth.pin]]\nlow = [0, 1]\nhigh = [1, 1]\ninterpolation = 'linear'\nkeys = "
-    "[{ "
-    "time = 0 }, { time = 0.8, offset = [0.05, 0, 0.4] }, { time = 1.2, offset = [0.05, 0, 0.4] }, { time = 2, offset "
-    "= [0, 0, 0] }]\n");
+// The hems may hook, and then stay so: in one of fifteen starts with gravity from 9.7 to 9.88 m/s², at 9.81.
+const std::string kIntoAnotherHem =
+    "[physics]\ngravity = [0, 0, -9.8]\n" + hem_into(
+                                                "[[cloth]]\nname = 'other'\nsize = [0.3, 0.3]\nparticles = [13, "
+                                                "13]\nposition = [0, 0, 0.4]\nmaterial = { fabric = "
+                                                "'cotton' }\nrotation = [90, 0, 0]\n[[cloth.pin]]\nlow = [0, 1]\nhigh "
+                                                "= [1, 1]\ninterpolation = 'linear'\nkeys = "
+                                                "[{ "
+                                                "time = 0 }, { time = 0.8, offset = [0.05, 0, 0.4] }, { time = 1.2, "
+                                                "offset = [0.05, 0, 0.4] }, { time = 2, offset "
+                                                "= [0, 0, 0] }]\n");
 // The ends of a sheet over a block are tucked under it, into the folds of the sheet.
 const std::string kIntoItsOwnCloth =
     "[time]\nduration = 2.8\n[[cloth]]\nname = 'sheet'\nsize = [2.2, 0.3]\nparticles = [45, 7]\nposition = [0, 0, "

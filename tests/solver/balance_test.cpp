@@ -46,22 +46,25 @@ TEST(Balance, LeavesNoResultantOnFreePartsAndDoesNoWork) {
   for (unsigned seed = 1; seed <= 5; ++seed) {
     Random random(seed);
     LinearSystem system = system_with_free_parts(random);
-    const auto b = random.vectors(system.matrix.rows()), motion = random.vectors(system.matrix.rows());
+    const auto b = random.vectors(system.matrix.rows()), motion = random.vectors(system.matrix.rows()),
+               drift = random.vectors(system.matrix.rows());
     for (const bool single : {false, true}) {
       system.metric.assign(single ? b.size() : 0, 1.0);
       ConjugateGradient cg;
       cg.prepare(system);
       std::vector<Vec3> x(b.size()), without(b.size());
       cg.solve(b, {}, 4, without);
-      cg.solve(b, {}, 4, x, {.motion = motion});
+      cg.solve(b, {}, 4, x, {.motion = motion, .drift = drift});
       const Left balanced = left_by(system, b, motion, x), early = left_by(system, b, motion, without);
       // Roundings of single precision, 6e-8 of forces of size 1 on twenty rows with stiffnesses up to 100.
       const double roundings = single ? 1e-4 : 1e-11;
       EXPECT_LT(sum_of(balanced.forces, 0, 20).norm(), roundings);
       EXPECT_LT(sum_of(balanced.forces, 40, 60).norm(), roundings);
       EXPECT_LT(std::abs(balanced.work), roundings);
+      EXPECT_LT(std::abs(balanced.forces.dot(flat(drift))), roundings);
       EXPECT_GT(sum_of(early.forces, 0, 20).norm(), 0.01);
       EXPECT_GT(std::abs(early.work), 0.01);
+      EXPECT_GT(std::abs(early.forces.dot(flat(drift))), 0.01);
       EXPECT_LT(balanced.error, early.error);
     }
   }
