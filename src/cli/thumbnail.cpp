@@ -61,8 +61,10 @@ std::string picture_name(const ThumbnailOptions& options, const Stills& stills) 
   return stills.scene().scene + (options.start ? ".start.png" : ".png");
 }
 
-bool is_folder(const std::filesystem::path& output) {
-  return !output.empty() && (!output.has_extension() || std::filesystem::is_directory(output));
+/// Where `output` is not a folder by its name alone, one scene has a picture there, several have a folder.
+bool is_folder(const ThumbnailOptions& options) {
+  const bool may_exist = options.scenes.size() > 1 && std::filesystem::is_directory(options.output);
+  return !options.output.empty() && (!options.output.has_extension() || may_exist);
 }
 
 /// Of several scenes, none is drawn after a signal that came while this one was.
@@ -127,7 +129,7 @@ class Batch {
  public:
   explicit Batch(const ThumbnailOptions& options)
       : options_(options), folder_(options.output.empty() ? "output" : options.output) {
-    if (!options.output.empty() && !is_folder(options.output))
+    if (!options.output.empty() && !is_folder(options))
       throw Error(ExitCode::usage, "-o: expected a folder for the pictures of {} scenes, got {}", options.scenes.size(),
                   options.output.string());
   }
@@ -187,7 +189,7 @@ class Batch {
 
 ExitCode thumbnail(const ThumbnailOptions& options) {
   set_thread_count(options.common.threads);
-  if (options.scenes.size() > 1 || is_folder(options.output)) return Batch(options).run();
+  if (options.scenes.size() > 1 || is_folder(options)) return Batch(options).run();
   ThumbnailOptions one = options;
   one.common.scene = options.scenes.front();
   draw_thumbnail(one);

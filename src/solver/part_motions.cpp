@@ -10,11 +10,10 @@ namespace {
 // Of the energy of a motion, what is left of it beside other directions below which it is one of them.
 constexpr double kSameDirection = 1e-4;
 
-constexpr int kSize = 3 + kMotions;
-using Block = Eigen::Matrix<double, kSize, kSize>;
+using Block = Eigen::Matrix<double, kDirections, kDirections>;
 
 // What a term makes of the directions of a part: forces along them are this times its stiffness times a displacement.
-using OfTerm = Eigen::Matrix<double, kSize, 3>;
+using OfTerm = Eigen::Matrix<double, kDirections, 3>;
 
 // The blocks of terms between parts, the lower ones, and their products with the motions of all parts.
 class TermBlocks {
@@ -59,7 +58,7 @@ class Numbers {
 // Whether a direction of a part is new beside those before it.
 void PartMotions::find_used(std::size_t part, const Block& block) {
   std::vector<int> used;
-  for (int k = 0; k < kSize; ++k) {
+  for (int k = 0; k < kDirections; ++k) {
     bool& is_used = is_used_[part][static_cast<std::size_t>(k)];
     if (is_used && k >= 3) {
       double shared = 0;
@@ -78,8 +77,8 @@ void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_
                           const std::array<std::span<const Quad<Real>>, kMotions>& motions,
                           std::span<const Mat3> row_sums, std::span<const Products> products) {
   const Numbers numbers(parts_of(system), selected);
-  std::array<bool, kSize> all;
-  for (int k = 0; k < kSize; ++k) all[static_cast<std::size_t>(k)] = k < 3 || !motions[k - 3].empty();
+  std::array<bool, kDirections> all;
+  for (int k = 0; k < kDirections; ++k) all[static_cast<std::size_t>(k)] = k < 3 || !motions[k - 3].empty();
   is_used_.assign(selected.size(), all);
   for (const ParticleConstraint& c : system.constraints)
     if (const int part = numbers.of(c.particle); part >= 0)
@@ -130,16 +129,16 @@ void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_
     find_used(s, block);
   }
   const auto is_used = [&](int row) {
-    return is_used_[static_cast<std::size_t>(row / kSize)][static_cast<std::size_t>(row % kSize)];
+    return is_used_[static_cast<std::size_t>(row / kDirections)][static_cast<std::size_t>(row % kDirections)];
   };
   std::vector<Eigen::Triplet<double>> entries;
   for (const auto& [place, block] : terms.blocks)
-    for (int k = 0; k < kSize; ++k)
-      for (int l = 0; l < kSize; ++l) {
-        const int row = kSize * place.first + k, column = kSize * place.second + l;
+    for (int k = 0; k < kDirections; ++k)
+      for (int l = 0; l < kDirections; ++l) {
+        const int row = kDirections * place.first + k, column = kDirections * place.second + l;
         if (is_used(row) && is_used(column)) entries.emplace_back(row, column, block(k, l));
       }
-  const int size = kSize * static_cast<int>(selected.size());
+  const int size = kDirections * static_cast<int>(selected.size());
   for (int k = 0; k < size; ++k)
     if (!is_used(k)) entries.emplace_back(k, k, 1);
   Eigen::SparseMatrix<double> matrix(size, size);
@@ -148,14 +147,15 @@ void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_
 }
 
 std::vector<AlongMotions> PartMotions::solve(std::span<const AlongMotions> forces) const {
-  Eigen::VectorXd right(kSize * std::ssize(forces));
+  Eigen::VectorXd right(kDirections * std::ssize(forces));
   for (std::size_t s = 0; s < forces.size(); ++s)
-    for (int k = 0; k < kSize; ++k)
-      right[kSize * static_cast<Eigen::Index>(s) + k] = is_used_[s][static_cast<std::size_t>(k)] ? forces[s][k] : 0;
+    for (int k = 0; k < kDirections; ++k)
+      right[kDirections * static_cast<Eigen::Index>(s) + k] =
+          is_used_[s][static_cast<std::size_t>(k)] ? forces[s][k] : 0;
   const Eigen::VectorXd solution = factor_.solve(right);
   std::vector<AlongMotions> result;
   for (std::size_t s = 0; s < forces.size(); ++s)
-    result.emplace_back(solution.segment<kSize>(kSize * static_cast<Eigen::Index>(s)));
+    result.emplace_back(solution.segment<kDirections>(kDirections * static_cast<Eigen::Index>(s)));
   return result;
 }
 

@@ -13,15 +13,17 @@ namespace weft::solver {
 
 /// Motions at most.
 inline constexpr int kMotions = 2;
-/// Of one part: three coordinates of its translations and one of each motion, or forces along them.
-using AlongMotions = Eigen::Matrix<double, 3 + kMotions, 1>;
+/// Directions of one part: its translations, and the motions.
+inline constexpr int kDirections = 3 + kMotions;
+/// Coordinates of one part along these, or forces along them.
+using AlongMotions = Eigen::Matrix<double, kDirections, 1>;
 
 /// The system on the space of these directions. A part has translations if no constraint holds any of its particles. A
 /// motion that is a combination of those before it, but for roundings, does not count twice.
 class PartMotions {
  public:
   /// Of each motion, what the product of the whole system with it is along the directions of one part.
-  using Products = Eigen::Matrix<double, 3 + kMotions, kMotions>;
+  using Products = Eigen::Matrix<double, kDirections, kMotions>;
 
   /// Reads the system. `motions`: of each row, as constraints let it, and zero outside of the selected parts; empty if
   /// there is none. `row_sums`: of each selected part, the sum of all blocks of the matrix.
@@ -34,11 +36,9 @@ class PartMotions {
   std::vector<AlongMotions> solve(std::span<const AlongMotions> forces) const;
 
  private:
-  static constexpr int kSize = 3 + kMotions;
-  using Block = Eigen::Matrix<double, kSize, kSize>;
-  void find_used(std::size_t part, const Block& block);
+  void find_used(std::size_t part, const Eigen::Matrix<double, kDirections, kDirections>& block);
 
-  std::vector<std::array<bool, kSize>> is_used_;  // of each selected part
+  std::vector<std::array<bool, kDirections>> is_used_;  // of each selected part
   Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor_;
 };
 
