@@ -96,6 +96,10 @@ inline Eigen::MatrixXd dense(const BlockMatrix& matrix) {
   return full;
 }
 
+inline Eigen::Map<const Eigen::VectorXd> flat(std::span<const Vec3> x) {
+  return {x.data()->data(), static_cast<Eigen::Index>(3 * x.size())};
+}
+
 /// The matrix with what stands beside it.
 inline Eigen::MatrixXd dense_with_terms(const LinearSystem& system) {
   Eigen::MatrixXd a = dense(system.matrix);
@@ -106,6 +110,11 @@ inline Eigen::MatrixXd dense_with_terms(const LinearSystem& system) {
       for (std::size_t q = 0; q < 4; ++q)
         a.block<3, 3>(3 * term.particles[p], 3 * term.particles[q]) +=
             term.weights[p] * term.weights[q] * term.stiffness;
+  for (const RankOneTerm& term : system.rank_one_terms) {
+    Eigen::VectorXd d = Eigen::VectorXd::Zero(a.rows());
+    d.segment(3 * term.begin, 3 * static_cast<Index>(term.direction.size())) = flat(term.direction);
+    a += term.stiffness * d * d.transpose();
+  }
   return a;
 }
 
@@ -142,10 +151,6 @@ std::vector<Vec3> vectors(const std::vector<Quad>& x) {
   std::vector<Vec3> result;
   for (const Quad& q : x) result.push_back(vec3_of(q));
   return result;
-}
-
-inline Eigen::Map<const Eigen::VectorXd> flat(std::span<const Vec3> x) {
-  return {x.data()->data(), static_cast<Eigen::Index>(3 * x.size())};
 }
 
 // Three parts of twenty particles, coupled by contacts alone.

@@ -18,19 +18,9 @@ void add_term(LinearSystem& system, Index begin, Index end, double stiffness, Ra
   system.rank_one_terms.push_back({begin, random.vectors(end - begin), stiffness});
 }
 
-Eigen::MatrixXd dense_with_products(const LinearSystem& system) {
-  Eigen::MatrixXd sum = testing::dense_with_terms(system);
-  for (const RankOneTerm& term : system.rank_one_terms) {
-    Eigen::VectorXd d = Eigen::VectorXd::Zero(sum.rows());
-    d.segment(3 * term.begin, 3 * static_cast<Index>(term.direction.size())) = flat(term.direction);
-    sum += term.stiffness * d * d.transpose();
-  }
-  return sum;
-}
-
 Eigen::VectorXd dense_solution(const LinearSystem& system, std::span<const Vec3> b) {
   const Eigen::MatrixXd s = projection(system), identity = Eigen::MatrixXd::Identity(s.rows(), s.cols());
-  return Eigen::MatrixXd(s * dense_with_products(system) * s + (identity - s)).ldlt().solve(s * flat(b));
+  return Eigen::MatrixXd(s * testing::dense_with_terms(system) * s + (identity - s)).ldlt().solve(s * flat(b));
 }
 
 TEST(RankOneTerms, AreSolvedExactlyHoweverStiffTheyAre) {
