@@ -190,7 +190,7 @@ bool Stepper::is_solved(int iterations, double h) const {
   if (parameters_.position_tolerance > 0) most = std::min(most, parameters_.position_tolerance / carried_on(h));
   return std::ranges::all_of(parts_, [&](const PartState& part) {
     return part.left <= std::max(part.allowed, most) &&
-           (part.slides <= part.may_slide || iterations >= numerics.newton.patience / 2);
+           part.slides <= (iterations < numerics.newton.patience / 2 ? part.may_slide : std::max(part.allowed, most));
   });
 }
 

@@ -285,12 +285,17 @@ TEST(FrictionOfManyTimesTheLoad, LeavesTheSheetNoFurtherOffThanItMoves) {
   for (const scene::Shape& shape :
        {scene::Shape(scene::BoxShape{{0.3, 0.3, 0.3}}), scene::Shape(scene::Cone{0.3, 0.3})}) {
     Simulation simulation(falls_on(shape, 10, 0.01));
+    double solver = 0, steps = 0;
     for (int frame = 1; frame <= 10; ++frame) {
       double fastest = 0;
       for (const Vec3& v : simulation.state().velocities) fastest = std::max(fastest, v.norm());
       const FrameReport report = simulation.advance();
       EXPECT_LT(report.solver_error, kCounts * (report.steps * fastest + 9.81 * 0.04)) << "frame " << frame;
+      solver += report.solver_error;
+      steps += report.error_estimate;
     }
+    // 2.6 and 2.7 times as much where sliding of any size is accepted after ten iterations.
+    EXPECT_LT(solver, steps);
   }
 }
 
