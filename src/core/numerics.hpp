@@ -62,9 +62,6 @@ struct Numerics {
     /// and normal forces, and cloths that press on each other, chase each other.
     int patience = 20;
     double velocity_ratio = 0.5;
-    /// Work of what is left from then on, over that of a velocity that may be left along all of the motion. 1: thin
-    /// cloth that is pressed has its steps rejected; 100: at impacts the solver does more work than is in play.
-    double late_work = 10;
     /// How long a wrong velocity counts [s]: half of this, the time of a swing of 1 m, and in steps. Shorter: the
     /// solver decides the error; longer: more iterations.
     double swing_time = 0.3;

@@ -158,17 +158,6 @@ void Stepper::estimate_left(const solver::LinearReport& solved, double fraction,
       parts_[p].left = std::hypot(parts_[p].left, solved.errors[p] / std::sqrt(parts_[p].mass));
 }
 
-// Counts the work of what is left, in the step, as the velocity that would do it along all of the motion. Where much
-// may be left, a small velocity can hide forces that do many times the work that is in play.
-void Stepper::count_work(std::span<const double> masses, const Stage& stage) {
-  for (PartState& part : parts_) {
-    const double work =
-        stage.beta * sum_over_particles(part.rows, [&](std::size_t i) { return residual_[i].dot(v_[i]); });
-    const double speed = std::max(root_mean_square(part, masses, v_), numerics.newton.unseen_velocity);
-    part.left = std::max(part.left, std::abs(work) / (numerics.newton.late_work * part.mass * speed));
-  }
-}
-
 // Velocities by which whole parts slide wrongly, where they would be solved otherwise. Friction can do no more than
 // stop what a part has or gets in the step, however large a force a stiff contact makes of it.
 void Stepper::estimate_slides(const System& system, const Stage& stage) {
@@ -325,7 +314,6 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     estimate_local_errors(masses, now, stage, h);
     allow_velocities(h, done + report.newton_iterations);
     estimate_left(solved, fraction, masses);
-    if (done + report.newton_iterations >= numerics.newton.patience) count_work(masses, stage);
     estimate_slides(system, stage);
     select_unsolved(report.newton_iterations);
     report_worst(h, report);

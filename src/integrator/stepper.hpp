@@ -171,7 +171,6 @@ class Stepper {
   std::span<const Vec3> precondition(std::span<const Vec3> residual);
   void measure(std::span<const Vec3> displacements, std::span<const double> masses, std::vector<double>& speeds) const;
   void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);
-  void count_work(std::span<const double> masses, const Stage& stage);
   void estimate_slides(const System& system, const Stage& stage);
   void select_unsolved(int iterations);
   bool is_solved(int iterations, double h) const;

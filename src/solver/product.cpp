@@ -197,14 +197,18 @@ Mat3 Product<Real>::sum_of_row(std::size_t row) const {
 
 template <class Real>
 std::vector<Mat3> Product<Real>::row_sums() const {
-  std::vector<Mat3> result(selected_.size());
-  for (int k = 0; k < 3; ++k) {
-    const auto columns = rows_.sums([&](std::size_t begin, std::size_t end) {
-      Vec3 sum = Vec3::Zero();
-      for (std::size_t row = begin; row < end; ++row) sum += sum_of_row(row).col(k);
-      return quad_of<double>(sum);
-    });
-    for (std::size_t part = 0; part < selected_.size(); ++part) result[part].col(k) = vec3_of(columns[part]);
+  struct Sum {
+    Mat3 block = Mat3::Zero();
+    Sum& operator+=(const Sum& other) { return block += other.block, *this; }
+  };
+  std::vector<Mat3> result;
+  for (const std::size_t part : selected_) {
+    const auto first = static_cast<std::size_t>(parts_[part].begin), end = static_cast<std::size_t>(parts_[part].end);
+    result.push_back(parallel_sum(end - first, kGrainSize, [&](std::size_t begin, std::size_t stop) {
+                       Sum sum;
+                       for (std::size_t row = first + begin; row < first + stop; ++row) sum.block += sum_of_row(row);
+                       return sum;
+                     }).block);
   }
   return result;
 }
