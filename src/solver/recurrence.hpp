@@ -26,7 +26,7 @@ struct LinearGoal {
   std::span<const double> absolute = {};  ///< of each part of the system; empty: none
 };
 
-/// What is known of the solution beforehand; either may be missing.
+/// What is known of the solution before it is computed; each may be missing.
 struct Directions {
   /// Along which the solution is looked for first: x begins with the multiple of it that is best in the energy norm, at
   /// the price of one product.
