@@ -38,14 +38,15 @@ class Groups {
   std::vector<char> is_free_;  // per group: nothing holds it from outside
 };
 
-void add_term(const solver::StencilTerm& term, Groups& groups) {
+template <class Term>
+void add_term(const Term& term, Groups& groups) {
   double sum = 0;
   int first = -1;
-  for (int k = 0; k < 4; ++k) {
+  for (std::size_t k = 0; k < term.particles.size(); ++k) {
     if (term.weights[k] == 0) continue;
     sum += term.weights[k];
     if (first < 0)
-      first = k;
+      first = static_cast<int>(k);
     else
       groups.join(groups.of_particle(term.particles[first]), groups.of_particle(term.particles[k]));
   }
@@ -60,7 +61,7 @@ std::vector<Vec3> missing_accelerations(const solver::LinearSystem& linear, std:
   Groups groups(parts);
   for (const auto& constraint : linear.constraints) groups.hold(groups.of_particle(constraint.particle));
   for (const auto& term : linear.diagonal_terms) groups.hold(groups.of_particle(term.particle));
-  for (const auto& term : linear.terms) add_term(term, groups);
+  solver::for_each_term(linear, [&](const auto& term) { add_term(term, groups); });
 
   std::vector<Vec3> force(parts.size(), Vec3::Zero());
   std::vector<double> mass(parts.size(), 0);

@@ -34,10 +34,12 @@ bool suits_single(const LinearSystem& system) {
   if (misfits > 0) return false;
   for (const DiagonalTerm& term : system.diagonal_terms)
     if (!fits(term.particle, term.stiffness.trace())) return false;
-  for (const StencilTerm& term : system.terms)
-    for (int k = 0; k < 4; ++k)
-      if (!fits(term.particles[k], term.weights[k] * term.weights[k] * term.stiffness.trace())) return false;
-  return true;
+  bool all_fit = true;
+  for_each_term(system, [&](const auto& term) {
+    for (std::size_t k = 0; k < term.particles.size() && all_fit; ++k)
+      all_fit = fits(term.particles[k], term.weights[k] * term.weights[k] * term.stiffness.trace());
+  });
+  return all_fit;
 }
 
 template <class Quad>

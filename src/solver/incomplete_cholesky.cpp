@@ -32,8 +32,10 @@ void IncompleteCholesky::read(const LinearSystem& system) {
   });
   const auto diagonal = [&](Index i) -> Mat3& { return factor_[row_start_[at(i) + 1] - 1]; };
   for (const DiagonalTerm& term : system.diagonal_terms) diagonal(term.particle) += term.stiffness;
-  for (const StencilTerm& term : system.terms)
-    for (int k = 0; k < 4; ++k) diagonal(term.particles[k]) += term.weights[k] * term.weights[k] * term.stiffness;
+  for_each_term(system, [&](const auto& term) {
+    for (std::size_t k = 0; k < term.particles.size(); ++k)
+      diagonal(term.particles[k]) += term.weights[k] * term.weights[k] * term.stiffness;
+  });
   if (system.constraints.empty()) return;
   for (Index i = 0; i < rows; ++i)
     for (std::size_t s = row_start_[at(i)]; s < row_start_[at(i) + 1]; ++s) {

@@ -27,6 +27,13 @@ struct StencilTerm {
   Mat3 stiffness = Mat3::Zero();              ///< symmetric, positive semidefinite [N/m]
 };
 
+/// As StencilTerm for points that more particles carry: those of a rigid body follow its four frame particles.
+struct WideTerm {
+  std::array<Index, 8> particles{};
+  std::array<double, 8> weights{};
+  Mat3 stiffness = Mat3::Zero();
+};
+
 /// As StencilTerm for a single particle.
 struct DiagonalTerm {
   Index particle = 0;
@@ -51,12 +58,16 @@ struct Grouping {
 struct Part {
   Index begin = 0, end = 0;
   std::uint64_t version = 1;  ///< another number whenever the values of these rows change
+  /// Few rows that are stiff against each other, as those of a rigid body: the preconditioner solves them exactly, as
+  /// particles that are aggregates on every level.
+  bool is_small = false;
 };
 
 struct LinearSystem {
   BlockMatrix matrix;       ///< positive definite on the free directions
   std::vector<Part> parts;  ///< all rows, in their order; empty: they are one part
   std::vector<StencilTerm> terms;
+  std::vector<WideTerm> wide_terms;
   std::vector<DiagonalTerm> diagonal_terms;
   std::vector<RankOneTerm> rank_one_terms;
   std::vector<ParticleConstraint> constraints;  ///< at most one per particle
@@ -68,6 +79,13 @@ struct LinearSystem {
   /// consecutive numbers. Empty: no coarse level.
   std::vector<Grouping> groupings;
 };
+
+/// Calls visit(term) for each StencilTerm and each WideTerm.
+template <class Visit>
+void for_each_term(const LinearSystem& system, const Visit& visit) {
+  for (const StencilTerm& term : system.terms) visit(term);
+  for (const WideTerm& term : system.wide_terms) visit(term);
+}
 
 inline std::vector<Part> parts_of(const LinearSystem& system) {
   return system.parts.empty() ? std::vector<Part>{{0, system.matrix.rows()}} : system.parts;

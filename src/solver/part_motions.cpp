@@ -98,9 +98,9 @@ void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_
       of_parts.assign(1, {part, of_particle(term.particle)});
       terms.add(of_parts, term.stiffness);
     }
-  for (const StencilTerm& term : system.terms) {
+  for_each_term(system, [&](const auto& term) {
     of_parts.clear();
-    for (int k = 0; k < 4; ++k) {
+    for (std::size_t k = 0; k < term.particles.size(); ++k) {
       const int part = term.weights[k] == 0 ? -1 : numbers.of(term.particles[k]);
       if (part < 0) continue;
       auto entry = std::ranges::find(of_parts, part, &std::pair<int, OfTerm>::first);
@@ -108,7 +108,7 @@ void PartMotions::prepare(const LinearSystem& system, std::span<const std::size_
       entry->second += term.weights[k] * of_particle(term.particles[k]);
     }
     terms.add(of_parts, term.stiffness);
-  }
+  });
   for (const RankOneTerm& term : system.rank_one_terms) {
     const int part = numbers.of(term.begin);
     if (part < 0) continue;

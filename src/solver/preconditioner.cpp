@@ -96,6 +96,7 @@ template <class Real>
 bool Preconditioner<Real>::is_stiff() const {
   if (system_->metric.empty()) return false;
   return std::ranges::any_of(parts_of(*system_), [&](const Part& part) {
+    if (part.is_small) return false;
     const double metric = parallel_sum(at(part.end - part.begin), kGrainSize, [&](std::size_t begin, std::size_t end) {
       double sum = 0;
       for (std::size_t k = begin; k < end; ++k) sum += system_->metric[at(part.begin) + k];
@@ -157,9 +158,13 @@ void Preconditioner<Real>::find_weights() {
   const double smoothing = smooth_ ? numerics.linear.interpolation : 0;
   const BlockMatrix::Pattern& full = system_->matrix.full();
   std::vector<std::vector<Index>> neighbours(inverse_.size());
+  // Of small parts each particle is an aggregate of its own, and follows no other.
+  std::vector<char> is_small(neighbours.size(), 0);
+  for (const Part& part : parts_)
+    if (part.is_small) std::fill(is_small.begin() + part.begin, is_small.begin() + part.end, 1);
   for (std::size_t i = 0; i < neighbours.size(); ++i)
     for (Index s = full.start[i]; s < full.start[i + 1]; ++s)
-      if (full.columns[s] != static_cast<Index>(i)) neighbours[i].push_back(full.columns[s]);
+      if (full.columns[s] != static_cast<Index>(i) && is_small[i] == 0) neighbours[i].push_back(full.columns[s]);
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     const Grouping& grouping = system_->groupings[l];
     Weights<Real> weights = Weights<Real>::interpolating(grouping, smoothing, neighbours);
@@ -191,9 +196,10 @@ void Preconditioner<Real>::mark_touched() {
   touched_before_ = touched_;
   std::ranges::fill(touched_, 0);
   for (const DiagonalTerm& term : system_->diagonal_terms) touched_[at(term.particle)] = 1;
-  for (const StencilTerm& term : system_->terms)
-    for (int a = 0; a < 4; ++a)
+  for_each_term(*system_, [&](const auto& term) {
+    for (std::size_t a = 0; a < term.particles.size(); ++a)
       if (term.weights[a] != 0) touched_[at(term.particles[a])] = 1;
+  });
 }
 
 template <class Real>
@@ -202,9 +208,10 @@ void Preconditioner<Real>::invert_particles() {
   for (std::size_t i = 0; i < touched_.size(); ++i)
     if (touched_[i]) with_terms.of(static_cast<Index>(i)) = own_block(static_cast<Index>(i));
   for (const DiagonalTerm& term : system_->diagonal_terms) with_terms.of(term.particle) += term.stiffness;
-  for (const StencilTerm& term : system_->terms)
-    for (int a = 0; a < 4; ++a)
+  for_each_term(*system_, [&](const auto& term) {
+    for (std::size_t a = 0; a < term.particles.size(); ++a)
       if (const double w = term.weights[a]; w != 0) with_terms.of(term.particles[a]) += w * w * term.stiffness;
+  });
   const auto invert = [&](Index i) {
     const Mat3 block = touched_[at(i)] ? with_terms.of(i) : own_block(i);
     Mat3 inverse;
@@ -236,7 +243,7 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
   const std::vector<Index>& patch_of = levels_.back().group_of;
   const BlockMatrix& matrix = system_->matrix;
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
-  const double share = smooth_ ? std::pow(numerics.linear.level_stiffness, static_cast<double>(depth)) : 1;
+  const double share = smooth_ && !parts_[part].is_small ? std::pow(numerics.linear.level_stiffness, static_cast<double>(depth)) : 1;
   const auto add_to_patches = [&](Index i, Index j, const auto& block) {
     // The factorisation reads the lower triangle only.
     const Index patch_i = patch_of[at(i)], patch_j = patch_of[at(j)];
@@ -298,7 +305,7 @@ void Preconditioner<Real>::scale_sums(std::size_t part) {
   double share = 1;
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     Level& level = levels_[l];
-    if (smooth_) share *= numerics.linear.level_stiffness;
+    if (smooth_ && !parts_[part].is_small) share *= numerics.linear.level_stiffness;
     const RowRange groups = level.of_part[part];
     const RowRange members =
         l == 0 ? RowRange{at(parts_[part].begin), at(parts_[part].end)} : levels_[l - 1].of_part[part];
@@ -337,12 +344,12 @@ typename Preconditioner<Real>::TouchedBlocks Preconditioner<Real>::lumped_terms(
     lumped.of(i) += is_free(i) ? Mat3(weight * stiffness) : filtered(i, weight * stiffness, i);
   };
   for (const DiagonalTerm& term : system_->diagonal_terms) add(term.particle, 1, term.stiffness);
-  for (const StencilTerm& term : system_->terms) {
+  for_each_term(*system_, [&](const auto& term) {
     double of_a = 0, of_b = 0;
     for (const double w : term.weights) (w > 0 ? of_a : of_b) += w;
-    for (int k = 0; k < 4; ++k)
+    for (std::size_t k = 0; k < term.particles.size(); ++k)
       if (const double w = term.weights[k]; w != 0) add(term.particles[k], w * (w > 0 ? of_a : of_b), term.stiffness);
-  }
+  });
   return lumped;
 }
 
@@ -401,21 +408,22 @@ void Preconditioner<Real>::factorise_patches() {
       for (const auto& [h, of_h] : columns)
         if (g >= h) patch_matrix_.block<3, 3>(3 * g, 3 * h) += of_g * of_h * stiffness;
   };
-  std::array<Shares, 4> of;
+  std::array<Shares, 8> of;
   for (const DiagonalTerm& term : system_->diagonal_terms) {
     of[0].clear();
     add_shares(term.particle, 1, of[0]);
     add(of[0], filtered(term.particle, term.stiffness, term.particle), of[0]);
   }
-  for (const StencilTerm& term : system_->terms) {
+  for_each_term(*system_, [&](const auto& term) {
     // What is free moves together; of what is not each particle is filtered by itself.
+    const std::size_t count = term.particles.size();
     const bool free = std::ranges::all_of(term.particles, [&](Index i) { return is_free(i); });
     for (Shares& shares : of) shares.clear();
-    for (std::size_t k = 0; k < 4; ++k) add_shares(term.particles[k], term.weights[k], of[free ? 0 : k]);
-    for (std::size_t a = 0; a < (free ? 1 : 4); ++a)
-      for (std::size_t b = 0; b < (free ? 1 : 4); ++b)
+    for (std::size_t k = 0; k < count; ++k) add_shares(term.particles[k], term.weights[k], of[free ? 0 : k]);
+    for (std::size_t a = 0; a < (free ? 1 : count); ++a)
+      for (std::size_t b = 0; b < (free ? 1 : count); ++b)
         add(of[a], free ? term.stiffness : filtered(term.particles[a], term.stiffness, term.particles[b]), of[b]);
-  }
+  });
   for (Eigen::Index g = 0; g < patch_matrix_.rows(); g += 3)
     patch_matrix_.block<3, 3>(g, g) += shift_of(patch_matrix_.block<3, 3>(g, g));
   const Eigen::LLT<Eigen::Ref<Eigen::MatrixXd>> in_place(patch_matrix_);

@@ -124,6 +124,16 @@ void Product<Real>::read_matrix(bool anew) {
 }
 
 template <class Real>
+template <class Term, std::size_t N, class IsInside>
+void Product<Real>::add_stencil(const Term& term, const IsInside& is_inside, std::vector<Stencil<N>>& stencils) {
+  bool acts = false;
+  for (std::size_t k = 0; k < N && !acts; ++k) acts = term.weights[k] != 0 && is_inside(term.particles[k]);
+  if (!acts) return;
+  Stencil<N>& stencil = stencils.emplace_back(Stencil<N>{term.particles, {}, QuadBlock<Real>(term.stiffness)});
+  for (std::size_t k = 0; k < N; ++k) stencil.weights[k] = static_cast<Real>(term.weights[k]);
+}
+
+template <class Real>
 void Product<Real>::select(std::span<const std::size_t> parts) {
   selected_.assign(parts.begin(), parts.end());
   rows_ = RowChunks(ranges_of(parts_, selected_), kGrainSize);
@@ -133,13 +143,9 @@ void Product<Real>::select(std::span<const std::size_t> parts) {
            });
   };
   stencils_.clear();
-  for (const StencilTerm& term : system_->terms) {
-    bool acts = false;
-    for (int k = 0; k < 4 && !acts; ++k) acts = term.weights[k] != 0 && is_inside(term.particles[k]);
-    if (!acts) continue;
-    Stencil& stencil = stencils_.emplace_back(Stencil{term.particles, {}, QuadBlock<Real>(term.stiffness)});
-    for (int k = 0; k < 4; ++k) stencil.weights[k] = static_cast<Real>(term.weights[k]);
-  }
+  for (const StencilTerm& term : system_->terms) add_stencil(term, is_inside, stencils_);
+  wide_stencils_.clear();
+  for (const WideTerm& term : system_->wide_terms) add_stencil(term, is_inside, wide_stencils_);
   terms_.clear();
   for (const DiagonalTerm& term : system_->diagonal_terms)
     if (is_inside(term.particle)) terms_.push_back({term.particle, QuadBlock<Real>(term.stiffness)});
@@ -174,14 +180,8 @@ double Product<Real>::multiply(std::span<const Quad<Real>> p, std::span<Quad<Rea
     q[term.particle] += force;
     curvature += sum_of_three(products(p[term.particle], force));
   }
-  for (const Stencil& term : stencils_) {
-    const auto& [a, b, c, d] = term.particles;
-    const auto& w = term.weights;
-    const Quad<Real> together = w[0] * p[a] + w[1] * p[b] + w[2] * p[c] + w[3] * p[d];
-    const Quad<Real> force = term.stiffness * together;
-    for (int k = 0; k < 4; ++k) q[term.particles[k]] += w[k] * force;
-    curvature += sum_of_three(products(together, force));
-  }
+  for (const auto& term : stencils_) curvature += term.add_product(p, q);
+  for (const auto& term : wide_stencils_) curvature += term.add_product(p, q);
   filter(q);
   return curvature;
 }

@@ -53,16 +53,28 @@ class Product {
   void filter(std::span<Quad<Real>> b) const;
 
  private:
+  template <std::size_t N>
   struct Stencil {
-    std::array<Index, 4> particles;
-    std::array<Real, 4> weights;
+    std::array<Index, N> particles;
+    std::array<Real, N> weights;
     QuadBlock<Real> stiffness;
+
+    /// Adds its product with p to q, and returns what it adds to p·q.
+    double add_product(std::span<const Quad<Real>> p, std::span<Quad<Real>> q) const {
+      Quad<Real> together = weights[0] * p[particles[0]];
+      for (std::size_t k = 1; k < N; ++k) together += weights[k] * p[particles[k]];
+      const Quad<Real> force = stiffness * together;
+      for (std::size_t k = 0; k < N; ++k) q[particles[k]] += weights[k] * force;
+      return sum_of_three(products(together, force));
+    }
   };
   struct OfParticle {
     Index particle;
     QuadBlock<Real> block;
   };
   void read_matrix(bool anew);
+  template <class Term, std::size_t N, class IsInside>
+  static void add_stencil(const Term& term, const IsInside& is_inside, std::vector<Stencil<N>>& stencils);
   Mat3 sum_of_row(std::size_t row) const;
 
   const LinearSystem* system_ = nullptr;
@@ -71,7 +83,8 @@ class Product {
   std::vector<Real> metric_;
   std::vector<std::size_t> selected_;
   RowChunks rows_;                           // of the selected parts
-  std::vector<Stencil> stencils_;            // of the selected parts
+  std::vector<Stencil<4>> stencils_;         // of the selected parts
+  std::vector<Stencil<8>> wide_stencils_;    // likewise
   std::vector<OfParticle> terms_, filters_;  // likewise
 };
 

@@ -31,8 +31,10 @@ void take(std::span<const Vec3> from, std::span<Quad<Real>> to) {
 
 }  // namespace
 
+// The coarsest level of the preconditioner couples parts: what one gains by it may be lost by another.
 double Progress::OfPart::error_energy() const {
-  return std::accumulate(gains.end() - recent(), gains.end(), 0.0);
+  return std::accumulate(gains.end() - recent(), gains.end(), 0.0,
+                         [](double sum, double gain) { return sum + std::abs(gain); });
 }
 
 double Progress::OfPart::error_share() const {

@@ -105,11 +105,12 @@ inline Eigen::MatrixXd dense_with_terms(const LinearSystem& system) {
   Eigen::MatrixXd a = dense(system.matrix);
   for (const DiagonalTerm& term : system.diagonal_terms)
     a.block<3, 3>(3 * term.particle, 3 * term.particle) += term.stiffness;
-  for (const StencilTerm& term : system.terms)
-    for (std::size_t p = 0; p < 4; ++p)
-      for (std::size_t q = 0; q < 4; ++q)
+  for_each_term(system, [&](const auto& term) {
+    for (std::size_t p = 0; p < term.particles.size(); ++p)
+      for (std::size_t q = 0; q < term.particles.size(); ++q)
         a.block<3, 3>(3 * term.particles[p], 3 * term.particles[q]) +=
             term.weights[p] * term.weights[q] * term.stiffness;
+  });
   for (const RankOneTerm& term : system.rank_one_terms) {
     Eigen::VectorXd d = Eigen::VectorXd::Zero(a.rows());
     d.segment(3 * term.begin, 3 * static_cast<Index>(term.direction.size())) = flat(term.direction);
