@@ -1,0 +1,163 @@
+// What keeps rigid bodies in shape: force against energy, stiffness against force, and that motion is free.
+#include "forces/rigidity.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "mesh/shapes.hpp"
+
+namespace weft::forces {
+namespace {
+
+constexpr double kMass = 2, kStiffness = 1e6;  // [kg], [1/s²]
+
+/// A plate of 300 × 200 × 10 mm, whose smallest deviation is a thirtieth of its largest.
+mesh::RigidFrame plate() {
+  const mesh::Mesh mesh = mesh::make_box(Vec3(0.3, 0.2, 0.01), 0, 8);
+  return {mesh.topology.triangles, mesh.positions};
+}
+
+using Quads = std::vector<solver::Quad<double>>;
+using Frame = std::array<Vec3, 4>;
+
+Frame moved(const mesh::RigidFrame& frame, const Mat3& by) {
+  Frame x;
+  for (std::size_t k = 0; k < 4; ++k) x[k] = by * frame.particles()[k] + Vec3(1, -2, 3);
+  return x;
+}
+
+Quads quads_of(const Frame& frame) {
+  Quads result;
+  for (const Vec3& x : frame) result.push_back(solver::quad_of<double>(x));
+  return result;
+}
+
+Frame forces_at(const Rigidity& rigidity, const Frame& x,
+                const Frame& v = {Vec3::Zero(), Vec3::Zero(), Vec3::Zero(), Vec3::Zero()}, double rate = 0) {
+  const Quads positions = quads_of(x), velocities = quads_of(v);
+  Quads force(4, solver::Quad<double>{});
+  Evaluation at{positions, velocities, force};
+  at.rate = rate;
+  rigidity.add(at);
+  Frame result;
+  for (std::size_t k = 0; k < 4; ++k) result[k] = solver::vec3_of(force[k]);
+  return result;
+}
+
+const Mat3 kTurn = Eigen::AngleAxisd(0.9, Vec3(2, -1, 2).normalized()).toRotationMatrix();
+
+TEST(Rigidity, IsTheDescentOfItsEnergy) {
+  const mesh::RigidFrame frame = plate();
+  const Rigidity rigidity(frame, 0, kMass, kStiffness);
+  Mat3 deform = kTurn;
+  deform(0, 1) += 0.05, deform(2, 2) *= 1.1, deform(1, 0) -= 0.08;
+  const Frame x = moved(frame, deform);
+  const Frame force = forces_at(rigidity, x);
+  for (std::size_t k = 0; k < 4; ++k)
+    for (int axis = 0; axis < 3; ++axis) {
+      constexpr double kStep = 1e-6;
+      Frame low = x, high = x;
+      low[k][axis] -= kStep, high[k][axis] += kStep;
+      const double slope = (rigidity.energy(high) - rigidity.energy(low)) / (2 * kStep);
+      EXPECT_NEAR(force[k][axis], -slope, 1e-5 * kMass * kStiffness * 0.1);
+    }
+}
+
+TEST(Rigidity, LetsBodiesMoveAndTurn) {
+  const mesh::RigidFrame frame = plate();
+  const Rigidity rigidity(frame, 0, kMass, kStiffness);
+  const Frame x = moved(frame, kTurn);
+  EXPECT_LT(rigidity.energy(x), 1e-20 * kMass * kStiffness);
+  for (const Vec3& force : forces_at(rigidity, x)) EXPECT_LT(force.norm(), 1e-12 * kMass * kStiffness);
+}
+
+TEST(Rigidity, HasNoResultantAndNoMoment) {
+  const mesh::RigidFrame frame = plate();
+  const Rigidity rigidity(frame, 0, kMass, kStiffness);
+  Mat3 deform = kTurn;
+  deform(0, 0) *= 1.2, deform(1, 2) += 0.1;
+  const Frame x = moved(frame, deform), force = forces_at(rigidity, x);
+  Vec3 sum = Vec3::Zero(), moment = Vec3::Zero();
+  double largest = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    sum += force[k];
+    moment += x[k].cross(force[k]);
+    largest = std::max(largest, force[k].norm());
+  }
+  EXPECT_GT(largest, 1);
+  EXPECT_LT(sum.norm(), 1e-12 * largest);
+  EXPECT_LT(moment.norm(), 1e-11 * largest);
+}
+
+TEST(Rigidity, HasOneFrequencyForStretchesOfThinAndThick) {
+  const mesh::RigidFrame frame = plate();
+  const Rigidity rigidity(frame, 0, kMass, kStiffness);
+  constexpr double kStrain = 1e-4;
+  for (int axis = 0; axis < 3; ++axis) {
+    Mat3 stretch = Mat3::Identity();
+    stretch(axis, axis) += kStrain;
+    const Frame x = moved(frame, stretch), start = moved(frame, Mat3::Identity());
+    double moved_sq = 0;  // of the mass
+    for (std::size_t k = 0; k < 4; ++k) moved_sq += 0.25 * (x[k] - start[k]).squaredNorm();
+    // ½ κ m times the mean square of the displacement; the strain has a part in ε².
+    EXPECT_NEAR(rigidity.energy(x) / (0.5 * kStiffness * kMass * moved_sq), 1, 2 * kStrain);
+  }
+}
+
+TEST(Rigidity, TakesItsStrainFromTheEndOfAMidpointStep) {
+  // Half a turn of 0.4 rad: in its middle the chord has shrunk the body, at its end it has its shape.
+  const mesh::RigidFrame frame = plate();
+  const Rigidity rigidity(frame, 0, kMass, kStiffness);
+  const Frame from = moved(frame, Mat3::Identity()),
+              to = moved(frame, Eigen::AngleAxisd(0.4, Vec3::UnitZ()).toRotationMatrix());
+  constexpr double kStepLength = 0.01;
+  Frame middle, v;
+  for (std::size_t k = 0; k < 4; ++k) {
+    middle[k] = 0.5 * (from[k] + to[k]);
+    v[k] = (to[k] - from[k]) / kStepLength;
+  }
+  for (const Vec3& force : forces_at(rigidity, middle, v, 2 / kStepLength))
+    EXPECT_LT(force.norm(), 1e-12 * kMass * kStiffness);
+  EXPECT_GT(forces_at(rigidity, middle)[0].norm(), 1e-4 * kMass * kStiffness);  // seen from the middle
+}
+
+TEST(Rigidity, IsLinearisedAsItChanges) {
+  const mesh::RigidFrame frame = plate();
+  Rigidity rigidity(frame, 0, kMass, kStiffness);
+  solver::BlockMatrix::Couplings couplings;
+  rigidity.couple(couplings);
+  solver::BlockMatrix matrix(4, std::move(couplings), {});
+  solver::Assembly assembly(matrix);
+  rigidity.attach(assembly);
+  assembly.clear();
+  assembly.keep_constant();
+  const Frame x = moved(frame, kTurn);
+  const Quads positions = quads_of(x), velocities(4, solver::Quad<double>{});
+  Quads force(4, solver::Quad<double>{});
+  Evaluation at{positions, velocities, force};
+  assembly.start(0, 4);
+  at.assembly = solver::AssemblyRows(assembly);
+  rigidity.add(at);
+  assembly.write_rows(0, 4, matrix);
+  // Where there is no strain the tangent is exact.
+  for (std::size_t k = 0; k < 4; ++k)
+    for (int axis = 0; axis < 3; ++axis) {
+      constexpr double kStep = 1e-7;
+      Frame low = x, high = x;
+      low[k][axis] -= kStep, high[k][axis] += kStep;
+      const Frame of_low = forces_at(rigidity, low), of_high = forces_at(rigidity, high);
+      matrix.for_each_block(0, 4, [&](Index row, Index column, const Mat3& block) {
+        if (column != static_cast<Index>(k)) return;
+        const Vec3 slope =
+            (of_low[static_cast<std::size_t>(row)] - of_high[static_cast<std::size_t>(row)]) / (2 * kStep);
+        EXPECT_LT((block.col(axis) - slope).norm(), 1e-4 * kMass * kStiffness);
+      });
+    }
+}
+
+}  // namespace
+}  // namespace weft::forces

@@ -1,0 +1,81 @@
+// Frames of rigid bodies against the moments of solids.
+#include "mesh/rigid_frame.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "mesh/mesh.hpp"
+#include "mesh/shapes.hpp"
+
+namespace weft::mesh {
+namespace {
+
+RigidFrame frame_of(const Mesh& mesh) {
+  return {mesh.topology.triangles, mesh.positions};
+}
+
+/// Second moments of four quarters of a unit mass at the particles, about their centre.
+Mat3 second_moments(const RigidFrame& frame) {
+  Mat3 sum = Mat3::Zero();
+  for (const Vec3& x : frame.particles()) sum += 0.25 * (x - frame.centre()) * (x - frame.centre()).transpose();
+  return sum;
+}
+
+TEST(RigidFrame, HasTheMomentsOfABox) {
+  const RigidFrame frame = frame_of(make_box(Vec3(0.3, 0.2, 0.001), 0, 8));
+  EXPECT_NEAR(frame.volume(), 0.3 * 0.2 * 0.001, 1e-15);
+  EXPECT_LT(frame.centre().norm(), 1e-15);
+  const Mat3 expected = Vec3(0.09 / 12, 0.04 / 12, 1e-6 / 12).asDiagonal();
+  EXPECT_LT((second_moments(frame) - expected).norm(), 1e-12);
+}
+
+TEST(RigidFrame, HasTheMomentsOfACylinderWhereverItIs) {
+  Mesh mesh = make_cylinder(0.1, 0.5, 256);
+  const Mat3 turn = Eigen::AngleAxisd(0.7, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+  const Vec3 shift(5, -3, 2);
+  for (Vec3& x : mesh.positions) x = turn * x + shift;
+  const RigidFrame frame = frame_of(mesh);
+  EXPECT_LT((frame.centre() - shift).norm(), 1e-9);
+  const Mat3 expected = turn * Vec3(0.01 / 4, 0.01 / 4, 0.25 / 12).asDiagonal() * turn.transpose();
+  // A polygon of 256 corners has 1 − 2e-4 of the moments of a circle.
+  EXPECT_LT((second_moments(frame) - expected).norm(), 4e-4 * expected.norm());
+  EXPECT_NEAR(frame.volume() / (std::numbers::pi * 0.01 * 0.5), 1, 2e-4);
+}
+
+TEST(RigidFrame, CarriesAllVertices) {
+  const Mesh mesh = make_sphere(0.2, 16);
+  const RigidFrame frame = frame_of(mesh);
+  // An affine motion, which the vertices share with the particles.
+  Mat3 deform;
+  deform << 1, 0.2, 0, -0.1, 0.9, 0.3, 0, 0, 1.2;
+  std::vector<Vec3> particles;
+  for (const Vec3& x : frame.particles()) particles.push_back(deform * x + Vec3(1, 2, 3));
+  std::vector<Vec3> vertices(mesh.positions.size());
+  frame.place(particles, vertices);
+  double farthest = 0;
+  for (std::size_t v = 0; v < vertices.size(); ++v)
+    farthest = std::max(farthest, (vertices[v] - deform * mesh.positions[v] - Vec3(1, 2, 3)).norm());
+  EXPECT_LT(farthest, 1e-14);
+}
+
+TEST(RigidFrame, RefusesWhatEnclosesNothing) {
+  EXPECT_THROW(frame_of(make_plane(Vec2(1, 1))), std::invalid_argument);
+  Mesh open = make_box(Vec3(1, 1, 1), 0, 8);
+  open.topology.triangles.pop_back();
+  EXPECT_THROW(frame_of(open), std::invalid_argument);
+}
+
+TEST(RigidFrame, IsMadeOfAllClosedShapes) {
+  for (const Mesh& mesh : {make_box(Vec3(1, 2, 3), 0.1, 8), make_cone(1, 2, 24), make_torus(1, 0.2, 24),
+                           make_half_pipe(1, 2, 0.1, 24), make_sphere(1, 24)})
+    EXPECT_GT(frame_of(mesh).volume(), 0.1);
+}
+
+}  // namespace
+}  // namespace weft::mesh
