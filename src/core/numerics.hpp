@@ -204,6 +204,17 @@ struct Numerics {
     double most_acceleration = 20000;
   } pins;
 
+  /// Bodies that forces move (forces/rigidity.hpp).
+  struct Bodies {
+    /// Squared frequency of their stretching, in 1/step². Smaller: an impact of 1 m/s compresses them by more than
+    /// 1e-6 m; larger: rounding in single precision.
+    double rigidity = 1e4;
+    /// Contact thickness [m], and in least deviations of their mass at most. Smaller: bodies at rest on each other
+    /// rattle; larger: gaps show.
+    double thickness = 1e-3;
+    double thickness_of_size = 0.1;
+  } bodies;
+
   /// Energy without a source (src/simulation/energy_bound.cpp), relative to the energy in play.
   struct Energy {
     /// Gain from which a run fails, and work of the residual that is warned of; and gain that is warned of.

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <variant>
@@ -366,6 +367,7 @@ BodyObject make_obstacle(const scene::Scene& scene, const scene::Obstacle& obsta
   object.look = obstacle.look;
   const auto* plane = std::get_if<scene::Plane>(&obstacle.shape);
   object.infinite_floor = plane != nullptr && plane->infinite;
+  if (scene::is_dynamic(obstacle)) object.dynamics = make_dynamics(scene, obstacle, object.mesh);
   return object;
 }
 

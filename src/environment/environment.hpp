@@ -13,6 +13,7 @@
 #include "character/character.hpp"
 #include "core/types.hpp"
 #include "environment/acting.hpp"
+#include "environment/dynamics.hpp"
 #include "environment/key_frames.hpp"
 #include "environment/track.hpp"
 #include "environment/wearers.hpp"
@@ -53,7 +54,7 @@ struct ClothObject {
   std::vector<std::string> warnings;
 };
 
-/// A body that moves cloth and is not moved by it: an obstacle, still or moved as a rigid body, or a character.
+/// A body: an obstacle, still, moved by keys or moved by forces, or a character.
 struct BodyObject {
   std::string name;
   mesh::Mesh
@@ -66,6 +67,7 @@ struct BodyObject {
   scene::Look look;
   std::shared_ptr<const character::Coloring> coloring;  ///< of characters whose file has some; else null
   std::vector<Part> parts;                              ///< of characters
+  std::shared_ptr<const Dynamics> dynamics;             ///< of obstacles with a mass; else null
   std::vector<Index> limbs;  ///< likewise, of each vertex, from 0: they may come to lie in each other
   /// Of what has bones: a cloth and a pin of it that follows, and the first vertex that Environment::vertex() has for
   /// the particles of the pin, behind those of the mesh.

@@ -139,6 +139,11 @@ void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std
   std::vector<std::string> bodies = names_of(scene.obstacles);
   bodies.insert(bodies.end(), characters.begin(), characters.end());
   check_reference(followed.body, bodies, "an obstacle or character", path + ".follow", findings);
+  for (const Obstacle& obstacle : scene.obstacles)
+    if (obstacle.name == followed.body && is_dynamic(obstacle))
+      findings.report(path + ".follow",
+                      fmt::format("expected a body that keys move, got {}, which has a mass; [[attach]] ties cloth to it",
+                                  in_quotes(obstacle.name)));
   if (!followed.part.empty() && !findings.faulty(path + ".follow"))
     check_reference(followed.body, characters, "a character before the part", path + ".follow", findings);
   if (pin.fade > 0 && !pin.strength)
@@ -257,6 +262,34 @@ void check_shape(const Shape& shape, const std::string& path, Findings& findings
   }
 }
 
+// Of a body that forces move, or of one that lacks the mass for it.
+void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::string& path, Findings& findings) {
+  if (!is_dynamic(obstacle)) {
+    for (const auto& [key, is_given] : {std::pair("velocity", obstacle.velocity != Vec3::Zero()),
+                                        std::pair("spin", obstacle.spin != Vec3::Zero()),
+                                        std::pair("release", obstacle.release > 0)})
+      if (is_given)
+        findings.report(fmt::format("{}.{}", path, key),
+                        "expected a mass or density beside it, got none; without, only keys move an obstacle");
+    return;
+  }
+  if (obstacle.mass > 0 && obstacle.density > 0)
+    findings.report(path + ".density",
+                    fmt::format("expected none beside a mass of {} kg, got {}", obstacle.mass, obstacle.density));
+  if (std::holds_alternative<Plane>(obstacle.shape))
+    findings.report(path + ".shape", "expected a closed shape for a body with a mass, got \"plane\"");
+  if (scene.contact.response == Response::velocity_constraints)
+    findings.report("contact.response",
+                    fmt::format("expected \"springs\", as {} has a mass, got \"velocity_constraints\"",
+                                in_quotes(obstacle.name)));
+  if (obstacle.motion.keys.size() < 2) return;
+  for (const auto& [key, value] : {std::pair("velocity", obstacle.velocity), std::pair("spin", obstacle.spin)})
+    if (value != Vec3::Zero())
+      findings.report(fmt::format("{}.{}", path, key), "expected none beside keys, which say how fast it is at release");
+  if (obstacle.release == 0)
+    findings.report(path + ".release", "expected > 0 s beside keys, which move it until then, got 0");
+}
+
 void check_obstacles(const Scene& scene, Findings& findings) {
   const std::vector<std::string> cloths = names_of(scene.cloths);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
@@ -265,6 +298,7 @@ void check_obstacles(const Scene& scene, Findings& findings) {
     check_shape(obstacle.shape, path, findings);
     check_times(obstacle.motion.keys, path, findings);
     check_turns(obstacle.motion.keys, path, findings);
+    check_dynamics(scene, obstacle, path, findings);
     // One name each: it names the object in pictures, statistics and mesh files.
     if (!obstacle.name.empty() && std::find(cloths.begin(), cloths.end(), obstacle.name) != cloths.end()) {
       findings.report(path + ".name",

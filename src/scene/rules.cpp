@@ -298,7 +298,7 @@ const Table& obstacle_rules() {
   static const std::array<Shape, 8> kShapes = {Sphere{},   BoxShape{}, Cone{},  Torus{},
                                                Cylinder{}, HalfPipe{}, Plane{}, MeshFile{}};
   static const Table kTable =
-      TableBuilder<Obstacle>("A rigid body, still or moved by key frames.")
+      TableBuilder<Obstacle>("A rigid body: still, moved by key frames, or, with a mass, by forces.")
           .plain(Type::name, "name", &Obstacle::name, "unlike that of any other object")
           .need(Need::required)
           .choice_by(
@@ -312,6 +312,21 @@ const Table& obstacle_rules() {
           .selects()
           .with(shape_rows)
           .with([](auto& rows) { pose_rows(rows, &Obstacle::pose, "of its middle"); })
+          .number("mass", &Obstacle::mass, within(0, 1e6), "kg",
+                  "lets gravity, cloth and other bodies move it; its surface must be closed")
+          .written_if([](Obstacle& o) { return o.mass > 0; })
+          .number("density", &Obstacle::density, within(0, 1e5), "kg/m³",
+                  "of what is inside, in place of mass: wood 700, steel 7800")
+          .written_if([](Obstacle& o) { return o.density > 0; })
+          .vector("velocity", &Obstacle::velocity, kXyz, within(-1e4, 1e4), "m/s",
+                  "at the start, with a mass and without keys")
+          .written_if([](Obstacle& o) { return o.velocity != Vec3::Zero(); })
+          .vector("spin", &Obstacle::spin, kXyz, within(-36000, 36000), "degrees/s",
+                  "likewise, about its centre of mass: a vector along the axis")
+          .written_if([](Obstacle& o) { return o.spin != Vec3::Zero(); })
+          .number("release", &Obstacle::release, within(0, 3600), "s",
+                  "with a mass: time from which on forces move it; before, it stands, or its keys move it")
+          .written_if([](Obstacle& o) { return o.release > 0; })
           .number("friction", &Obstacle::friction, within(0, 10), "",
                   "Coulomb coefficient; of a pair, the geometric mean of both")
           .plain(Type::boolean, "collide", &Obstacle::collide, "false lets cloth pass through it")

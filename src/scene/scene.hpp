@@ -15,6 +15,7 @@
 #include "scene/keyed.hpp"
 #include "scene/physics.hpp"
 #include "scene/pressure.hpp"
+#include "scene/shapes.hpp"
 
 namespace weft::scene {
 
@@ -224,7 +225,6 @@ struct Attachment : ClothPart {
 enum class ClothStart { as_given, untangle };
 enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern };
 enum class ClothRest { automatic, mesh, uv };
-enum class FileUp { as_file, x, y, z };
 
 struct Cloth {
   std::string name;
@@ -264,48 +264,27 @@ inline long rectangle_particles(const Cloth& cloth) {
   return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
 }
 
-struct Sphere {
-  double radius = 0.5;
-};
-struct BoxShape {
-  Vec3 size{1, 1, 1};
-  double bevel = 0;
-};
-struct Cone {
-  double radius = 0.5, height = 1;
-};  ///< base at -height/2, axis along the up axis
-struct Torus {
-  double radius = 0.5, tube_radius = 0.15;
-};
-struct Cylinder {
-  double radius = 0.5, height = 1;
-};
-struct HalfPipe {
-  double radius = 1, length = 2, thickness = 0.05;
-};  ///< open upward, length along x
-struct Plane {
-  Vec2 size{20, 20};
-  bool infinite = true;
-};  ///< drawn to the horizon where infinite
-struct MeshFile {
-  std::filesystem::path path;
-  double scale = 1;
-  FileUp up = FileUp::as_file;
-};  ///< path is absolute after checking
-
-using Shape = std::variant<Sphere, BoxShape, Cone, Torus, Cylinder, HalfPipe, Plane, MeshFile>;
-
 struct Obstacle {
   std::string name;
   Shape shape;
   int segments = 48;  ///< round shapes: faces around
   Pose pose;
-  PoseTrack motion;  ///< absolute poses; empty: rests at `pose`
+  PoseTrack motion;        ///< absolute poses; empty: rests at `pose`
+  double mass = 0;         ///< [kg]; 0: by density
+  double density = 0;      ///< of its volume [kg/m³]; 0, and no mass: forces do not move it
+  Vec3 velocity{0, 0, 0};  ///< at the start, where forces move it and no keys [m/s]
+  Vec3 spin{0, 0, 0};      ///< likewise, rate of turning about its centre of mass [degrees/s]
+  double release = 0;      ///< time from which on forces move it [s]; before, its keys do
   double friction = 0.3;
   bool collide = true;
   Look look;
   int line = 0, column = 0;  ///< where the scene names it, for errors of its file
 };
+
+/// Whether forces move it.
+inline bool is_dynamic(const Obstacle& obstacle) {
+  return obstacle.mass > 0 || obstacle.density > 0;
+}
 
 enum class Stance { first, rest };
 

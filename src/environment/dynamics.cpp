@@ -1,0 +1,30 @@
+#include "environment/dynamics.hpp"
+
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+#include "core/error.hpp"
+
+namespace weft::environment {
+
+std::shared_ptr<const Dynamics> make_dynamics(const scene::Scene& scene, const scene::Obstacle& obstacle,
+                                              const mesh::Mesh& mesh) {
+  try {
+    mesh::RigidFrame frame(mesh.topology.triangles, mesh.positions);
+    const double mass = obstacle.mass > 0 ? obstacle.mass : obstacle.density * frame.volume();
+    const Vec3 turn = std::numbers::pi / 180 * obstacle.spin;
+    // Without a release it is free from the start on, in a preroll too.
+    const double release = obstacle.release > 0 ? obstacle.release : -std::numeric_limits<double>::infinity();
+    return std::make_shared<const Dynamics>(Dynamics{std::move(frame), mass, obstacle.velocity, turn, release});
+  } catch (const std::invalid_argument& expected) {
+    throw Error(ExitCode::scene_invalid,
+                "{}:{}:{}: obstacle.{}: expected {} for a body with a mass, got one of {} triangles that is not; its "
+                "inertia is that of what is inside",
+                scene.file.string(), obstacle.line, obstacle.column, obstacle.name, expected.what(),
+                mesh.topology.triangles.size());
+  }
+}
+
+}  // namespace weft::environment

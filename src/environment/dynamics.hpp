@@ -1,0 +1,25 @@
+// What makes an obstacle a body that forces move.
+#pragma once
+
+#include <memory>
+
+#include "core/types.hpp"
+#include "mesh/mesh.hpp"
+#include "mesh/rigid_frame.hpp"
+#include "scene/scene.hpp"
+
+namespace weft::environment {
+
+struct Dynamics {
+  mesh::RigidFrame frame;
+  double mass = 0;                 ///< [kg]
+  Vec3 velocity{0, 0, 0};          ///< at the start [m/s]
+  Vec3 angular_velocity{0, 0, 0};  ///< likewise [rad/s]
+  double release = 0;              ///< until then its keys move it; minus infinity: never [s]
+};
+
+/// Of an obstacle with a mass, whose mesh this is. Throws Error(scene_invalid) where the mesh encloses nothing.
+std::shared_ptr<const Dynamics> make_dynamics(const scene::Scene& scene, const scene::Obstacle& obstacle,
+                                              const mesh::Mesh& mesh);
+
+}  // namespace weft::environment
