@@ -7,11 +7,12 @@
 namespace weft::collision {
 
 void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
-                 std::span<const Patch> patches, std::span<const Index> limbs) {
+                 std::span<const Patch> patches, std::span<const Index> limbs, Index in_front) {
   const auto first_triangle = static_cast<Index>(triangles_.size()), first_vertex = static_cast<Index>(body_of_.size());
+  vertex_count += in_front;
   triangles_.reserve(triangles_.size() + triangles.size());
   for (Triangle t : triangles) {
-    for (Index& corner : t) corner += first_vertex;
+    for (Index& corner : t) corner += first_vertex + in_front;
     triangles_.push_back(t);
   }
   body_of_.insert(body_of_.end(), vertex_count, traits_.size());
@@ -27,7 +28,7 @@ void Bodies::add(std::span<const std::array<Index, 3>> triangles, Index vertex_c
     skins_.push_back({traits_.size(), patch.thickness, patch.friction});
   }
   traits_.push_back(traits);
-  deformable_ += traits.deformable ? 1 : 0;
+  deformable_ += traits.deformable && !traits.rigid ? 1 : 0;
   surfaces_.push_back({{}, first_triangle, first_vertex, vertex_count});
   // The triangles may have moved in memory.
   for (std::size_t b = 0; b < surfaces_.size(); ++b) {

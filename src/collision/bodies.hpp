@@ -14,11 +14,12 @@ namespace weft::collision {
 
 /// How a surface collides.
 struct BodyTraits {
-  bool deformable = false;
-  double thickness = 0;  ///< of cloth [m]; 0 for obstacles
+  bool deformable = false;  ///< particles, which the solve moves
+  double thickness = 0;     ///< of these [m]; 0 for obstacles
   double friction = 0;   ///< Coulomb coefficient; of a pair: the geometric mean
   bool moving = true;    ///< false: its vertices stay where they are at the start
   bool rigid = false;    ///< its vertices keep their distances from each other
+  Index frame = -1;      ///< of what is both: the first of the four particles that its vertices follow
 };
 
 /// A part of a surface that collides in another way than the rest of it.
@@ -42,10 +43,11 @@ class Bodies {
   Bodies(Bodies&&) = default;  // a copy would view the triangles of the original
   Bodies& operator=(Bodies&&) = default;
 
-  /// `triangles`: by vertex number within the body, from 0 to vertex_count − 1. Of patches that share vertices the last
+  /// `triangles`: by vertex number within the body, from 0 to vertex_count − 1; `in_front`: positions of no triangle
+  /// before them. Of patches that share vertices the last
   /// counts. `limbs`: of each vertex the limb that it is of, from 0; empty: one.
   void add(std::span<const std::array<Index, 3>> triangles, Index vertex_count, const BodyTraits& traits,
-           std::span<const Patch> patches = {}, std::span<const Index> limbs = {});
+           std::span<const Patch> patches = {}, std::span<const Index> limbs = {}, Index in_front = 0);
 
   std::size_t size() const { return traits_.size(); }
   const BodyTraits& operator[](std::size_t body) const { return traits_[body]; }
@@ -53,7 +55,7 @@ class Bodies {
   /// Valid until the next add(), and in a Bodies that this one is moved to.
   std::span<const Triangle> triangles() const { return triangles_; }
   std::span<const Surface> surfaces() const { return surfaces_; }
-  /// The surfaces of those that deform, which come first.
+  /// The surfaces of those that can meet themselves: that deform and are not rigid. They come first.
   std::span<const Surface> deformable() const { return std::span(surfaces_).first(deformable_); }
 
   Index vertex_count() const { return static_cast<Index>(body_of_.size()); }

@@ -28,9 +28,10 @@ CandidateCache::CandidateCache(const Bodies& bodies, const SearchParameters& par
       clear_(bodies.size()) {
   for (std::size_t a = 0; a < bodies.size(); ++a) {
     if (!bodies[a].deformable) continue;
-    if (parameters.self) wanted_.push_back({a, a});
+    const auto is_cloth = [&](std::size_t body) { return bodies[body].deformable && !bodies[body].rigid; };
+    if (parameters.self && is_cloth(a)) wanted_.push_back({a, a});
     for (std::size_t b = a + 1; b < bodies.size(); ++b)
-      if (bodies[b].deformable ? parameters.self : parameters.obstacles) wanted_.push_back({a, b});
+      if (is_cloth(a) && is_cloth(b) ? parameters.self : parameters.obstacles) wanted_.push_back({a, b});
   }
 }
 

@@ -33,13 +33,15 @@ FeaturePair of_corner(Index corner, const Triangle& corners, const FeaturePair& 
 
 }  // namespace
 
-double stiffness_share(const Proximity& proximity) {
+double stiffness_share(const Proximity& proximity, bool with_cloth) {
   if (proximity.kind == ProximityKind::vertex_face) return 1;
   const auto& outside = proximity.outside_wedge;
+  const double inside_wedges = ramp(-numerics.contact.fade, 0, -std::max(outside[0], outside[1]));
+  if (!with_cloth) return inside_wedges;
   double least = 1;
   for (double weight : proximity.weights) least = std::min(least, std::abs(weight));
-  return ramp(numerics.contact.flat_fold, 2 * numerics.contact.fade, -outside[0] - outside[1]) *
-         ramp(-numerics.contact.fade, 0, -std::max(outside[0], outside[1])) * ramp(0, numerics.contact.fade, least);
+  return ramp(numerics.contact.flat_fold, 2 * numerics.contact.fade, -outside[0] - outside[1]) * inside_wedges *
+         ramp(0, numerics.contact.fade, least);
 }
 
 // Friction of a pair: the geometric mean of both coefficients, or what the pair has of its own.
@@ -60,7 +62,8 @@ ContactBuilder::ContactBuilder(const Bodies& bodies, const ContactParameters& pa
 void ContactBuilder::add(std::span<const Proximity> proximities, const PinchedPairs& pinched, const StepMotion& motion,
                          ContactResponse& response) {
   for (const Proximity& proximity : proximities) {
-    const double share = stiffness_share(proximity);
+    const bool with_cloth = std::ranges::any_of(proximity.vertices, [&](Index v) { return is_cloth(v); });
+    const double share = stiffness_share(proximity, with_cloth);
     if (share == 0 || pinched.concern(proximity.vertices)) continue;
     if (const auto contact = build(proximity, share, kNoLimit, motion)) response.add(*contact, motion.x_t0);
     if (share == 1) in_contact_.insert(feature_key(proximity.kind, proximity.vertices));
@@ -131,6 +134,8 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double sha
   Vec3 relative = Vec3::Zero();
   contact.normal = pair.normal;
   double mass = 0, mass_weight = 0;
+  std::array<double, 2> side_mass{}, side_weight{};
+  bool is_rigid = false;
   int failures = 0;
   std::array<std::size_t, 2> sides{};
   for (std::size_t k = 0; k < 4; ++k) {
@@ -145,6 +150,9 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double sha
       contact.weights[k] = weight;
       mass += std::abs(weight) * masses_[v];
       mass_weight += std::abs(weight);
+      side_mass[weight > 0 ? 0 : 1] += std::abs(weight) * masses_[v];
+      side_weight[weight > 0 ? 0 : 1] += std::abs(weight);
+      is_rigid |= bodies_[bodies_.body_of(v)].rigid;
       if (!motion.failures.empty()) failures = std::max<int>(failures, motion.failures[v]);
     } else {
       contact.against_obstacle = true;
@@ -153,6 +161,11 @@ std::optional<Contact> ContactBuilder::build(const FeaturePair& pair, double sha
     }
   }
   if (mass_weight == 0) return std::nullopt;
+  // Between cloth and a heavy body the lighter side is what stops.
+  if (is_rigid && side_weight[0] > 0 && side_weight[1] > 0) {
+    const std::size_t lighter = side_mass[0] * side_weight[1] < side_mass[1] * side_weight[0] ? 0 : 1;
+    mass = side_mass[lighter], mass_weight = side_weight[lighter];
+  }
   contact.full_range = 0.5 * (bodies_.skins()[sides[0]].thickness + bodies_.skins()[sides[1]].thickness);
   contact.range = std::min(range_limit, contact.full_range);
   contact.depth = contact.range - contact.normal.dot(relative);

@@ -43,8 +43,10 @@ struct StepMotion {
 /// where its direction lies well inside of the wedges of both edges: an edge of a box against smooth cloth, a crease
 /// across a crease. It fades out towards the flat, where vertices and faces keep the layers apart, towards directions
 /// outside of a wedge, where a face at the edge is closer, and towards the ends of either edge: nothing is switched on
-/// or off while cloth rests. Between two smooth layers that leaves a fifth of the contacts.
-double stiffness_share(const Proximity& proximity);
+/// or off while cloth rests. Between two smooth layers that leaves a fifth of the contacts. Between blocks, without
+/// cloth, only what is outside of a wedge fades: faces that lie on each other touch where their rims cross, and no
+/// vertex needs to be there.
+double stiffness_share(const Proximity& proximity, bool with_cloth = true);
 
 class ContactBuilder {
  public:
@@ -81,6 +83,7 @@ class ContactBuilder {
   void add_corners(const CornerPair& pair, const FeaturePair& closest, const StepMotion& motion,
                    ContactResponse& response) const;
   bool is_particle(Index vertex) const { return static_cast<std::size_t>(vertex) < masses_.size(); }
+  bool is_cloth(Index vertex) const { return is_particle(vertex) && !bodies_[bodies_.body_of(vertex)].rigid; }
   std::optional<Contact> build(const FeaturePair& pair, double share, double range_limit,
                                const StepMotion& motion) const;
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "core/archive.hpp"
 #include "core/numerics.hpp"
@@ -16,6 +17,24 @@ double reach_of(const Bodies& bodies) {
   double range = 0;
   for (const Skin& skin : bodies.skins()) range = std::max(range, skin.thickness);
   return numerics.contact.detection * range;
+}
+
+// The bodies that particles carry.
+std::vector<RigidGroup> rigid_groups(const Bodies& bodies, std::span<const double> masses) {
+  constexpr Index kFrame = 4;
+  std::vector<RigidGroup> groups;
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    const Index frame = bodies[b].frame;
+    if (frame < 0) continue;
+    const Surface& surface = bodies.surfaces()[b];
+    const auto of_frame = masses.subspan(static_cast<std::size_t>(frame), kFrame);
+    // Frames stand before the vertices of the first such body.
+    Index first = bodies.vertex_count(), last = 0;
+    for (const Triangle& corners : surface.triangles)
+      for (const Index v : corners) first = std::min(first, v), last = std::max(last, v);
+    groups.push_back({first, last + 1 - first, frame, kFrame, std::accumulate(of_frame.begin(), of_frame.end(), 0.0)});
+  }
+  return groups;
 }
 
 }  // namespace
@@ -32,6 +51,7 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
       failures_(masses.size()),
       pinched_(static_cast<Index>(masses.size()), bodies_.body_of_vertices(), bodies_.limb_of_vertices()),
       carried_(static_cast<Index>(masses.size()), bodies_.body_of_vertices()) {
+  separation_.set_rigid(rigid_groups(bodies_, masses), bodies_.vertex_count());
   const double reach = candidates_.reach();
   if (parameters.search.coherence)
     coherence_.emplace(bodies_.surfaces(), candidates_.wanted(), x,

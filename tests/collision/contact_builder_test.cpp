@@ -129,6 +129,15 @@ TEST(StiffnessShare, FadesTowardsTheFlatTheOutsideOfAWedgeAndTheEnds) {
   EXPECT_EQ(stiffness_share(edges(-0.5, -0.5, 0)), 0);
 }
 
+// Faces of two blocks touch where their rims cross, at a corner too, and along no other direction than that of the
+// faces.
+TEST(StiffnessShare, OfBlocksFadesOutsideOfAWedgeOnly) {
+  EXPECT_EQ(stiffness_share(edges(0, 0, 0.01), false), 1);
+  EXPECT_EQ(stiffness_share(edges(-0.5, -0.5, 0), false), 1);
+  EXPECT_NEAR(stiffness_share(edges(0.05, -0.5, 0.5), false), 0.5, 1e-12);
+  EXPECT_EQ(stiffness_share(edges(0.1, 0, 0.5), false), 0);
+}
+
 TEST(ContactBuilder, TheShareScalesTheStiffnessAndNoneMakesNoContact) {
   Scene scene;
   const auto contacts =

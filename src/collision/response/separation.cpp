@@ -16,6 +16,20 @@ Separation::Separation(std::span<const Triangle> triangles, std::span<const Surf
                        std::span<const double> masses)
     : triangles_(triangles), masses_(masses), planes_(triangles_), fans_(deformable) {}
 
+void Separation::set_rigid(std::vector<RigidGroup> groups, Index vertices) {
+  groups_ = std::move(groups);
+  if (groups_.empty()) return;
+  group_of_.assign(static_cast<std::size_t>(vertices), -1);
+  for (std::size_t g = 0; g < groups_.size(); ++g)
+    for_each_member(groups_[g], [&](Index v) { group_of_[v] = static_cast<int>(g); });
+}
+
+template <class Visit>
+void Separation::for_each_member(const RigidGroup& group, const Visit& visit) {
+  for (Index v = group.frame; v < group.frame + group.frame_count; ++v) visit(v);
+  for (Index v = group.first; v < group.first + group.count; ++v) visit(v);
+}
+
 void Separation::watch(std::span<const TrianglePair> pairs, std::span<const Vec3> x) {
   reference_.assign(x.begin(), x.end());
   planes_.watch(pairs, x);
@@ -83,7 +97,7 @@ double Separation::balanced_plane(const CornerPair& pair, const Vec3& n, double 
   std::size_t count = 0;
   for (const bool is_of_a : {true, false})
     for (const Index v : is_of_a ? pair.a : pair.b)
-      if (step.movable[v] == kFree)
+      if (step.movable[v] == kFree && group_of(v) == nullptr)
         all[count++] = {n.dot(step.x_t1[v]) + (is_of_a ? -0.5 : 0.5) * target, masses_.empty() ? 1 : masses_[v],
                         is_of_a};
   const std::span<Corner> corners(all.data(), count);
@@ -115,25 +129,48 @@ bool Separation::push_apart(const CornerPair& pair, Step& step) const {
   // The separating plane n·x = c at the end: where both sides get the same momentum, unless what cannot move stands in
   // the way.
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  const auto is_fixed = [&](Index v) { return step.movable[v] != kFree || group_of(v) != nullptr; };
   double low = -kInfinity, high = kInfinity;  // of c
   for (int k = 0; k < 3; ++k) {
     const double a = n.dot(step.x_t1[pair.a[k]]), b = n.dot(step.x_t1[pair.b[k]]);
-    if (step.movable[pair.a[k]] != kFree) high = std::min(high, a - 0.5 * target);
-    if (step.movable[pair.b[k]] != kFree) low = std::max(low, b + 0.5 * target);
+    if (is_fixed(pair.a[k])) high = std::min(high, a - 0.5 * target);
+    if (is_fixed(pair.b[k])) low = std::max(low, b + 0.5 * target);
   }
-  if (low > high) return false;
+  if (low > high) return translate_groups(pair, n, target, step);
   const double plane = std::clamp(balanced_plane(pair, n, target, step), low, high);
 
   const auto push = [&](const Triangle& corners, double sign) {
     for (Index v : corners) {
       const double missing = sign * plane + 0.5 * target - sign * n.dot(step.x_t1[v]);
-      if (missing <= 0 || step.movable[v] != kFree) continue;
+      if (missing <= 0 || is_fixed(v)) continue;
       step.x_t1[v] += sign * missing * n;
       step.report.largest_push = std::max(step.report.largest_push, missing);
     }
   };
   push(pair.a, 1);
   push(pair.b, -1);
+  return true;
+}
+
+// Moves the rigid bodies of a pair apart along n, or one of them from what stands; false if none of them can move.
+bool Separation::translate_groups(const CornerPair& pair, const Vec3& n, double target, Step& step) const {
+  const auto free_group = [&](Index v) { return step.movable[v] == kFree ? group_of(v) : nullptr; };
+  const RigidGroup *a = free_group(pair.a[0]), *b = free_group(pair.b[0]);
+  const double ease_a = a != nullptr ? 1 / a->mass : 0, ease_b = b != nullptr ? 1 / b->mass : 0;
+  if (ease_a + ease_b == 0) return false;
+  double least_a = std::numeric_limits<double>::infinity(), most_b = -least_a;
+  for (std::size_t k = 0; k < 3; ++k) {
+    least_a = std::min(least_a, n.dot(step.x_t1[pair.a[k]]));
+    most_b = std::max(most_b, n.dot(step.x_t1[pair.b[k]]));
+  }
+  const double missing = target - (least_a - most_b);
+  if (missing <= 0) return false;
+  const auto translate = [&](const RigidGroup* group, double by) {
+    if (group != nullptr) for_each_member(*group, [&](Index v) { step.x_t1[v] += by * n; });
+  };
+  translate(a, missing * ease_a / (ease_a + ease_b));
+  translate(b, -missing * ease_b / (ease_a + ease_b));
+  step.report.largest_push = std::max(step.report.largest_push, missing);
   return true;
 }
 
@@ -164,6 +201,7 @@ bool Separation::choose_homes(const CornerPair& pair, const Step& step) {
   const auto choose = [&](Index v, int ride) {
     if (step.movable[v] != kFree || rides_[v] == ride) return;
     rides_[v] = ride;
+    if (const RigidGroup* group = group_of(v)) for_each_member(*group, [&](Index member) { rides_[member] = ride; });
     changed = true;
   };
   if (step.carried->has_obstacle(pair)) {
@@ -207,8 +245,15 @@ bool Separation::backtrack(const CornerPair& pair, bool all_the_way, Step& step)
       changed = true;
       if (backtracked_in_[v] == round_) continue;
       step.report.largest_push = std::max(step.report.largest_push, share * (to - step.x_t1[v]).norm());
-      step.x_t1[v] = share == 1 ? to : Vec3(step.x_t1[v] + share * (to - step.x_t1[v]));
-      backtracked_in_[v] = round_;
+      const auto take_back = [&](Index member) {
+        const Vec3& there = home(member, step);
+        step.x_t1[member] = share == 1 ? there : Vec3(step.x_t1[member] + share * (there - step.x_t1[member]));
+        backtracked_in_[member] = round_;
+      };
+      if (const RigidGroup* group = group_of(v))
+        for_each_member(*group, take_back);
+      else
+        take_back(v);
     }
   }
   return changed;

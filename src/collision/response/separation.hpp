@@ -33,6 +33,13 @@ struct SeparationReport {
   CornerPair stuck{};              ///< a pair that could not be separated, where not `separated`
 };
 
+/// Vertices that move together only: those of a rigid body, and of its frame.
+struct RigidGroup {
+  Index first, count;        ///< of its vertices
+  Index frame, frame_count;  ///< of the particles that carry them
+  double mass;               ///< [kg]
+};
+
 /// Keeps triangles apart over the linear motion from x_t0 to x_t1 by moving separating planes (see `separates`): those
 /// without a common vertex pair by pair, those of a surface that share one by the fans around their vertices. Triangles
 /// that share an edge meet only where they are folded onto each other exactly; the triangles around keep them from
@@ -45,6 +52,9 @@ struct SeparationReport {
 /// what stays together or rides together is as far apart as it was, and growing clusters of particles that do end the
 /// rounds. What is left over is driven into each other: by obstacles that move differently, or held particles. Of that,
 /// cloth can be given up to obstacles.
+///
+/// Cloth gives way to rigid bodies as to obstacles. These give way to obstacles and to each other, by translation, the
+/// lighter one more.
 class Separation {
  public:
   Separation() = default;
@@ -52,6 +62,9 @@ class Separation {
   /// `masses`: of the particles [kg], all the same if empty; must outlive it.
   Separation(std::span<const Triangle> triangles, std::span<const Surface> deformable,
              std::span<const double> masses = {});
+
+  /// Of vertices that can move. Before the first watch().
+  void set_rigid(std::vector<RigidGroup> groups, Index vertices);
 
   /// From now on looks after these pairs without a common vertex, and after all fans, with x [m] as the positions that
   /// motion is measured from. The pairs must hold all that can meet; where motion or a correction carries a vertex out
@@ -103,6 +116,12 @@ class Separation {
   };
   double balanced_plane(const CornerPair& pair, const Vec3& n, double target, const Step& step) const;
   bool push_apart(const CornerPair& pair, Step& step) const;
+  bool translate_groups(const CornerPair& pair, const Vec3& n, double target, Step& step) const;
+  const RigidGroup* group_of(Index v) const {
+    return group_of_.empty() || group_of_[v] < 0 ? nullptr : &groups_[group_of_[v]];
+  }
+  template <class Visit>
+  static void for_each_member(const RigidGroup& group, const Visit& visit);
   bool give_way(const CornerPair& pair, Step& step);
   bool choose_homes(const CornerPair& pair, const Step& step);
   const Vec3& home(Index v, const Step& step) const;
@@ -121,7 +140,9 @@ class Separation {
   std::vector<Vec3> looked_t0_, looked_t1_;  // per vertex: where it was when last looked at [m]
   std::vector<std::uint8_t> changed_;        // per vertex: whether it is somewhere else now
   std::vector<int> backtracked_in_;          // per vertex: round in which it was last backtracked, 0 never
-  std::vector<int> rides_;  // per vertex: the obstacle that carries it when backtracked, or one of these
+  std::vector<RigidGroup> groups_;
+  std::vector<int> group_of_;  // per vertex, −1 of none; empty where there are no groups
+  std::vector<int> rides_;     // per vertex: the obstacle that carries it when backtracked, or one of these
   static constexpr int kAtStart = -1, kAtStartForGood = -2;
   int round_ = 0;
   std::vector<CornerPair> failing_;
