@@ -19,7 +19,7 @@ int object_named(const Objects& objects, const std::string& name) {
 }  // namespace
 
 Attachments::Attachments(const scene::Scene& scene, const environment::Environment& environment,
-                         std::span<const Index> first_particle)
+                         std::span<const Index> first_particle, std::span<const Index> first_of_frames)
     : environment_(&environment), first_(first_particle.begin(), first_particle.end()) {
   std::vector<std::size_t> seen(environment.cloths.size(), 0);  // of each cloth's attachments
   for (const scene::Attachment& of_scene : scene.attachments) {
@@ -31,6 +31,7 @@ Attachments::Attachments(const scene::Scene& scene, const environment::Environme
     attachment.cloth = object_named(environment.cloths, of_scene.to);
     attachment.body = object_named(environment.bodies, of_scene.to);
     if (attachment.cloth < 0 && attachment.body < 0) continue;
+    if (attachment.body >= 0) attachment.frame = first_of_frames[attachment.body];
     attachment.begin = of_scene.begin;
     attachment.release = of_scene.release >= 0 ? of_scene.release : std::numeric_limits<double>::infinity();
     attachment.length = of_scene.length;
@@ -54,6 +55,22 @@ Vec3 Attachments::corner(std::size_t body, Index vertex, double t) const {
   return pose.position + pose.rotation * object.mesh.positions[static_cast<std::size_t>(vertex)];
 }
 
+const mesh::RigidFrame& Attachments::frame_of(const Attachment& attachment) const {
+  return environment_->bodies[attachment.body].dynamics->frame;
+}
+
+// The place of a spring on three vertices as one on the frame of their body.
+void Attachments::use_frame(const Attachment& attachment, Spring& spring) const {
+  const std::vector<mesh::RigidFrame::Weights>& weights = frame_of(attachment).weights();
+  const Spring on_vertices = spring;
+  for (std::size_t k = 0; k < 4; ++k) {
+    spring.corners[k] = attachment.frame + static_cast<Index>(k);
+    spring.weights[k] = 0;
+    for (std::size_t v = 0; v < 3; ++v)
+      spring.weights[k] += on_vertices.weights[v] * weights[static_cast<std::size_t>(on_vertices.corners[v])][k];
+  }
+}
+
 // To the nearest places on its target at time t, cloths being at x.
 void Attachments::tie(Attachment& attachment, double t, std::span<const Vec3> x) const {
   std::vector<Vec3> of_target;
@@ -64,7 +81,10 @@ void Attachments::tie(Attachment& attachment, double t, std::span<const Vec3> x)
     of_target.assign(own.begin(), own.end());
   } else {
     of_target.resize(environment_->bodies[attachment.body].mesh.positions.size());
-    environment_->place(static_cast<std::size_t>(attachment.body), t, of_target);
+    if (attachment.frame >= 0)
+      frame_of(attachment).place(x.subspan(attachment.frame, mesh::RigidFrame::kParticles), of_target);
+    else
+      environment_->place(static_cast<std::size_t>(attachment.body), t, of_target);
   }
   const auto& triangles = is_cloth ? environment_->cloths[attachment.cloth].mesh.topology.triangles
                                    : environment_->bodies[attachment.body].mesh.topology.triangles;
@@ -78,6 +98,7 @@ void Attachments::tie(Attachment& attachment, double t, std::span<const Vec3> x)
       place += nearest.weights[k] * of_target[nearest.face[k]];
     }
     spring.length = attachment.length.value_or((place - own).norm());
+    if (attachment.frame >= 0) use_frame(attachment, spring);
   }
   attachment.state = State::tied;
 }
@@ -88,7 +109,7 @@ void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x) {
     attachment.holds = holds_at(attachment, t1);
     if (!attachment.holds) continue;
     if (attachment.state == State::open) tie(attachment, t0, x);
-    if (attachment.body < 0) continue;
+    if (attachment.is_of_particles()) continue;
     for (Spring& spring : attachment.springs) {
       spring.place.setZero();
       for (std::size_t k = 0; k < 3; ++k)
@@ -100,9 +121,9 @@ void Attachments::begin_step(double t0, double t1, std::span<const Vec3> x) {
 bool Attachments::stay(double t0, double t1) const {
   return std::ranges::all_of(attachments_, [&](const Attachment& attachment) {
     if (holds_at(attachment, t0) != holds_at(attachment, t1)) return false;
-    if (attachment.body < 0 || !holds_at(attachment, t1)) return true;
+    if (attachment.is_of_particles() || !holds_at(attachment, t1)) return true;
     return std::ranges::all_of(attachment.springs, [&](const Spring& spring) {
-      return std::ranges::all_of(spring.corners, [&](Index vertex) {
+      return std::ranges::all_of(std::span(spring.corners).first(3), [&](Index vertex) {
         return corner(attachment.body, vertex, t0) == corner(attachment.body, vertex, t1);
       });
     });
@@ -110,9 +131,10 @@ bool Attachments::stay(double t0, double t1) const {
 }
 
 Vec3 Attachments::place_of(const Attachment& attachment, const Spring& spring, std::span<const Vec3> x) const {
-  if (attachment.cloth < 0) return spring.place;
-  return spring.weights[0] * x[spring.corners[0]] + spring.weights[1] * x[spring.corners[1]] +
-         spring.weights[2] * x[spring.corners[2]];
+  if (!attachment.is_of_particles()) return spring.place;
+  const Vec3 of_three = spring.weights[0] * x[spring.corners[0]] + spring.weights[1] * x[spring.corners[1]] +
+                        spring.weights[2] * x[spring.corners[2]];
+  return attachment.frame < 0 ? of_three : Vec3(of_three + spring.weights[3] * x[spring.corners[3]]);
 }
 
 Attachments::Pull Attachments::pull(const Attachment& attachment, const Spring& spring, std::span<const Vec3> x) const {
@@ -135,8 +157,9 @@ void Attachments::for_each_pull(std::span<const Vec3> x, const Body& body) const
 void Attachments::add_forces(std::span<const Vec3> x_end, std::span<Vec3> force) const {
   for_each_pull(x_end, [&](const Attachment& attachment, const Spring& spring, const Pull& now) {
     force[spring.particle] += now.force * now.along;
-    if (attachment.cloth < 0) return;
-    for (std::size_t k = 0; k < 3; ++k) force[spring.corners[k]] -= spring.weights[k] * now.force * now.along;
+    if (!attachment.is_of_particles()) return;
+    for (std::size_t k = 0; k < (attachment.frame < 0 ? 3 : 4); ++k)
+      force[spring.corners[k]] -= spring.weights[k] * now.force * now.along;
   });
 }
 
@@ -146,8 +169,16 @@ void Attachments::add_terms(std::span<const Vec3> x_end, double end_rate, solver
     const double lateral = now.force / now.length;
     const Mat3 stiffness =
         end_rate * ((spring.stiffness - lateral) * now.along * now.along.transpose() + lateral * Mat3::Identity());
-    if (attachment.cloth < 0) {
+    if (!attachment.is_of_particles()) {
       system.diagonal_terms.push_back({spring.particle, stiffness});
+      return;
+    }
+    if (attachment.frame >= 0) {
+      solver::WideTerm& term = system.wide_terms.emplace_back();
+      term.stiffness = stiffness;
+      term.particles[0] = spring.particle, term.weights[0] = 1;
+      for (std::size_t k = 0; k < 4; ++k)
+        term.particles[1 + k] = spring.corners[k], term.weights[1 + k] = -spring.weights[k];
       return;
     }
     system.terms.push_back({{spring.particle, spring.corners[0], spring.corners[1], spring.corners[2]},
@@ -190,8 +221,9 @@ void Attachments::take_over(const Attachments& there, std::span<const std::size_
       const Index particle = spring.particle;
       spring = before.springs[s];
       spring.particle = particle;
-      if (before.cloth < 0) continue;
-      const Index shift = first_[cloths[before.cloth]] - there.first_[before.cloth];
+      if (!before.is_of_particles()) continue;
+      const Index shift =
+          before.frame >= 0 ? found->frame - before.frame : first_[cloths[before.cloth]] - there.first_[before.cloth];
       for (Index& corner : spring.corners) corner += shift;
     }
   }
@@ -202,11 +234,12 @@ void Attachments::serialize(Archive& archive) {
   for (Attachment& attachment : attachments_) {
     serialize_values(archive, attachment.state, attachment.holds, attachment.load);
     if constexpr (Archive::kReads) require(attachment.state <= State::broken, "an attachment");
-    const std::size_t count = attachment.cloth >= 0
+    const std::size_t count = attachment.frame >= 0 ? static_cast<std::size_t>(attachment.frame) + 4
+                              : attachment.cloth >= 0
                                   ? static_cast<std::size_t>(first_.back()) + environment_->cloths.back().start.size()
                                   : environment_->bodies[attachment.body].mesh.positions.size();
     for (Spring& spring : attachment.springs) {
-      for (std::size_t k = 0; k < 3; ++k) {
+      for (std::size_t k = 0; k < spring.corners.size(); ++k) {
         serialize_values(archive, spring.corners[k], spring.weights[k]);
         if constexpr (Archive::kReads)
           require(spring.corners[k] >= 0 && static_cast<std::size_t>(spring.corners[k]) < count &&

@@ -17,13 +17,15 @@ namespace weft::simulation {
 
 /// An attachment ties each of its particles, when it begins, to the nearest place on its target: a point of a triangle
 /// that moves with the corners. A spring pulls with k (l − L) while the distance l of the two exceeds L, the distance
-/// at that time or the `length` of the scene. Nearer than that nothing acts: contact keeps surfaces apart.
+/// at that time or the `length` of the scene. Nearer than that nothing acts: contact keeps surfaces apart. A place on a
+/// body that forces move is a weighted sum of the four particles of its frame.
 ///
 /// The springs act at the end of the step, as contacts do.
 class Attachments {
  public:
+  /// `first_particle`: of each cloth; `first_of_frames`: of each body, −1 for those that forces do not move.
   Attachments(const scene::Scene& scene, const environment::Environment& environment,
-              std::span<const Index> first_particle);
+              std::span<const Index> first_particle, std::span<const Index> first_of_frames);
 
   bool empty() const { return attachments_.empty(); }
 
@@ -55,8 +57,9 @@ class Attachments {
     Index particle = 0;
     double stiffness = 0;  // [N/m]
     // Since it is tied:
-    std::array<Index, 3> corners{0, 0, 0};  // of the target: particles of all cloths, or vertices of the body
-    std::array<double, 3> weights{0, 0, 0};
+    // Of the target: three particles of a cloth, three vertices of a body, or the four particles of its frame.
+    std::array<Index, 4> corners{0, 0, 0, 0};
+    std::array<double, 4> weights{0, 0, 0, 0};
     double length = 0;          // L [m]
     Vec3 place = Vec3::Zero();  // on a body, at the end of the step [m]
   };
@@ -64,7 +67,9 @@ class Attachments {
   struct Attachment {
     std::string name;
     int cloth = -1, body = -1;  // its target: number of a cloth or of a body
-    double begin, release;      // [s]; release: infinite if never
+    Index frame = -1;           // first particle of the frame of that body, if it has one
+    bool is_of_particles() const { return cloth >= 0 || frame >= 0; }  // its target
+    double begin, release;                                             // [s]; release: infinite if never
     std::optional<double> length, breaking_load;
     std::vector<Spring> springs;
     State state = State::open;
@@ -81,6 +86,8 @@ class Attachments {
   bool holds_at(const Attachment& attachment, double t) const;
   void tie(Attachment& attachment, double t, std::span<const Vec3> x) const;
   Vec3 corner(std::size_t body, Index vertex, double t) const;
+  const mesh::RigidFrame& frame_of(const Attachment& attachment) const;
+  void use_frame(const Attachment& attachment, Spring& spring) const;
   template <class Body>
   void for_each_pull(std::span<const Vec3> x, const Body& body) const;
 

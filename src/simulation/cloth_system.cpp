@@ -11,6 +11,7 @@
 #include "forces/air.hpp"
 #include "forces/bend.hpp"
 #include "forces/crossed_membrane.hpp"
+#include "forces/rigidity.hpp"
 #include "forces/shear.hpp"
 #include "forces/stretch.hpp"
 #include "forces/stretch_limit.hpp"
@@ -137,6 +138,7 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   }
   first_.push_back(first);
   inflation_ = Inflation(scene, environment, first_);
+  add_frames(scene, environment);
   cut_groups(environment);
 
   const solver::Assembly assembly(lay_out_matrix());
@@ -146,6 +148,25 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
   for (const auto& of_cloth : forces_)
     for (const auto& force : of_cloth) force->hold(held_);
   sew(0);
+}
+
+void ClothSystem::add_frames(const scene::Scene& scene, const environment::Environment& environment) {
+  const double stiffness = numerics.bodies.rigidity / (scene.time.step * scene.time.step);
+  for (const environment::BodyObject& body : environment.bodies) {
+    if (!body.dynamics) continue;
+    const auto& [frame, mass, velocity, turn, release] = *body.dynamics;
+    forces_.emplace_back().push_back(std::make_unique<forces::Rigidity>(frame, first_.back(), mass, stiffness));
+    masses_.insert(masses_.end(), mesh::RigidFrame::kParticles, mass / mesh::RigidFrame::kParticles);
+    held_.resize(masses_.size());
+    first_.push_back(static_cast<Index>(masses_.size()));
+  }
+}
+
+std::vector<Index> ClothSystem::first_of_frames(const environment::Environment& environment) const {
+  std::vector<Index> first;
+  std::size_t part = cloths();
+  for (const environment::BodyObject& body : environment.bodies) first.push_back(body.dynamics ? first_[part++] : -1);
+  return first;
 }
 
 solver::BlockMatrix ClothSystem::lay_out_matrix() const {
@@ -159,7 +180,8 @@ solver::LinearSystem ClothSystem::make_linear_system() const {
   solver::LinearSystem system;
   system.matrix = lay_out_matrix();
   system.groupings = groupings_;
-  for (std::size_t c = 0; c < cloths(); ++c) system.parts.push_back({first_[c], first_[c + 1]});
+  for (std::size_t p = 0; p < parts(); ++p)
+    system.parts.push_back({.begin = first_[p], .end = first_[p + 1], .is_small = p >= cloths()});
   return system;
 }
 
@@ -222,7 +244,7 @@ void ClothSystem::add_triangle_forces(std::size_t cloth, const mesh::Sheet& shee
 // What is at a border is evaluated twice: with 1024 particles in 16 rows a tenth of it. All threads get as many.
 void ClothSystem::cut_ranges() {
   const Index threads = thread_count();
-  for (std::size_t c = 0; c < cloths(); ++c) {
+  for (std::size_t c = 0; c < parts(); ++c) {
     const Index first = first_[c], count = first_[c + 1] - first;
     Index wanted = threads == 1 ? 1 : std::clamp<Index>(count / kLeastRange, 1, kRangesPerThread * threads);
     if (wanted > threads) wanted -= wanted % threads;
@@ -237,10 +259,12 @@ void ClothSystem::cut_ranges() {
   }
 }
 
-// Of two by two boxes, again and again, until few enough are left in all, or one of each cloth.
+// Of two by two boxes, again and again, until few enough are left in all, or one of each cloth. Particles of frames are
+// groups of their own.
 void ClothSystem::cut_groups(const environment::Environment& environment) {
   std::vector<Lattice> lattices;
   for (const environment::ClothObject& cloth : environment.cloths) lattices.push_back(lattice_of(cloth));
+  bool is_coarse = false;
   do {
     solver::Grouping grouping;
     for (Lattice& lattice : lattices) {
@@ -255,9 +279,11 @@ void ClothSystem::cut_groups(const environment::Environment& environment) {
       grouping.count += static_cast<Index>(halved.size());
       members = std::move(halved);
     }
+    const Index of_cloths = grouping.count;
+    for (Index i = first_[cloths()]; i < first_.back(); ++i) grouping.of.push_back(grouping.count++);
     groupings_.push_back(std::move(grouping));
-  } while (groupings_.back().count >
-           std::max(numerics.linear.coarsest_aggregates, static_cast<Index>(lattices.size())));
+    is_coarse = of_cloths <= std::max(numerics.linear.coarsest_aggregates, static_cast<Index>(lattices.size()));
+  } while (!is_coarse);
 }
 
 void ClothSystem::Sewing::use_share(double new_share) {

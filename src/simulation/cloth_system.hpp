@@ -30,16 +30,20 @@ bool bends(const scene::Material& material);
 /// Whether the threads of this material lock.
 bool locks(const scene::Material& material);
 
-/// Particles are numbered through all cloths, in the order of the scene. Nothing here changes but the rest shape of
+/// Particles are numbered through all cloths, in the order of the scene; behind them are four for each body that forces
+/// move, its frame, likewise. A part is a cloth or such a frame. Nothing here changes but the rest shape of
 /// cloth that is being sewn and what pins hold: the same arguments give the same forces.
 class ClothSystem {
  public:
   ClothSystem(const scene::Scene& scene, const environment::Environment& environment);
 
   std::span<const double> masses() const { return masses_; }
-  std::size_t cloths() const { return forces_.size(); }
-  /// Of this cloth, or of `cloths()` the number of all particles.
-  Index first_particle(std::size_t cloth) const { return first_[cloth]; }
+  std::size_t cloths() const { return membranes_.size(); }
+  std::size_t parts() const { return forces_.size(); }
+  /// Of this part, cloths first, or of `parts()` the number of all particles.
+  Index first_particle(std::size_t part) const { return first_[part]; }
+  /// Of each body of the environment, the first particle of its frame; −1 for those without one.
+  std::vector<Index> first_of_frames(const environment::Environment& environment) const;
   /// Least distance between neighbouring particles of all cloths [m].
   double spacing() const { return spacing_; }
 
@@ -57,7 +61,7 @@ class ClothSystem {
   /// Some for each thread, or a whole cloth; forces are the same to the bit, however they are cut.
   std::span<const Range> ranges() const { return ranges_; }
 
-  /// The forces on one cloth but its weight; positions, velocities and forces are those of all particles.
+  /// The forces on one part but its weight; positions, velocities and forces are those of all particles.
   void add_forces(std::size_t cloth, const forces::Evaluation& at) const;
 
   /// Locks of threads as forces::StretchLimit has them, per cloth; nothing of cloths without a limit.
@@ -110,14 +114,15 @@ class ClothSystem {
                        const scene::Physics& physics);
   void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of, double put_on,
                            const scene::Physics& physics);
+  void add_frames(const scene::Scene& scene, const environment::Environment& environment);
   void add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit);
   solver::BlockMatrix lay_out_matrix() const;
   void cut_groups(const environment::Environment& environment);
   void cut_ranges();
 
-  std::vector<Index> first_;  // per cloth, and the total at the end
+  std::vector<Index> first_;  // per part, and the total at the end
   std::vector<double> masses_;
-  std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;          // per cloth
+  std::vector<std::vector<std::unique_ptr<forces::Force>>> forces_;          // per part
   std::vector<Range> ranges_;                                                // in the order of particles
   std::vector<const forces::Membrane*> membranes_;                           // of them, one per cloth
   std::vector<std::pair<std::size_t, const forces::StretchLimit*>> limits_;  // likewise, of cloths that have one

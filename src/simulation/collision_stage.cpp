@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <map>
 
 #include "core/archive.hpp"
 #include "core/error.hpp"
@@ -22,12 +23,25 @@ bool bodies_collide(const scene::Scene& scene) {
          (std::ranges::any_of(scene.obstacles, collides) || std::ranges::any_of(scene.characters, collides));
 }
 
+bool moves_by_forces(const scene::Scene& scene) {
+  return std::ranges::any_of(scene.obstacles, [](const scene::Obstacle& o) { return scene::is_dynamic(o); });
+}
+
+// Those that forces move come first.
 std::vector<std::size_t> colliding_bodies(const scene::Scene& scene, const environment::Environment& environment) {
   std::vector<std::size_t> bodies;
   if (!bodies_collide(scene)) return bodies;
   for (std::size_t b = 0; b < environment.bodies.size(); ++b)
     if (environment.bodies[b].collide) bodies.push_back(b);
+  std::stable_partition(bodies.begin(), bodies.end(),
+                        [&](std::size_t b) { return environment.bodies[b].dynamics != nullptr; });
   return bodies;
+}
+
+// Of a body that forces move.
+double thickness_of(const environment::Dynamics& dynamics) {
+  return std::min(numerics.bodies.thickness,
+                  numerics.bodies.thickness_of_size * dynamics.frame.deviations().minCoeff());
 }
 
 // The engine's bodies are the cloths of the scene and then what else collides.
@@ -71,10 +85,12 @@ collision::EngineParameters engine_parameters(const scene::Scene& scene, const e
                      search_options(contact.search)},
           .contact = {contact.stiffness, scene.time.step, friction_pairs(scene, environment)},
           .response = velocity ? collision::ResponseForm::velocity_constraints : collision::ResponseForm::springs,
-          .stick_speed = std::max(numerics.contact.stick_velocity, numerics.contact.stick_spacings * spacing)};
+          .stick_speed = std::max(numerics.contact.stick_velocity,
+                                  std::isinf(spacing) ? 0 : numerics.contact.stick_spacings * spacing)};
 }
 
-collision::Bodies make_bodies(const scene::Scene& scene, const environment::Environment& environment) {
+collision::Bodies make_bodies(const scene::Scene& scene, const environment::Environment& environment,
+                              const ClothSystem& cloth) {
   collision::Bodies bodies;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const scene::Material& material = scene.cloths[c].material;
@@ -84,8 +100,21 @@ collision::Bodies make_bodies(const scene::Scene& scene, const environment::Envi
     bodies.add(mesh.topology.triangles, static_cast<Index>(mesh.positions.size()),
                {.deformable = true, .thickness = thickness, .friction = material.friction});
   }
+  const Index cloth_particles = cloth.first_particle(cloth.cloths());
+  Index frames = cloth.first_particle(cloth.parts()) - cloth_particles;
+  const std::vector<Index> first_of_frames = cloth.first_of_frames(environment);
   for (std::size_t b : colliding_bodies(scene, environment)) {
     const environment::BodyObject& body = environment.bodies[b];
+    if (body.dynamics) {
+      bodies.add(body.colliding_triangles(), static_cast<Index>(body.mesh.positions.size()),
+                 {.deformable = true,
+                  .thickness = thickness_of(*body.dynamics),
+                  .friction = body.friction,
+                  .rigid = true,
+                  .frame = first_of_frames[b]},
+                 {}, {}, std::exchange(frames, 0));
+      continue;
+    }
     std::vector<collision::Patch> patches;
     for (const environment::Part& part : body.parts)
       if (part.is_patch()) patches.push_back({part.vertices, part.thickness, part.friction.value_or(body.friction)});
@@ -111,16 +140,20 @@ double sagitta(double radius, double angle) {
 }  // namespace
 
 bool CollisionStage::needed(const scene::Scene& scene) {
-  return !scene.cloths.empty() && (scene.contact.self || bodies_collide(scene));
+  return (!scene.cloths.empty() && (scene.contact.self || bodies_collide(scene))) ||
+         (moves_by_forces(scene) && bodies_collide(scene));
 }
 
 CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Environment& environment,
-                               std::span<const double> masses, Moment& start)
+                               const ClothSystem& cloth, Moment& start)
     : environment_(environment),
       bodies_(colliding_bodies(scene, environment)),
-      particles_(masses.size()),
-      engine_(make_bodies(scene, environment), engine_parameters(scene, environment), append_bodies(start), masses) {
-  for (const auto& cloth : environment.cloths) names_.push_back(cloth.name);
+      particles_(cloth.masses().size()),
+      rigid_(make_rigid_vertices(cloth)),
+      masses_(masses_of_all(cloth)),
+      engine_(make_bodies(scene, environment, cloth), engine_parameters(scene, environment), append_bodies(start),
+              masses_) {
+  for (const auto& object : environment.cloths) names_.push_back(object.name);
   for (std::size_t b : bodies_) names_.push_back(environment.bodies[b].name);
   motions_.resize(names_.size());
   for (std::size_t b : bodies_) {
@@ -129,8 +162,25 @@ CollisionStage::CollisionStage(const scene::Scene& scene, const environment::Env
   }
 }
 
+RigidVertices CollisionStage::make_rigid_vertices(const ClothSystem& cloth) const {
+  RigidVertices vertices(static_cast<Index>(cloth.masses().size()));
+  const std::vector<Index> first_of_frames = cloth.first_of_frames(environment_);
+  for (const std::size_t b : bodies_)
+    if (environment_.bodies[b].dynamics) vertices.add(environment_.bodies[b].dynamics->frame, first_of_frames[b]);
+  return vertices;
+}
+
+std::vector<double> CollisionStage::masses_of_all(const ClothSystem& cloth) const {
+  std::vector<double> masses(cloth.masses().begin(), cloth.masses().end());
+  for (Index v = rigid_.first(); v < rigid_.end(); ++v) masses.push_back(rigid_.mass_of(v, cloth.masses()));
+  return masses;
+}
+
 const std::vector<Vec3>& CollisionStage::append_bodies(Moment& start) const {
+  start.x.resize(static_cast<std::size_t>(rigid_.end()));
+  rigid_.place(start.x);
   for (std::size_t b : bodies_) {
+    if (environment_.bodies[b].dynamics) continue;
     const std::size_t first = start.x.size();
     start.x.resize(first + environment_.bodies[b].mesh.positions.size());
     environment_.place(b, start.placed_for, std::span(start.x).subspan(first));
@@ -142,12 +192,55 @@ std::vector<MeetingPlace> CollisionStage::find_meetings(const Moment& start) {
   return meeting_places(engine_.find_meetings(start.x), engine_.bodies(), names_, start.x);
 }
 
+double CollisionStage::lift_bodies(const Vec3& up, double t, Moment& start) {
+  constexpr int kMostLayers = 32;  // that stand on each other; by one more each round
+  const std::size_t cloths = environment_.cloths.size();
+  const collision::Bodies& bodies = engine_.bodies();
+  const auto is_free = [&](std::size_t body) {
+    return bodies[body].frame >= 0 && t >= environment_.bodies[bodies_[body - cloths]].dynamics->release;
+  };
+  const auto height = [&](std::size_t body) {  // of its centre
+    double sum = 0;
+    for (std::size_t k = 0; bodies[body].frame >= 0 && k < mesh::RigidFrame::kParticles; ++k)
+      sum += up.dot(start.x[static_cast<std::size_t>(bodies[body].frame) + k]);
+    return sum / mesh::RigidFrame::kParticles;
+  };
+  const std::vector<Vec3> given = start.x;
+  std::map<std::size_t, int> lifts;
+  for (int round = 0; round <= kMostLayers; ++round) {
+    std::set<std::size_t> touching;
+    for (const collision::CornerPair& pair : engine_.find_meetings(start.x)) {
+      const std::size_t a = bodies.body_of(pair.a[0]), b = bodies.body_of(pair.b[0]);
+      if (is_free(a) && (!is_free(b) || height(a) > height(b)))
+        touching.insert(a);
+      else if (is_free(b))
+        touching.insert(b);
+    }
+    if (touching.empty()) break;
+    for (const std::size_t body : touching) {
+      ++lifts[body];
+      for (std::size_t k = 0; k < mesh::RigidFrame::kParticles; ++k)
+        start.x[static_cast<std::size_t>(bodies[body].frame) + k] += numerics.separation.restored_gap * up;
+    }
+    rigid_.place(start.x);
+  }
+  if (!lifts.empty() && !engine_.find_meetings(start.x).empty()) {
+    start.x = given;
+    return 0;
+  }
+  int most = 0;
+  for (const auto& [body, count] : lifts) most = std::max(most, count);
+  return most * numerics.separation.restored_gap;
+}
+
 // Still bodies are where append_bodies() has put them.
 void CollisionStage::place_bodies(double t, Moment& moment) const {
+  rigid_.place(moment.x);
   if (moment.placed_for == t) return;
   moment.placed_for = t;
-  std::size_t first = particles_;
+  auto first = static_cast<std::size_t>(rigid_.end());
   for (std::size_t b : bodies_) {
+    if (environment_.bodies[b].dynamics) continue;
     const std::size_t count = environment_.bodies[b].mesh.positions.size();
     if (environment_.bodies[b].moving) environment_.place(b, t, std::span(moment.x).subspan(first, count));
     first += count;
@@ -166,15 +259,25 @@ std::string CollisionStage::describe(const collision::CornerPair& pair, const Mo
 bool CollisionStage::begin_step(double t, double h, std::span<const integrator::HeldParticle> held, Moment& now,
                                 Moment& next) {
   place_bodies(t, now);
-  place_bodies(t + h, next);
   movable_.assign(now.x.size(), collision::kFixed);
   gave_way_.clear();
   bend_.clear();
-  std::fill_n(movable_.begin(), particles_, std::uint8_t{collision::kFree});
+  std::fill_n(movable_.begin(), rigid_.end(), std::uint8_t{collision::kFree});
   for (std::size_t i = 0; i < particles_; ++i) next.x[i] = now.x[i] + h * now.v[i];
   for (const integrator::HeldParticle& particle : held) {
     next.x[particle.constraint.particle] = particle.x_end;
     movable_[particle.constraint.particle] = collision::kPinned;
+  }
+  place_bodies(t + h, next);
+  for (std::size_t b = 0; b < bodies_.size() && is_dynamic(b); ++b) {
+    const collision::BodyTraits& traits = engine_.bodies()[environment_.cloths.size() + b];
+    if (movable_[static_cast<std::size_t>(traits.frame)] != collision::kPinned) continue;
+    // Not released: it is where its keys have it, as other obstacles are.
+    std::fill_n(movable_.begin() + traits.frame, mesh::RigidFrame::kParticles, std::uint8_t{collision::kFixed});
+    std::ranges::fill(engine_.bodies()
+                          .part(environment_.cloths.size() + b, std::span(movable_))
+                          .last(environment_.bodies[bodies_[b]].mesh.positions.size()),
+                      std::uint8_t{collision::kFixed});
   }
   for (std::size_t b = 0; b < bodies_.size(); ++b)
     motions_[environment_.cloths.size() + b] = motion_of(bodies_[b], t, h);
@@ -184,7 +287,7 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
 bool CollisionStage::turns_too_far(double t, double h, const Moment& now) const {
   const double most = numerics.separation.sagitta * engine_.reach();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
-    if (radii_[b] == 0) continue;
+    if (radii_[b] == 0 || (is_dynamic(b) && t >= environment_.bodies[bodies_[b]].dynamics->release)) continue;
     // Between keys the speed of turning is nearly even; at its last key a body stands.
     double angle = 0;
     for (const double share : {0.0, 0.5, 1.0})
@@ -200,6 +303,7 @@ bool CollisionStage::bodies_stay(double t0, double t1, Moment& now, Moment& next
   const Box3 cloth = mesh::bounding_box(now.particles());
   const collision::Bodies& bodies = engine_.bodies();
   for (std::size_t b = environment_.cloths.size(); b < bodies.size(); ++b) {
+    if (bodies[b].deformable) continue;
     const auto from = bodies.part(b, std::span<const Vec3>(now.x)), to = bodies.part(b, std::span<const Vec3>(next.x));
     if (std::ranges::equal(from, to)) continue;
     Box3 way = mesh::bounding_box(from).merged(mesh::bounding_box(to));
@@ -212,7 +316,7 @@ bool CollisionStage::bodies_stay(double t0, double t1, Moment& now, Moment& next
 
 bool CollisionStage::obstacles_creep(const Moment& now, const Moment& next) const {
   const double most = numerics.separation.creep * engine_.reach();
-  for (std::size_t v = particles_; v < now.x.size(); ++v)
+  for (auto v = static_cast<std::size_t>(rigid_.end()); v < now.x.size(); ++v)
     if ((next.x[v] - now.x[v]).squaredNorm() > most * most &&
         !engine_.is_clear(engine_.bodies().body_of(static_cast<Index>(v))))
       return false;
@@ -245,7 +349,8 @@ bool CollisionStage::cloth_comes_near(std::size_t body, double t, double h, doub
 // How a body goes on from t to t + h; that of a character, which bends, is none.
 collision::RigidMotion CollisionStage::motion_of(std::size_t body, double t, double h) const {
   collision::RigidMotion motion;
-  if (!environment_.bodies[body].moving || environment_.bodies[body].character) return motion;
+  const environment::BodyObject& object = environment_.bodies[body];
+  if (!object.moving || object.character || object.dynamics) return motion;
   const environment::PoseSample from = environment_.pose(body, t), to = environment_.pose(body, t + h);
   if (from.rotation.coeffs() != to.rotation.coeffs())
     motion.turn = (to.rotation * from.rotation.conjugate()).toRotationMatrix();
@@ -274,7 +379,7 @@ std::optional<std::string> CollisionStage::push_apart(double h, bool may_pinch, 
 }
 
 bool CollisionStage::find_pressing_pins() {
-  const auto is_cloth = [&](Index v) { return static_cast<std::size_t>(v) < particles_; };
+  const auto is_cloth = [&](Index v) { return engine_.bodies().body_of(v) < environment_.cloths.size(); };
   for (const collision::CornerPair& pair : engine_.failing()) {
     if (!is_cloth(pair.a[0]) || !is_cloth(pair.b[0])) continue;
     for (const collision::Triangle& corners : {pair.a, pair.b})

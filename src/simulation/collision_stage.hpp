@@ -13,11 +13,13 @@
 #include "integrator/system.hpp"
 #include "scene/scene.hpp"
 #include "simulation/cloth_system.hpp"
+#include "simulation/rigid_vertices.hpp"
 #include "simulation/simulation.hpp"
 
 namespace weft::simulation {
 
-/// Where everything is at one time: particles, and behind them in x the vertices of the bodies that collide.
+/// Where everything is at one time: particles, and behind them in x the vertices of the bodies that collide, of those
+/// first that forces move.
 struct Moment : integrator::State {
   double placed_for = 0;  ///< time that the bodies are placed for [s]
 
@@ -35,12 +37,17 @@ class CollisionStage {
   static bool needed(const scene::Scene& scene);
 
   /// Appends the bodies to the moment `start`, for its time. The environment must outlive it.
-  CollisionStage(const scene::Scene& scene, const environment::Environment& environment, std::span<const double> masses,
+  CollisionStage(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
                  Moment& start);
 
   /// Where surfaces touch or cross at the start. A run begins only where none do: what begins apart is kept apart, and
   /// nothing else can be promised.
   std::vector<MeetingPlace> find_meetings(const Moment& start);
+
+  /// Lifts bodies that forces move off what they touch at the start of a scene, since a block is written to stand where
+  /// it touches: by fractions of a millimetre, the upper one of two, until nothing touches; a body that keys hold is
+  /// not moved. Returns the largest lift [m]. Changes nothing where that does not help.
+  double lift_bodies(const Vec3& up, double t, Moment& start);
 
   /// Takes apart what touches or crosses at the start, as far as the scene has cloth that may be moved for it; `held`
   /// is not, nor is cloth that was `dressed` before (by number), outside of which others get if one of them is worn
@@ -65,6 +72,11 @@ class CollisionStage {
 
   /// Whether no obstacle moves so far between these that a shorter step could find room for cloth.
   bool obstacles_creep(const Moment& now, const Moment& next) const;
+
+  /// Of the bodies that forces move; nullptr if there are none.
+  const RigidVertices* rigid_vertices() const { return rigid_.empty() ? nullptr : &rigid_; }
+  /// After a solve, whose end `next` is: their vertices follow their frames.
+  void follow_frames(Moment& next) const { rigid_.place(next.x); }
 
   collision::ContactResponse& response() { return engine_.response(); }
   const collision::ContactResponse& response() const { return engine_.response(); }
@@ -120,7 +132,10 @@ class CollisionStage {
  private:
   // Where the piece of the way of this step begins that ends at its end.
   const std::vector<Vec3>& from(const Moment& now) const { return bend_.empty() ? now.x : bend_; }
+  RigidVertices make_rigid_vertices(const ClothSystem& cloth) const;
+  std::vector<double> masses_of_all(const ClothSystem& cloth) const;
   const std::vector<Vec3>& append_bodies(Moment& start) const;
+  bool is_dynamic(std::size_t body) const { return environment_.bodies[bodies_[body]].dynamics != nullptr; }
   void place_bodies(double t, Moment& moment) const;
   bool cloth_comes_near(std::size_t body, double t, double h, double angle, const Moment& now) const;
   collision::RigidMotion motion_of(std::size_t body, double t, double h) const;
@@ -130,10 +145,12 @@ class CollisionStage {
 
   const environment::Environment& environment_;
   std::vector<std::string> names_;   // per body
-  std::vector<std::size_t> bodies_;  // of the environment, those that collide
+  std::vector<std::size_t> bodies_;  // of the environment, those that collide; first those that forces move
   std::vector<double> radii_;        // of these about their origins, where they are obstacles that move; else 0 [m]
   std::vector<Box3> boxes_;          // around these in their own coordinates
   std::size_t particles_;
+  RigidVertices rigid_;
+  std::vector<double> masses_;  // of particles, and of the vertices of bodies that forces move
   std::vector<std::uint8_t> movable_;
   std::vector<collision::RigidMotion> motions_;  // of the step at hand, per body
   std::vector<collision::GivenWay> gave_way_;

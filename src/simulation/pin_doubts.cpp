@@ -247,7 +247,7 @@ std::vector<std::string> find_entries(const scene::Scene& scene, const environme
   std::vector<Vec3> x;
   for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
     const environment::BodyObject& body = environment.bodies[b];
-    if (!body.collide || body.character) continue;
+    if (!body.collide || body.character || body.dynamics) continue;
     std::set<std::size_t> entered, outside;
     x.resize(body.mesh.positions.size());
     Box3 box;

@@ -74,6 +74,9 @@ void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
                      fmt::format("{} of {}", count, counted(scene.cloths.size(), "cloth"))});
   if (!scene.attachments.empty())
     items.push_back({"force: attachments", true, counted(scene.attachments.size(), "attachment")});
+  if (const auto count = std::ranges::count_if(scene.obstacles, [](const auto& o) { return scene::is_dynamic(o); }))
+    items.push_back(
+        {"motion: rigid bodies", true, fmt::format("{} of {}", count, counted(scene.obstacles.size(), "obstacle"))});
   if (!scene.physics.keys.empty())
     items.push_back({"force: keyed gravity and wind", true, counted(scene.physics.keys.size(), "key")});
   if (!scene.fans.empty()) {
@@ -118,7 +121,9 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
   const auto characters = std::ranges::count_if(scene.characters, [](const scene::Character& c) { return c.collide; });
   const auto moving = std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
                                     [](const scene::Obstacle& o) { return o.motion.keys.size() > 1; });
-  const bool with_obstacles = scene.contact.obstacles && obstacles + characters > 0 && !scene.cloths.empty();
+  const bool any_moved =
+      !scene.cloths.empty() || std::ranges::any_of(scene.obstacles, [](const auto& o) { return scene::is_dynamic(o); });
+  const bool with_obstacles = scene.contact.obstacles && obstacles + characters > 0 && any_moved;
   std::string bodies = fmt::format("{} obstacle{}", obstacles, obstacles == 1 ? "" : "s");
   if (characters > 0) bodies += fmt::format(", {} character{}", characters, characters == 1 ? "" : "s");
   const bool self = scene.contact.self && !scene.cloths.empty();
@@ -185,6 +190,13 @@ void plan_characters(const Scene& scene, std::vector<PlanItem>& items) {
   }
 }
 
+// Whether it has a mass, and rolls or spins.
+bool turns_freely(const scene::Obstacle& obstacle) {
+  const bool is_round = !std::holds_alternative<scene::BoxShape>(obstacle.shape) &&
+                        !std::holds_alternative<scene::HalfPipe>(obstacle.shape);
+  return scene::is_dynamic(obstacle) && (is_round || obstacle.spin != Vec3::Zero());
+}
+
 }  // namespace
 
 std::vector<PlanItem> plan(const Scene& scene) {
@@ -221,6 +233,13 @@ std::vector<PlanItem> plan(const Scene& scene) {
 
 std::vector<std::string> doubts(const scene::Scene& scene) {
   std::vector<std::string> found;
+  if (scene.time.integrator == scene::Integrator::implicit_euler)
+    for (const scene::Obstacle& obstacle : scene.obstacles)
+      if (turns_freely(obstacle))
+        found.push_back(
+            fmt::format("obstacle.{}: implicit Euler slows down bodies that turn; time.integrator = "
+                        "\"bdf2\" does not",
+                        obstacle.name));
   if (!has_moving_pins(scene)) return found;
   const environment::Environment environment(scene);
   for (const auto& texts : {find_jumps(scene, environment), find_entries(scene, environment),

@@ -180,6 +180,8 @@ void Simulation::Impl::put_on_next() {
 // Throws Error(scene_invalid) where the cloths cannot start so.
 void Simulation::Impl::make_start() {
   const scene::Scene& dressed = part ? part->scene : scene;
+  if (const double lift = layer == 0 ? steps->lift_bodies() : 0; lift > 0)
+    log::info(fmt::format("lifted bodies by up to {:.2g} mm off what they touch at the start", 1e3 * lift));
   if (untangles(dressed)) steps->untangle();
   check_start(dressed, *steps);
 }
@@ -243,7 +245,9 @@ void Simulation::Impl::report_obstructions(FrameReport& report) const {
 frame::SnapshotPtr Simulation::Impl::make_snapshot() const {
   const Moment& now = steps->progress().now;
   std::vector<std::vector<float>> heat;
-  if (!all_dressed()) return snapshots.make(frame, time(), environment, particles_of_all(), {});
+  std::vector<std::vector<Vec3>> moved;
+  for (std::size_t b = 0; b < environment.bodies.size(); ++b) moved.push_back(steps->vertices_of(b));
+  if (!all_dressed()) return snapshots.make(frame, time(), environment, particles_of_all(), {}, std::move(moved));
   for (std::size_t c = 0; c < scene.cloths.size() && scene.render.heat != scene::HeatQuantity::none; ++c) {
     if (scene.render.heat == scene::HeatQuantity::strain) {
       heat.push_back(steps->cloth().strain_per_particle(c, now.particles()));
@@ -253,7 +257,7 @@ frame::SnapshotPtr Simulation::Impl::make_snapshot() const {
     for (Index i = steps->cloth().first_particle(c); i < steps->cloth().first_particle(c + 1); ++i)
       heat.back().push_back(static_cast<float>(now.v[i].norm()));
   }
-  return snapshots.make(frame, time(), environment, now.particles(), std::move(heat));
+  return snapshots.make(frame, time(), environment, now.particles(), std::move(heat), std::move(moved));
 }
 
 // [m]; what is not put on is where it starts.
@@ -353,7 +357,9 @@ MatrixSize Simulation::matrix() const {
 
 ParticleState Simulation::state() const {
   const Moment& now = impl_->steps->progress().now;
-  return {now.particles(), now.v, impl_->steps->cloth().masses()};
+  const ClothSystem& cloth = impl_->steps->cloth();
+  const std::size_t count = at(cloth.first_particle(cloth.cloths()));  // without the frames of bodies
+  return {now.particles().first(count), std::span(now.v).first(count), cloth.masses().first(count)};
 }
 
 ClothMotion Simulation::motion_of(std::size_t cloth) const {

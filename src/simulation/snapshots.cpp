@@ -350,7 +350,8 @@ SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Envir
 }
 
 frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const environment::Environment& environment,
-                                       std::span<const Vec3> particles, std::vector<std::vector<float>> heat) const {
+                                       std::span<const Vec3> particles, std::vector<std::vector<float>> heat,
+                                       std::vector<std::vector<Vec3>> moved) const {
   auto snapshot = std::make_shared<frame::FrameSnapshot>();
   snapshot->frame = frame;
   snapshot->time = time;
@@ -362,6 +363,10 @@ frame::SnapshotPtr SnapshotMaker::make(int frame, double time, const environment
   }
   for (std::size_t c = 0; c < heat.size(); ++c) snapshot->states[c].heat = std::move(heat[c]);
   for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
+    if (b < moved.size() && !moved[b].empty()) {
+      snapshot->states.push_back({std::move(moved[b]), {}});
+      continue;
+    }
     snapshot->states.push_back({std::vector<Vec3>(environment.bodies[b].mesh.positions.size()), {}});
     environment.place(b, time, snapshot->states.back().positions);
   }

@@ -57,9 +57,11 @@ class SnapshotMaker {
  public:
   SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment);
 
-  /// `particles`: of all cloths [m]; `heat`: one list per cloth, empty where none is asked for.
+  /// `particles`: of all cloths [m]; `heat`: one list per cloth, empty where none is asked for; `moved`: vertices of
+  /// each body that forces have moved, empty for those that are where their keys have them [m].
   frame::SnapshotPtr make(int frame, double time, const environment::Environment& environment,
-                          std::span<const Vec3> particles, std::vector<std::vector<float>> heat) const;
+                          std::span<const Vec3> particles, std::vector<std::vector<float>> heat,
+                          std::vector<std::vector<Vec3>> moved = {}) const;
 
  private:
   const Looks looks_;

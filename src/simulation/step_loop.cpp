@@ -23,6 +23,7 @@ constexpr double kToldAgain = 1.5;
 
 StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& environment, double start)
     : scene_(scene),
+      environment_(environment),
       start_(-scene.preroll_frames() / scene.time.fps),
       cloth_(scene, environment),
       problem_(cloth_),
@@ -31,7 +32,7 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
                 std::numeric_limits<double>::infinity()},
       stepper_(method_of(scene.time.integrator), newton_of(scene)),
       told_shares_(cloth_.cloths(), 0),
-      attachments_(scene, environment, first_particles(cloth_)),
+      attachments_(scene, environment, first_particles(cloth_), cloth_.first_of_frames(environment)),
       weather_(scene),
       gravity_(weather_.gravity(start)) {
   Moment& now = progress_.now;
@@ -40,8 +41,8 @@ StepLoop::StepLoop(const scene::Scene& scene, const environment::Environment& en
   cloth_.hold(held_);
   for (const integrator::HeldParticle& particle : held_) now.v[particle.constraint.particle] = particle.v_end;
   if (CollisionStage::needed(scene)) {
-    collisions_.emplace(scene, environment, cloth_.masses(), now);
-    problem_.use_contacts(&collisions_->response());
+    collisions_.emplace(scene, environment, cloth_, now);
+    problem_.use_contacts(collisions_->response(), collisions_->rigid_vertices());
   }
   if (!attachments_.empty()) problem_.use_attachments(attachments_);
   cloth_.inflate(start - start_, now.particles());
@@ -58,6 +59,13 @@ void StepLoop::take_over(const StepLoop& before, std::span<const std::size_t> cl
     pins_.take_over(before.pins_, there, here, count);
     told_shares_[cloths[c]] = before.told_shares_[c];
   }
+  for (std::size_t p = 0; p + before.cloth_.cloths() < before.cloth_.parts(); ++p) {
+    const Index there = before.cloth_.first_particle(before.cloth_.cloths() + p),
+                here = cloth_.first_particle(cloth_.cloths() + p);
+    std::copy_n(before.progress_.now.x.begin() + there, mesh::RigidFrame::kParticles, progress_.now.x.begin() + here);
+    std::copy_n(before.progress_.now.v.begin() + there, mesh::RigidFrame::kParticles, progress_.now.v.begin() + here);
+  }
+  if (collisions_) collisions_->follow_frames(progress_.now);
   if (collisions_ && before.collisions_) collisions_->take_over(*before.collisions_, cloths);
   cloth_.inflation().take_over(before.cloth_.inflation(), cloths);
   attachments_.take_over(before.attachments_, cloths);
@@ -68,6 +76,24 @@ void StepLoop::untangle() {
   if (!collisions_) return;
   collisions_->untangle(scene_, held_, dressed_, progress_.now);
   next_ = progress_.now;
+}
+
+double StepLoop::lift_bodies() {
+  if (!collisions_ || collisions_->rigid_vertices() == nullptr) return 0;
+  const Vec3 up = scene_.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
+  const double lift = collisions_->lift_bodies(up, start_, progress_.now);
+  next_ = progress_.now;
+  return lift;
+}
+
+std::vector<Vec3> StepLoop::vertices_of(std::size_t body) const {
+  std::vector<Vec3> vertices;
+  if (!environment_.bodies[body].dynamics) return vertices;
+  const Index first = cloth_.first_of_frames(environment_)[body];
+  vertices.resize(environment_.bodies[body].mesh.positions.size());
+  environment_.bodies[body].dynamics->frame.place(
+      std::span(progress_.now.x).subspan(static_cast<std::size_t>(first), mesh::RigidFrame::kParticles), vertices);
+  return vertices;
 }
 
 void StepLoop::advance(double t_t0, double t_t1, FrameReport& report) {
@@ -100,7 +126,9 @@ bool StepLoop::may_rest(double t, double h, int steps) {
   for (int s = 1; s <= steps; ++s) {
     const double end = t + s * h;
     if (!weather_.stays(t, end) || !cloth_.inflation().stays(t, end) || !attachments_.stay(t, end)) return false;
-    if (!pins_.stay(t, end) || (collisions_ && !collisions_->bodies_stay(t, end, progress_.now, next_))) return false;
+    if (!pins_.stay(t, end) || !frames_stay(environment_, t, end) ||
+        (collisions_ && !collisions_->bodies_stay(t, end, progress_.now, next_)))
+      return false;
   }
   return true;
 }
@@ -247,6 +275,9 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   using Start = integrator::Stepper::Start;
   const Moment& now = progress_.now;
   held_ = pins_.held();
+  hold_frames(environment_, cloth_, t + h, held_);
+  release_frames(environment_, cloth_, t, h, progress_.now.v);
+  pinned_ = held_.size();
   problem_.begin_step(t + h - start_, now.particles(), held_, pins_.pulls());
   attachments_.begin_step(t, t + h, now.particles());
   Start start = Start::unchanged_velocity;
@@ -258,12 +289,11 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   if (!collisions_) return reason_of(solve(h, start, false, report));
   collision::ContactResponse& response = collisions_->response();
   const auto force_on = [&](Index particle) { return stepper_.constraint_force(particle, cloth_.masses()[particle]); };
-  const std::size_t pinned = held_.size();
   int adoptions = 0, bends = 0, idle_bends = 0;
   double least_stored = std::numeric_limits<double>::infinity();  // [J], where the way has bent
   bool look = true;
   for (bool is_first = true;; is_first = false, start = Start::next) {
-    held_.resize(pinned);
+    held_.resize(pinned_);
     collisions_->append_prescribed(held_);
     const bool may_bend = bends < numerics.repair.restarts && collisions_->may_bend();
     integrator::StepReport step = solve(h, start, look && (is_first || may_bend), report);
@@ -362,6 +392,7 @@ integrator::StepReport StepLoop::solve(double h, integrator::Stepper::Start star
   const integrator::StepReport step =
       stepper_.step(problem_, progress_.now, h, gravity_, held_, next_, start,
                     look ? numerics.newton.check_after : std::numeric_limits<int>::max());
+  if (collisions_) collisions_->follow_frames(next_);
   report.newton_iterations += step.newton_iterations;
   report.linear_iterations += step.linear_iterations;
   report.forces += step.times.forces;
@@ -381,7 +412,7 @@ StepLoop::Rejection StepLoop::reason_of(const integrator::StepReport& step) {
 
 // Makes `next_`, reached over h, the state.
 void StepLoop::accept(double h, FrameReport& report) {
-  count_work(measure_work(stepper_, pins_.held(), cloth_.masses(), progress_.now, next_), report);
+  count_work(measure_work(stepper_, std::span(held_).first(pinned_), cloth_.masses(), progress_.now, next_), report);
   stepper_.accept(progress_.now, h);
   pins_.accept();
   attachments_.accept(next_.particles());

@@ -35,6 +35,8 @@ class StepLoop {
   /// Takes apart what touches or crosses at the start and may be moved for it, cloths that were taken over aside;
   /// before the first advance().
   void untangle();
+  /// Lifts bodies that forces move off what they touch; before the first advance(). Returns the largest lift [m].
+  double lift_bodies();
   /// Where surfaces touch or cross at the start; before the first advance().
   std::vector<MeetingPlace> find_meetings() {
     return collisions_ ? collisions_->find_meetings(progress_.now) : std::vector<MeetingPlace>{};
@@ -68,6 +70,8 @@ class StepLoop {
   const StepProblem& problem() const { return problem_; }
   /// Particles that are held, by pins or by the response to contacts.
   std::size_t held() const { return held_.size(); }
+  /// Where the vertices are of a body of the environment that forces move; nothing of others.
+  std::vector<Vec3> vertices_of(std::size_t body) const;
   /// nullptr where nothing collides.
   const CollisionStage* collisions() const { return collisions_ ? &*collisions_ : nullptr; }
   /// What the frame that ends now has pinched.
@@ -120,6 +124,7 @@ class StepLoop {
   [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
 
   const scene::Scene& scene_;
+  const environment::Environment& environment_;
   double start_;                      // of the simulation [s]
   std::vector<std::size_t> dressed_;  // cloths that were taken over
   ClothSystem cloth_;
@@ -131,6 +136,7 @@ class StepLoop {
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
   std::vector<double> told_shares_;            // of its limit, that each cloth was last told of; 0: it was not
   std::vector<integrator::HeldParticle> held_;
+  std::size_t pinned_ = 0;  // of these, by pins and keys; others by the response to contacts
   std::optional<CollisionStage> collisions_;
   Attachments attachments_;
   environment::Weather weather_;

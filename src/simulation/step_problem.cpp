@@ -21,7 +21,7 @@ StepProblem::StepProblem(ClothSystem& cloth) : cloth_(cloth) {
   memory_.assembly = solver::Assembly(memory_.system.matrix);
   memory_.v.resize(masses().size());
   memory_.force.resize(masses().size());
-  chosen_.resize(cloth.cloths());
+  chosen_.resize(cloth.parts());
   forget();
 }
 
@@ -51,7 +51,28 @@ void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force
   add_cloth_forces(at, force);
   cloth_.inflation().add_forces(at.x, force);
   add_pulls(at, force);
-  if (contacts_ != nullptr) contacts_->add_forces(at.x_end, memory_.contacts, force);
+  if (contacts_ == nullptr) return;
+  add_contact_forces(at.x_end, force, [&](std::span<const Vec3> x, std::span<Vec3> of_all) {
+    contacts_->add_forces(x, memory_.contacts, of_all);
+  });
+}
+
+// Positions with those of the vertices of bodies behind them.
+std::vector<Vec3> StepProblem::with_vertices(std::span<const Vec3> x_end) const {
+  std::vector<Vec3> x(static_cast<std::size_t>(vertices_->end()));
+  std::ranges::copy(x_end.first(masses().size()), x.begin());
+  vertices_->place(x);
+  return x;
+}
+
+// Calls add(x, force) for all that contacts know, and passes on to the frames of bodies what their vertices get.
+template <class Add>
+void StepProblem::add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3> force, const Add& add) {
+  if (vertices_ == nullptr) return add(x_end, force);
+  std::vector<Vec3> of_all(static_cast<std::size_t>(vertices_->end()), Vec3::Zero());
+  add(with_vertices(x_end), of_all);
+  for (std::size_t i = 0; i < masses().size(); ++i) force[i] += of_all[i];
+  vertices_->gather(of_all, force);
 }
 
 void StepProblem::linear_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
@@ -59,7 +80,10 @@ void StepProblem::linear_forces(const integrator::StagePoint& at, std::span<Vec3
   if (!memory_.locks.empty()) cloth_.add_lock_lags(at.x, memory_.locks, force);
   cloth_.inflation().add_forces(at.x, force);
   add_pulls(at, force);
-  if (contacts_ != nullptr) contacts_->add_linear_forces(at.x_end, memory_.contacts, force);
+  if (contacts_ == nullptr) return;
+  add_contact_forces(at.x_end, force, [&](std::span<const Vec3> x, std::span<Vec3> of_all) {
+    contacts_->add_linear_forces(x, memory_.contacts, of_all);
+  });
 }
 
 void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) {
@@ -67,7 +91,7 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   use_rate(at.rate);
   const bool all = memory_.linearised_at.empty();
   if (all) memory_.linearised_at.assign(at.x.begin(), at.x.end());
-  for (std::size_t c = 0; c < cloth_.cloths(); ++c) chosen_[c] = all || is_stale(c, at.x);
+  for (std::size_t c = 0; c < cloth_.parts(); ++c) chosen_[c] = all || is_stale(c, at.x);
   if (!memory_.locks.empty()) cloth_.update_locks(at.x, iteration == 0, memory_.locks);
   put_together(at, iteration);
   add_cloth_forces(at, force);
@@ -75,20 +99,39 @@ void StepProblem::linearise(const integrator::StagePoint& at, int iteration, std
   cloth_.inflation().linearise(at.x, force, system);
   add_pulls(at, force);
   system.terms.clear();
+  system.wide_terms.clear();
   system.diagonal_terms.clear();
   for (const Pull& pull : pulls_)
     system.diagonal_terms.push_back(
         {pull.particle, (at.end_rate * pull.stiffness + at.rate * pull.damping) * Mat3::Identity()});
   if (attachments_ != nullptr) attachments_->add_terms(at.x_end, at.end_rate, system);
   if (contacts_ == nullptr) return;
-  contacts_->update(at.x_end, memory_.contacts);
-  contacts_->linearise(at.x_end, at.end_rate, memory_.contacts, force, system);
+  add_contact_forces(at.x_end, force, [&](std::span<const Vec3> x, std::span<Vec3> of_all) {
+    contacts_->update(x, memory_.contacts);
+    contacts_->linearise(x, at.end_rate, memory_.contacts, of_all, system);
+  });
+  if (vertices_ != nullptr) vertices_->spread(system);
 }
 
 bool StepProblem::contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                                  std::span<double> limit) const {
   if (contacts_ == nullptr || contacts_->empty()) return false;
-  contacts_->add_parts_of_forces(at.x_end, memory_.contacts, push, friction, limit);
+  if (vertices_ == nullptr) {
+    contacts_->add_parts_of_forces(at.x_end, memory_.contacts, push, friction, limit);
+    return true;
+  }
+  const auto all = static_cast<std::size_t>(vertices_->end());
+  std::vector<Vec3> push_of_all(all, Vec3::Zero()), friction_of_all = push_of_all;
+  std::vector<double> limit_of_all(all, 0);
+  contacts_->add_parts_of_forces(with_vertices(at.x_end), memory_.contacts, push_of_all, friction_of_all, limit_of_all);
+  for (std::size_t i = 0; i < masses().size(); ++i) {
+    push[i] += push_of_all[i];
+    friction[i] += friction_of_all[i];
+    limit[i] += limit_of_all[i];
+  }
+  vertices_->gather(push_of_all, push);
+  vertices_->gather(friction_of_all, friction);
+  vertices_->gather(limit_of_all, limit);
   return true;
 }
 
@@ -100,7 +143,7 @@ void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> fo
 }
 
 void StepProblem::add_cloth_forces(const integrator::StagePoint& at, std::span<Vec3> force) {
-  parallel_for(cloth_.cloths(), 1, [&](std::size_t c, std::size_t) { chosen_[c] = move_to(c, at); });
+  parallel_for(cloth_.parts(), 1, [&](std::size_t c, std::size_t) { chosen_[c] = move_to(c, at); });
   evaluate(at, false);
   parallel_for(force.size(), kGrainSize, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) force[i] += solver::vec3_of(memory_.force[i]);
@@ -143,7 +186,7 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int 
     evaluation.range = number;
     evaluation.air = air_;
     if (assemble) {
-      if (!memory_.locks.empty()) evaluation.locks = &memory_.locks[cloth];
+      if (cloth < memory_.locks.size()) evaluation.locks = &memory_.locks[cloth];
       evaluation.assembly = solver::AssemblyRows(memory_.assembly, begin, end);
       if (iteration >= numerics.newton.clamped_iterations)
         evaluation.linearisation = forces::Linearisation::abs_projected;
@@ -157,7 +200,7 @@ void StepProblem::evaluate(const integrator::StagePoint& at, bool assemble, int 
 // Whether a cloth has moved too far from where its rows of the matrix were put together.
 bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
   const solver::Part& part = memory_.system.parts[cloth];
-  const double most = numerics.newton.stale_motion * cloth_.spacing();
+  const double most = part.is_small ? 0 : numerics.newton.stale_motion * cloth_.spacing();
   for (auto i = part.begin; i < part.end; ++i)
     if (!((x[i] - memory_.linearised_at[i]).squaredNorm() <= most * most)) return true;
   return false;
@@ -165,7 +208,7 @@ bool StepProblem::is_stale(std::size_t cloth, std::span<const Vec3> x) const {
 
 // Puts the rows of the chosen cloths together anew.
 void StepProblem::put_together(const integrator::StagePoint& at, int iteration) {
-  for (std::size_t c = 0; c < cloth_.cloths(); ++c) {
+  for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!chosen_[c]) continue;
     solver::Part& part = memory_.system.parts[c];
     std::copy_n(at.x.begin() + part.begin, part.end - part.begin, memory_.linearised_at.begin() + part.begin);
@@ -173,7 +216,7 @@ void StepProblem::put_together(const integrator::StagePoint& at, int iteration) 
     ++part.version;
   }
   evaluate(at, true, iteration);
-  for (std::size_t c = 0; c < cloth_.cloths(); ++c) {
+  for (std::size_t c = 0; c < cloth_.parts(); ++c) {
     if (!chosen_[c]) continue;
     const solver::Part& part = memory_.system.parts[c];
     parallel_for(size_of(part), kFineGrainSize, [&](std::size_t begin, std::size_t end) {

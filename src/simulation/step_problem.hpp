@@ -10,6 +10,7 @@
 #include "integrator/system.hpp"
 #include "simulation/attachments.hpp"
 #include "simulation/cloth_system.hpp"
+#include "simulation/rigid_vertices.hpp"
 
 namespace weft::simulation {
 
@@ -44,8 +45,11 @@ class StepProblem final : public integrator::System {
   /// The cloth must outlive it.
   explicit StepProblem(ClothSystem& cloth);
 
-  /// What the cloth meets, or nullptr where the scene has nothing. Must outlive the steps.
-  void use_contacts(const collision::ContactResponse* contacts) { contacts_ = contacts; }
+  /// What the cloth meets, and the vertices of bodies that forces move, if there are some. Must outlive the steps.
+  void use_contacts(const collision::ContactResponse& contacts, const RigidVertices* vertices = nullptr) {
+    contacts_ = &contacts;
+    vertices_ = vertices;
+  }
 
   /// Springs between cloths and to bodies. Must outlive the steps.
   void use_attachments(const Attachments& attachments) { attachments_ = &attachments; }
@@ -88,10 +92,14 @@ class StepProblem final : public integrator::System {
   void evaluate(const integrator::StagePoint& at, bool assemble, int iteration = 0);
   void use_rate(double rate);
   bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
+  template <class Add>
+  void add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3> force, const Add& add);
+  std::vector<Vec3> with_vertices(std::span<const Vec3> x_end) const;
   void put_together(const integrator::StagePoint& at, int iteration);
 
   ClothSystem& cloth_;
-  const collision::ContactResponse* contacts_ = nullptr;
+  const collision::ContactResponse* contacts_ = nullptr;  // nullptr where the scene has nothing that meets
+  const RigidVertices* vertices_ = nullptr;               // likewise, of bodies that forces move
   const Attachments* attachments_ = nullptr;
   std::span<const Pull> pulls_;
   SolveMemory::Quads air_;

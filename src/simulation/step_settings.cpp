@@ -1,6 +1,7 @@
 #include "simulation/step_settings.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -36,6 +37,28 @@ std::vector<Index> first_particles(const ClothSystem& cloth) {
   return first;
 }
 
+namespace {
+
+// Difference of times that counts as none [s].
+constexpr double kSameTime = 1e-9;
+
+// Of the particles of the frame of a body, where its keys have it; with its own velocity and spin if it is free.
+std::array<Vec3, mesh::RigidFrame::kParticles> velocities_of_frame(const environment::Environment& environment,
+                                                                   std::size_t number, double t, bool is_free) {
+  const environment::Dynamics& body = *environment.bodies[number].dynamics;
+  const environment::PoseSample pose = environment.pose(number, t);
+  std::array<Vec3, mesh::RigidFrame::kParticles> velocities;
+  for (std::size_t k = 0; k < velocities.size(); ++k) {
+    const Vec3& particle = body.frame.particles()[k];
+    velocities[k] = pose.velocity_at(pose.rotation * particle);
+    if (is_free)
+      velocities[k] += body.velocity + body.angular_velocity.cross(pose.rotation * (particle - body.frame.centre()));
+  }
+  return velocities;
+}
+
+}  // namespace
+
 Moment start_of(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
                 double t) {
   Moment start;
@@ -56,7 +79,46 @@ Moment start_of(const scene::Scene& scene, const environment::Environment& envir
     const Vec3 rate = std::numbers::pi / 180 * scene.cloths[c].spin;
     for (std::size_t i = first; i < start.v.size(); ++i) start.v[i] += rate.cross(start.x[i] - middle);
   }
+  for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
+    if (!environment.bodies[b].dynamics) continue;
+    const environment::PoseSample pose = environment.pose(b, t);
+    for (const Vec3& particle : environment.bodies[b].dynamics->frame.particles())
+      start.x.push_back(pose.position + pose.rotation * particle);
+    const bool is_free = t >= environment.bodies[b].dynamics->release;
+    for (const Vec3& v : velocities_of_frame(environment, b, t, is_free)) start.v.push_back(v);
+  }
   return start;
+}
+
+void hold_frames(const environment::Environment& environment, const ClothSystem& cloth, double t,
+                 std::vector<integrator::HeldParticle>& held) {
+  const std::vector<Index> first_of_frames = cloth.first_of_frames(environment);
+  for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
+    const environment::Dynamics* body = environment.bodies[b].dynamics.get();
+    if (body == nullptr || t > body->release + kSameTime) continue;
+    const environment::PoseSample pose = environment.pose(b, t);
+    for (std::size_t k = 0; k < mesh::RigidFrame::kParticles; ++k) {
+      const Vec3 arm = pose.rotation * body->frame.particles()[k];
+      held.push_back({{first_of_frames[b] + static_cast<Index>(k)}, pose.position + arm, pose.velocity_at(arm)});
+    }
+  }
+}
+
+void release_frames(const environment::Environment& environment, const ClothSystem& cloth, double t, double h,
+                    std::span<Vec3> v) {
+  const std::vector<Index> first_of_frames = cloth.first_of_frames(environment);
+  for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
+    const environment::Dynamics* body = environment.bodies[b].dynamics.get();
+    const auto is_held_until = [&](double end) { return end <= body->release + kSameTime; };
+    if (body == nullptr || !is_held_until(t) || is_held_until(t + h)) continue;
+    std::ranges::copy(velocities_of_frame(environment, b, t, true), v.begin() + first_of_frames[b]);
+  }
+}
+
+bool frames_stay(const environment::Environment& environment, double t0, double t1) {
+  return std::ranges::none_of(environment.bodies, [&](const environment::BodyObject& body) {
+    return body.dynamics && t0 < body.dynamics->release && (body.moving || t1 > body.dynamics->release);
+  });
 }
 
 }  // namespace weft::simulation

@@ -25,4 +25,15 @@ std::vector<Index> first_particles(const ClothSystem& cloth);
 Moment start_of(const scene::Scene& scene, const environment::Environment& environment, const ClothSystem& cloth,
                 double t);
 
+/// Appends the frames of bodies that are not yet released at the end t [s] of a step, where keys have them then.
+void hold_frames(const environment::Environment& environment, const ClothSystem& cloth, double t,
+                 std::vector<integrator::HeldParticle>& held);
+
+/// Gives frames that are released in the step from t over h [s] the velocities of their keys, and their own.
+void release_frames(const environment::Environment& environment, const ClothSystem& cloth, double t, double h,
+                    std::span<Vec3> v);
+
+/// Whether bodies that are not yet released stay where they are between these times [s], and none is released.
+bool frames_stay(const environment::Environment& environment, double t0, double t1);
+
 }  // namespace weft::simulation

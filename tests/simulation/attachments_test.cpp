@@ -157,7 +157,7 @@ TEST(Attachments, HaveForcesThatAreDerivativesOfTheirEnergyAndTermsThatAreOfThei
   const scene::Scene scene = support::scene_of_text(kButton);
   const environment::Environment environment(scene);
   const std::vector<Index> first{0, 36};
-  Attachments attachments(scene, environment, first);
+  Attachments attachments(scene, environment, first, std::vector<Index>(environment.bodies.size(), -1));
   std::vector<Vec3> x = environment.cloths[0].start;
   x.insert(x.end(), environment.cloths[1].start.begin(), environment.cloths[1].start.end());
   attachments.begin_step(0, 0.01, x);

@@ -25,11 +25,11 @@ scene::Scene sheet_over_a_ball() {
 
 class CollisionStages : public ::testing::Test {
  protected:
-  CollisionStages() : environment_(sheet_over_a_ball()), masses_(25, 0.001) {
+  CollisionStages() : environment_(sheet_over_a_ball()), cloth_(sheet_over_a_ball(), environment_) {
     now_.x = environment_.cloths[0].start;
     now_.v.assign(25, Vec3(0.1, 0.2, 0.3));
     now_.placed_for = 0.2;
-    stage_.emplace(sheet_over_a_ball(), environment_, masses_, now_);
+    stage_.emplace(sheet_over_a_ball(), environment_, cloth_, now_);
     next_ = now_;
   }
 
@@ -45,7 +45,7 @@ class CollisionStages : public ::testing::Test {
   static std::vector<Vec3> bodies_of(const Moment& moment) { return {moment.x.begin() + 25, moment.x.end()}; }
 
   environment::Environment environment_;
-  std::vector<double> masses_;
+  ClothSystem cloth_;
   Moment now_, next_;
   std::optional<CollisionStage> stage_;
 };

@@ -53,7 +53,7 @@ class StepProblems : public ::testing::Test {
 
   StepProblem problem() {
     StepProblem made(cloth_);
-    made.use_contacts(&response_);
+    made.use_contacts(response_);
     return made;
   }
   integrator::StagePoint at(std::span<const Vec3> x, double rate = kRate) const { return {x, v_, x, rate, 1}; }
