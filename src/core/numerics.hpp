@@ -211,7 +211,7 @@ struct Numerics {
     double rigidity = 1e4;
     /// Contact thickness [m], and in least deviations of their mass at most. Smaller: bodies at rest on each other
     /// rattle; larger: gaps show.
-    double thickness = 1e-3;
+    double thickness = 5e-4;
     double thickness_of_size = 0.1;
   } bodies;
 

@@ -30,7 +30,7 @@ namespace weft::environment {
 namespace {
 
 /// Vertices moved by one task; a task then takes some ten microseconds.
-constexpr std::size_t kVerticesPerTask = 4096;
+constexpr std::size_t kPlacedPerTask = 4096;
 
 // A number in [−1, 1) that is the same for the same argument on every machine: the mixing function of splitmix64
 // (Steele, Lea & Flood, "Fast Splittable Pseudorandom Number Generators", 2014).
@@ -380,7 +380,7 @@ struct Place {
   void operator()(const Track& track) const {
     const PoseSample pose = track.at(t);
     const Mat3 rotation = pose.rotation.toRotationMatrix();
-    parallel_for(mesh.size(), kVerticesPerTask, [&](std::size_t begin, std::size_t end) {
+    parallel_for(mesh.size(), kPlacedPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) positions[i] = pose.position + rotation * mesh[i];
     });
   }

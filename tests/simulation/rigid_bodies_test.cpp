@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <string>
@@ -253,14 +254,28 @@ TEST(RigidBodies, MayTouchWhatTheyStandOn) {
                  "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, " + std::to_string(0.05 + 0.1 * i) + "]\n");
   Simulation simulation(support::scene_of_text(scene));
   for (int frame = 1; frame < 13; ++frame) simulation.advance();
-  // They rest within the contact thickness of each other, 1 mm, and half of it above the floor.
+  // They rest within the contact thickness of each other, 0.5 mm, and half of it above the floor.
   EXPECT_GT(middle(vertices(simulation, 4)).z(), 0.35);
-  EXPECT_LT(middle(vertices(simulation, 4)).z(), 0.3535);
+  EXPECT_LT(middle(vertices(simulation, 4)).z(), 0.35175);
   // What is inside of another is refused.
   EXPECT_THROW(
       Simulation(support::scene_of_text(timed(0.5) + "[[obstacle]]\nname = \"floor\"\nshape = \"plane\"\n" +
                                         box("box", "size = [0.1, 0.1, 0.1]\nmass = 1\nposition = [0, 0, 0.03]\n"))),
       Error);
+}
+
+TEST(RigidBodies, ArePlannedAndDoubtedWithEulersMethod) {
+  const std::string ball = "[[obstacle]]\nname = \"ball\"\nshape = \"sphere\"\nmass = 1\n";
+  const auto counts = [](const scene::Scene& scene) {
+    return std::ranges::count_if(plan(scene), [](const PlanItem& item) {
+      return item.used && (item.part == "motion: rigid bodies" || item.part == "collision: cloth and obstacles");
+    });
+  };
+  EXPECT_EQ(counts(support::scene_of_text(timed(1) + ball)), 2);
+  EXPECT_EQ(counts(support::scene_of_text(timed(1) + ball, {"obstacle.ball.mass=0"})), 0);
+  EXPECT_EQ(doubts(support::scene_of_text(timed(1) + ball)).size(), 1U);
+  EXPECT_TRUE(doubts(support::scene_of_text(timed(1, "integrator = \"bdf2\"") + ball)).empty());
+  EXPECT_TRUE(doubts(support::scene_of_text(timed(1) + box("box", "mass = 1\n"))).empty());
 }
 
 TEST(RigidBodies, AreRefusedWhereTheyHaveNoInside) {
