@@ -45,7 +45,7 @@ class CollisionStage {
   std::vector<MeetingPlace> find_meetings(const Moment& start);
 
   /// Lifts bodies that forces move off what they touch at the start of a scene, since a block is written to stand where
-  /// it touches: by fractions of a millimetre, the upper one of two, until nothing touches; a body that keys hold is
+  /// it touches: the upper one of two by fifths of a millimetre, until nothing touches; a body that keys hold is
   /// not moved. Returns the largest lift [m]. Changes nothing where that does not help.
   double lift_bodies(const Vec3& up, double t, Moment& start);
 
