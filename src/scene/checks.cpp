@@ -11,6 +11,7 @@
 #include "core/grading.hpp"
 #include "core/input_file.hpp"
 #include "image/picture.hpp"
+#include "scene/following.hpp"
 #include "scene/layers.hpp"
 #include "scene/reader.hpp"
 #include "scene/sequence_files.hpp"
@@ -134,7 +135,7 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
 void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std::string& path, Findings& findings) {
   check_times(pin.motion.keys, path, findings);
   check_turns(pin.motion.keys, path, findings);
-  const Followed followed = scene::followed(pin);
+  const Followed followed = scene::followed(pin.follow);
   const std::vector<std::string> characters = names_of(scene.characters);
   std::vector<std::string> bodies = names_of(scene.obstacles);
   bodies.insert(bodies.end(), characters.begin(), characters.end());
@@ -344,6 +345,7 @@ void check(const Scene& scene, Findings& findings) {
   check_attachments(scene, findings);
   check_friction_pairs(scene, findings);
   check_obstacles(scene, findings);
+  check_following(scene, findings);
   check_characters(scene, findings);
   check_cameras(scene, findings);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {

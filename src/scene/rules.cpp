@@ -312,6 +312,10 @@ const Table& obstacle_rules() {
           .selects()
           .with(shape_rows)
           .with([](auto& rows) { pose_rows(rows, &Obstacle::pose, "of its middle"); })
+          .plain(Type::text, "follow", &Obstacle::follow,
+                 "obstacle, or part of a character as \"man.head\", whose rigid motion it takes part in; its own pose "
+                 "and keys say where it would be if that stayed where it is at the start of the run")
+          .by_default("none")
           .number("friction", &Obstacle::friction, within(0, 10), "",
                   "Coulomb coefficient; of a pair, the geometric mean of both")
           .plain(Type::boolean, "collide", &Obstacle::collide, "false lets cloth pass through it")

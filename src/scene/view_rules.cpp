@@ -58,7 +58,15 @@ void placed_camera_rows(TableBuilder<Camera>& rows) {
       .written_if(stands_still<Camera>)
       .choice("interpolation", &Camera::interpolation, kInterpolations, "between its keys")
       .list(Type::keys, "keys", &Camera::keys, camera_key_rules(), go_on_from_key_before<Camera>)
-      .written_if(moves<Camera>);
+      .written_if(moves<Camera>)
+      .plain(Type::text, "follow", &Camera::follow,
+             "obstacle, or part of a character as \"man.head\", with which position and target move; they say where "
+             "the camera is while that is where it is at the start of the run")
+      .by_default("none")
+      .plain(Type::boolean, "follow_rotation", &Camera::follow_rotation,
+             "false: with the translation of what it follows alone; the camera stays upright in any case")
+      .by_default("true")
+      .written_if([](Camera& camera) { return !camera.follow.empty(); });
 }
 
 void lens_rows(TableBuilder<Camera>& rows) {
@@ -81,7 +89,8 @@ void smoothing_row(TableBuilder<Camera>& rows) {
 /// Keys of cameras that look from a direction.
 void direction_rows(TableBuilder<Camera>& rows) {
   rows.number("azimuth", &Camera::azimuth, within(-36000, 36000), "degrees",
-              "direction in which the eye is, from the front to the right")
+              "direction in which the eye is, around the up axis from the front to the right: with z up, 0 is toward "
+              "-y and 90 toward +x")
       .number("elevation", &Camera::elevation, within(-89, 89), "degrees", "of the eye above the subject")
       .number("orbit", &Camera::orbit, within(-3600, 3600), "degrees/s", "in which it goes around, to the right")
       .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <exception>
 #include <numbers>
 #include <utility>
@@ -259,7 +260,7 @@ std::shared_ptr<const frame::Texture> Pictures::of_file(const std::filesystem::p
   }
 }
 
-Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
+Looks::Looks(const scene::Scene& scene, const environment::Environment* environment) : stage_(make_stage(scene)) {
   for (const auto& cloth : scene.cloths) looks_[cloth.name] = look_of(cloth);
   for (const auto& obstacle : scene.obstacles) looks_[obstacle.name] = obstacle.look;
   for (const auto& character : scene.characters) looks_[character.name] = character.look;
@@ -287,6 +288,13 @@ Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
     result.softness = light.softness;
     lights_.push_back(result);
     light_tracks_.push_back(light_track(light));
+  }
+  const auto follows = [](const scene::Camera& camera) { return !camera.follow.empty(); };
+  if (std::ranges::none_of(scene.cameras, follows)) return;
+  if (environment) {
+    mounts_.emplace(scene, *environment);
+  } else {
+    mounts_.emplace(scene, environment::Environment(scene));
   }
 }
 
@@ -317,6 +325,7 @@ std::vector<frame::Light> Looks::lights_at(double time) const {
 void Looks::surround(frame::FrameSnapshot& snapshot) const {
   snapshot.stage = stage_;
   snapshot.cameras = cameras_at(snapshot.time);
+  if (mounts_) mounts_->move(snapshot);
   snapshot.lights = lights_at(snapshot.time);
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "environment/spline.hpp"
 #include "frame/frame_snapshot.hpp"
 #include "scene/scene.hpp"
+#include "simulation/camera_mounts.hpp"
 
 namespace weft::simulation {
 
@@ -28,11 +30,12 @@ class Pictures {
 /// What of a scene is drawn and not simulated: colours, surroundings, cameras and lights.
 class Looks {
  public:
-  explicit Looks(const scene::Scene& scene);
+  /// `environment`: of the scene; null: made where a camera follows something.
+  explicit Looks(const scene::Scene& scene, const environment::Environment* environment = nullptr);
 
   /// The same frame with these looks; it is of a scene that has the same objects.
   frame::SnapshotPtr put_on(const frame::FrameSnapshot& snapshot);
-  /// Stage, cameras and lights.
+  /// Stage, cameras and lights; of a frame that has its positions.
   void surround(frame::FrameSnapshot& snapshot) const;
 
  private:
@@ -50,6 +53,7 @@ class Looks {
   std::vector<environment::Spline<7>> camera_tracks_;
   std::vector<environment::Spline<10>> light_tracks_;
   std::vector<double> orbits_;  // of the cameras [degrees/s]
+  std::optional<CameraMounts> mounts_;
 };
 
 /// Makes the snapshots of a run; what stays the same over the run is made once and shared.

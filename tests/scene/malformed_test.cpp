@@ -214,6 +214,27 @@ const std::vector<Malformed> kMalformed = {
     {"PinFollowsAPartOfAnObstacle",
      "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n[[cloth]]\nname = 'band'\npin = [{ follow = 'ball.top' }]\n",
      "s.toml:6:19: cloth.band.pin.0.follow: expected the name of a character before the part, got \"ball\"\n"},
+    {"ObstaclesFollowEachOther",
+     "[[obstacle]]\nname = 'a'\nshape = 'box'\nfollow = 'b'\n"
+     "[[obstacle]]\nname = 'b'\nshape = 'box'\nfollow = 'c'\n"
+     "[[obstacle]]\nname = 'c'\nshape = 'box'\nfollow = 'a'\n",
+     "s.toml:4:10: obstacle.a.follow: expected an obstacle that does not follow this one, got \"b\", which follows "
+     "it\n"},
+    {"ObstacleFollowsItself", "[[obstacle]]\nname = 'a'\nshape = 'box'\nfollow = 'a'\n",
+     "s.toml:4:10: obstacle.a.follow: expected an obstacle that does not follow this one, got \"a\", which it is "
+     "itself\n"},
+    {"ObstacleFollowsNothing",
+     "[[obstacle]]\nname = 'floor'\nshape = 'plane'\n[[obstacle]]\nname = 'a'\nshape = 'box'\nfollow = 'flor'\n",
+     "s.toml:7:10: obstacle.a.follow: expected the name of an obstacle, or a part of a character, got \"flor\"; did "
+     "you "
+     "mean floor?\n"},
+    {"ObstacleFollowsACharacterWithoutAPart",
+     "[[character]]\nname = 'man'\nsource = 'mannequin'\n[[obstacle]]\nname = 'a'\nshape = 'box'\nfollow = 'man'\n",
+     "s.toml:7:10: obstacle.a.follow: expected a part of the character, such as \"man.torso\" or \"man.head\", got "
+     "\"man\"\n"},
+    {"CameraFollowsNothing",
+     kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nfollow = 'ball'\n",
+     "s.toml:6:10: camera.c.follow: expected the name of an obstacle, or a part of a character, got \"ball\"\n"},
     {"CameraLooksAtItself", kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [1, 2, 3]\n",
      "s.toml:5:10: camera.c.target: expected a point away from position, got the same\n"},
 
