@@ -14,6 +14,7 @@ struct CameraKey {
   double time = 0;
   Vec3 position{0, 0, 0}, target{0, 0, 0};  ///< [m]
   double field_of_view = 35;                ///< vertical [degrees]
+  double focal_length = 0;                  ///< in place of it [mm]; 0: none
 };
 
 /// Placed by the scene or by a file, or found from all frames of a run.
@@ -45,8 +46,14 @@ struct Camera {
   double start = 0;                 ///< when the time of the file begins [s]
   double scale = 1;                 ///< of its lengths
   int line = 0, column = 0;         ///< where the scene names it, for errors of its file
+  double sensor_width = 36;         ///< of the longer side of the picture, where it has a focal length [mm]
   std::string follow = {};          ///< placed: obstacle or "<character>.<part>" with which it moves; empty: none
   bool follow_rotation = true;      ///< else with its translation alone
 };
+
+/// Whether its lens is given in millimetres.
+inline bool has_focal_length(const Camera& camera) {
+  return camera.keys.front().focal_length > 0;
+}
 
 }  // namespace weft::scene

@@ -303,12 +303,29 @@ void check_characters(const Scene& scene, Findings& findings) {
   }
 }
 
+/// All keys of a camera say how wide it sees in the same way, so that values between them are defined.
+void check_lens(const Camera& camera, const std::string& path, Findings& findings) {
+  const bool by_focal_length = has_focal_length(camera);
+  if (!by_focal_length && findings.has(path + ".sensor_width"))
+    findings.report(path + ".sensor_width", "expected a focal_length beside it, got none");
+  if (camera.follow.empty() && findings.has(path + ".follow_rotation"))
+    findings.report(path + ".follow_rotation", "expected a follow beside it, got none");
+  const std::string wrong = by_focal_length ? "field_of_view" : "focal_length";
+  for (std::size_t k = 0; k < camera.keys.size(); ++k) {
+    const std::string key = fmt::format("{}.keys.{}.{}", path, k, wrong);
+    if (findings.has(key) && !findings.faulty(key))
+      findings.report(key, fmt::format("expected {} as in the keys before, got {}",
+                                       by_focal_length ? "focal_length" : "field_of_view", wrong));
+  }
+}
+
 void check_cameras(const Scene& scene, Findings& findings) {
   const std::vector<std::string> objects = names_of_all(scene);
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     const Camera& camera = scene.cameras[i];
     const std::string& path = findings.entry("camera", i);
     check_times(camera.keys, path, findings);
+    check_lens(camera, path, findings);
     for (const std::string& name : camera.subjects)
       check_reference(name, objects, "a cloth, obstacle or character", path + ".subject", findings);
     if (camera.kind == CameraKind::file && camera.aperture > 0 && camera.focus <= 0)

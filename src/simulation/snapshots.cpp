@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <exception>
 #include <numbers>
 #include <utility>
@@ -209,12 +210,19 @@ Box3 bounds_over_run(const environment::Environment& environment, std::size_t bo
   return bounds;
 }
 
+/// Height of the sensor of a camera that has a focal length [mm], else 0. Its width lies along the longer side.
+double sensor_height(const scene::Camera& camera, const scene::Render& render) {
+  if (!scene::has_focal_length(camera)) return 0;
+  return camera.sensor_width * std::min(1.0, static_cast<double>(render.height) / render.width);
+}
+
 environment::Spline<7> camera_track(const scene::Camera& camera) {
   std::vector<double> times;
   std::vector<CameraValue> values;
   for (const scene::CameraKey& key : camera.keys) {
     times.push_back(key.time);
-    values.push_back((CameraValue() << key.position, key.target, key.field_of_view).finished());
+    const double lens = scene::has_focal_length(camera) ? key.focal_length : key.field_of_view;
+    values.push_back((CameraValue() << key.position, key.target, lens).finished());
   }
   return {camera.interpolation, std::move(times), std::move(values)};
 }
@@ -278,6 +286,10 @@ Looks::Looks(const scene::Scene& scene, const environment::Environment* environm
     camera_tracks_.push_back(camera.kind == scene::CameraKind::file ? camera_track(scene, camera)
                                                                     : camera_track(camera));
     orbits_.push_back(camera.orbit);
+    sensor_heights_.push_back(sensor_height(camera, scene.render));
+    // The renderer takes all films for 24 mm high: it gets the number that has the same opening there.
+    constexpr double kFilm = 24;  // [mm]
+    if (sensor_heights_.back() > 0) cameras_.back().aperture *= kFilm / sensor_heights_.back();
   }
   for (const scene::Light& light : scene.lights) {
     frame::Light result;
@@ -304,7 +316,9 @@ std::vector<frame::Camera> Looks::cameras_at(double time) const {
     const CameraValue value = camera_tracks_[c].at(time).value;
     cameras[c].position = value.segment<3>(0);
     cameras[c].target = value.segment<3>(3);
-    cameras[c].field_of_view = value[6];
+    const double height = sensor_heights_[c];
+    cameras[c].field_of_view =
+        height > 0 ? 360 / std::numbers::pi * std::atan(height / (2 * value[6])) : static_cast<double>(value[6]);
     cameras[c].azimuth += orbits_[c] * time;
   }
   return cameras;

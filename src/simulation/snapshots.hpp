@@ -49,10 +49,11 @@ class Looks {
   std::vector<std::shared_ptr<const frame::Surface>> surfaces_;  // dressed for the first snapshot, shared by the others
   std::vector<frame::Camera> cameras_;
   std::vector<frame::Light> lights_;
-  // Through their keys: position, target, field of view; direction, position, target, intensity.
+  // Through their keys: position, target, field of view or focal length [mm]; direction, position, target, intensity.
   std::vector<environment::Spline<7>> camera_tracks_;
   std::vector<environment::Spline<10>> light_tracks_;
-  std::vector<double> orbits_;  // of the cameras [degrees/s]
+  std::vector<double> orbits_;          // of the cameras [degrees/s]
+  std::vector<double> sensor_heights_;  // likewise [mm]; 0: they have a field of view
   std::optional<CameraMounts> mounts_;
 };
 

@@ -235,6 +235,20 @@ const std::vector<Malformed> kMalformed = {
     {"CameraFollowsNothing",
      kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nfollow = 'ball'\n",
      "s.toml:6:10: camera.c.follow: expected the name of an obstacle, or a part of a character, got \"ball\"\n"},
+    {"CameraTurnsWithNothing",
+     kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nfollow_rotation = false\n",
+     "s.toml:6:19: camera.c.follow_rotation: expected a follow beside it, got none\n"},
+    {"LensTwice",
+     kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nfield_of_view = 30\n"
+              "focal_length = 50\n",
+     "s.toml:7:16: camera.c.focal_length: expected either focal_length or field_of_view, got both\n"},
+    {"LensesOfTwoKinds",
+     kFloor + "[[camera]]\nname = 'c'\ntarget = [0, 0, 0]\nfocal_length = 50\n"
+              "keys = [{ time = 0, position = [1, 0, 0] }, { time = 1, field_of_view = 30 }]\n",
+     "s.toml:6:73: camera.c.keys.1.field_of_view: expected focal_length as in the keys before, got field_of_view\n"},
+    {"SensorWithoutALens",
+     kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nsensor_width = 23.6\n",
+     "s.toml:6:16: camera.c.sensor_width: expected a focal_length beside it, got none\n"},
     {"CameraLooksAtItself", kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [1, 2, 3]\n",
      "s.toml:5:10: camera.c.target: expected a point away from position, got the same\n"},
 

@@ -26,7 +26,7 @@ class EveryKey : public testing::Test {
     ASSERT_EQ(result_.describe(), "");
     ASSERT_EQ(scene_.cloths.size(), 3u);
     ASSERT_EQ(scene_.obstacles.size(), 9u);
-    ASSERT_EQ(scene_.cameras.size(), 5u);
+    ASSERT_EQ(scene_.cameras.size(), 6u);
     ASSERT_EQ(scene_.lights.size(), 2u);
   }
 };
@@ -331,8 +331,13 @@ TEST_F(EveryKey, OfCamerasAndLightsFillsItsMember) {
   EXPECT_EQ(guard.keys[0].position, Vec3(2, -3, 1));
   EXPECT_EQ(guard.keys[0].field_of_view, 0) << "to be found";
   const Camera& rider = scene_.cameras[4];
+  EXPECT_EQ(rider.keys[0].focal_length, 85);
+  EXPECT_EQ(rider.sensor_width, 23.6);
   EXPECT_EQ(rider.follow, "ball");
   EXPECT_FALSE(rider.follow_rotation);
+  const Camera& zoom = scene_.cameras[5];
+  EXPECT_EQ(zoom.keys[0].focal_length, 24);
+  EXPECT_EQ(zoom.keys[1].focal_length, 85);
 
   const Light& sun = scene_.lights[0];
   EXPECT_FALSE(sun.spot);

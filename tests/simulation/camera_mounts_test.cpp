@@ -1,13 +1,18 @@
-// Cameras that follow a body, as frames have them.
+// Cameras that follow a body, and lenses in millimetres, as frames have them.
 #include "simulation/camera_mounts.hpp"
 
 #include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
 
 #include "simulation/snapshots.hpp"
 #include "support/scene_runs.hpp"
 
 namespace weft::simulation {
 namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
 
 /// A box that goes to (3, 0, 1) in a second and turns by a quarter about z; with cameras at its side.
 const std::string kRide = R"(
@@ -94,6 +99,36 @@ follow = "man.head"
   const Vec3 way = middle(*end) - middle(*start), ridden = end->cameras[0].target - start->cameras[0].target;
   EXPECT_GT(way.norm(), 0.5);
   EXPECT_LT((ridden - way).norm(), 0.1) << "the head and the body as a whole";
+}
+
+TEST(FocalLength, GivesTheAngleThatTheSensorSees) {
+  const std::string camera =
+      "[[obstacle]]\nname = 'box'\nshape = 'box'\n[[camera]]\nname = 'c'\nposition = [1, 2, 3]\n"
+      "target = [0, 0, 0]\n";
+  const auto angle = [&](const std::string& more, double time = 0) {
+    const scene::Scene scene = support::scene_of_text(camera + more);
+    const environment::Environment environment(scene);
+    return SnapshotMaker(scene, environment).make(0, time, environment, {}, {})->cameras[0].field_of_view * kDegree;
+  };
+  // Of 36 mm 1280 pixels are across, 720 upright: 20.25 mm.
+  EXPECT_NEAR(angle("focal_length = 50\n"), 2 * std::atan(20.25 / 100), 1e-12);
+  EXPECT_NEAR(angle("focal_length = 50\nsensor_width = 24\n"), 2 * std::atan(13.5 / 100), 1e-12);
+  EXPECT_NEAR(angle("focal_length = 50\n[render]\nwidth = 720\nheight = 1280\n"), 2 * std::atan(36.0 / 100), 1e-12);
+  // It is the focal length that changes evenly, not the angle.
+  EXPECT_NEAR(
+      angle("interpolation = 'linear'\nkeys = [{ time = 0, focal_length = 30 }, { time = 1, focal_length = 70 }]\n",
+            0.5),
+      2 * std::atan(20.25 / 100), 1e-12);
+}
+
+TEST(FocalLength, OpensTheLensByItsNumber) {
+  const scene::Scene scene = support::scene_of_text(
+      "[[obstacle]]\nname = 'box'\nshape = 'box'\n[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\n"
+      "focal_length = 50\naperture = 2\n");
+  const environment::Environment environment(scene);
+  const frame::Camera camera = SnapshotMaker(scene, environment).make(0, 0, environment, {}, {})->cameras[0];
+  // The renderer opens by half of a film of 24 mm, over the tangent of half of the angle, over the number.
+  EXPECT_NEAR(12 / std::tan(camera.field_of_view * kDegree / 2) / camera.aperture, 25, 1e-9);
 }
 
 }  // namespace
