@@ -350,10 +350,12 @@ struct MakeMesh {
     return upright(mesh::make_half_pipe(s.radius, s.length, s.thickness, obstacle.segments));
   }
   mesh::Mesh operator()(const scene::Plane& s) const { return upright(mesh::make_plane(s.size)); }
-  mesh::Mesh operator()(const scene::MeshFile& s) const {
+  mesh::Mesh operator()(const scene::MeshFile& s) const { return load(s).mesh; }
+
+  assets::LoadedMesh load(const scene::MeshFile& s) const {
     const std::string where =
         fmt::format("{}:{}:{}: obstacle.{}", scene.file.string(), obstacle.line, obstacle.column, obstacle.name);
-    return assets::load_mesh(s.path, axes_of(scene, s.path, s.scale, s.up), where).mesh;
+    return assets::load_mesh(s.path, axes_of(scene, s.path, s.scale, s.up), where);
   }
 };
 
@@ -420,6 +422,14 @@ BodyObject make_character(const scene::Character& character, const Actor& actor)
 }
 
 }  // namespace
+
+assets::LoadedMesh mesh_of(const scene::Scene& scene, const scene::Obstacle& obstacle) {
+  const MakeMesh make{scene, obstacle};
+  if (const auto* file = std::get_if<scene::MeshFile>(&obstacle.shape)) return make.load(*file);
+  assets::LoadedMesh made;
+  made.mesh = std::visit(make, obstacle.shape);
+  return made;
+}
 
 mesh::Grid grid_of(const scene::Cloth& cloth) {
   return {.nu = cloth.particles_weft,

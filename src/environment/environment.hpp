@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "assets/mesh_file.hpp"
 #include "character/character.hpp"
 #include "core/types.hpp"
 #include "environment/acting.hpp"
@@ -80,6 +81,9 @@ struct BodyObject {
     return colliding.empty() ? mesh.topology.triangles : colliding;
   }
 };
+
+/// The shape of an obstacle in its own coordinates, and the UVs of its file. Throws as Environment() does.
+assets::LoadedMesh mesh_of(const scene::Scene& scene, const scene::Obstacle& obstacle);
 
 /// Rest places of the particles of a rectangle of cloth.
 mesh::Grid grid_of(const scene::Cloth& cloth);

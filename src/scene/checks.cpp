@@ -264,6 +264,7 @@ void check_obstacles(const Scene& scene, Findings& findings) {
     const Obstacle& obstacle = scene.obstacles[i];
     const std::string& path = findings.entry("obstacle", i);
     check_shape(obstacle.shape, path, findings);
+    check_image(obstacle.look.image, path + ".look.image", findings);
     check_times(obstacle.motion.keys, path, findings);
     check_turns(obstacle.motion.keys, path, findings);
     // One name each: it names the object in pictures, statistics and mesh files.

@@ -128,13 +128,16 @@ struct Look : Paint {
   std::vector<PanelPaint> panels;  ///< of a pattern
   bool as_file = true;             ///< characters: colours and pictures are those of the file, where it has some
   double roughness = 0.6;
-  std::optional<double> gloss, fuzz, sheer;  ///< cloth only; those of the fabric where absent
-  double warp_share = 0.5;                   ///< of the gloss; of the fabric
-  Threads threads = Threads::plain;          ///< of the fabric
-  double cloth_thickness = 0;                ///< of the fabric itself [m]
-  double thread_spacing = 0.0006;            ///< of the drawn weave [m]; cloth only; 0 draws none
-  std::optional<double> hem;                 ///< width of its hems [m]; cloth only; 0: cut edges
-  bool checker = false;                      ///< floors only
+  std::optional<double> gloss;        ///< of threads, by default of the fabric; of an obstacle: of its coat
+  std::optional<double> fuzz, sheer;  ///< cloth only; those of the fabric where absent
+  double metal = 0;                   ///< obstacles only: 1 where it reflects in its own colour
+  std::optional<double> tile_width;   ///< obstacles only: of its picture [m]; absent: once over the shape
+  double warp_share = 0.5;            ///< of the gloss; of the fabric
+  Threads threads = Threads::plain;   ///< of the fabric
+  double cloth_thickness = 0;         ///< of the fabric itself [m]
+  double thread_spacing = 0.0006;     ///< of the drawn weave [m]; cloth only; 0 draws none
+  std::optional<double> hem;          ///< width of its hems [m]; cloth only; 0: cut edges
+  bool checker = false;               ///< floors only
   bool visible = true;
 };
 

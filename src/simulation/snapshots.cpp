@@ -33,6 +33,7 @@ constexpr double kBackPaleness = 0.35;
 frame::Appearance appearance(const scene::Look& look) {
   frame::Appearance result;
   result.roughness = look.roughness;
+  result.metal = look.metal;
   result.finish = {look.gloss.value_or(0), look.warp_share, look.fuzz.value_or(0), look.sheer.value_or(0),
                    look.threads};
   result.thread_spacing = look.thread_spacing;
@@ -81,11 +82,34 @@ void lay_on(frame::Appearance& look, const scene::Paint& paint, Pictures& pictur
   if (paint.cutout) look.color.setOnes();
 }
 
+/// Leaves a picture without holes on a floor, and the mean of its light as the colour: of what the floor sends to
+/// others.
+void fill(frame::Appearance& look) {
+  auto filled = std::make_shared<frame::Texture>(*look.paint.texture);
+  const Vec3 below = image::linear_from_srgb(look.color);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < filled->rgba.size(); i += 4) {
+    std::uint8_t* pixel = &filled->rgba[i];
+    const double opacity = pixel[3] / 255.0;
+    const Vec3 shown =
+        opacity * image::linear_from_srgb(Vec3(pixel[0], pixel[1], pixel[2]) / 255) + (1 - opacity) * below;
+    sum += shown;
+    for (int c = 0; c < 3; ++c)
+      pixel[c] = static_cast<std::uint8_t>(std::lround(255 * image::srgb_from_linear(shown[c])));
+    pixel[3] = 255;
+  }
+  look.paint.texture = std::move(filled);
+  look.color = image::srgb_from_linear(Vec3(sum * 4 / static_cast<double>(look.paint.texture->rgba.size())));
+}
+
 void dress(frame::Surface& surface, const scene::Look& look, Pictures& pictures) {
   surface.visible = look.visible;
   surface.appearance = appearance(look);
   lay_on(surface.appearance, look, pictures);
   if (surface.kind != frame::ObjectKind::cloth) surface.appearance.thread_spacing = 0;
+  // Places of pictures on obstacles are measured in pictures.
+  if (surface.kind == frame::ObjectKind::obstacle) surface.appearance.paint.texture_from_uv.setIdentity();
+  if (surface.infinite_floor && look.image) fill(surface.appearance);
   // What a character's file says is in its parts already.
   if (surface.kind == frame::ObjectKind::character && look.as_file) return;
   for (frame::SurfacePart& part : surface.parts) {
@@ -166,6 +190,16 @@ std::shared_ptr<frame::Surface> make_body_surface(const environment::BodyObject&
   }
   dress(*surface, look, pictures);
   return surface;
+}
+
+/// Where the picture of an obstacle lies, which has one.
+environment::PicturePlaces places_of(const scene::Scene& scene, const scene::Obstacle& obstacle, Pictures& pictures) {
+  std::optional<Vec2> tile;
+  if (obstacle.look.tile_width) {
+    const frame::Texture& texture = *pictures.of_file(*obstacle.look.image);
+    tile = Vec2(1, static_cast<double>(texture.height) / texture.width) * *obstacle.look.tile_width;
+  }
+  return environment::picture_places(scene, obstacle, environment::mesh_of(scene, obstacle), tile);
 }
 
 std::shared_ptr<const frame::Stage> make_stage(const scene::Scene& scene) {
@@ -270,7 +304,10 @@ std::shared_ptr<const frame::Texture> Pictures::of_file(const std::filesystem::p
 
 Looks::Looks(const scene::Scene& scene, const environment::Environment* environment) : stage_(make_stage(scene)) {
   for (const auto& cloth : scene.cloths) looks_[cloth.name] = look_of(cloth);
-  for (const auto& obstacle : scene.obstacles) looks_[obstacle.name] = obstacle.look;
+  for (const auto& obstacle : scene.obstacles) {
+    looks_[obstacle.name] = obstacle.look;
+    if (obstacle.look.image) picture_places_[obstacle.name] = places_of(scene, obstacle, pictures_);
+  }
   for (const auto& character : scene.characters) looks_[character.name] = character.look;
   for (const scene::Camera& camera : scene.cameras) {
     cameras_.push_back({.name = camera.name,
@@ -355,10 +392,17 @@ frame::SnapshotPtr Looks::put_on(const frame::FrameSnapshot& snapshot) {
 std::shared_ptr<const frame::Surface> Looks::dressed(const frame::Surface& surface) {
   auto copy = std::make_shared<frame::Surface>(surface);
   dress(*copy, looks_.at(surface.name), pictures_);
+  place_picture(*copy);
   return copy;
 }
 
-SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment) : looks_(scene) {
+void Looks::place_picture(frame::Surface& surface) const {
+  const auto places = picture_places_.find(surface.name);
+  if (places != picture_places_.end()) surface.paint_uv = places->second;
+}
+
+SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment)
+    : looks_(scene, &environment) {
   Pictures pictures;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const auto surface = make_cloth_surface(environment.cloths[c], look_of(scene.cloths[c]), pictures);
@@ -367,6 +411,7 @@ SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Envir
   }
   for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
     const auto surface = make_body_surface(environment.bodies[b], pictures);
+    looks_.place_picture(*surface);
     surface->run_bounds = bounds_over_run(environment, b, scene.time.duration);
     surfaces_.push_back(surface);
   }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "environment/environment.hpp"
+#include "environment/picture_places.hpp"
 #include "environment/spline.hpp"
 #include "frame/frame_snapshot.hpp"
 #include "scene/scene.hpp"
@@ -37,13 +38,16 @@ class Looks {
   frame::SnapshotPtr put_on(const frame::FrameSnapshot& snapshot);
   /// Stage, cameras and lights; of a frame that has its positions.
   void surround(frame::FrameSnapshot& snapshot) const;
+  /// Where the picture of an obstacle lies; leaves all else.
+  void place_picture(frame::Surface& surface) const;
 
  private:
   std::shared_ptr<const frame::Surface> dressed(const frame::Surface& surface);
   std::vector<frame::Camera> cameras_at(double time) const;
   std::vector<frame::Light> lights_at(double time) const;
 
-  std::map<std::string, scene::Look> looks_;  // by the name of the object
+  std::map<std::string, scene::Look> looks_;                          // by the name of the object
+  std::map<std::string, environment::PicturePlaces> picture_places_;  // of obstacles that have one, likewise
   Pictures pictures_;
   std::shared_ptr<const frame::Stage> stage_;
   std::vector<std::shared_ptr<const frame::Surface>> surfaces_;  // dressed for the first snapshot, shared by the others

@@ -249,6 +249,10 @@ const std::vector<Malformed> kMalformed = {
     {"SensorWithoutALens",
      kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nsensor_width = 23.6\n",
      "s.toml:6:16: camera.c.sensor_width: expected a focal_length beside it, got none\n"},
+    {"PictureOfAnObstacleThatIsNone", "[[obstacle]]\nname = 'a'\nshape = 'box'\nlook.image = '/etc/passwd'\n",
+     "s.toml:4:14: obstacle.a.look.image: expected a picture (PNG, JPEG or TGA), got \"/etc/passwd\": it begins like "
+     "no "
+     "picture\n"},
     {"CameraLooksAtItself", kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [1, 2, 3]\n",
      "s.toml:5:10: camera.c.target: expected a point away from position, got the same\n"},
 

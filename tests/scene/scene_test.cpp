@@ -259,6 +259,10 @@ TEST_F(EveryKey, OfAnObstacleThatFollowsFillsItsMember) {
   EXPECT_EQ(lid.follow, "ball");
   EXPECT_TRUE(moves(scene_, lid)) << "as the ball does";
   EXPECT_FALSE(moves(scene_, scene_.obstacles[1]));
+  EXPECT_EQ(lid.look.image->filename(), "check.png");
+  EXPECT_EQ(lid.look.tile_width, 0.23);
+  EXPECT_EQ(lid.look.metal, 0.7);
+  EXPECT_EQ(lid.look.gloss, 0.8);
 }
 
 TEST_F(EveryKey, OfEachShapeFillsItsMember) {
