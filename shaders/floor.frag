@@ -8,6 +8,11 @@
 #include "reflection.glsl"
 #endif
 layout(location = 0) out vec4 color;
+#ifdef TILED
+layout(binding = 16) uniform sampler2D floor_picture;
+uniform vec4 picture_across, picture_up;  // of (x, y, z, 1) in the world
+uniform float tint;
+#endif
 
 // Tiles of 0.5 m as a faint two-tone pattern, averaged over the pixel (box filter of a triangle wave, as in Quilez,
 // "Filtering the checkerboard").
@@ -27,6 +32,10 @@ void main() {
   vec3 ray_world = world_from_view(position_view(gl_FragCoord.xy * frame.viewport.zw, 1.0));
   float distance_view = floor_distance(ray_world);
   vec3 position_world = frame.eye_world.xyz + distance_view * ray_world;
+#ifdef TILED
+  albedo = tint * texture(floor_picture, vec2(dot(picture_across, vec4(position_world, 1.0)),
+                                       dot(picture_up, vec4(position_world, 1.0)))).rgb;
+#endif
 #ifdef CHECKER
   vec3 east = abs(up.x) > 0.5 ? vec3(0.0, 1.0, 0.0) : vec3(1.0, 0.0, 0.0), north = cross(up, east);
   albedo *= mix(0.94, 1.0, tiles(vec2(dot(position_world, east), dot(position_world, north)) / 0.5));

@@ -7,5 +7,13 @@ float highlight(vec3 n, vec3 v, vec3 l, float alpha, float f0) {
   return fresnel * a_sq / (d * d) * 0.25 / mix(2.0 * n_l * n_v, n_l + n_v, alpha) * 2.0 * n_l;
 }
 
+#ifdef METAL
+// The same for a reflectance of each channel.
+vec3 colored_highlight(vec3 n, vec3 v, vec3 l, float alpha, vec3 f0) {
+  float grazing = 1.0 - max(dot(l, normalize(v + l)), 0.0);
+  return highlight(n, v, l, alpha, 1.0) * (f0 + (1.0 - f0) * (grazing * grazing * grazing * grazing * grazing));
+}
+#endif
+
 // What a surface mirrors head-on: rough ones hide half of their facets from each other.
 float head_on(float roughness) { return 0.04 * (1.0 - 0.9 * roughness * roughness); }

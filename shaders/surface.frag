@@ -40,12 +40,16 @@ struct Point {
   float rise;        // geometry.frag
   float shine, alpha, f0;
   vec3 weft, warp;   // unit, in the surface
-  vec4 finish;
+  vec4 finish;       // METAL: gloss of the coat, share of metal
+#ifdef METAL
+  vec3 colored_f0;
+#endif
 };
 struct LightSums {
   vec3 diffuse, through, gloss;
 };
 const float kThreadShine = 0.14;  // of the light that meets threads of full gloss
+const float kCoat = 0.04, kCoatAlpha = 0.02;  // of a clear coat: reflectance head-on, as of glass, and roughness squared
 
 void add_light(inout LightSums sums, int i, Point at, Softness soft) {
   float cone;
@@ -70,6 +74,10 @@ void add_light(inout LightSums sums, int i, Point at, Softness soft) {
                                             thread_highlight(at.n, at.warp, at.weft, at.v, l), at.finish.y);
 #endif
   sums.gloss += strength * (at.shine * step(0.0, side) * shine);
+#elif defined(METAL)
+  vec3 shine = colored_highlight(at.n, at.v, l, at.alpha, at.colored_f0);
+  shine = mix(shine, vec3(0.0), at.finish.x * kCoat) + at.finish.x * highlight(at.n, at.v, l, kCoatAlpha, kCoat);
+  sums.gloss += strength * (shine * smoothstep(0.0, 0.06, side));
 #else
   sums.gloss += strength * (highlight(at.n, at.v, l, at.alpha, at.f0) * smoothstep(0.0, 0.06, side));
 #endif
@@ -144,6 +152,11 @@ void main() {
   }
 #endif
 
+#ifdef METAL
+  at.finish = texelFetch(materials, ivec2(3, row), 0);
+  at.colored_f0 = mix(vec3(at.f0), albedo, at.finish.y);
+#endif
+
   Softness soft = look_up_softness(distance_view, surface);
   vec4 bounced_here = bounced_light(at.position_world, at.n_smooth);
   soft.open = min(soft.open, open_at_most(bounced_here.w));
@@ -174,6 +187,18 @@ void main() {
 #endif
   vec3 linear = albedo * (light.diffuse * (1.0 - 0.4 * max(at.finish.w - 0.3, 0.0)) + at.finish.w * behind * through) + sheen +
                 light.gloss + around;
+#elif defined(METAL)
+  // What is near in the mirrored direction hides the surroundings there and shows its own light; floor in the shade, less.
+  vec3 mirrored = reflect(-at.v, at.n);
+  vec4 near_by = bounced_light(at.position_world, mirrored);
+  float open = soft.open * (1.0 - clamp(1.5 * near_by.w - 0.5, 0.0, 1.0));
+  vec3 share = at.colored_f0 + (1.0 - at.colored_f0) * rim * (1.0 - roughness);
+  vec3 around = surroundings(mirrored, at.alpha) * open, above = surroundings(mirrored, kCoatAlpha) * open;
+  around = max(around + near_by.rgb, 0.1 * around);
+  above = max(above + near_by.rgb, 0.1 * above);
+  float coat = at.finish.x * (kCoat + (1.0 - kCoat) * rim * edge);
+  vec3 base = albedo * light.diffuse * (1.0 - at.finish.y) * (1.0 - share) + around * share;
+  vec3 linear = mix(base, above, coat) + light.gloss;
 #else
   float mirror = (at.f0 + (1.0 - at.f0) * rim * (1.0 - roughness)) * soft.open;
   vec3 around = surroundings(reflect(-at.v, at.n), at.alpha);

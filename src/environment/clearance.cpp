@@ -78,7 +78,9 @@ std::vector<character::Ground> grounds_below(const Cast& cast) {
   std::vector<character::Ground> grounds;
   for (const scene::Obstacle& obstacle : cast.scene.obstacles) {
     const auto* plane = std::get_if<scene::Plane>(&obstacle.shape);
-    if (plane == nullptr || !plane->infinite || !obstacle.collide || !obstacle.motion.keys.empty()) continue;
+    if (plane == nullptr || !plane->infinite || !obstacle.collide || !obstacle.motion.keys.empty() ||
+        !obstacle.follow.empty())
+      continue;
     const Vec3 up = obstacle.pose.rotation * cast.up();
     grounds.push_back({pose.rotation.conjugate() * up, up.dot(obstacle.pose.position - pose.position)});
   }

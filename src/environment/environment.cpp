@@ -18,6 +18,7 @@
 #include "core/parallel.hpp"
 #include "environment/acting.hpp"
 #include "environment/chosen_particles.hpp"
+#include "environment/followers.hpp"
 #include "garment/fit.hpp"
 #include "garment/garment.hpp"
 #include "garment/uv_rest.hpp"
@@ -350,10 +351,12 @@ struct MakeMesh {
     return upright(mesh::make_half_pipe(s.radius, s.length, s.thickness, obstacle.segments));
   }
   mesh::Mesh operator()(const scene::Plane& s) const { return upright(mesh::make_plane(s.size)); }
-  mesh::Mesh operator()(const scene::MeshFile& s) const {
+  mesh::Mesh operator()(const scene::MeshFile& s) const { return load(s).mesh; }
+
+  assets::LoadedMesh load(const scene::MeshFile& s) const {
     const std::string where =
         fmt::format("{}:{}:{}: obstacle.{}", scene.file.string(), obstacle.line, obstacle.column, obstacle.name);
-    return assets::load_mesh(s.path, axes_of(scene, s.path, s.scale, s.up), where).mesh;
+    return assets::load_mesh(s.path, axes_of(scene, s.path, s.scale, s.up), where);
   }
 };
 
@@ -377,8 +380,7 @@ struct Place {
   double t;
   std::span<Vec3> positions;
 
-  void operator()(const Track& track) const {
-    const PoseSample pose = track.at(t);
+  void operator()(const PoseSample& pose) const {
     const Mat3 rotation = pose.rotation.toRotationMatrix();
     parallel_for(mesh.size(), kPlacedPerTask, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) positions[i] = pose.position + rotation * mesh[i];
@@ -405,26 +407,6 @@ void leave_out_parts(BodyObject& body) {
   if (body.colliding.empty()) body.collide = false;
 }
 
-/// The pins that follow a character; writes where the body finds them, behind so many vertices.
-std::vector<FollowingPin> following_pins(const scene::Scene& scene, const std::vector<ClothObject>& cloths,
-                                         const std::string& name, std::vector<BodyObject::Follower>& followers) {
-  std::vector<FollowingPin> following;
-  std::size_t first = 0;
-  for (std::size_t c = 0; c < cloths.size(); ++c) {
-    for (std::size_t p = 0; p < scene.cloths[c].pins.size(); ++p) {
-      const scene::Pin& pin = scene.cloths[c].pins[p];
-      const scene::Followed followed = scene::followed(pin);
-      if (followed.body != name) continue;
-      FollowingPin& places = following.emplace_back();
-      places.part = followed.part;
-      for (const Chosen& chosen : cloths[c].pins[p]) places.places.push_back(cloths[c].start[chosen.particle]);
-      followers.push_back({c, p, first});
-      first += places.places.size();
-    }
-  }
-  return following;
-}
-
 BodyObject make_character(const scene::Character& character, const Actor& actor) {
   BodyObject object;
   object.name = character.name;
@@ -442,6 +424,14 @@ BodyObject make_character(const scene::Character& character, const Actor& actor)
 }
 
 }  // namespace
+
+assets::LoadedMesh mesh_of(const scene::Scene& scene, const scene::Obstacle& obstacle) {
+  const MakeMesh make{scene, obstacle};
+  if (const auto* file = std::get_if<scene::MeshFile>(&obstacle.shape)) return make.load(*file);
+  assets::LoadedMesh made;
+  made.mesh = std::visit(make, obstacle.shape);
+  return made;
+}
 
 mesh::Grid grid_of(const scene::Cloth& cloth) {
   return {.nu = cloth.particles_weft,
@@ -465,15 +455,19 @@ Environment::Environment(const scene::Scene& scene) {
   std::vector<ClothAtStart> at_start;
   for (const ClothObject& cloth : cloths)
     at_start.push_back({cloth.start, cloth.mesh.topology.triangles, cloth.put_on});
+  add_parents(scene);
   for (const scene::Character& character : scene.characters) {
-    std::vector<BodyObject::Follower> followers;
-    Actor actor = make_actor(scene, character, following_pins(scene, cloths, character.name, followers), at_start);
+    Followers followers = followers_of(scene, cloths, character.name);
+    Actor actor = make_actor(scene, character, followers.points, at_start);
     for (const std::string& warning : actor.warnings) log::warn(warning);
     for (const std::string& note : actor.notes) log::note(note);
     bodies.push_back(make_character(character, actor));
     const bool has_bones = scene::acting_of(character) != nullptr;
-    for (BodyObject::Follower& follower : followers) follower.first_vertex += actor.mesh.positions.size();
-    if (has_bones) bodies.back().followers = std::move(followers);
+    const std::size_t vertices = actor.mesh.positions.size();
+    for (BodyObject::Follower& follower : followers.pins) follower.first_vertex += vertices;
+    for (PartFollower& follower : followers.rigid) follower.first += vertices;
+    add_part_parents(scene, character, followers, actor.keys);
+    if (has_bones) bodies.back().followers = std::move(followers.pins);
     movers_.push_back(std::make_shared<const Mover>(std::move(actor.keys)));
   }
 }
@@ -493,7 +487,9 @@ Environment Environment::with_cloths(std::span<const std::size_t> numbers) const
 }
 
 void Environment::place(std::size_t body, double t, std::span<Vec3> positions) const {
-  std::visit(Place{bodies[body].mesh.positions, bodies[body].moving ? t : 0, positions}, *movers_[body]);
+  const Place place{bodies[body].mesh.positions, bodies[body].moving ? t : 0, positions};
+  if (const auto* keys = std::get_if<KeyFrames>(movers_[body].get())) return place(*keys);
+  place(pose(body, place.t));
 }
 
 }  // namespace weft::environment

@@ -10,11 +10,13 @@
 #include <variant>
 #include <vector>
 
+#include "assets/mesh_file.hpp"
 #include "character/character.hpp"
 #include "core/types.hpp"
 #include "environment/acting.hpp"
 #include "environment/dynamics.hpp"
 #include "environment/key_frames.hpp"
+#include "environment/parents.hpp"
 #include "environment/track.hpp"
 #include "environment/wearers.hpp"
 #include "mesh/mesh.hpp"
@@ -82,6 +84,9 @@ struct BodyObject {
   }
 };
 
+/// The shape of an obstacle in its own coordinates, and the UVs of its file. Throws as Environment() does.
+assets::LoadedMesh mesh_of(const scene::Scene& scene, const scene::Obstacle& obstacle);
+
 /// Rest places of the particles of a rectangle of cloth.
 mesh::Grid grid_of(const scene::Cloth& cloth);
 
@@ -92,6 +97,8 @@ void check_spacing(const scene::Scene& scene, const scene::Cloth& cloth);
 /// A cloth as it starts. Throws Error(asset_unreadable, scene_invalid) for what its file holds, naming the scene's
 /// line.
 ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wearers& wearers);
+
+struct Followers;
 
 /// Changes by set_motion() alone: who steps through time keeps what it asks for.
 class Environment {
@@ -107,12 +114,21 @@ class Environment {
   void place(std::size_t body, double t, std::span<Vec3> positions) const;
 
   /// From now on the obstacle moves so. Only of one that is `moving`, and where it is now must stay the same.
+  /// It follows nothing then.
   void set_motion(std::size_t obstacle, const scene::PoseTrack& motion) {
     movers_[obstacle] = std::make_shared<const Mover>(Track(motion));
+    if (!parents_.empty()) parents_[obstacle] = {};
   }
 
   /// Pose of an obstacle at any time [s], and how it changes.
-  PoseSample pose(std::size_t obstacle, double t) const { return std::get<Track>(*movers_[obstacle]).at(t); }
+  PoseSample pose(std::size_t obstacle, double t) const {
+    PoseSample own = std::get<Track>(*movers_[obstacle]).at(t);
+    if (parents_.empty() || !parents_[obstacle].is_any()) return own;
+    return compose(pose(parents_[obstacle], t), parents_[obstacle].start, own);
+  }
+  PoseSample pose(const Parent& parent, double t) const {
+    return parent.part ? parent.part->at(t) : pose(parent.obstacle, t);
+  }
 
   /// The same of one vertex of a character, or of what follows it.
   VertexMotion vertex(std::size_t character, std::size_t vertex, double t) const {
@@ -120,11 +136,17 @@ class Environment {
   }
 
   std::vector<ClothObject> cloths;
-  std::vector<BodyObject> bodies;  ///< in the order of scene.obstacles, then of scene.characters
+  std::vector<BodyObject> bodies;      ///< in the order of scene.obstacles, then of scene.characters
+  std::vector<Parent> camera_parents;  ///< one per camera; empty: none has any
 
  private:
   using Mover = std::variant<Track, KeyFrames>;
+  void add_parents(const scene::Scene& scene);
+  void add_part_parents(const scene::Scene& scene, const scene::Character& character, const Followers& followers,
+                        const KeyFrames& keys);
+
   std::vector<std::shared_ptr<const Mover>> movers_;  ///< one per body
+  std::vector<Parent> parents_;                       ///< one per obstacle; empty: none has any
 };
 
 }  // namespace weft::environment

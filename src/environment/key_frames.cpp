@@ -78,6 +78,12 @@ void KeyFrames::at(double t, std::span<Vec3> positions) const {
   });
 }
 
+std::vector<double> KeyFrames::times() const {
+  std::vector<double> times;
+  for (std::size_t k = 0; k < keys_.size(); ++k) times.push_back(first_time_ + static_cast<double>(k) * interval_);
+  return times;
+}
+
 std::size_t KeyFrames::bytes() const {
   return (keys_.size() + bends_.size()) * keys_.front().size() * sizeof(Vec3);
 }

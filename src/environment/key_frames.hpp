@@ -31,6 +31,7 @@ class KeyFrames {
   VertexMotion at(double t, std::size_t vertex) const { return at(piece(t), vertex); }
 
   bool moving() const { return keys_.size() > 1; }
+  std::vector<double> times() const;  ///< of the keys [s]
   std::size_t bytes() const;
 
  private:

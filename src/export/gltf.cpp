@@ -229,7 +229,7 @@ json GltfFile::primitives(const CutSurface& cut, const Object& object, const fra
                   {"doubleSided", surface.kind == frame::ObjectKind::cloth},
                   {"pbrMetallicRoughness",
                    {{"baseColorFactor", {color.x(), color.y(), color.z(), 1}},
-                    {"metallicFactor", 0},
+                    {"metallicFactor", look.metal > 0 ? json(look.metal) : json(0)},
                     {"roughnessFactor", look.roughness}}}};
     if (painted)
       material["pbrMetallicRoughness"]["baseColorTexture"] = {{"index", texture(materials, look, images)},

@@ -69,7 +69,10 @@ void widen(Wrap& wrap, bool& rim, int pixels, Eigen::Ref<Eigen::RowVector3d> row
 }
 
 Material material_of(const frame::Surface& surface, const frame::Appearance& look, Materials& materials) {
-  Material made{.name = {}, .color = image::linear_from_srgb(look.color), .roughness = surface.appearance.roughness};
+  Material made{.name = {},
+                .color = image::linear_from_srgb(look.color),
+                .roughness = surface.appearance.roughness,
+                .metal = surface.appearance.metal};
   const frame::Paint& paint = look.paint;
   if (!paint.texture) return made;
   PictureFile picture{.name = {}, .texture = paint.texture, .color = made.color, .alpha = paint.alpha};
@@ -88,8 +91,8 @@ Material material_of(const frame::Surface& surface, const frame::Appearance& loo
 }
 
 bool look_alike(const Material& a, const Material& b) {
-  return a.color == b.color && a.roughness == b.roughness && a.picture == b.picture && a.wrap_u == b.wrap_u &&
-         a.wrap_v == b.wrap_v && a.cutout == b.cutout && a.picture_from_uv == b.picture_from_uv;
+  return a.color == b.color && a.roughness == b.roughness && a.metal == b.metal && a.picture == b.picture &&
+         a.wrap_u == b.wrap_u && a.wrap_v == b.wrap_v && a.cutout == b.cutout && a.picture_from_uv == b.picture_from_uv;
 }
 
 }  // namespace

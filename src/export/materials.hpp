@@ -27,7 +27,7 @@ struct Material {
   static constexpr std::size_t kNoPicture = static_cast<std::size_t>(-1);
   std::string name;  ///< letters, digits, - and _
   Vec3 color;        ///< linear; where there is a picture it has this one too, and is not multiplied by it
-  double roughness = 0;
+  double roughness = 0, metal = 0;
   std::size_t picture = kNoPicture;  ///< of Materials::pictures
   frame::Paint::Wrap wrap_u = frame::Paint::Wrap::repeat, wrap_v = frame::Paint::Wrap::repeat;  ///< not once
   bool cutout = false;

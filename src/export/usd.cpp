@@ -120,8 +120,8 @@ void write_material(std::ostream& out, const std::string& prim, const std::strin
              "            def Shader \"surface\"\n            {{\n"
              "                uniform token info:id = \"UsdPreviewSurface\"\n"
              "                color3f inputs:diffuseColor{2}\n"
-             "                float inputs:metallic = 0\n",
-             prim, path, diffuse);
+             "                float inputs:metallic = {3}\n",
+             prim, path, diffuse, material.metal);
   if (material.cutout)
     fmt::print(out,
                "                float inputs:opacity.connect = <{}/picture.outputs:a>\n"

@@ -211,6 +211,7 @@ frame::Camera Renderer::Impl::choose_camera(const frame::FrameSnapshot& snapshot
 
 void Renderer::Impl::update_floor(const Plan& plan) {
   if (!plan.floor) return;
+  passes->shading.set_floor(plan.floor, plan.lighting.style.floor_tint);
   const Vec3 center = plan.subjects.center();
   const Vec3 under = center - plan.floor->normal.dot(center - plan.floor->point) * plan.floor->normal;
   const double radius = 0.5 * plan.subjects.diagonal().norm();
@@ -227,6 +228,7 @@ void Renderer::Impl::upload_frame(const Plan& plan) {
 Shading::Features Renderer::Impl::features(const Plan& plan) const {
   return {.lights = light_set(plan.lights),
           .checker = plan.floor && plan.floor->look.checker,
+          .tiled = plan.floor && plan.floor->look.paint.texture && !plan.lighting.style.plain,
           .level = plan.floor && plan.floor->normal.cwiseAbs().maxCoeff() > 1 - 1e-9,
           .painted = passes->geometry.painted() && !plan.lighting.style.plain,
           .trimmed = passes->geometry.trimmed(),

@@ -83,6 +83,7 @@ frame::Appearance clay(const frame::Appearance& look) {
   plain.roughness = 0.7;
   plain.thread_spacing = 0;
   plain.finish = {0, 0.5, 0.2, 0};
+  plain.metal = 0;
   plain.hem = 0;
   return plain;
 }
@@ -132,7 +133,8 @@ Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int he
 // how it fades out, changes so slowly over the picture that it may be interpolated; the edge of a spot or a checker
 // not.
 Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const Features& features)
-    : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.reflecting) {
+    : floor_on_grid((quality.spots_on_grid || !features.lights.spots) && !features.checker && !features.tiled &&
+                    !features.reflecting) {
   const LightSet& lights = features.lights;
   const bool many = lights.count > kSoftLights, crisp = quality.crisp_shadows || many;
   const std::vector<const char*> paint(features.painted ? 1 : 0, "PAINTED");
@@ -144,12 +146,15 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
   if (features.sheer) of_cloth.push_back("SHEER");
   cloth = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, of_cloth));
   if (features.sheer) return;
-  solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, paint));
+  std::vector<const char*> of_solid = paint;
+  if (features.metal) of_solid.push_back("METAL");
+  solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, of_solid));
   std::vector<const char*> floor{features.checker ? "CHECKER" : "PLAIN"};
   if (features.level) floor.push_back("LEVEL");
   const std::vector<const char*> shiny(features.shiny ? 1 : 0, "SHINY");
   floor.insert(floor.end(), shiny.begin(), shiny.end());
   if (features.reflecting) floor.push_back("REFLECTING");
+  if (features.tiled) floor.push_back("TILED");
   shaded_floor = Program(gl, "fullscreen.vert", "floor.frag", shading_defines(quality, lights, crisp, floor));
   floor.push_back("OPEN");
   open_floor = floor_on_grid
@@ -159,6 +164,7 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
 
 const Shading::Programs& Shading::programs(Features features) {
   features.glossy = glossy_;
+  features.metal = metal_;
   features.heat = heat_;
   const auto known = programs_.find(features);
   if (known != programs_.end()) return known->second;
@@ -171,6 +177,9 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
   heat_ = heat_scale > 0;
   glossy_ = std::ranges::any_of(
       materials, [](const Material& material) { return material.cloth && material.appearance.finish.gloss > kMatte; });
+  metal_ = std::ranges::any_of(materials, [](const Material& material) {
+    return !material.cloth && (material.appearance.metal > 0 || material.appearance.finish.gloss > 0);
+  });
   for (const auto& [look, cloth, opacity] : materials) {
     texels.push_back(texel(look.color, std::clamp(look.roughness, 0.0, 1.0)));
     texels.push_back(texel(look.back_color, look.thread_spacing));
@@ -178,7 +187,8 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
         Eigen::Vector4d(cloth ? heat_scale : 0, look.hem, look.thickness, look.thickness > kSewnTwice ? kBesideSeam : 0)
             .cast<float>());
     const frame::Finish& finish = look.finish;
-    texels.push_back(Eigen::Vector4d(finish.gloss, finish.warp_share, finish.fuzz, finish.sheer).cast<float>());
+    texels.push_back(
+        Eigen::Vector4d(finish.gloss, cloth ? finish.warp_share : look.metal, finish.fuzz, finish.sheer).cast<float>());
     texels.emplace_back(static_cast<float>(opacity), static_cast<float>(finish.threads), 0.0f, 0.0f);
   }
   const int rows = static_cast<int>(materials.size());
@@ -187,6 +197,25 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
     material_rows_ = rows;
   }
   if (rows > 0) gl_->TextureSubImage2D(materials_.name(), 0, 0, 0, kColumns, rows, GL_RGBA, GL_FLOAT, texels.data());
+}
+
+void Shading::set_floor(const std::optional<Floor>& floor, double tint) {
+  if (!floor || !floor->look.paint.texture) return;
+  if (!floor_pictures_) floor_pictures_.emplace(*gl_);
+  floor_picture_ = floor_pictures_->of(floor->look.paint).texture.name();
+  floor_tint_ = static_cast<float>(tint);
+  floor_picture_from_world_ = floor->picture_from_world.cast<float>();
+}
+
+void Shading::use_floor(const Program& program, const Features& features) const {
+  program.use();
+  if (!features.tiled) return;
+  constexpr GLuint kUnit = 16;  // of floor.frag
+  gl_->BindTextureUnit(kUnit, floor_picture_);
+  const Eigen::Vector4f across = floor_picture_from_world_.row(0), up = floor_picture_from_world_.row(1);
+  gl_->Uniform4f(program.uniform("picture_across"), across.x(), across.y(), across.z(), across.w());
+  gl_->Uniform1f(program.uniform("tint"), floor_tint_);
+  gl_->Uniform4f(program.uniform("picture_up"), up.x(), up.y(), up.z(), up.w());
 }
 
 void Shading::mark_shaded_floor(std::span<const PixelArea> areas) {
@@ -238,7 +267,7 @@ void Shading::draw_open_floor(const Features& features) {
   gl_->StencilOp(GL_KEEP, GL_KEEP, GL_KEEP);
   // Of both classes of floor the lower bits are the same.
   gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(PixelClass::floor), static_cast<GLuint>(PixelClass::floor));
-  chosen.open_floor.use();
+  use_floor(chosen.open_floor, features);
   if (chosen.floor_on_grid) {
     gl_->BindVertexArray(grid_array_.name());
     gl_->DrawElements(GL_TRIANGLES, grid_indices_, GL_UNSIGNED_INT, nullptr);
@@ -259,7 +288,7 @@ void Shading::draw(std::span<const Material> materials, double heat_scale, const
   // Blocks without a pixel of the class are left after the stencil test.
   const auto shade = [&](PixelClass pixel_class, const Program& program, bool on_grid = false) {
     gl_->StencilFunc(GL_EQUAL, static_cast<GLint>(pixel_class), 0xFF);
-    program.use();
+    use_floor(program, features);
     gl_->BindVertexArray((on_grid ? grid_array_ : no_vertices_).name());
     if (on_grid) {
       gl_->DrawElements(GL_TRIANGLES, grid_indices_, GL_UNSIGNED_INT, nullptr);

@@ -3,10 +3,12 @@
 
 #include <compare>
 #include <map>
+#include <optional>
 #include <span>
 
 #include "render/geometry_buffer.hpp"
 #include "render/gl/program.hpp"
+#include "render/paints.hpp"
 #include "render/quality.hpp"
 #include "render/shadow_maps.hpp"
 #include "render/view.hpp"
@@ -26,16 +28,20 @@ class Shading {
   struct Features {
     LightSet lights;
     bool checker = false;     ///< on the floor
+    bool tiled = false;       ///< the floor shows the picture of set_floor()
     bool level = false;       ///< the floor, so that one axis is its normal
     bool painted = false;     ///< the geometry buffer has colours of its own
     bool trimmed = false;     ///< and hems
     bool shiny = false;       ///< the floor mirrors lamps
     bool reflecting = false;  ///< the floor shows what a Mirror has drawn, everywhere
     bool sheer = false;       ///< cloth says how opaque it is
-    bool glossy = false;      ///< threads of some cloth shine; draw() sees to that, and to the next
+    bool glossy = false;      ///< threads of some cloth shine; draw() sees to that, and to the next two
+    bool metal = false;       ///< something that is no cloth is of metal or has a coat; likewise
     bool heat = false;        ///< in place of colours of cloth
     auto operator<=>(const Features&) const = default;
   };
+  /// The floor whose picture is drawn, and a factor on its light; before draw().
+  void set_floor(const std::optional<Floor>& floor, double tint);
   /// Looks of the surfaces in the order of their materials. `heat_scale`: 1 / hottest value, 0 for the surfaces' own
   /// colours; only cloth shows heat. `subjects` holds all of them; floor is lit and open outside `shaded_floor`.
   /// Expects the frame and light blocks, shadow maps, soft light and geometry bound.
@@ -52,6 +58,7 @@ class Shading {
 
  private:
   void upload_materials(std::span<const Material> materials, double heat_scale);
+  void use_floor(const Program& program, const Features& features) const;
   void mark_shaded_floor(std::span<const PixelArea> areas);
 
   struct Programs {
@@ -73,7 +80,11 @@ class Shading {
   Buffer area_vertices_, grid_vertices_, grid_triangles_;
   GLsizei grid_indices_ = 0;
   int material_rows_ = 0;
-  bool glossy_ = false, heat_ = false;  // of the materials
+  bool glossy_ = false, metal_ = false, heat_ = false;  // of the materials
+  std::optional<Paints> floor_pictures_;                // once a floor has one
+  GLuint floor_picture_ = 0;
+  float floor_tint_ = 1;
+  Eigen::Matrix<float, 2, 4> floor_picture_from_world_ = Eigen::Matrix<float, 2, 4>::Zero();
 };
 
 /// Share of the light that cloth stops, head-on. Dense weaves let light through, but nothing is seen behind them.

@@ -16,6 +16,19 @@ constexpr double kMirrored = 0.5;   // of that: what shines sees floor in the sh
 constexpr double kBrightest = 1.8;  // gain of direct light; scenes darker than that are meant to be dark
 constexpr double kBalance = 0.08;   // share of a channel that white balance may take or add
 
+/// From the world to the picture on a triangle, at these places in it.
+Eigen::Matrix<double, 2, 4> picture_from_world(const std::array<Vec3, 3>& x, const std::array<Vec2, 3>& places) {
+  const Vec3 p = x[1] - x[0], q = x[2] - x[0];
+  Mat3 axes;
+  axes << p, q, p.cross(q);
+  Eigen::Matrix<double, 2, 3> changes;
+  changes << places[1] - places[0], places[2] - places[0], Vec2::Zero();
+  Eigen::Matrix<double, 2, 4> map;
+  map.leftCols<3>() = changes * axes.inverse();
+  map.col(3) = places[0] - map.leftCols<3>() * x[0];
+  return map;
+}
+
 }  // namespace
 
 std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3& up) {
@@ -24,10 +37,14 @@ std::optional<Floor> find_floor(const frame::FrameSnapshot& snapshot, const Vec3
     const auto& positions = snapshot.states[i].positions;
     if (!surface.visible || !surface.infinite_floor || positions.empty()) continue;
     Floor floor{positions.front(), up, surface.appearance};
-    for (const auto& [a, b, c] : surface.triangles) {
+    for (std::size_t t = 0; t < surface.triangles.size(); ++t) {
+      const auto& [a, b, c] = surface.triangles[t];
       const Vec3 normal = (positions[b] - positions[a]).cross(positions[c] - positions[a]);
       if (normal.squaredNorm() > 0) {
         floor.normal = normal.dot(up) < 0 ? -normal.normalized() : normal.normalized();
+        if (floor.look.paint.texture && t < surface.paint_uv.size())
+          floor.picture_from_world =
+              picture_from_world({positions[a], positions[b], positions[c]}, surface.paint_uv[t]);
         break;
       }
     }

@@ -16,6 +16,8 @@ namespace weft::render {
 struct Floor {
   Vec3 point = Vec3::Zero(), normal = Vec3::UnitZ();
   frame::Appearance look;
+  /// From (x, y, z, 1) in the world to the picture of its look; where it has none, nothing.
+  Eigen::Matrix<double, 2, 4> picture_from_world = Eigen::Matrix<double, 2, 4>::Zero();
 };
 
 /// The first visible infinite floor, where there is one.

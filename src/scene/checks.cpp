@@ -11,6 +11,7 @@
 #include "core/grading.hpp"
 #include "core/input_file.hpp"
 #include "image/picture.hpp"
+#include "scene/following.hpp"
 #include "scene/layers.hpp"
 #include "scene/reader.hpp"
 #include "scene/sequence_files.hpp"
@@ -134,16 +135,17 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
 void check_pin(const Scene& scene, const Cloth& cloth, const Pin& pin, const std::string& path, Findings& findings) {
   check_times(pin.motion.keys, path, findings);
   check_turns(pin.motion.keys, path, findings);
-  const Followed followed = scene::followed(pin);
+  const Followed followed = scene::followed(pin.follow);
   const std::vector<std::string> characters = names_of(scene.characters);
   std::vector<std::string> bodies = names_of(scene.obstacles);
   bodies.insert(bodies.end(), characters.begin(), characters.end());
   check_reference(followed.body, bodies, "an obstacle or character", path + ".follow", findings);
   for (const Obstacle& obstacle : scene.obstacles)
     if (obstacle.name == followed.body && is_dynamic(obstacle))
-      findings.report(path + ".follow",
-                      fmt::format("expected a body that keys move, got {}, which has a mass; [[attach]] ties cloth to it",
-                                  in_quotes(obstacle.name)));
+      findings.report(
+          path + ".follow",
+          fmt::format("expected a body that keys move, got {}, which has a mass; [[attach]] ties cloth to it",
+                      in_quotes(obstacle.name)));
   if (!followed.part.empty() && !findings.faulty(path + ".follow"))
     check_reference(followed.body, characters, "a character before the part", path + ".follow", findings);
   if (pin.fade > 0 && !pin.strength)
@@ -265,9 +267,9 @@ void check_shape(const Shape& shape, const std::string& path, Findings& findings
 // Of a body that forces move, or of one that lacks the mass for it.
 void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::string& path, Findings& findings) {
   if (!is_dynamic(obstacle)) {
-    for (const auto& [key, is_given] : {std::pair("velocity", obstacle.velocity != Vec3::Zero()),
-                                        std::pair("spin", obstacle.spin != Vec3::Zero()),
-                                        std::pair("release", obstacle.release > 0)})
+    for (const auto& [key, is_given] :
+         {std::pair("velocity", obstacle.velocity != Vec3::Zero()), std::pair("spin", obstacle.spin != Vec3::Zero()),
+          std::pair("release", obstacle.release > 0)})
       if (is_given)
         findings.report(fmt::format("{}.{}", path, key),
                         "expected a mass or density beside it, got none; without, only keys move an obstacle");
@@ -276,16 +278,20 @@ void check_dynamics(const Scene& scene, const Obstacle& obstacle, const std::str
   if (obstacle.mass > 0 && obstacle.density > 0)
     findings.report(path + ".density",
                     fmt::format("expected none beside a mass of {} kg, got {}", obstacle.mass, obstacle.density));
+  if (!obstacle.follow.empty())
+    findings.report(path + ".follow", fmt::format("expected none beside a mass, which lets forces move it, got {}",
+                                                  in_quotes(obstacle.follow)));
   if (std::holds_alternative<Plane>(obstacle.shape))
     findings.report(path + ".shape", "expected a closed shape for a body with a mass, got \"plane\"");
   if (scene.contact.response == Response::velocity_constraints)
-    findings.report("contact.response",
-                    fmt::format("expected \"springs\", as {} has a mass, got \"velocity_constraints\"",
-                                in_quotes(obstacle.name)));
+    findings.report(
+        "contact.response",
+        fmt::format("expected \"springs\", as {} has a mass, got \"velocity_constraints\"", in_quotes(obstacle.name)));
   if (obstacle.motion.keys.size() < 2) return;
   for (const auto& [key, value] : {std::pair("velocity", obstacle.velocity), std::pair("spin", obstacle.spin)})
     if (value != Vec3::Zero())
-      findings.report(fmt::format("{}.{}", path, key), "expected none beside keys, which say how fast it is at release");
+      findings.report(fmt::format("{}.{}", path, key),
+                      "expected none beside keys, which say how fast it is at release");
   if (obstacle.release == 0)
     findings.report(path + ".release", "expected > 0 s beside keys, which move it until then, got 0");
 }
@@ -296,6 +302,7 @@ void check_obstacles(const Scene& scene, Findings& findings) {
     const Obstacle& obstacle = scene.obstacles[i];
     const std::string& path = findings.entry("obstacle", i);
     check_shape(obstacle.shape, path, findings);
+    check_image(obstacle.look.image, path + ".look.image", findings);
     check_times(obstacle.motion.keys, path, findings);
     check_turns(obstacle.motion.keys, path, findings);
     check_dynamics(scene, obstacle, path, findings);
@@ -336,12 +343,29 @@ void check_characters(const Scene& scene, Findings& findings) {
   }
 }
 
+/// All keys of a camera say how wide it sees in the same way, so that values between them are defined.
+void check_lens(const Camera& camera, const std::string& path, Findings& findings) {
+  const bool by_focal_length = has_focal_length(camera);
+  if (!by_focal_length && findings.has(path + ".sensor_width"))
+    findings.report(path + ".sensor_width", "expected a focal_length beside it, got none");
+  if (camera.follow.empty() && findings.has(path + ".follow_rotation"))
+    findings.report(path + ".follow_rotation", "expected a follow beside it, got none");
+  const std::string wrong = by_focal_length ? "field_of_view" : "focal_length";
+  for (std::size_t k = 0; k < camera.keys.size(); ++k) {
+    const std::string key = fmt::format("{}.keys.{}.{}", path, k, wrong);
+    if (findings.has(key) && !findings.faulty(key))
+      findings.report(key, fmt::format("expected {} as in the keys before, got {}",
+                                       by_focal_length ? "focal_length" : "field_of_view", wrong));
+  }
+}
+
 void check_cameras(const Scene& scene, Findings& findings) {
   const std::vector<std::string> objects = names_of_all(scene);
   for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
     const Camera& camera = scene.cameras[i];
     const std::string& path = findings.entry("camera", i);
     check_times(camera.keys, path, findings);
+    check_lens(camera, path, findings);
     for (const std::string& name : camera.subjects)
       check_reference(name, objects, "a cloth, obstacle or character", path + ".subject", findings);
     if (camera.kind == CameraKind::file && camera.aperture > 0 && camera.focus <= 0)
@@ -378,6 +402,7 @@ void check(const Scene& scene, Findings& findings) {
   check_attachments(scene, findings);
   check_friction_pairs(scene, findings);
   check_obstacles(scene, findings);
+  check_following(scene, findings);
   check_characters(scene, findings);
   check_cameras(scene, findings);
   for (std::size_t i = 0; i < scene.lights.size(); ++i) {

@@ -27,6 +27,20 @@ const Table& obstacle_look_rules() {
           .color("color", &Look::color, "of the surface")
           .by_default("[0.76, 0.72, 0.65], of planes [0.66, 0.66, 0.65]")
           .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
+          .number("metal", &Look::metal, within(0, 1), "",
+                  "1: metal, which reflects its surroundings in its own color; below, part of it")
+          .by_default("0")
+          .written_if([](Look& look) { return look.metal > 0; })
+          .number("gloss", &Look::gloss, within(0, 1), "",
+                  "smooth clear coat over all, as of glaze, lacquer and glass; 1 reflects as glass does")
+          .by_default("0")
+          .plain(Type::file, "image", &Look::image,
+                 "picture (PNG, JPEG) on it, by the UVs of a file, or around the shape; relative paths start at the "
+                 "scene's folder")
+          .by_default("none")
+          .number("image_width", &Look::tile_width, within(1e-3, 1000), "m",
+                  "of one tile of it on the surface; its height follows from its shape")
+          .by_default("once around, on each side of a box, or over all UVs from 0 to 1")
           .plain(Type::boolean, "checker", &Look::checker, "faint grid of 0.5 m tiles, to give a floor scale")
           .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture; it still collides")
           .build();

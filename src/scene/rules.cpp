@@ -327,6 +327,10 @@ const Table& obstacle_rules() {
           .number("release", &Obstacle::release, within(0, 3600), "s",
                   "with a mass: time from which on forces move it; before, it stands, or its keys move it")
           .written_if([](Obstacle& o) { return o.release > 0; })
+          .plain(Type::text, "follow", &Obstacle::follow,
+                 "obstacle, or part of a character as \"man.head\", whose rigid motion it takes part in; its own pose "
+                 "and keys say where it would be if that stayed where it is at the start of the run")
+          .by_default("none")
           .number("friction", &Obstacle::friction, within(0, 10), "",
                   "Coulomb coefficient; of a pair, the geometric mean of both")
           .plain(Type::boolean, "collide", &Obstacle::collide, "false lets cloth pass through it")

@@ -12,6 +12,7 @@
 
 #include "core/threads.hpp"
 #include "core/types.hpp"
+#include "scene/camera.hpp"
 #include "scene/keyed.hpp"
 #include "scene/physics.hpp"
 #include "scene/pressure.hpp"
@@ -128,13 +129,16 @@ struct Look : Paint {
   std::vector<PanelPaint> panels;  ///< of a pattern
   bool as_file = true;             ///< characters: colours and pictures are those of the file, where it has some
   double roughness = 0.6;
-  std::optional<double> gloss, fuzz, sheer;  ///< cloth only; those of the fabric where absent
-  double warp_share = 0.5;                   ///< of the gloss; of the fabric
-  Threads threads = Threads::plain;          ///< of the fabric
-  double cloth_thickness = 0;                ///< of the fabric itself [m]
-  double thread_spacing = 0.0006;            ///< of the drawn weave [m]; cloth only; 0 draws none
-  std::optional<double> hem;                 ///< width of its hems [m]; cloth only; 0: cut edges
-  bool checker = false;                      ///< floors only
+  std::optional<double> gloss;        ///< of threads, by default of the fabric; of an obstacle: of its coat
+  std::optional<double> fuzz, sheer;  ///< cloth only; those of the fabric where absent
+  double metal = 0;                   ///< obstacles only: 1 where it reflects in its own colour
+  std::optional<double> tile_width;   ///< obstacles only: of its picture [m]; absent: once over the shape
+  double warp_share = 0.5;            ///< of the gloss; of the fabric
+  Threads threads = Threads::plain;   ///< of the fabric
+  double cloth_thickness = 0;         ///< of the fabric itself [m]
+  double thread_spacing = 0.0006;     ///< of the drawn weave [m]; cloth only; 0 draws none
+  std::optional<double> hem;          ///< width of its hems [m]; cloth only; 0: cut edges
+  bool checker = false;               ///< floors only
   bool visible = true;
 };
 
@@ -199,13 +203,13 @@ struct Pin : ClothPart {
   double fade = 0;  ///< distance along the cloth up to which others are drawn too, ever less [m]; needs a strength
 };
 
-/// The body and, of a character, the part (else empty) that a pin follows.
+/// The body and, of a character, the part (else empty) that a `follow` names.
 struct Followed {
   std::string body, part;
 };
-inline Followed followed(const Pin& pin) {
-  const std::size_t dot = pin.follow.find('.');
-  return {pin.follow.substr(0, dot), dot == std::string::npos ? "" : pin.follow.substr(dot + 1)};
+inline Followed followed(const std::string& follow) {
+  const std::size_t dot = follow.find('.');
+  return {follow.substr(0, dot), dot == std::string::npos ? "" : follow.substr(dot + 1)};
 }
 
 /// Mass that hangs on particles, by their shares.
@@ -275,6 +279,9 @@ struct Obstacle {
   Vec3 velocity{0, 0, 0};  ///< at the start, where forces move it and no keys [m/s]
   Vec3 spin{0, 0, 0};      ///< likewise, rate of turning about its centre of mass [degrees/s]
   double release = 0;      ///< time from which on forces move it [s]; before, its keys do
+  /// Obstacle, or "<character>.<part>", whose rigid motion from the start of the run on is added to its own; empty:
+  /// none.
+  std::string follow = {};
   double friction = 0.3;
   bool collide = true;
   Look look;
@@ -383,43 +390,6 @@ inline Acting* acting_of(Character& character) {
   return const_cast<Acting*>(acting_of(std::as_const(character)));
 }
 
-struct CameraKey {
-  double time = 0;
-  Vec3 position{0, 0, 0}, target{0, 0, 0};  ///< [m]
-  double field_of_view = 35;                ///< vertical [degrees]
-};
-
-/// Placed by the scene or by a file, or found from all frames of a run.
-enum class CameraKind { placed, whole, follow, close, track, file };
-
-inline bool is_found(CameraKind kind) {
-  return kind != CameraKind::placed && kind != CameraKind::file;
-}
-
-/// Of cameras that are found: a portrait lens, with little distortion.
-inline constexpr double kFoundFieldOfView = 30;  // [degrees]
-
-struct Camera {
-  std::string name;
-  CameraKind kind = CameraKind::placed;
-  std::vector<CameraKey> keys;  ///< at least one; one: still. Found ones have one, for position and field of view
-  Interpolation interpolation = Interpolation::cubic;
-  std::vector<std::string> subjects =
-      {};                           ///< objects that it shows; empty: the characters, else the cloths; whole: all
-  double azimuth = 33;              ///< of the eye, from the front to the right [degrees]
-  double elevation = 17;            ///< above the subject [degrees]
-  double orbit = 0;                 ///< by which the azimuth grows [degrees/s]
-  double margin = 0.14;             ///< share of each half picture that is left free around the subject
-  double smoothing = 0.5;           ///< of the ways of the subject and the eye [s]
-  double aperture = 0;              ///< f-number of a camera with 24 mm of film; 0: all is sharp
-  double focus = 0;                 ///< distance that is sharp [m]; 0: that of the target
-  std::filesystem::path file = {};  ///< that has its way and lens
-  std::string object = {};          ///< name of its node there; empty: the only one
-  double start = 0;                 ///< when the time of the file begins [s]
-  double scale = 1;                 ///< of its lengths
-  int line = 0, column = 0;         ///< where the scene names it, for errors of its file
-};
-
 struct LightKey {
   double time = 0;
   Vec3 direction{-0.4, -0.5, -1}, position{0, 0, 5}, target{0, 0, 0};
@@ -474,6 +444,7 @@ struct Scene {
   int frame_count() const { return static_cast<int>(std::lround(time.duration * time.fps)) + 1; }
   /// Of the preroll; frame 0 comes after them.
   int preroll_frames() const { return static_cast<int>(std::ceil(time.preroll * time.fps - 1e-9)); }
+  double start_time() const { return -preroll_frames() / time.fps; }  ///< of the run, with its preroll [s]
 };
 
 }  // namespace weft::scene

@@ -28,8 +28,31 @@ auto own(Field Key::*field) {
   return [field](auto& owner) -> Field& { return owner.keys.front().*field; };
 }
 
-const Range kFieldOfView = within(1, 170);  // [degrees]
+const Range kFieldOfView = within(1, 170);    // [degrees]
+const Range kFocalLength = within(1, 10000);  // [mm]
 const Range kIntensity = within(0, 1000);
+
+/// The focal length of a key, after the row of its field of view. `stands`: whether (S&) its own value is written.
+template <class S, class Member, class Stands>
+void focal_length_row(TableBuilder<S>& rows, Member member, const std::string& otherwise, Stands stands) {
+  rows.number("focal_length", member, kFocalLength, "mm", "in place of field_of_view, with sensor_width")
+      .excludes("field_of_view")
+      .by_default(otherwise)
+      .written_if([member, stands](S& s) { return stands(s) && std::invoke(member, s) > 0; });
+}
+
+/// The same of a camera, and the sensor for it.
+template <class Stands>
+void focal_rows(TableBuilder<Camera>& rows, Stands stands) {
+  focal_length_row(rows, own(&CameraKey::focal_length), "none", stands);
+  rows.number("sensor_width", &Camera::sensor_width, within(0.1, 1000), "mm",
+              "of the longer side of the picture, render.width or render.height; beside focal_length")
+      .by_default("36")
+      .written_if([](Camera& camera) { return has_focal_length(camera); });
+}
+bool has_field_of_view(Camera& camera) {
+  return camera.keys.front().field_of_view > 0 && !has_focal_length(camera);
+}
 
 const Table& camera_key_rules() {
   static const Table kTable =
@@ -42,6 +65,10 @@ const Table& camera_key_rules() {
           .by_default(kHeld)
           .number("field_of_view", &CameraKey::field_of_view, kFieldOfView, "degrees", "vertical")
           .by_default(kHeld)
+          .written_if([](CameraKey& key) { return key.focal_length == 0; })
+          .with([](auto& rows) {
+            focal_length_row(rows, &CameraKey::focal_length, kHeld, [](CameraKey&) { return true; });
+          })
           .build();
   return kTable;
 }
@@ -55,10 +82,19 @@ void placed_camera_rows(TableBuilder<Camera>& rows) {
       .need(Need::here_or_in_first_key)
       .written_if(stands_still<Camera>)
       .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
-      .written_if(stands_still<Camera>)
+      .written_if([](Camera& camera) { return stands_still(camera) && has_field_of_view(camera); })
+      .with([](auto& own_rows) { focal_rows(own_rows, stands_still<Camera>); })
       .choice("interpolation", &Camera::interpolation, kInterpolations, "between its keys")
       .list(Type::keys, "keys", &Camera::keys, camera_key_rules(), go_on_from_key_before<Camera>)
-      .written_if(moves<Camera>);
+      .written_if(moves<Camera>)
+      .plain(Type::text, "follow", &Camera::follow,
+             "obstacle, or part of a character as \"man.head\", with which position and target move; they say where "
+             "the camera is while that is where it is at the start of the run")
+      .by_default("none")
+      .plain(Type::boolean, "follow_rotation", &Camera::follow_rotation,
+             "false: with the translation of what it follows alone; the camera stays upright in any case")
+      .by_default("true")
+      .written_if([](Camera& camera) { return !camera.follow.empty(); });
 }
 
 void lens_rows(TableBuilder<Camera>& rows) {
@@ -81,11 +117,14 @@ void smoothing_row(TableBuilder<Camera>& rows) {
 /// Keys of cameras that look from a direction.
 void direction_rows(TableBuilder<Camera>& rows) {
   rows.number("azimuth", &Camera::azimuth, within(-36000, 36000), "degrees",
-              "direction in which the eye is, from the front to the right")
+              "direction in which the eye is, around the up axis from the front to the right: with z up, 0 is toward "
+              "-y and 90 toward +x")
       .number("elevation", &Camera::elevation, within(-89, 89), "degrees", "of the eye above the subject")
       .number("orbit", &Camera::orbit, within(-3600, 3600), "degrees/s", "in which it goes around, to the right")
       .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
       .by_default("30")
+      .written_if(has_field_of_view)
+      .with([](auto& own_rows) { focal_rows(own_rows, stands_still<Camera>); })
       .with(subject_rows);
 }
 
@@ -160,7 +199,8 @@ const Table& camera_rules() {
                        .need(Need::required)
                        .number("field_of_view", own(&CameraKey::field_of_view), kFieldOfView, "degrees", "vertical")
                        .by_default("as wide as the subject needs in all frames")
-                       .written_if([](Camera& c) { return c.keys.front().field_of_view > 0; })
+                       .written_if(has_field_of_view)
+                       .with([](auto& rows) { focal_rows(rows, stands_still<Camera>); })
                        .with(subject_rows)
                        .with(smoothing_row))
           .variant("file", Rows().with(file_rows))

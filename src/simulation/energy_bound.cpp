@@ -7,6 +7,7 @@
 
 #include "core/error.hpp"
 #include "core/numerics.hpp"
+#include "scene/following.hpp"
 #include "simulation/collision_stage.hpp"
 
 namespace weft::simulation {
@@ -24,12 +25,14 @@ bool is_driven_by_pins_alone(const scene::Scene& scene) {
     for (const scene::Pin& pin : cloth.pins)
       if (pin.strength && (moves(pin.motion) || !pin.follow.empty())) return false;
   }
-  const auto stands = [&](const scene::Obstacle& obstacle) { return !obstacle.collide || !moves(obstacle.motion); };
+  const auto stands = [&](const scene::Obstacle& obstacle) {
+    return !obstacle.collide || !scene::moves(scene, obstacle);
+  };
   if (!scene.characters.empty() || !std::ranges::all_of(scene.obstacles, stands)) return false;
   // Attachments that draw their ends together, and bodies that move theirs, do work that is not counted.
   for (const scene::Attachment& attachment : scene.attachments) {
     const auto target = std::ranges::find(scene.obstacles, attachment.to, &scene::Obstacle::name);
-    if (attachment.length || (target != scene.obstacles.end() && moves(target->motion))) return false;
+    if (attachment.length || (target != scene.obstacles.end() && scene::moves(scene, *target))) return false;
   }
   if (scene.physics.keys.size() > 1 || !scene.fans.empty()) return false;
   return scene.physics.air_density == 0 || (scene.physics.wind == Vec3::Zero() && scene.physics.gusts.speed == 0);

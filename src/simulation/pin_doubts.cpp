@@ -182,7 +182,7 @@ std::vector<std::string> find_far_pins(const scene::Scene& scene, const environm
   std::vector<Vec3> x;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c)
     for (std::size_t p = 0; p < scene.cloths[c].pins.size(); ++p) {
-      const std::string name = scene::followed(scene.cloths[c].pins[p]).body;
+      const std::string name = scene::followed(scene.cloths[c].pins[p].follow).body;
       const auto body = std::ranges::find(environment.bodies, name, &environment::BodyObject::name);
       const std::vector<environment::Chosen>& chosen = environment.cloths[c].pins[p];
       if (body == environment.bodies.end() || body->infinite_floor || chosen.empty()) continue;

@@ -103,7 +103,7 @@ Pins::Pins(const scene::Scene& scene, const environment::Environment& environmen
 
       const auto start = [&](Index particle) -> const Vec3& { return cloth.start[particle - first_particle[c]]; };
       group.release = pin.release;
-      const scene::Followed followed = scene::followed(pin);
+      const scene::Followed followed = scene::followed(pin.follow);
       group.follow = pin.follow.empty() ? -1 : body_named(environment, followed.body);
       const environment::BodyObject* body = group.follow < 0 ? nullptr : &environment.bodies[group.follow];
       if (body != nullptr && !body->followers.empty()) {

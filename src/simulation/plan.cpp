@@ -7,6 +7,7 @@
 #include "environment/acting.hpp"
 #include "environment/environment.hpp"
 #include "environment/weather.hpp"
+#include "scene/following.hpp"
 #include "scene/layers.hpp"
 #include "simulation/cloth_system.hpp"
 #include "simulation/collision_stage.hpp"
@@ -77,6 +78,8 @@ void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
   if (const auto count = std::ranges::count_if(scene.obstacles, [](const auto& o) { return scene::is_dynamic(o); }))
     items.push_back(
         {"motion: rigid bodies", true, fmt::format("{} of {}", count, counted(scene.obstacles.size(), "obstacle"))});
+  if (const auto count = std::ranges::count_if(scene.obstacles, [](const auto& o) { return !o.follow.empty(); }))
+    items.push_back({"motion: obstacles that follow", true, counted(static_cast<std::size_t>(count), "obstacle")});
   if (!scene.physics.keys.empty())
     items.push_back({"force: keyed gravity and wind", true, counted(scene.physics.keys.size(), "key")});
   if (!scene.fans.empty()) {
@@ -120,7 +123,7 @@ void plan_collisions(const Scene& scene, std::vector<PlanItem>& items) {
       std::count_if(scene.obstacles.begin(), scene.obstacles.end(), [](const scene::Obstacle& o) { return o.collide; });
   const auto characters = std::ranges::count_if(scene.characters, [](const scene::Character& c) { return c.collide; });
   const auto moving = std::count_if(scene.obstacles.begin(), scene.obstacles.end(),
-                                    [](const scene::Obstacle& o) { return o.motion.keys.size() > 1; });
+                                    [&](const scene::Obstacle& o) { return scene::moves(scene, o); });
   const bool any_moved =
       !scene.cloths.empty() || std::ranges::any_of(scene.obstacles, [](const auto& o) { return scene::is_dynamic(o); });
   const bool with_obstacles = scene.contact.obstacles && obstacles + characters > 0 && any_moved;

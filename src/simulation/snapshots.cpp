@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
 #include <exception>
 #include <numbers>
 #include <utility>
@@ -31,6 +33,7 @@ constexpr double kBackPaleness = 0.35;
 frame::Appearance appearance(const scene::Look& look) {
   frame::Appearance result;
   result.roughness = look.roughness;
+  result.metal = look.metal;
   result.finish = {look.gloss.value_or(0), look.warp_share, look.fuzz.value_or(0), look.sheer.value_or(0),
                    look.threads};
   result.thread_spacing = look.thread_spacing;
@@ -79,11 +82,34 @@ void lay_on(frame::Appearance& look, const scene::Paint& paint, Pictures& pictur
   if (paint.cutout) look.color.setOnes();
 }
 
+/// Leaves a picture without holes on a floor, and the mean of its light as the colour: of what the floor sends to
+/// others.
+void fill(frame::Appearance& look) {
+  auto filled = std::make_shared<frame::Texture>(*look.paint.texture);
+  const Vec3 below = image::linear_from_srgb(look.color);
+  Vec3 sum = Vec3::Zero();
+  for (std::size_t i = 0; i < filled->rgba.size(); i += 4) {
+    std::uint8_t* pixel = &filled->rgba[i];
+    const double opacity = pixel[3] / 255.0;
+    const Vec3 shown =
+        opacity * image::linear_from_srgb(Vec3(pixel[0], pixel[1], pixel[2]) / 255) + (1 - opacity) * below;
+    sum += shown;
+    for (int c = 0; c < 3; ++c)
+      pixel[c] = static_cast<std::uint8_t>(std::lround(255 * image::srgb_from_linear(shown[c])));
+    pixel[3] = 255;
+  }
+  look.paint.texture = std::move(filled);
+  look.color = image::srgb_from_linear(Vec3(sum * 4 / static_cast<double>(look.paint.texture->rgba.size())));
+}
+
 void dress(frame::Surface& surface, const scene::Look& look, Pictures& pictures) {
   surface.visible = look.visible;
   surface.appearance = appearance(look);
   lay_on(surface.appearance, look, pictures);
   if (surface.kind != frame::ObjectKind::cloth) surface.appearance.thread_spacing = 0;
+  // Places of pictures on obstacles are measured in pictures.
+  if (surface.kind == frame::ObjectKind::obstacle) surface.appearance.paint.texture_from_uv.setIdentity();
+  if (surface.infinite_floor && look.image) fill(surface.appearance);
   // What a character's file says is in its parts already.
   if (surface.kind == frame::ObjectKind::character && look.as_file) return;
   for (frame::SurfacePart& part : surface.parts) {
@@ -166,6 +192,16 @@ std::shared_ptr<frame::Surface> make_body_surface(const environment::BodyObject&
   return surface;
 }
 
+/// Where the picture of an obstacle lies, which has one.
+environment::PicturePlaces places_of(const scene::Scene& scene, const scene::Obstacle& obstacle, Pictures& pictures) {
+  std::optional<Vec2> tile;
+  if (obstacle.look.tile_width) {
+    const frame::Texture& texture = *pictures.of_file(*obstacle.look.image);
+    tile = Vec2(1, static_cast<double>(texture.height) / texture.width) * *obstacle.look.tile_width;
+  }
+  return environment::picture_places(scene, obstacle, environment::mesh_of(scene, obstacle), tile);
+}
+
 std::shared_ptr<const frame::Stage> make_stage(const scene::Scene& scene) {
   auto stage = std::make_shared<frame::Stage>();
   stage->up = scene.up == scene::UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY();
@@ -208,12 +244,19 @@ Box3 bounds_over_run(const environment::Environment& environment, std::size_t bo
   return bounds;
 }
 
+/// Height of the sensor of a camera that has a focal length [mm], else 0. Its width lies along the longer side.
+double sensor_height(const scene::Camera& camera, const scene::Render& render) {
+  if (!scene::has_focal_length(camera)) return 0;
+  return camera.sensor_width * std::min(1.0, static_cast<double>(render.height) / render.width);
+}
+
 environment::Spline<7> camera_track(const scene::Camera& camera) {
   std::vector<double> times;
   std::vector<CameraValue> values;
   for (const scene::CameraKey& key : camera.keys) {
     times.push_back(key.time);
-    values.push_back((CameraValue() << key.position, key.target, key.field_of_view).finished());
+    const double lens = scene::has_focal_length(camera) ? key.focal_length : key.field_of_view;
+    values.push_back((CameraValue() << key.position, key.target, lens).finished());
   }
   return {camera.interpolation, std::move(times), std::move(values)};
 }
@@ -259,9 +302,12 @@ std::shared_ptr<const frame::Texture> Pictures::of_file(const std::filesystem::p
   }
 }
 
-Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
+Looks::Looks(const scene::Scene& scene, const environment::Environment* environment) : stage_(make_stage(scene)) {
   for (const auto& cloth : scene.cloths) looks_[cloth.name] = look_of(cloth);
-  for (const auto& obstacle : scene.obstacles) looks_[obstacle.name] = obstacle.look;
+  for (const auto& obstacle : scene.obstacles) {
+    looks_[obstacle.name] = obstacle.look;
+    if (obstacle.look.image) picture_places_[obstacle.name] = places_of(scene, obstacle, pictures_);
+  }
   for (const auto& character : scene.characters) looks_[character.name] = character.look;
   for (const scene::Camera& camera : scene.cameras) {
     cameras_.push_back({.name = camera.name,
@@ -277,6 +323,10 @@ Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
     camera_tracks_.push_back(camera.kind == scene::CameraKind::file ? camera_track(scene, camera)
                                                                     : camera_track(camera));
     orbits_.push_back(camera.orbit);
+    sensor_heights_.push_back(sensor_height(camera, scene.render));
+    // The renderer takes all films for 24 mm high: it gets the number that has the same opening there.
+    constexpr double kFilm = 24;  // [mm]
+    if (sensor_heights_.back() > 0) cameras_.back().aperture *= kFilm / sensor_heights_.back();
   }
   for (const scene::Light& light : scene.lights) {
     frame::Light result;
@@ -288,6 +338,13 @@ Looks::Looks(const scene::Scene& scene) : stage_(make_stage(scene)) {
     lights_.push_back(result);
     light_tracks_.push_back(light_track(light));
   }
+  const auto follows = [](const scene::Camera& camera) { return !camera.follow.empty(); };
+  if (std::ranges::none_of(scene.cameras, follows)) return;
+  if (environment) {
+    mounts_.emplace(scene, *environment);
+  } else {
+    mounts_.emplace(scene, environment::Environment(scene));
+  }
 }
 
 std::vector<frame::Camera> Looks::cameras_at(double time) const {
@@ -296,7 +353,9 @@ std::vector<frame::Camera> Looks::cameras_at(double time) const {
     const CameraValue value = camera_tracks_[c].at(time).value;
     cameras[c].position = value.segment<3>(0);
     cameras[c].target = value.segment<3>(3);
-    cameras[c].field_of_view = value[6];
+    const double height = sensor_heights_[c];
+    cameras[c].field_of_view =
+        height > 0 ? 360 / std::numbers::pi * std::atan(height / (2 * value[6])) : static_cast<double>(value[6]);
     cameras[c].azimuth += orbits_[c] * time;
   }
   return cameras;
@@ -317,6 +376,7 @@ std::vector<frame::Light> Looks::lights_at(double time) const {
 void Looks::surround(frame::FrameSnapshot& snapshot) const {
   snapshot.stage = stage_;
   snapshot.cameras = cameras_at(snapshot.time);
+  if (mounts_) mounts_->move(snapshot);
   snapshot.lights = lights_at(snapshot.time);
 }
 
@@ -332,10 +392,17 @@ frame::SnapshotPtr Looks::put_on(const frame::FrameSnapshot& snapshot) {
 std::shared_ptr<const frame::Surface> Looks::dressed(const frame::Surface& surface) {
   auto copy = std::make_shared<frame::Surface>(surface);
   dress(*copy, looks_.at(surface.name), pictures_);
+  place_picture(*copy);
   return copy;
 }
 
-SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment) : looks_(scene) {
+void Looks::place_picture(frame::Surface& surface) const {
+  const auto places = picture_places_.find(surface.name);
+  if (places != picture_places_.end()) surface.paint_uv = places->second;
+}
+
+SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Environment& environment)
+    : looks_(scene, &environment) {
   Pictures pictures;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const auto surface = make_cloth_surface(environment.cloths[c], look_of(scene.cloths[c]), pictures);
@@ -344,6 +411,7 @@ SnapshotMaker::SnapshotMaker(const scene::Scene& scene, const environment::Envir
   }
   for (std::size_t b = 0; b < environment.bodies.size(); ++b) {
     const auto surface = make_body_surface(environment.bodies[b], pictures);
+    looks_.place_picture(*surface);
     surface->run_bounds = bounds_over_run(environment, b, scene.time.duration);
     surfaces_.push_back(surface);
   }

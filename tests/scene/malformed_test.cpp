@@ -214,6 +214,45 @@ const std::vector<Malformed> kMalformed = {
     {"PinFollowsAPartOfAnObstacle",
      "[[obstacle]]\nname = 'ball'\nshape = 'sphere'\n[[cloth]]\nname = 'band'\npin = [{ follow = 'ball.top' }]\n",
      "s.toml:6:19: cloth.band.pin.0.follow: expected the name of a character before the part, got \"ball\"\n"},
+    {"ObstaclesFollowEachOther",
+     "[[obstacle]]\nname = 'a'\nshape = 'box'\nfollow = 'b'\n"
+     "[[obstacle]]\nname = 'b'\nshape = 'box'\nfollow = 'c'\n"
+     "[[obstacle]]\nname = 'c'\nshape = 'box'\nfollow = 'a'\n",
+     "s.toml:4:10: obstacle.a.follow: expected an obstacle that does not follow this one, got \"b\", which follows "
+     "it\n"},
+    {"ObstacleFollowsItself", "[[obstacle]]\nname = 'a'\nshape = 'box'\nfollow = 'a'\n",
+     "s.toml:4:10: obstacle.a.follow: expected an obstacle that does not follow this one, got \"a\", which it is "
+     "itself\n"},
+    {"ObstacleFollowsNothing",
+     "[[obstacle]]\nname = 'floor'\nshape = 'plane'\n[[obstacle]]\nname = 'a'\nshape = 'box'\nfollow = 'flor'\n",
+     "s.toml:7:10: obstacle.a.follow: expected the name of an obstacle, or a part of a character, got \"flor\"; did "
+     "you "
+     "mean floor?\n"},
+    {"ObstacleFollowsACharacterWithoutAPart",
+     "[[character]]\nname = 'man'\nsource = 'mannequin'\n[[obstacle]]\nname = 'a'\nshape = 'box'\nfollow = 'man'\n",
+     "s.toml:7:10: obstacle.a.follow: expected a part of the character, such as \"man.torso\" or \"man.head\", got "
+     "\"man\"\n"},
+    {"CameraFollowsNothing",
+     kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nfollow = 'ball'\n",
+     "s.toml:6:10: camera.c.follow: expected the name of an obstacle, or a part of a character, got \"ball\"\n"},
+    {"CameraTurnsWithNothing",
+     kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nfollow_rotation = false\n",
+     "s.toml:6:19: camera.c.follow_rotation: expected a follow beside it, got none\n"},
+    {"LensTwice",
+     kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nfield_of_view = 30\n"
+              "focal_length = 50\n",
+     "s.toml:7:16: camera.c.focal_length: expected either focal_length or field_of_view, got both\n"},
+    {"LensesOfTwoKinds",
+     kFloor + "[[camera]]\nname = 'c'\ntarget = [0, 0, 0]\nfocal_length = 50\n"
+              "keys = [{ time = 0, position = [1, 0, 0] }, { time = 1, field_of_view = 30 }]\n",
+     "s.toml:6:73: camera.c.keys.1.field_of_view: expected focal_length as in the keys before, got field_of_view\n"},
+    {"SensorWithoutALens",
+     kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [0, 0, 0]\nsensor_width = 23.6\n",
+     "s.toml:6:16: camera.c.sensor_width: expected a focal_length beside it, got none\n"},
+    {"PictureOfAnObstacleThatIsNone", "[[obstacle]]\nname = 'a'\nshape = 'box'\nlook.image = '/etc/passwd'\n",
+     "s.toml:4:14: obstacle.a.look.image: expected a picture (PNG, JPEG or TGA), got \"/etc/passwd\": it begins like "
+     "no "
+     "picture\n"},
     {"CameraLooksAtItself", kFloor + "[[camera]]\nname = 'c'\nposition = [1, 2, 3]\ntarget = [1, 2, 3]\n",
      "s.toml:5:10: camera.c.target: expected a point away from position, got the same\n"},
 

@@ -98,9 +98,10 @@ void expect_change(const std::string& text, const std::string& override_text) {
 bool is_plain_value(const std::string& path, const Rule& rule) {
   return rule.type != Type::name && rule.type != Type::file && rule.type != Type::texts && !path.ends_with("follow") &&
          !path.ends_with("edge") && !path.ends_with("panel") && !path.ends_with("vertex_group") &&
-         !path.ends_with("vertex_color") && !path.ends_with("fade") && !path.ends_with("grow") &&
-         path != "render.camera" && path != "physics.interpolation" && !path.ends_with("shape") &&
-         !path.ends_with("kind") && !path.ends_with("source");
+         !path.ends_with("vertex_color") && !path.ends_with("follow_rotation") && !path.ends_with("sensor_width") &&
+         !path.ends_with("fade") && !path.ends_with("grow") && path != "render.camera" &&
+         path != "physics.interpolation" && !path.ends_with("shape") && !path.ends_with("kind") &&
+         !path.ends_with("source");
 }
 
 TEST(Rules, EachKeyChangesTheSceneAndItsHash) {

@@ -6,6 +6,7 @@
 
 #include "scene/fabrics.hpp"
 #include "scene/folder.hpp"
+#include "scene/following.hpp"
 #include "scene/loader.hpp"
 
 namespace weft::scene {
@@ -24,8 +25,8 @@ class EveryKey : public testing::Test {
   void SetUp() override {
     ASSERT_EQ(result_.describe(), "");
     ASSERT_EQ(scene_.cloths.size(), 3u);
-    ASSERT_EQ(scene_.obstacles.size(), 8u);
-    ASSERT_EQ(scene_.cameras.size(), 4u);
+    ASSERT_EQ(scene_.obstacles.size(), 9u);
+    ASSERT_EQ(scene_.cameras.size(), 6u);
     ASSERT_EQ(scene_.lights.size(), 2u);
   }
 };
@@ -253,6 +254,17 @@ TEST_F(EveryKey, OfAnObstacleFillsItsMember) {
   EXPECT_EQ(ball.motion.keys[1].pose.position, Vec3(4, 5, 6));
 }
 
+TEST_F(EveryKey, OfAnObstacleThatFollowsFillsItsMember) {
+  const Obstacle& lid = scene_.obstacles[8];
+  EXPECT_EQ(lid.follow, "ball");
+  EXPECT_TRUE(moves(scene_, lid)) << "as the ball does";
+  EXPECT_FALSE(moves(scene_, scene_.obstacles[1]));
+  EXPECT_EQ(lid.look.image->filename(), "check.png");
+  EXPECT_EQ(lid.look.tile_width, 0.23);
+  EXPECT_EQ(lid.look.metal, 0.7);
+  EXPECT_EQ(lid.look.gloss, 0.8);
+}
+
 TEST_F(EveryKey, OfEachShapeFillsItsMember) {
   const auto shape = [&](std::size_t i) -> const Shape& { return scene_.obstacles[i].shape; };
   EXPECT_EQ(std::get<BoxShape>(shape(1)).size, Vec3(1.1, 1.2, 1.3));
@@ -322,6 +334,14 @@ TEST_F(EveryKey, OfCamerasAndLightsFillsItsMember) {
   EXPECT_EQ(guard.kind, CameraKind::track);
   EXPECT_EQ(guard.keys[0].position, Vec3(2, -3, 1));
   EXPECT_EQ(guard.keys[0].field_of_view, 0) << "to be found";
+  const Camera& rider = scene_.cameras[4];
+  EXPECT_EQ(rider.keys[0].focal_length, 85);
+  EXPECT_EQ(rider.sensor_width, 23.6);
+  EXPECT_EQ(rider.follow, "ball");
+  EXPECT_FALSE(rider.follow_rotation);
+  const Camera& zoom = scene_.cameras[5];
+  EXPECT_EQ(zoom.keys[0].focal_length, 24);
+  EXPECT_EQ(zoom.keys[1].focal_length, 85);
 
   const Light& sun = scene_.lights[0];
   EXPECT_FALSE(sun.spot);

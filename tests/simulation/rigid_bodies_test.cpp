@@ -282,6 +282,10 @@ TEST(RigidBodies, AreRefusedWhereTheyHaveNoInside) {
   EXPECT_THROW(support::scene_of_text(timed(1) + "[[obstacle]]\nname = \"a\"\nshape = \"plane\"\nmass = 1\n"),
                std::invalid_argument);
   EXPECT_THROW(support::scene_of_text(timed(1) + box("a", "velocity = [1, 0, 0]\n")), std::invalid_argument);
+  EXPECT_THROW(support::scene_of_text(timed(1) + box("a", "mass = 1\n") + box("b", "follow = \"a\"\n")),
+               std::invalid_argument);
+  EXPECT_THROW(support::scene_of_text(timed(1) + box("a", "") + box("b", "mass = 1\nfollow = \"a\"\n")),
+               std::invalid_argument);
   EXPECT_THROW(support::scene_of_text(timed(1) + box("a", "mass = 1\ndensity = 700\n")), std::invalid_argument);
   EXPECT_THROW(
       support::scene_of_text(timed(1) + "[contact]\nresponse = \"velocity_constraints\"\n" + box("a", "mass = 1\n")),

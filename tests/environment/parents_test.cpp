@@ -1,0 +1,143 @@
+// Obstacles that take part in the motion of others, and of characters.
+#include "environment/parents.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "environment/environment.hpp"
+#include "environment/rotation.hpp"
+#include "support/scene_runs.hpp"
+
+namespace weft::environment {
+namespace {
+
+constexpr double kRounding = 1e-13;  // some roundings of coordinates of a few metres
+
+/// An arm that goes up and turns about z by a quarter in a second, a hand that goes along it, and a ring in the hand.
+const char* const kRobot = R"(
+[[obstacle]]
+name = "ring"
+shape = "torus"
+position = [3, 0, 1]
+follow = "hand"
+
+[[obstacle]]
+name = "arm"
+shape = "box"
+interpolation = "linear"
+keys = [{ time = 0, position = [1, 0, 0] }, { time = 1, position = [1, 0, 2], rotation = [0, 0, 90] }]
+
+[[obstacle]]
+name = "hand"
+shape = "sphere"
+follow = "arm"
+interpolation = "linear"
+keys = [{ time = 0, position = [2, 0, 0] }, { time = 1, position = [2.5, 0, 0], rotation = [90, 0, 0] }]
+)";
+
+TEST(Parent, LeavesWhatFollowsWhereItsOwnPoseSaysUntilItMoves) {
+  const Environment environment(support::scene_of_text(kRobot));
+  const PoseSample ring = environment.pose(0, 0), hand = environment.pose(2, 0);
+  EXPECT_LT((ring.position - Vec3(3, 0, 1)).norm(), kRounding);
+  EXPECT_LT((hand.position - Vec3(2, 0, 0)).norm(), kRounding);
+  EXPECT_LT(ring.rotation.angularDistance(Quat::Identity()), kRounding);
+  for (const BodyObject& body : environment.bodies) EXPECT_TRUE(body.moving) << body.name;
+}
+
+TEST(Parent, CarriesTheOwnMotionOfWhatFollowsThroughAChain) {
+  const Environment environment(support::scene_of_text(kRobot));
+  // The hand has gone 1.5 m along the arm, which then points to +y, and has turned about the arm.
+  const PoseSample hand = environment.pose(2, 1);
+  EXPECT_LT((hand.position - Vec3(1, 1.5, 2)).norm(), kRounding);
+  EXPECT_LT(hand.rotation.angularDistance(about({0, 0, 1}, 90 * kDegree) * about({1, 0, 0}, 90 * kDegree)), 1e-7);
+  // The ring was 1 m before the hand and 1 m above it; the turn of the hand has put above to +x.
+  const PoseSample ring = environment.pose(0, 1);
+  EXPECT_LT((hand.rotation * Vec3(0, 0, 1) - Vec3(1, 0, 0)).norm(), 1e-7);
+  EXPECT_LT((ring.position - Vec3(2, 2.5, 2)).norm(), 1e-7);
+  std::vector<Vec3> placed(environment.bodies[0].mesh.positions.size());
+  environment.place(0, 1, placed);
+  for (std::size_t i = 0; i < placed.size(); ++i)
+    EXPECT_LT((placed[i] - (ring.position + ring.rotation * environment.bodies[0].mesh.positions[i])).norm(),
+              kRounding);
+}
+
+TEST(Parent, GivesExactDerivatives) {
+  const Environment environment(support::scene_of_text(kRobot));
+  const double h = 1e-4;
+  const Vec3 arm(0.3, -0.2, 0.5);
+  const auto place = [&](double t) -> Vec3 {
+    const PoseSample pose = environment.pose(0, t);
+    return pose.position + pose.rotation * arm;
+  };
+  for (const double t : {0.25, 0.8}) {
+    const PoseSample pose = environment.pose(0, t);
+    const Vec3 before = place(t - h), now = place(t), after = place(t + h), lever = now - pose.position;
+    // As in Obstacle.InMotionHasTheVelocityAndAccelerationOfEachVertex.
+    EXPECT_LT((pose.velocity_at(lever) - (after - before) / (2 * h)).norm(), 1e-6);
+    EXPECT_LT((pose.acceleration_at(lever) - (after - 2 * now + before) / (h * h)).norm(), 1e-6);
+  }
+}
+
+TEST(Parent, ThatAnotherProgramMovesTakesWhatFollowsAlong) {
+  Environment environment(support::scene_of_text(kRobot));
+  const Quat half = about({0, 0, 1}, 180 * kDegree);
+  environment.set_motion(1, {scene::Interpolation::linear, {{0, {{1, 0, 0}}}, {1, {{0, 0, 0}, half}}}});
+  // The hand is 1.5 m from the middle of the arm, which points to -x now.
+  EXPECT_LT((environment.pose(2, 1).position - Vec3(-1.5, 0, 0)).norm(), kRounding);
+  environment.set_motion(2, {scene::Interpolation::linear, {{0, {{2, 0, 0}}}, {1, {{7, 0, 0}}}}});
+  EXPECT_LT((environment.pose(2, 1).position - Vec3(7, 0, 0)).norm(), kRounding) << "it follows nothing any more";
+}
+
+TEST(Parent, StartsWithThePreroll) {
+  scene::Scene scene = support::scene_of_text(kRobot);
+  scene.time.preroll = 1;
+  for (scene::PoseKey& key : scene.obstacles[1].motion.keys) key.time -= 1;
+  const Environment environment(scene);
+  EXPECT_LT((environment.pose(2, -1).position - Vec3(2, 0, 0)).norm(), kRounding);
+  EXPECT_LT((environment.pose(2, 0).position - Vec3(1, 1, 2)).norm(), kRounding);
+}
+
+TEST(Parent, ThatIsAPartOfACharacterCarriesAsAPinOnItIs) {
+  const Environment environment(support::scene_of_text(R"(
+[time]
+duration = 2
+
+[[character]]
+name = "man"
+source = "mannequin"
+edge_length = 0.05
+walk = 2
+
+[[obstacle]]
+name = "hat"
+shape = "cylinder"
+radius = 0.1
+height = 0.2
+position = [0, 0, 1.85]
+follow = "man.head"
+)"));
+  ASSERT_TRUE(environment.bodies[0].moving);
+  EXPECT_LT((environment.pose(0, 0).position - Vec3(0, 0, 1.85)).norm(), 1e-9);
+  const auto& parts = environment.bodies[1].parts;
+  ASSERT_EQ(std::ranges::count(parts, "head", &Part::name), 1);
+  // Its highest vertex is the top of the head.
+  const std::vector<Vec3>& skin = environment.bodies[1].mesh.positions;
+  const auto top =
+      static_cast<std::size_t>(std::ranges::max_element(skin, {}, [](const Vec3& x) { return x.z(); }) - skin.begin());
+  const auto seen_from_hat = [&](double t) -> Vec3 {
+    const PoseSample hat = environment.pose(0, t);
+    return hat.rotation.conjugate() * (environment.vertex(1, top, t).position - hat.position);
+  };
+  const Vec3 start = seen_from_hat(0);
+  double most = 0, way = 0;
+  for (int k = 0; k <= 100; ++k) {
+    most = std::max(most, (seen_from_hat(0.02 * k) - start).norm());
+    way = std::max(way, (environment.pose(0, 0.02 * k).position - environment.pose(0, 0).position).norm());
+  }
+  EXPECT_GT(way, 0.5);
+  EXPECT_LT(most, 1e-3);
+}
+
+}  // namespace
+}  // namespace weft::environment

@@ -1,0 +1,146 @@
+// Looks of bodies: metal, a clear coat, and pictures on floors.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+
+#include "image/color.hpp"
+#include "render/renderer.hpp"
+#include "render/snapshots.hpp"
+
+namespace weft::render {
+namespace {
+
+constexpr int kSide = 160;  // of a picture [pixels]
+
+Settings settings(Quality quality = Quality::draft) {
+  Settings result;
+  result.width = result.height = kSide;
+  result.quality = quality;
+  return result;
+}
+
+/// A red ball that fills most of the picture, in a studio.
+frame::FrameSnapshot ball(double metal, double gloss, double roughness) {
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = std::make_shared<frame::Stage>();
+  frame::Appearance& look = add_sphere(snapshot, Vec3::Zero(), 0.5, 40).appearance;
+  look.color = Vec3(0.7, 0.15, 0.1);
+  look.metal = metal;
+  look.finish.gloss = gloss;
+  look.roughness = roughness;
+  snapshot.cameras = {camera_at(Vec3(0, -2, 0), Vec3::Zero(), 35)};
+  return snapshot;
+}
+
+image::Image draw(const frame::FrameSnapshot& snapshot, Quality quality = Quality::draft) {
+  return Renderer(settings(quality)).draw(snapshot);
+}
+
+struct Range {
+  double lowest = 255, highest = 0;  ///< of the green channel, in the middle of the ball
+  double spread() const { return highest - lowest; }
+};
+Range green_of(const image::Image& image) {
+  Range range;
+  for (int y = kSide / 4; y < 3 * kSide / 4; ++y)
+    for (int x = kSide / 4; x < 3 * kSide / 4; ++x) {
+      range.lowest = std::min<double>(range.lowest, image.pixel(x, y)[1]);
+      range.highest = std::max<double>(range.highest, image.pixel(x, y)[1]);
+    }
+  return range;
+}
+
+TEST(Metal, ReflectsInItsOwnColor) {
+  const image::Image image = draw(ball(1, 0, 0.3));
+  int seen = 0;
+  for (int y = kSide / 3; y < 2 * kSide / 3; ++y)
+    for (int x = kSide / 3; x < 2 * kSide / 3; ++x) {
+      const std::uint8_t* pixel = image.pixel(x, y);
+      // Far from the rim all that it shows has its colour; the brightest light pales.
+      if (pixel[0] > 200) continue;
+      EXPECT_GT(pixel[0], 1.5 * pixel[1]) << x << " " << y;
+      ++seen;
+    }
+  EXPECT_GT(seen, 500);
+}
+
+TEST(Metal, ShowsTheSurroundingsTheSharperTheSmootherItIs) {
+  const double matte = green_of(draw(ball(1, 0, 0.9))).spread(), smooth = green_of(draw(ball(1, 0, 0.1))).spread();
+  EXPECT_GT(smooth, 1.3 * matte);
+}
+
+TEST(Coat, AddsAHighlightAndLeavesTheColorBelow) {
+  const Range plain = green_of(draw(ball(0, 0, 0.9))), coated = green_of(draw(ball(0, 1, 0.9)));
+  EXPECT_GT(coated.highest, plain.highest + 40);
+  EXPECT_NEAR(coated.lowest, plain.lowest, 12);
+}
+
+TEST(Coat, AndMetalAreNoneInClay) {
+  auto shiny = ball(1, 1, 0.1), plain = ball(0, 0, 0.1);
+  for (auto* snapshot : {&shiny, &plain}) {
+    auto stage = std::make_shared<frame::Stage>();
+    stage->look = frame::Stage::Look::clay;
+    snapshot->stage = stage;
+  }
+  EXPECT_EQ(draw(shiny).rgb, draw(plain).rgb);
+}
+
+TEST(Look, OfOneBodyLeavesThatOfOthers) {
+  // Side by side; only the ball on the right is of metal.
+  const auto pair = [](double metal) {
+    frame::FrameSnapshot snapshot = ball(0, 0, 0.6);
+    add_sphere(snapshot, Vec3(2, 0, 0), 0.5, 40).appearance.metal = metal;
+    snapshot.cameras = {camera_at(Vec3(1, -5, 0), Vec3(1, 0, 0), 35)};
+    return draw(snapshot);
+  };
+  const image::Image plain = pair(0), metal = pair(1);
+  int most = 0;
+  for (int y = 0; y < kSide; ++y)
+    for (int x = 0; x < kSide / 2 - 10; ++x)
+      for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(plain.pixel(x, y)[c] - metal.pixel(x, y)[c]));
+  EXPECT_LE(most, 1);
+  EXPECT_NE(plain.rgb, metal.rgb);
+}
+
+/// A floor of 10 m with a picture of two by two fields on each metre, seen from above with its front below.
+frame::FrameSnapshot tiled_floor() {
+  constexpr std::array<std::array<std::uint8_t, 4>, 4> kFields{
+      {{180, 20, 20, 255}, {20, 180, 20, 255}, {20, 20, 180, 255}, {180, 180, 180, 255}}};
+  frame::FrameSnapshot snapshot;
+  snapshot.stage = std::make_shared<frame::Stage>();
+  frame::Surface& floor = add_floor(snapshot);
+  floor.paint_uv = {{Vec2(0, 0), Vec2(10, 0), Vec2(10, 10)}, {Vec2(0, 0), Vec2(10, 10), Vec2(0, 10)}};
+  frame::Texture picture{64, 64, {}};
+  for (int y = 0; y < 64; ++y)
+    for (int x = 0; x < 64; ++x) {
+      const auto& field = kFields[static_cast<std::size_t>(y / 32 * 2 + x / 32)];
+      picture.rgba.insert(picture.rgba.end(), field.begin(), field.end());
+    }
+  floor.appearance.paint.texture = std::make_shared<const frame::Texture>(std::move(picture));
+  floor.appearance.color = Vec3(0.5, 0.5, 0.5);
+  // Something to look at; a small thing above the picture's middle.
+  add_sphere(snapshot, Vec3(0.5, 0.5, 0.02), 0.02, 6);
+  snapshot.cameras = {camera_at(Vec3(0.5, 0.499, 3), Vec3(0.5, 0.5, 0), 18.4)};  // 0.97 m wide at the floor
+  return snapshot;
+}
+
+TEST(FloorPicture, LiesUprightOnItsTiles) {
+  for (const Quality quality : {Quality::draft, Quality::final}) {
+    const image::Image image = draw(tiled_floor(), quality);
+    const auto strongest = [&](double x, double y) {
+      const std::uint8_t* pixel = image.pixel(static_cast<int>(x * kSide), static_cast<int>(y * kSide));
+      if (pixel[0] > pixel[1] + 30 && pixel[0] > pixel[2] + 30) return 'r';
+      if (pixel[1] > pixel[0] + 30 && pixel[1] > pixel[2] + 30) return 'g';
+      if (pixel[2] > pixel[0] + 30 && pixel[2] > pixel[1] + 30) return 'b';
+      return 'w';
+    };
+    EXPECT_EQ(strongest(0.25, 0.25), 'r');
+    EXPECT_EQ(strongest(0.75, 0.25), 'g');
+    EXPECT_EQ(strongest(0.25, 0.75), 'b');
+    EXPECT_EQ(strongest(0.75, 0.75), 'w');
+  }
+}
+
+}  // namespace
+}  // namespace weft::render
