@@ -83,6 +83,8 @@ std::span<const CornerPair> Separation::find_failing(std::span<const Vec3> x_t0,
   fans_.find_failing(x_t0, x_t1, moved_, changed_, failing_, which);
   if (pinched != nullptr && !pinched->empty())
     std::erase_if(failing_, [&](const CornerPair& pair) { return pinched->exempts(pair); });
+  // Which pairs are pushed apart first matters, and the order of trees depends on the axes of the world.
+  std::ranges::sort(failing_);
   return failing_;
 }
 
