@@ -40,7 +40,7 @@ double stiffness_share(const Proximity& proximity, bool with_cloth) {
   if (!with_cloth) return inside_wedges;
   double least = 1;
   for (double weight : proximity.weights) least = std::min(least, std::abs(weight));
-  return ramp(numerics.contact.flat_fold, 2 * numerics.contact.fade, -outside[0] - outside[1]) * inside_wedges *
+  return ramp(numerics.contact.flat_fold(), 2 * numerics.contact.fade, -outside[0] - outside[1]) * inside_wedges *
          ramp(0, numerics.contact.fade, least);
 }
 

@@ -55,7 +55,7 @@ Engine::Engine(Bodies bodies, const EngineParameters& parameters, std::span<cons
   const double reach = candidates_.reach();
   if (parameters.search.coherence)
     coherence_.emplace(bodies_.surfaces(), candidates_.wanted(), x,
-                       CoherenceParameters{reach, 0.5 * numerics.contact.margin * reach, numerics.contact.flat_fold});
+                       CoherenceParameters{reach, 0.5 * numerics.contact.margin * reach, numerics.contact.flat_fold()});
 }
 
 void Engine::forget() {
@@ -104,10 +104,10 @@ void Engine::gather(std::span<const Vec3> x) {
   closer_.clear();
   separation_.append_closer(radius, x, closer_);
   if (meets_itself_)
-    finder_.gather(closer_, bodies_.deformable(), x, radius, numerics.contact.flat_fold,
+    finder_.gather(closer_, bodies_.deformable(), x, radius, numerics.contact.flat_fold(),
                    separation_.open_triangles(radius, x));
   else
-    finder_.gather(closer_, {}, x, radius, numerics.contact.flat_fold, {});
+    finder_.gather(closer_, {}, x, radius, numerics.contact.flat_fold(), {});
   gathered_at_.assign(x.begin(), x.end());
 }
 

@@ -62,10 +62,8 @@ struct Numerics {
     /// and normal forces, and cloths that press on each other, chase each other.
     int patience = 20;
     double velocity_ratio = 0.5;
-    /// How long a wrong velocity counts [s]: half of this, the time of a swing of 1 m, and in steps. Shorter: the
-    /// solver decides the error; longer: more iterations.
-    double swing_time = 0.3;
-    double lasting_steps = 5;
+    /// How long a wrong velocity counts [s]. Shorter: the solver decides the error; longer: more iterations.
+    double lasting_time = 0.15;
     /// Acceleration and velocity below the visibility threshold, times the tolerance [m/s²], [m/s].
     double unseen_acceleration = 0.01;
     double unseen_velocity = 1e-3;
@@ -87,10 +85,8 @@ struct Numerics {
     /// Least and largest factor from one step to the next. Larger: BDF2 carries its error on.
     double least_factor = 0.2;
     double largest_factor = 1.5;
-    /// Length below which no error shortens a step [s]: 1e-4 m at 10 m/s.
+    /// Length below which no error shortens a step [s], 1e-4 m at 10 m/s, and a step that is not solved ends the run.
     double least = 1e-5;
-    /// Length below which a step that is not solved ends the run [s].
-    double shortest = 1e-7;
     /// Growth from step to step after one was rejected. Larger: cloth that is wrung is rejected again and again.
     double recovery = 1.1;
     /// Cloth slower than this [m/s], and with no more acceleration than is visible, rests: a frame is one step.
@@ -112,12 +108,11 @@ struct Numerics {
     double inertial_stiffness = 100;
     /// Stiffening as the gap closes, k d (1 + stiffening (d/r)⁴). 10: tips press through; 1000: more iterations.
     double stiffening = 100;
-    /// Fold of two edges, as a sum of sines of half the angles, below which they have no contact. Larger: creases that
-    /// cross are kept apart by planes alone.
-    double flat_fold = 0.05;
-    /// An edge pair fades out over twice this fold, over this sine outside of its wedge, and over this part of an edge
-    /// at its ends. 0: contacts switch on and off.
+    /// An edge pair fades out between twice and half of this fold of its edges (a sum of sines of half the angles),
+    /// over this sine outside of its wedge, and over this part of an edge at its ends. 0: contacts switch on and off;
+    /// larger: creases that cross are kept apart by planes alone.
     double fade = 0.1;
+    double flat_fold() const { return 0.5 * fade; }
     /// Slip velocity below which friction sticks [m/s], and in particle spacings per second if that is more. Larger:
     /// cloth creeps down slopes; smaller: a stiffer system.
     double stick_velocity = 2e-4;

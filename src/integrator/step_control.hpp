@@ -36,7 +36,7 @@ class StepControl {
     serialize_values(archive, wanted_, last_share_);
     // Half of the shortest step may be wanted after it failed.
     if constexpr (Archive::kReads)
-      require(wanted_ >= 0.1 * numerics.steps.shortest && std::isfinite(wanted_) && std::isfinite(last_share_),
+      require(wanted_ >= 0.1 * numerics.steps.least && std::isfinite(wanted_) && std::isfinite(last_share_),
               "a step length");
   }
 

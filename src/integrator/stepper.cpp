@@ -104,16 +104,11 @@ void Stepper::residual(System& system, const State& now, const Stage& stage, Equ
   gather_residual(system.masses(), stage);
 }
 
-// How long a velocity that is left counts [s].
-double Stepper::carried_on(double h) {
-  return std::max(numerics.newton.lasting_steps * h, 0.5 * numerics.newton.swing_time);
-}
-
-// Velocity [m/s], root mean square over the mass of a part, that the solver may leave: what moves the part in the time
-// of a swing by `tolerance` times the method's error of position in this step. A displacement of that size left in each
-// step would not do: where steps h follow a tolerance as h^(p+1) it would cost the method an order.
+// Velocity [m/s], root mean square over the mass of a part, that the solver may leave: what moves the part by
+// `tolerance` times the method's error of position in this step, in `lasting_time`. A displacement of that size left in
+// each step would not do: where steps h follow a tolerance as h^(p+1) it would cost the method an order.
 void Stepper::allow_velocities(double h, int iterations) {
-  const double time = carried_on(h);
+  const double time = numerics.newton.lasting_time;
   double unseen = numerics.newton.unseen_acceleration * h * time;
   if (parameters_.position_tolerance > 0) unseen = std::min(unseen, parameters_.position_tolerance);
   for (PartState& part : parts_) {
@@ -174,9 +169,10 @@ void Stepper::estimate_slides(const System& system, const Stage& stage) {
   }
 }
 
-bool Stepper::is_solved(int iterations, double h) const {
+bool Stepper::is_solved(int iterations) const {
   double most = iterations < numerics.newton.patience ? 0 : parameters_.tolerance * numerics.newton.unseen_velocity;
-  if (parameters_.position_tolerance > 0) most = std::min(most, parameters_.position_tolerance / carried_on(h));
+  if (parameters_.position_tolerance > 0)
+    most = std::min(most, parameters_.position_tolerance / numerics.newton.lasting_time);
   return std::ranges::all_of(parts_, [&](const PartState& part) {
     return part.left <= std::max(part.allowed, most) &&
            part.slides <= (iterations < numerics.newton.patience / 2 ? part.may_slide : std::max(part.allowed, most));
@@ -316,8 +312,8 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     estimate_left(solved, fraction, masses);
     estimate_slides(system, stage);
     select_unsolved(report.newton_iterations);
-    report_worst(h, report);
-    solved_all = is_solved(done + report.newton_iterations, h);
+    report_worst(report);
+    solved_all = is_solved(done + report.newton_iterations);
     if (!solved_all && !solved.definite)
       report.verdict = Verdict::indefinite;
     else if (!solved_all && report.newton_iterations >= parameters_.max_iterations)
@@ -376,8 +372,8 @@ solver::LinearReport Stepper::solve_linear(int iteration, std::span<const Vec3> 
 }
 
 // What is left and may be left of the worst part.
-void Stepper::report_worst(double h, StepReport& report) const {
-  const double time = carried_on(h);
+void Stepper::report_worst(StepReport& report) const {
+  const double time = numerics.newton.lasting_time;
   report.local_error = report.solver_error = 0;
   double worst = -1;
   for (const PartState& part : parts_) {

@@ -45,8 +45,7 @@ struct StepReport {
   int newton_iterations = 0;
   int linear_iterations = 0;
   double local_error = 0;  ///< estimate of what the method adds to the error of positions in this step [m]
-  /// And of what the solver adds: what it left, as displacement of this step, or as the velocity that goes on from it
-  /// for the time of a swing [m].
+  /// And of what the solver adds: the velocity that it left, times `Numerics::Newton::lasting_time` [m].
   double solver_error = 0;
   double left = 0, allowed = 0;  ///< velocity that the solver left in the worst part, and might have [m/s]
   StageTimes times;
@@ -165,7 +164,6 @@ class Stepper {
   void gather_residual(std::span<const double> masses, const Stage& stage);
   void estimate_local_errors(std::span<const double> masses, const State& now, const Stage& stage, double h);
   void allow_velocities(double h, int iterations);
-  static double carried_on(double h);
   static double root_mean_square(const PartState& part, std::span<const double> masses, std::span<const Vec3> of);
   void balance_momentum(std::span<const double> masses, const solver::LinearSystem& linear, const Stage& stage);
   std::span<const Vec3> precondition(std::span<const Vec3> residual);
@@ -173,8 +171,8 @@ class Stepper {
   void estimate_left(const solver::LinearReport& solved, double fraction, std::span<const double> masses);
   void estimate_slides(const System& system, const Stage& stage);
   void select_unsolved(int iterations);
-  bool is_solved(int iterations, double h) const;
-  void report_worst(double h, StepReport& report) const;
+  bool is_solved(int iterations) const;
+  void report_worst(StepReport& report) const;
   void finish(const State& now, const Stage& stage, std::span<const HeldParticle> held, State& next) const;
   Vec3 v_end(const State& now, const Stage& stage, std::size_t i) const;
 

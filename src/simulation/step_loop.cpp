@@ -189,7 +189,7 @@ void StepLoop::advance_controlled(double t_t0, double t_t1, FrameReport& report)
       h = (t_t1 - t) / left;
     }
     for (; turns_too_far(t, h); h *= 0.5) left *= 2;
-    const bool last_try = retries == scene_.solver.halvings || h < numerics.steps.shortest;
+    const bool last_try = retries == scene_.solver.halvings || h < numerics.steps.least;
     const Rejection rejection = attempt(t, h, retries, last_try, report);
     if (rejection && last_try) fail(report.frame, t, h, *rejection);
     // An impact may ask for steps without end: after as many tries its error is taken as it is.

@@ -168,9 +168,9 @@ TEST(StepTolerance, RunThatIsStuckIsRefusedInsteadOfShorteningStepsForEver) {
   const auto at = text.find("down to h = ");
   ASSERT_NE(at, std::string::npos) << text;
   ASSERT_EQ(std::sscanf(text.c_str() + at, "down to h = %lf", &h), 1);
-  EXPECT_LT(h, numerics.steps.shortest);
+  EXPECT_LT(h, numerics.steps.least);
   // Lengths go down by a fifth at most at once.
-  EXPECT_GE(h, 0.2 * numerics.steps.shortest);
+  EXPECT_GE(h, 0.2 * numerics.steps.least);
 }
 
 // A sheet laid on a block, over whose edges it hangs down, in two steps a frame.
