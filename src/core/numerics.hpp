@@ -165,13 +165,9 @@ struct Numerics {
   /// Repairs of a step (src/simulation/step_loop.cpp).
   struct Repair {
     /// Halvings before cloth counts as pinched, and before a diverging or overstretched solve is accepted.
-    int halvings_before_pinch = 3;
-    int halvings_before_stretch = 6;
-    /// Times that a solve continues from where cloth was pushed apart (0: a ring takes four times the steps); on end
-    /// without gain; and the energy stored, relative to the least before, from which there is none.
+    int halvings = 3;
+    /// Times that a solve continues from where cloth was pushed apart. 0: a ring takes four times the steps.
     int restarts = 16;
-    int idle_restarts = 2;
-    double idle_energy = 0.9;
     /// Energy, relative to that in play, and strain that pushing apart may add; energy for which the step is halved.
     double unfelt_energy = 0.1;
     double unfelt_strain = 0.05;

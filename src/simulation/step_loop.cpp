@@ -220,7 +220,7 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last
   for (int tries = 1;; ++tries) {
     pins_.begin_step(t, h, progress_.now.x);
     Rejection rejection = attempt_with(t, h, retries, last_try, tries == numerics.repair.tries, report);
-    if (!rejection && collisions_ && !last_try && retries < numerics.repair.halvings_before_stretch)
+    if (!rejection && collisions_ && !last_try && retries < numerics.repair.halvings)
       rejection = torn(h, true);
     if (!collisions_ || collisions_->gave_way().empty() || tries == numerics.repair.tries) return rejection;
     if (!is_short_enough(retries, last_try) && !pins_.any_lags()) return rejection;
@@ -266,7 +266,7 @@ void StepLoop::update_weather(double t, double h) {
 // Whether a shorter step would find no room that this one does not.
 bool StepLoop::is_short_enough(int retries, bool last_try) const {
   return last_try ||
-         (retries >= numerics.repair.halvings_before_pinch && collisions_->obstacles_creep(progress_.now, next_));
+         (retries >= numerics.repair.halvings && collisions_->obstacles_creep(progress_.now, next_));
 }
 
 // The same with pins as they are.
@@ -289,8 +289,7 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   if (!collisions_) return reason_of(solve(h, start, false, report));
   collision::ContactResponse& response = collisions_->response();
   const auto force_on = [&](Index particle) { return stepper_.constraint_force(particle, cloth_.masses()[particle]); };
-  int adoptions = 0, bends = 0, idle_bends = 0;
-  double least_stored = std::numeric_limits<double>::infinity();  // [J], where the way has bent
+  int adoptions = 0, bends = 0;
   bool look = true;
   for (bool is_first = true;; is_first = false, start = Start::next) {
     held_.resize(pinned_);
@@ -313,7 +312,7 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
     const bool solved = step.verdict == integrator::Verdict::solved;
     // A solve that diverges scatters particles. All pairs of triangles may then meet, and to find and push them apart
     // takes a hundred times what the step takes in halves.
-    if (!solved && !last_try && retries < numerics.repair.halvings_before_stretch)
+    if (!solved && !last_try && retries < numerics.repair.halvings)
       if (Rejection rejection = torn(h, false)) return rejection;
     look = true;
     const bool may_adopt = bends == 0 && adoptions + 1 < response.most_solves();
@@ -337,10 +336,7 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
       if (solved && added_share(before, h) <= numerics.repair.unfelt_energy &&
           cloth_.max_strain(next_.particles()) <= strain + numerics.repair.unfelt_strain)
         return std::nullopt;
-      const double stored = cloth_.elastic_energy(next_.particles());
-      idle_bends = solved && stored > numerics.repair.idle_energy * least_stored ? idle_bends + 1 : 0;
-      least_stored = std::min(least_stored, stored);
-      bends = idle_bends == numerics.repair.idle_restarts ? numerics.repair.restarts : bends + 1;
+      ++bends;
       collisions_->go_on_from(next_);
       problem_.forget_contacts();
     } else if (solved) {
@@ -354,7 +350,7 @@ StepLoop::Rejection StepLoop::correct(double h, int retries, bool last_try, bool
   const double before = energy(next_);
   const bool may_pinch = is_short_enough(retries, last_try);
   if (Rejection stuck = collisions_->push_apart(h, may_pinch, may_give_way, progress_.now, next_)) return stuck;
-  if (last_try || retries >= numerics.repair.halvings_before_pinch) return std::nullopt;
+  if (last_try || retries >= numerics.repair.halvings) return std::nullopt;
   const double share = added_share(before, h);
   if (share <= numerics.repair.corrected_energy) return std::nullopt;
   progress_.longest = 0.5 * h;
