@@ -42,10 +42,9 @@ struct Numerics {
   struct Newton {
     /// What the linear solver may leave, relative to what Newton's method may; a block below that is not solved again.
     double linear_fraction = 0.8;
-    /// The same in the first iteration of the midpoint rule, which damps nothing; and its linear tolerance, relative to
-    /// that of other methods. Larger: flat sheets fold in free fall.
-    double undamped_fraction = 0.01;
-    double undamped_tolerance = 0.1;
+    /// The same, and the linear tolerance, of the midpoint rule relative to other methods: it damps nothing. Larger:
+    /// flat sheets fold in free fall.
+    double undamped = 0.1;
     /// Slopes behind and before the minimum, relative to the one at the start, that end a line search.
     double overshoot = 0.7;
     double undershoot = 0.5;
@@ -91,8 +90,6 @@ struct Numerics {
     double recovery = 1.1;
     /// Cloth slower than this [m/s], and with no more acceleration than is visible, rests: a frame is one step.
     double rest_velocity = 0.02;
-    /// Longest such step [s].
-    double longest_rest = 0.05;
   } steps;
 
   /// Contacts (src/collision).
@@ -141,10 +138,9 @@ struct Numerics {
     /// Rounds of pushing apart; then half as many of backtracking by halves. Fewer: particles go back farther than
     /// needed.
     int rounds = 24;
-    /// Distance between an obstacle's arc and its chord, in detection distances, above which a step is halved.
-    double sagitta = 0.25;
-    /// Motion of an obstacle in a step, in detection distances, below which shorter steps find no more space.
-    double creep = 0.5;
+    /// Distance between an obstacle's arc and its chord, in detection distances, above which a step is halved; and
+    /// motion of an obstacle in a step below which shorter steps find no more space.
+    double creep = 0.25;
   } separation;
 
   /// The paper's velocity constraints (`contact.response`).
@@ -183,12 +179,9 @@ struct Numerics {
 
   /// Pins that obstacles keep from their place (src/simulation/yielding_pins.cpp).
   struct Pins {
-    /// Part of the way of its place in a step at which a particle is held again.
-    double arrived_fraction = 0.5;
-    /// Velocity of its return [m/s], the least that forces are divided by [m/s], and its duration in steps.
+    /// Velocity of its return [m/s], and the least that forces are divided by [m/s].
     double return_velocity = 1;
     double slowest = 1e-3;
-    double return_steps = 2;
     /// Force on it: acceleration [m/s²], weights of the cloth, and acceleration at most [m/s²].
     double acceleration = 2000;
     double weights = 3;

@@ -297,7 +297,7 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
     measure(precondition(residual_), masses, foreseen_);
     const bool first = done + report.newton_iterations == 0;
     const solver::LinearReport solved =
-        solve_linear(report.newton_iterations, first ? likely_change(masses, now) : std::span<const Vec3>(), now.x);
+        solve_linear(first ? likely_change(masses, now) : std::span<const Vec3>(), now.x);
     ++report.newton_iterations;
     report.linear_iterations += solved.iterations;
 
@@ -356,19 +356,18 @@ void Stepper::balance_momentum(std::span<const double> masses, const solver::Lin
 
 // For the parts that are not solved. `start`: see solver::Directions. What is left does no work along velocities of the
 // stage, β v = x − x̂, nor along the displacement of the step, x − x0, where that is another direction.
-solver::LinearReport Stepper::solve_linear(int iteration, std::span<const Vec3> start, std::span<const Vec3> x0) {
+solver::LinearReport Stepper::solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0) {
   goals_.clear();
-  const bool damps = method_ != Method::implicit_midpoint;
-  const double share = damps || iteration > 0 ? numerics.newton.linear_fraction : numerics.newton.undamped_fraction;
-  const double relative = (damps ? 1 : numerics.newton.undamped_tolerance) * parameters_.linear_tolerance;
-  for (const PartState& part : parts_) goals_.push_back(share * part.allowed * std::sqrt(part.mass));
+  const double tighter = method_ == Method::implicit_midpoint ? numerics.newton.undamped : 1;
+  const double fraction = tighter * numerics.newton.linear_fraction;
+  for (const PartState& part : parts_) goals_.push_back(fraction * part.allowed * std::sqrt(part.mass));
   motion_.resize(x_.size());
   for_each_particle(x_.size(), [&](std::size_t i) { motion_[i] = x_[i] - x_hat_[i]; });
   drift_.resize(past_.size() > 1 ? x_.size() : 0);
   for_each_particle(drift_.size(), [&](std::size_t i) { drift_[i] = x_hat_[i] - x0[i]; });
   const Stopwatch watch(times_.linear);
-  return cg_.solve(residual_, {relative, goals_}, parameters_.max_linear_iterations, delta_, {start, motion_, drift_},
-                   unsolved_);
+  return cg_.solve(residual_, {tighter * parameters_.linear_tolerance, goals_}, parameters_.max_linear_iterations,
+                   delta_, {start, motion_, drift_}, unsolved_);
 }
 
 // What is left and may be left of the worst part.

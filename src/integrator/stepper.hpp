@@ -155,7 +155,7 @@ class Stepper {
             std::vector<solver::ParticleConstraint>& constraints);
   void list_parts(std::span<const double> masses, const State& now, const solver::LinearSystem& linear);
   std::span<const Vec3> likely_change(std::span<const double> masses, const State& now);
-  solver::LinearReport solve_linear(int iteration, std::span<const Vec3> start, std::span<const Vec3> x0);
+  solver::LinearReport solve_linear(std::span<const Vec3> start, std::span<const Vec3> x0);
   double search_along_delta(System& system, const State& now, const Stage& stage);
   enum class Equation { itself, linear };
   void linearise(System& system, const State& now, const Stage& stage, int iteration);

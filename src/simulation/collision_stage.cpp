@@ -285,7 +285,7 @@ bool CollisionStage::begin_step(double t, double h, std::span<const integrator::
 }
 
 bool CollisionStage::turns_too_far(double t, double h, const Moment& now) const {
-  const double most = numerics.separation.sagitta * engine_.reach();
+  const double most = numerics.separation.creep * engine_.reach();
   for (std::size_t b = 0; b < bodies_.size(); ++b) {
     if (radii_[b] == 0 || (is_dynamic(b) && t >= environment_.bodies[bodies_[b]].dynamics->release)) continue;
     // Between keys the speed of turning is nearly even; at its last key a body stands.

@@ -119,9 +119,8 @@ bool StepLoop::may_rest(double t, double h, int steps) {
   const double whole = steps * h;
   // Velocity constraints let go and stick again step by step.
   const bool by_steps = scene_.contact.response == scene::Response::velocity_constraints;
-  if (scene_.time.integrator != scene::Integrator::implicit_euler || by_steps ||
-      whole > (1 + 1e-9) * numerics.steps.longest_rest || whole > progress_.longest || !is_slow(progress_.now) ||
-      !has_settled())
+  if (scene_.time.integrator != scene::Integrator::implicit_euler || by_steps || whole > progress_.longest ||
+      !is_slow(progress_.now) || !has_settled())
     return false;
   for (int s = 1; s <= steps; ++s) {
     const double end = t + s * h;

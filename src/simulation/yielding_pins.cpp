@@ -53,8 +53,7 @@ void YieldingPins::begin_step(double t, double h, std::span<const Vec3> x) {
   if (any_lagged)
     for (const integrator::HeldParticle& start : at_start_) {
       const auto i = static_cast<std::size_t>(start.constraint.particle);
-      const double near = std::max(arrived_distance(), numerics.pins.arrived_fraction * h *
-                                                           std::min(start.v_end.norm(), numerics.pins.return_velocity));
+      const double near = std::max(arrived_distance(), h * std::min(start.v_end.norm(), numerics.pins.return_velocity));
       lags_[i] = lagged_[i] != 0 && (x[i] - start.x_end).norm() > near;
     }
   held_.clear();
@@ -95,7 +94,7 @@ void YieldingPins::pull(const integrator::HeldParticle& target, double h, std::s
     pulls_.push_back({particle, target.x_end, target.v_end, strength, 2 * std::sqrt(strength * masses_[i])});
     return;
   }
-  Vec3 speed = (target.x_end - h * target.v_end - x[i]) / (numerics.pins.return_steps * h);
+  Vec3 speed = (target.x_end - h * target.v_end - x[i]) / h;
   if (const double size = speed.norm(); size > numerics.pins.return_velocity)
     speed *= numerics.pins.return_velocity / size;
   speed += target.v_end;
