@@ -67,7 +67,8 @@ void Environment::add_parents(const scene::Scene& scene) {
   };
   parents_ = parents_of(scene.obstacles);
   camera_parents = parents_of(scene.cameras);
-  for (std::size_t o = 0; o < parents_.size(); ++o) bodies[o].moving = scene::moves(scene, scene.obstacles[o]);
+  for (std::size_t o = 0; o < parents_.size(); ++o)
+    if (scene::moves(scene, scene.obstacles[o])) bodies[o].moving = true;
 }
 
 void Environment::add_part_parents(const scene::Scene& scene, const scene::Character& character,
