@@ -176,6 +176,7 @@ void serialize(Archive& archive, frame::Appearance& look, const Textures& textur
     serialize_finite(archive, *number);
   serialize_byte(archive, look.finish.threads, Threads::none);
   serialize_finite(archive, look.metal);
+  serialize_finite(archive, look.coat);
   serialize_finite(archive, look.thickness);
   serialize_finite(archive, look.hem);
   serialize_flag(archive, look.checker);

@@ -35,8 +35,7 @@ struct Paint {
 
 /// What cloth does with light beside showing its colour, each from 0 to 1.
 struct Finish {
-  double gloss = 0.15;      ///< highlights that threads give, wide across themselves and narrow along; of what is no
-                            ///< cloth: of a clear coat
+  double gloss = 0.15;      ///< highlights that threads give, wide across themselves and narrow along
   double warp_share = 0.5;  ///< of the threads that lie on top: 0.5 of a plain weave, more of a satin
   double fuzz = 0.4;        ///< fibres that stand out and catch light at grazing angles
   double sheer = 0.25;      ///< light that comes through from the other side
@@ -49,8 +48,9 @@ struct Appearance {
   Vec3 back_color{0.8, 0.8, 0.8};  ///< cloth only: the side from which weft × warp points away
   double roughness = 0.6;          ///< 0 mirror-like to 1 matte
   double thread_spacing = 0;       ///< distance of two threads of the drawn weave [m]; 0 draws none
-  Finish finish;                   ///< cloth only, but for its gloss
+  Finish finish;                   ///< cloth only
   double metal = 0;                ///< not of cloth: 1 where all light is reflected in `color`, none scattered
+  double coat = 0;                 ///< not of cloth: of a clear coat over it, 1 as of glass
   double thickness = 0;            ///< of the cloth itself, as its borders show it [m]; 0: none
   double hem = 0;                  ///< width to which borders of cloth are folded to the back and sewn [m]; 0: cut
   bool checker = false;            ///< faint grid of 0.5 m tiles on the floor, to give scale

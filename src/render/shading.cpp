@@ -83,7 +83,7 @@ frame::Appearance clay(const frame::Appearance& look) {
   plain.roughness = 0.7;
   plain.thread_spacing = 0;
   plain.finish = {0, 0.5, 0.2, 0};
-  plain.metal = 0;
+  plain.metal = plain.coat = 0;
   plain.hem = 0;
   return plain;
 }
@@ -178,7 +178,7 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
   glossy_ = std::ranges::any_of(
       materials, [](const Material& material) { return material.cloth && material.appearance.finish.gloss > kMatte; });
   metal_ = std::ranges::any_of(materials, [](const Material& material) {
-    return !material.cloth && (material.appearance.metal > 0 || material.appearance.finish.gloss > 0);
+    return !material.cloth && (material.appearance.metal > 0 || material.appearance.coat > 0);
   });
   for (const auto& [look, cloth, opacity] : materials) {
     texels.push_back(texel(look.color, std::clamp(look.roughness, 0.0, 1.0)));
@@ -187,8 +187,9 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
         Eigen::Vector4d(cloth ? heat_scale : 0, look.hem, look.thickness, look.thickness > kSewnTwice ? kBesideSeam : 0)
             .cast<float>());
     const frame::Finish& finish = look.finish;
-    texels.push_back(
-        Eigen::Vector4d(finish.gloss, cloth ? finish.warp_share : look.metal, finish.fuzz, finish.sheer).cast<float>());
+    texels.push_back(Eigen::Vector4d(cloth ? finish.gloss : look.coat, cloth ? finish.warp_share : look.metal,
+                                     finish.fuzz, finish.sheer)
+                         .cast<float>());
     texels.emplace_back(static_cast<float>(opacity), static_cast<float>(finish.threads), 0.0f, 0.0f);
   }
   const int rows = static_cast<int>(materials.size());

@@ -108,7 +108,10 @@ void dress(frame::Surface& surface, const scene::Look& look, Pictures& pictures)
   lay_on(surface.appearance, look, pictures);
   if (surface.kind != frame::ObjectKind::cloth) surface.appearance.thread_spacing = 0;
   // Places of pictures on obstacles are measured in pictures.
-  if (surface.kind == frame::ObjectKind::obstacle) surface.appearance.paint.texture_from_uv.setIdentity();
+  if (surface.kind == frame::ObjectKind::obstacle) {
+    surface.appearance.paint.texture_from_uv.setIdentity();
+    surface.appearance.coat = look.gloss.value_or(0);
+  }
   if (surface.infinite_floor && look.image) fill(surface.appearance);
   // What a character's file says is in its parts already.
   if (surface.kind == frame::ObjectKind::character && look.as_file) return;

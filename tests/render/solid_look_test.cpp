@@ -27,7 +27,7 @@ frame::FrameSnapshot ball(double metal, double gloss, double roughness) {
   frame::Appearance& look = add_sphere(snapshot, Vec3::Zero(), 0.5, 40).appearance;
   look.color = Vec3(0.7, 0.15, 0.1);
   look.metal = metal;
-  look.finish.gloss = gloss;
+  look.coat = gloss;
   look.roughness = roughness;
   snapshot.cameras = {camera_at(Vec3(0, -2, 0), Vec3::Zero(), 35)};
   return snapshot;
