@@ -39,11 +39,7 @@ void check_followed(const Scene& scene, const std::string& follow, const std::st
                                        followed.body, followed.body, in_quotes(follow)));
     return;
   }
-  if (const Obstacle* obstacle = obstacle_named(scene, follow)) {
-    if (is_dynamic(*obstacle))
-      findings.report(key, fmt::format("expected a body that keys move, got {}, which has a mass", in_quotes(follow)));
-    return;
-  }
+  if (obstacle_named(scene, follow) != nullptr) return;
   std::vector<std::string> all = obstacles;
   all.insert(all.end(), characters.begin(), characters.end());
   findings.report(key, fmt::format("expected the name of an obstacle, or a part of a character, got {}{}",
@@ -63,8 +59,12 @@ bool moves(const Scene& scene, const Obstacle& obstacle) {
 void check_following(const Scene& scene, Findings& findings) {
   for (std::size_t i = 0; i < scene.cameras.size(); ++i)
     check_followed(scene, scene.cameras[i].follow, findings.entry("camera", i) + ".follow", findings);
-  for (std::size_t i = 0; i < scene.obstacles.size(); ++i)
-    check_followed(scene, scene.obstacles[i].follow, findings.entry("obstacle", i) + ".follow", findings);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    const std::string key = findings.entry("obstacle", i) + ".follow", &follow = scene.obstacles[i].follow;
+    check_followed(scene, follow, key, findings);
+    if (const Obstacle* followed = obstacle_named(scene, follow); followed != nullptr && is_dynamic(*followed))
+      findings.report(key, fmt::format("expected a body that keys move, got {}, which has a mass", in_quotes(follow)));
+  }
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     const Obstacle& obstacle = scene.obstacles[i];
     const std::vector<const Obstacle*> parents = parents_of(scene, obstacle);
