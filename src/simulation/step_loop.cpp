@@ -219,8 +219,7 @@ StepLoop::Rejection StepLoop::attempt(double t, double h, int retries, bool last
   for (int tries = 1;; ++tries) {
     pins_.begin_step(t, h, progress_.now.x);
     Rejection rejection = attempt_with(t, h, retries, last_try, tries == numerics.repair.tries, report);
-    if (!rejection && collisions_ && !last_try && retries < numerics.repair.halvings)
-      rejection = torn(h, true);
+    if (!rejection && collisions_ && !last_try && retries < numerics.repair.halvings) rejection = torn(h, true);
     if (!collisions_ || collisions_->gave_way().empty() || tries == numerics.repair.tries) return rejection;
     if (!is_short_enough(retries, last_try) && !pins_.any_lags()) return rejection;
     for (const collision::GivenWay& given : collisions_->gave_way())
@@ -264,8 +263,7 @@ void StepLoop::update_weather(double t, double h) {
 
 // Whether a shorter step would find no room that this one does not.
 bool StepLoop::is_short_enough(int retries, bool last_try) const {
-  return last_try ||
-         (retries >= numerics.repair.halvings && collisions_->obstacles_creep(progress_.now, next_));
+  return last_try || (retries >= numerics.repair.halvings && collisions_->obstacles_creep(progress_.now, next_));
 }
 
 // The same with pins as they are.
