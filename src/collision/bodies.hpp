@@ -16,10 +16,10 @@ namespace weft::collision {
 struct BodyTraits {
   bool deformable = false;  ///< particles, which the solve moves
   double thickness = 0;     ///< of these [m]; 0 for obstacles
-  double friction = 0;   ///< Coulomb coefficient; of a pair: the geometric mean
-  bool moving = true;    ///< false: its vertices stay where they are at the start
-  bool rigid = false;    ///< its vertices keep their distances from each other
-  Index frame = -1;      ///< of what is both: the first of the four particles that its vertices follow
+  double friction = 0;      ///< Coulomb coefficient; of a pair: the geometric mean
+  bool moving = true;       ///< false: its vertices stay where they are at the start
+  bool rigid = false;       ///< its vertices keep their distances from each other
+  Index frame = -1;         ///< of what is both: the first of the four particles that its vertices follow
 };
 
 /// A part of a surface that collides in another way than the rest of it.

@@ -12,8 +12,7 @@ Rigidity::Rigidity(const mesh::RigidFrame& frame, Index first, double mass, doub
     : first_(first), deviations_(frame.deviations()), modulus_(stiffness * mass) {}
 
 void Rigidity::couple(std::vector<std::pair<Index, Index>>& pairs) const {
-  for (const auto& [i, j] : kPairs)
-    pairs.emplace_back(first_ + static_cast<Index>(i), first_ + static_cast<Index>(j));
+  for (const auto& [i, j] : kPairs) pairs.emplace_back(first_ + static_cast<Index>(i), first_ + static_cast<Index>(j));
 }
 
 void Rigidity::attach(const solver::Assembly& assembly) {

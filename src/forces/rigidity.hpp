@@ -10,12 +10,12 @@
 namespace weft::forces {
 
 /// The four particles p_k of a rigid body (mesh::RigidFrame) keep their distances. With B = ¼ Σ p_k t_kᵀ, which is
-/// R diag(s) in a body that is rigid, the energy is κ m / 8 ‖W Bᵀ B W − W⁻²‖², W = diag(s)^-½: that of the strain AᵀA − I
-/// of an affine body (Lan et al., "Affine Body Dynamics", 2022) in measures in which all stretches have the same
+/// R diag(s) in a body that is rigid, the energy is κ m / 8 ‖W Bᵀ B W − W⁻²‖², W = diag(s)^-½: that of the strain AᵀA −
+/// I of an affine body (Lan et al., "Affine Body Dynamics", 2022) in measures in which all stretches have the same
 /// frequency √κ, so that thin bodies are as rigid as round ones.
 ///
-/// The strain is that of the end of a step, and acts along the directions of its stage. So a body turns without resisting
-/// with the midpoint rule, and its strain is damped with each method.
+/// The strain is that of the end of a step, and acts along the directions of its stage. So a body turns without
+/// resisting with the midpoint rule, and its strain is damped with each method.
 class Rigidity final : public Force {
  public:
   /// `first`: of its particles; `mass`: of the body [kg]; `stiffness`: κ [1/s²].

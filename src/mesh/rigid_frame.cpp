@@ -21,8 +21,7 @@ void add_tetrahedron(const Vec3& a, const Vec3& b, const Vec3& c, Moments& momen
   const Vec3 sum = a + b + c;
   moments.volume += volume;
   moments.first += 0.25 * volume * sum;
-  moments.second +=
-      volume / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
+  moments.second += volume / 20 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + sum * sum.transpose());
 }
 
 bool is_closed(std::span<const Triangle> triangles) {
@@ -41,7 +40,8 @@ RigidFrame::RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3
   Moments moments;
   const Vec3 origin = vertices[static_cast<std::size_t>(triangles.front()[0])];  // near, for few rounding errors
   for (const Triangle& t : triangles)
-    add_tetrahedron(vertices[static_cast<std::size_t>(t[0])] - origin, vertices[static_cast<std::size_t>(t[1])] - origin,
+    add_tetrahedron(vertices[static_cast<std::size_t>(t[0])] - origin,
+                    vertices[static_cast<std::size_t>(t[1])] - origin,
                     vertices[static_cast<std::size_t>(t[2])] - origin, moments);
   if (!(std::abs(moments.volume) > 0)) throw std::invalid_argument("a surface around some volume");
   const Vec3 middle = moments.first / moments.volume;

@@ -26,11 +26,11 @@ class RigidFrame {
   /// no volume.
   RigidFrame(std::span<const Triangle> triangles, std::span<const Vec3> vertices);
 
-  double volume() const { return volume_; }                              ///< [m³]
-  const Vec3& deviations() const { return deviations_; }                 ///< s [m]
-  const Vec3& centre() const { return centre_; }                         ///< of mass, in the coordinates of the mesh [m]
+  double volume() const { return volume_; }               ///< [m³]
+  const Vec3& deviations() const { return deviations_; }  ///< s [m]
+  const Vec3& centre() const { return centre_; }          ///< of mass, in the coordinates of the mesh [m]
   const std::array<Vec3, kParticles>& particles() const { return particles_; }  ///< likewise
-  const std::vector<Weights>& weights() const { return weights_; }       ///< of each vertex
+  const std::vector<Weights>& weights() const { return weights_; }              ///< of each vertex
 
   /// Writes where the vertices are if the four particles are at `frame`.
   void place(std::span<const Vec3> frame, std::span<Vec3> vertices) const;

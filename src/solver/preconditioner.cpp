@@ -243,7 +243,8 @@ void Preconditioner<Real>::sum_blocks(std::size_t part) {
   const std::vector<Index>& patch_of = levels_.back().group_of;
   const BlockMatrix& matrix = system_->matrix;
   const BlockMatrix::Pattern &full = matrix.full(), &isotropic = matrix.isotropic();
-  const double share = smooth_ && !parts_[part].is_small ? std::pow(numerics.linear.level_stiffness, static_cast<double>(depth)) : 1;
+  const double share =
+      smooth_ && !parts_[part].is_small ? std::pow(numerics.linear.level_stiffness, static_cast<double>(depth)) : 1;
   const auto add_to_patches = [&](Index i, Index j, const auto& block) {
     // The factorisation reads the lower triangle only.
     const Index patch_i = patch_of[at(i)], patch_j = patch_of[at(j)];
