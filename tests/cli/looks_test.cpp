@@ -64,7 +64,9 @@ std::string other_value(const std::string& path, const scene::Rule& rule) {
   if (path.ends_with("interpolation")) return "linear";
   switch (rule.type) {
     case scene::Type::boolean:
-      return path.ends_with("visible") || path.ends_with("image_repeat") ? "false" : "true";
+      for (const char* on : {"visible", "image_repeat", "follow_rotation"})
+        if (path.ends_with(on)) return "false";
+      return "true";
     case scene::Type::file:
       return WEFT_SOURCE_DIR "/scenes/gallery/pictures/check.png";
     case scene::Type::choice:
@@ -107,7 +109,11 @@ std::string bytes_of(const frame::FrameSnapshot& snapshot) {
 }
 
 void expect_not_simulated(const std::string& change, const scene::Scene& before, const frame::FrameSnapshot& kept) {
-  const scene::Scene after = scene_with({change});
+  // Some keys need another one.
+  std::vector<std::string> changes{change};
+  if (change.find("sensor_width") != std::string::npos) changes.emplace_back("camera.w.focal_length=40");
+  if (change.find("follow_rotation") != std::string::npos) changes.emplace_back("camera.w.follow=o");
+  const scene::Scene after = scene_with(changes);
   EXPECT_NE(after.hash, before.hash) << change;
   EXPECT_EQ(after.simulation_hash, before.simulation_hash) << change;
   EXPECT_TRUE(bytes_of(*third_frame(after)) == bytes_of(*simulation::Looks(after).put_on(kept))) << change;
