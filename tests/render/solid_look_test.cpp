@@ -113,7 +113,7 @@ TEST(Look, OfOneBodyLeavesThatOfOthers) {
   for (int y = 0; y < kSide; ++y)
     for (int x = 0; x < kSide / 2 - 10; ++x)
       for (int c = 0; c < 3; ++c) most = std::max(most, std::abs(plain.pixel(x, y)[c] - metal.pixel(x, y)[c]));
-  EXPECT_LE(most, 1);
+  EXPECT_LE(most, 2);  // metal scatters no light onto it
   EXPECT_NE(plain.rgb, metal.rgb);
 }
 

@@ -96,6 +96,9 @@ void expect_change(const std::string& text, const std::string& override_text) {
 /// Names, references, files and what needs another key beside it need more than any other value; scene_test covers
 /// them.
 bool is_plain_value(const std::string& path, const Rule& rule) {
+  const bool needs_mass = path.starts_with("obstacle.") &&
+                          (path.ends_with("velocity") || path.ends_with("spin") || path.ends_with("release"));
+  if (needs_mass) return false;
   return rule.type != Type::name && rule.type != Type::file && rule.type != Type::texts && !path.ends_with("follow") &&
          !path.ends_with("edge") && !path.ends_with("panel") && !path.ends_with("vertex_group") &&
          !path.ends_with("vertex_color") && !path.ends_with("follow_rotation") && !path.ends_with("sensor_width") &&
