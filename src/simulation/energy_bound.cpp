@@ -29,6 +29,11 @@ bool is_driven_by_pins_alone(const scene::Scene& scene) {
     return !obstacle.collide || !scene::moves(scene, obstacle);
   };
   if (!scene.characters.empty() || !std::ranges::all_of(scene.obstacles, stands)) return false;
+  // What is thrown at its release gets energy then.
+  const auto is_thrown = [](const scene::Obstacle& obstacle) {
+    return obstacle.release > 0 && (obstacle.velocity != Vec3::Zero() || obstacle.spin != Vec3::Zero());
+  };
+  if (std::ranges::any_of(scene.obstacles, is_thrown)) return false;
   // Attachments that draw their ends together, and bodies that move theirs, do work that is not counted.
   for (const scene::Attachment& attachment : scene.attachments) {
     const auto target = std::ranges::find(scene.obstacles, attachment.to, &scene::Obstacle::name);

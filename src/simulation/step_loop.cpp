@@ -273,7 +273,7 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   const Moment& now = progress_.now;
   held_ = pins_.held();
   hold_frames(environment_, cloth_, t + h, held_);
-  release_frames(environment_, cloth_, t, h, progress_.now.v);
+  if (release_frames(environment_, cloth_, t, h, progress_.now.v)) stepper_.restart();
   pinned_ = held_.size();
   problem_.begin_step(t + h - start_, now.particles(), held_, pins_.pulls());
   attachments_.begin_step(t, t + h, now.particles());

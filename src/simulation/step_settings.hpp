@@ -29,8 +29,9 @@ Moment start_of(const scene::Scene& scene, const environment::Environment& envir
 void hold_frames(const environment::Environment& environment, const ClothSystem& cloth, double t,
                  std::vector<integrator::HeldParticle>& held);
 
-/// Gives frames that are released in the step from t over h [s] the velocities of their keys, and their own.
-void release_frames(const environment::Environment& environment, const ClothSystem& cloth, double t, double h,
+/// Gives frames that are released in the step from t over h [s] the velocities of their keys, and their own. Returns
+/// whether a velocity has jumped: what a method remembers of earlier steps is then of no use.
+bool release_frames(const environment::Environment& environment, const ClothSystem& cloth, double t, double h,
                     std::span<Vec3> v);
 
 /// Whether bodies that are not yet released stay where they are between these times [s], and none is released.
