@@ -15,4 +15,12 @@ struct Past {
   double weight = 0;
 };
 
+/// Particles at the start of a step over h, and at the start of the step before it. Positions [m], velocities [m/s].
+struct StepStart {
+  double h = 0;                ///< [s]
+  std::span<const Vec3> x, v;  ///< of all particles
+  double h_before = 0;         ///< length of the step before [s]; 0: there was none
+  std::span<const Vec3> x_before, v_before = {};
+};
+
 }  // namespace weft

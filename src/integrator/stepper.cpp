@@ -324,7 +324,11 @@ StepReport Stepper::step(System& system, const State& now, double h, const Vec3&
   report.times = times_;
   unfinished_ = report.verdict == Verdict::unfinished ? report.newton_iterations : 0;
   if (report.verdict == Verdict::solved && system.is_translation_invariant()) balance_momentum(masses, linear, stage);
-  if (report.verdict == Verdict::solved || report.verdict == Verdict::unfinished) finish(now, stage, held, next);
+  if (report.verdict != Verdict::solved && report.verdict != Verdict::unfinished) return report;
+  jumps_.clear();
+  if (method_ == Method::bdf2 && report.verdict == Verdict::solved) split_impacts(system, now, stage, h);
+  finish(now, stage, held, next);
+  if (method_ == Method::bdf2) solved_v_ = next.v;
   return report;
 }
 
@@ -386,6 +390,23 @@ void Stepper::report_worst(StepReport& report) const {
   }
 }
 
+// What impacts change of velocities; see the class.
+void Stepper::split_impacts(System& system, const State& now, const Stage& stage, double h) {
+  std::vector<Vec3>& right_side = scratch_;
+  std::ranges::fill(right_side, Vec3::Zero());
+  const StepStart start{h, now.x, now.v, history_.h, history_.before.x, history_.before.v};
+  if (!system.find_impacts({x_, v_, x_end_, 1 / stage.beta, stage.end_rate, past_}, start, right_side)) return;
+  cg_.filter(right_side);
+  cg_.prepare(system.linear_system(), solver::Sums::kept);
+  goals_.clear();
+  for (const PartState& part : parts_)
+    goals_.push_back(numerics.newton.linear_fraction * part.allowed * std::sqrt(part.mass) / stage.beta);
+  jumps_.resize(x_.size());
+  cg_.solve(right_side, {parameters_.linear_tolerance, goals_}, parameters_.max_linear_iterations, jumps_,
+            {.motion = v_});
+  for_each_particle(x_.size(), [&](std::size_t i) { v_[i] += (1 - h / stage.beta) * jumps_[i]; });
+}
+
 // The end of the step from its stage.
 void Stepper::finish(const State& now, const Stage& stage, std::span<const HeldParticle> held, State& next) const {
   for_each_particle(x_.size(), [&](std::size_t i) {
@@ -445,10 +466,15 @@ double Stepper::longest_step() const {
   return bounded ? kLargestRatio * history_.h : std::numeric_limits<double>::infinity();
 }
 
-void Stepper::accept(const State& before, double h) {
+void Stepper::accept(const State& before, const State& after, double h) {
   history_.before.x.assign(before.x.begin(), before.x.begin() + std::ssize(before.v));
   history_.before.v = before.v;
   history_.h = h;
+  if (method_ != Method::bdf2) return;
+  for_each_particle(before.v.size(), [&](std::size_t i) {
+    history_.before.v[i] += after.v[i] - solved_v_[i];
+    if (!jumps_.empty()) history_.before.v[i] += jumps_[i];
+  });
 }
 
 }  // namespace weft::integrator

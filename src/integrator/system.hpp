@@ -60,6 +60,13 @@ class System {
     return false;
   }
 
+  /// Of a step that has been solved: makes the terms of linear_system() those of impacts, and adds to its right hand
+  /// side; the solution is what impacts have changed of velocities [m/s]. False if there is no impact.
+  virtual bool find_impacts(const StagePoint& at, const StepStart& start, std::span<Vec3> right_side) {
+    (void)at, (void)start, (void)right_side;
+    return false;
+  }
+
   /// What linearise() fills; its constraints are the integrator's.
   virtual solver::LinearSystem& linear_system() = 0;
 };

@@ -152,6 +152,12 @@ std::vector<Pins::Anchor> Pins::anchor(const environment::Environment& environme
   return anchors;
 }
 
+bool Pins::release_between(double t0, double t1) const {
+  return std::ranges::any_of(groups_, [&](const Group& group) {
+    return !group.particles.empty() && group.release >= 0 && t0 <= group.release && group.release < t1;
+  });
+}
+
 void Pins::held_at(double t, const environment::Environment& environment,
                    std::vector<integrator::HeldParticle>& held) const {
   held.clear();

@@ -38,6 +38,8 @@ class Pins {
   /// overlap, the first of the scene wins, and the part of one over the fade of another.
   void held_at(double t, const environment::Environment& environment,
                std::vector<integrator::HeldParticle>& held) const;
+  /// Whether a pin that holds at t0 is released by t1 [s].
+  bool release_between(double t0, double t1) const;
 
  private:
   /// A place beside a triangle of a body without bones, that moves with it as if it were rigid.

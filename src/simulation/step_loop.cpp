@@ -273,7 +273,9 @@ StepLoop::Rejection StepLoop::attempt_with(double t, double h, int retries, bool
   const Moment& now = progress_.now;
   held_ = pins_.held();
   hold_frames(environment_, cloth_, t + h, held_);
-  if (release_frames(environment_, cloth_, t, h, progress_.now.v)) stepper_.restart();
+  // What is let go changes its acceleration at once: the history says nothing of what follows.
+  const bool lets_go = release_frames(environment_, cloth_, t, h, progress_.now.v) || pins_.release_between(t, t + h);
+  if (lets_go) stepper_.restart();
   pinned_ = held_.size();
   problem_.begin_step(t + h - start_, now.particles(), held_, pins_.pulls());
   attachments_.begin_step(t, t + h, now.particles());
@@ -406,7 +408,7 @@ StepLoop::Rejection StepLoop::reason_of(const integrator::StepReport& step) {
 // Makes `next_`, reached over h, the state.
 void StepLoop::accept(double h, FrameReport& report) {
   count_work(measure_work(stepper_, std::span(held_).first(pinned_), cloth_.masses(), progress_.now, next_), report);
-  stepper_.accept(progress_.now, h);
+  stepper_.accept(progress_.now, next_, h);
   pins_.accept();
   attachments_.accept(next_.particles());
   if (collisions_) collisions_->accept();

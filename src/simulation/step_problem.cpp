@@ -57,12 +57,12 @@ void StepProblem::forces(const integrator::StagePoint& at, std::span<Vec3> force
   });
 }
 
-// Positions with those of the vertices of bodies behind them.
-std::vector<Vec3> StepProblem::with_vertices(std::span<const Vec3> x_end) const {
-  std::vector<Vec3> x(static_cast<std::size_t>(vertices_->end()));
-  std::ranges::copy(x_end.first(masses().size()), x.begin());
-  vertices_->place(x);
-  return x;
+// Positions, or velocities, with those of the vertices of bodies behind them.
+std::vector<Vec3> StepProblem::with_vertices(std::span<const Vec3> of_particles) const {
+  std::vector<Vec3> of_all(static_cast<std::size_t>(vertices_->end()));
+  std::ranges::copy(of_particles.first(masses().size()), of_all.begin());
+  vertices_->place(of_all);
+  return of_all;
 }
 
 // Calls add(x, force) for all that contacts know, and passes on to the frames of bodies what their vertices get.
@@ -133,6 +133,25 @@ bool StepProblem::contact_forces(const integrator::StagePoint& at, std::span<Vec
   vertices_->gather(friction_of_all, friction);
   vertices_->gather(limit_of_all, limit);
   return true;
+}
+
+bool StepProblem::find_impacts(const integrator::StagePoint& at, const StepStart& start, std::span<Vec3> right_side) {
+  if (contacts_ == nullptr || contacts_->empty()) return false;
+  solver::LinearSystem& system = memory_.system;
+  system.terms.clear();
+  system.wide_terms.clear();
+  system.diagonal_terms.clear();
+  if (vertices_ == nullptr) return contacts_->add_impacts(at.x_end, memory_.contacts, start, right_side, system);
+  const std::vector<Vec3> x = with_vertices(start.x), v = with_vertices(start.v);
+  std::vector<Vec3> v_before, x_before;
+  if (start.h_before > 0) x_before = with_vertices(start.x_before), v_before = with_vertices(start.v_before);
+  std::vector<Vec3> of_all(x.size(), Vec3::Zero());
+  const bool any = contacts_->add_impacts(with_vertices(at.x_end), memory_.contacts,
+                                          {start.h, x, v, start.h_before, x_before, v_before}, of_all, system);
+  for (std::size_t i = 0; i < masses().size(); ++i) right_side[i] += of_all[i];
+  vertices_->gather(of_all, right_side);
+  vertices_->spread(system);
+  return any;
 }
 
 void StepProblem::add_pulls(const integrator::StagePoint& at, std::span<Vec3> force) const {

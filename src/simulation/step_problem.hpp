@@ -81,6 +81,7 @@ class StepProblem final : public integrator::System {
   void linearise(const integrator::StagePoint& at, int iteration, std::span<Vec3> force) override;
   bool contact_forces(const integrator::StagePoint& at, std::span<Vec3> push, std::span<Vec3> friction,
                       std::span<double> limit) const override;
+  bool find_impacts(const integrator::StagePoint& at, const StepStart& start, std::span<Vec3> right_side) override;
   bool is_translation_invariant() const override { return true; }
   solver::LinearSystem& linear_system() override { return memory_.system; }
 
@@ -94,7 +95,7 @@ class StepProblem final : public integrator::System {
   bool is_stale(std::size_t cloth, std::span<const Vec3> x) const;
   template <class Add>
   void add_contact_forces(std::span<const Vec3> x_end, std::span<Vec3> force, const Add& add);
-  std::vector<Vec3> with_vertices(std::span<const Vec3> x_end) const;
+  std::vector<Vec3> with_vertices(std::span<const Vec3> of_particles) const;
   void put_together(const integrator::StagePoint& at, int iteration);
 
   ClothSystem& cloth_;

@@ -30,7 +30,7 @@ void hold_frames(const environment::Environment& environment, const ClothSystem&
                  std::vector<integrator::HeldParticle>& held);
 
 /// Gives frames that are released in the step from t over h [s] the velocities of their keys, and their own. Returns
-/// whether a velocity has jumped: what a method remembers of earlier steps is then of no use.
+/// whether there is one.
 bool release_frames(const environment::Environment& environment, const ClothSystem& cloth, double t, double h,
                     std::span<Vec3> v);
 

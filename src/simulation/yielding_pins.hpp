@@ -31,6 +31,8 @@ class YieldingPins {
   /// Whether all pins hold at t1 what they hold at t0 [s], where it is then, and nothing lags.
   bool stay(double t0, double t1);
 
+  bool release_between(double t0, double t1) const { return pins_.release_between(t0, t1); }
+
   /// Before the step begins anew: this particle, which is held, lags in it. `obstruction`: what is in its way, and
   /// where.
   void let_go(Index particle, const std::string& obstruction);

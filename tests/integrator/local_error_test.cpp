@@ -41,7 +41,7 @@ Errors errors_of_one_step(Method method, double h, double r) {
   testing::HardeningSpring spring;
   const State now{{Vec3(1, 0.2, -0.3)}, {Vec3(0.1, 0.8, 0.4)}};
   Stepper stepper(method, kAboveRounding);
-  if (r > 0) stepper.accept(moved(now, -h / r), h / r);
+  if (r > 0) stepper.return_to({moved(now, -h / r), h / r});
   State next;
   const StepReport report = stepper.step(spring, now, h, Vec3::Zero(), {}, next);
   EXPECT_EQ(report.verdict, Verdict::solved);
@@ -166,7 +166,7 @@ TEST(StepControl, DoesNotGrowAtOnceAfterAStepWasDoneAgain) {
 TEST(Bdf2Ratio, LongestStepFollowsTheLastOne) {
   Stepper bdf2(Method::bdf2, kAboveRounding), euler(Method::implicit_euler, kAboveRounding);
   EXPECT_EQ(bdf2.longest_step(), std::numeric_limits<double>::infinity());
-  for (Stepper* stepper : {&bdf2, &euler}) stepper->accept({{Vec3::Zero()}, {Vec3::Zero()}}, 0.01);
+  for (Stepper* stepper : {&bdf2, &euler}) stepper->return_to({{{Vec3::Zero()}, {Vec3::Zero()}}, 0.01});
   EXPECT_DOUBLE_EQ(bdf2.longest_step(), 0.02);
   EXPECT_EQ(euler.longest_step(), std::numeric_limits<double>::infinity());
   bdf2.restart();
@@ -185,7 +185,7 @@ Growth change_while_growing(double r) {
   // Here x − x̂ = −β² ω² x: to six digits above the rounding of x.
   Stepper stepper(Method::bdf2, {.tolerance = 1e-6, .max_iterations = 40, .linear_tolerance = 1e-12});
   double h = 1e-4 / kOmega, before = 1 + kOff, now = 1, v_before = 0, v_now = 0;
-  stepper.accept({{Vec3(before, 0, 0)}, {Vec3::Zero()}}, h);
+  stepper.return_to({{{Vec3(before, 0, 0)}, {Vec3::Zero()}}, h});
   State state{{Vec3(now, 0, 0)}, {Vec3::Zero()}}, next;
   int steps = 0;
   while (h * kOmega < 1e-2) {
@@ -196,7 +196,7 @@ Growth change_while_growing(double r) {
     before = std::exchange(now, x);
     v_before = std::exchange(v_now, (x - x_hat) / beta);
     EXPECT_EQ(stepper.step(spring, state, h, Vec3::Zero(), {}, next).verdict, Verdict::solved);
-    stepper.accept(state, h);
+    stepper.accept(state, next, h);
     std::swap(state, next);
     ++steps;
   }
@@ -224,7 +224,7 @@ TEST(Bdf2Ratio, AStepTooLongForTheLastOneIsOneOfEuler) {
   for (const double ratio : {0.999, 1.001}) {
     const double h = ratio * Stepper::kLargestRatio * 0.1;
     Stepper bdf2(Method::bdf2, kAboveRounding), euler(Method::implicit_euler, kAboveRounding);
-    bdf2.accept(before, 0.1);
+    bdf2.return_to({before, 0.1});
     ASSERT_EQ(bdf2.step(spring, now, h, Vec3::Zero(), {}, next).verdict, Verdict::solved);
     ASSERT_EQ(euler.step(spring, now, h, Vec3::Zero(), {}, euler_next).verdict, Verdict::solved);
     const double apart = (next.x[0] - euler_next.x[0]).norm();
@@ -242,7 +242,7 @@ TEST(Bdf2Ratio, StiffOscillatorDecaysWhateverTheStepsWithinTheBound) {
   for (int s = 0; s < 160; ++s) {
     const double h = std::ldexp(1 / kOmega, s % 8);
     ASSERT_EQ(stepper.step(spring, now, h, Vec3::Zero(), {}, next).verdict, Verdict::solved);
-    stepper.accept(now, h);
+    stepper.accept(now, next, h);
     std::swap(now, next);
     size = std::hypot(now.x[0].x(), now.v[0].x() / kOmega);
     ASSERT_LT(size, 1.5) << "step " << s;

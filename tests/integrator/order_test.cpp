@@ -39,7 +39,7 @@ Vec3 run(testing::Particles& system, Method method, const std::vector<double>& s
   for (double h : steps) {
     const StepReport report = stepper.step(system, now, h, Vec3::Zero(), {}, next);
     EXPECT_EQ(report.verdict, Verdict::solved) << describe(report.verdict);
-    stepper.accept(now, h);
+    stepper.accept(now, next, h);
     std::swap(now, next);
   }
   return now.x[0];

@@ -36,7 +36,7 @@ Complex stepped(Method method, double omega, double h, Complex now, const Comple
                 double before_h = 0) {
   testing::Spring spring(omega * omega);
   Stepper stepper(method, kTight);
-  if (before != nullptr) stepper.accept(state_of(*before, omega), before_h);
+  if (before != nullptr) stepper.return_to({state_of(*before, omega), before_h});
   State next;
   const StepReport report = stepper.step(spring, state_of(now, omega), h, Vec3::Zero(), {}, next);
   EXPECT_EQ(report.verdict, Verdict::solved) << describe(report.verdict);
@@ -90,7 +90,7 @@ TEST(Oscillator, Bdf2AfterARestartIsAnEulerStepAgain) {
   testing::Spring spring(100);
   const State before = state_of(1, 10), now = state_of(1i, 10);
   Stepper stepper(Method::bdf2, kTight);
-  stepper.accept(before, 0.01);
+  stepper.return_to({before, 0.01});
   State with_history, restarted;
   stepper.step(spring, now, 0.01, Vec3::Zero(), {}, with_history);
   stepper.restart();

@@ -21,7 +21,7 @@ TEST(Stepper, FreeFallFollowsTheLawOfEachMethod) {
     State now{{x0, x0}, {v0, v0}}, next;
     for (int n = 1; n <= 25; ++n) {
       ASSERT_EQ(stepper.step(nothing, now, h, g, {}, next).verdict, Verdict::solved);
-      stepper.accept(now, h);
+      stepper.accept(now, next, h);
       std::swap(now, next);
       const double t = n * h;
       // Against ½ g t²: Euler is ahead by ½ g h t; BDF2 by what its first step, an Euler step, leaves behind.
@@ -78,7 +78,7 @@ TEST(Stepper, StepIsRememberedOnlyWhenAccepted) {
   for (Method method : kMethods) {
     Stepper stepper(method, kTight);
     const State before{{Vec3(1, 0, 0)}, {Vec3(0, 1, 0)}}, now{{Vec3(0.9, 0, 0)}, {Vec3(-0.1, 1, 0)}};
-    stepper.accept(before, 0.01);
+    stepper.return_to({before, 0.01});
     State first, other, again;
     stepper.step(spring, now, 0.01, Vec3::Zero(), {}, first);
     stepper.step(spring, before, 0.03, Vec3(1, 1, 1), {}, other);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "simulation/simulation.hpp"
@@ -60,13 +61,36 @@ TEST(SlidingContact, LosesInAHalfPipeWhatTheMethodDampsAlone) {
   EXPECT_GT(kept_at_the_bottom("bdf2"), 0.97);
 }
 
+// A sheet falls flat on a table, and stops. BDF2 that takes this for smooth throws it back with 0.48 of the energy.
+TEST(SlidingContact, FlatSheetDoesNotBounceOffATable) {
+  for (const std::string integrator : {"implicit_euler", "implicit_midpoint", "bdf2"}) {
+    for (const int fps : {100, 200}) {
+      const scene::Scene scene = scene_of_text(
+          "[time]\nduration = 0.45\nfps = " + std::to_string(fps) + "\nstep = 0.01\nintegrator = \"" + integrator +
+          "\"\n[[cloth]]\nname = \"sheet\"\nsize = [0.4, 0.4]\nparticles = [13, 13]\nposition = [0, 0, 0.3]\n"
+          "material = { fabric = \"cotton\" }\n[[obstacle]]\nname = \"table\"\nshape = \"box\"\nsize = [2, 2, 0.2]\n"
+          "position = [0, 0, -0.1]\n");
+      double largest = 0, last = 0;
+      run_scene(scene, {.judged = false}, [&](const MeasuredFrame& frame) {
+        largest = std::max(largest, frame.report.kinetic_energy);
+        last = std::max(frame.report.kinetic_energy, frame.report.frame > 0.33 * fps ? last : 0.0);
+      });
+      // It arrives after 0.29 s. 3e-3 of the energy was seen 40 ms later, on the way from the gap to the contact.
+      EXPECT_GT(largest, 0.02);
+      EXPECT_LT(last, 0.01 * largest) << integrator << ", " << fps;
+    }
+  }
+}
+
 // Rounding alone is left: 1e-14 of it was seen.
 TEST(SlidingContact, SheetsThatCollideKeepTheirMomentum) {
-  for (const char* friction : {"0", "0.3"}) {
+  for (const auto& [friction, integrator] : {std::pair("0", "implicit_euler"), std::pair("0.3", "implicit_euler"),
+                                             std::pair("0", "bdf2"), std::pair("0.3", "bdf2")}) {
     const std::string material = std::string(kMaterial).replace(std::string(kMaterial).find("friction = 0, drag"), 12,
                                                                 std::string("friction = ") + friction);
     const scene::Scene scene = scene_of_text(
-        "[time]\nduration = 0.4\nfps = 25\nstep = 0.01\n[physics]\ngravity = [0, 0, 0]\nair_density = 0\n[[cloth]]\n"
+        "[time]\nduration = 0.4\nfps = 25\nstep = 0.01\nintegrator = \"" + std::string(integrator) +
+        "\"\n[physics]\ngravity = [0, 0, 0]\nair_density = 0\n[[cloth]]\n"
         "name = \"moving\"\nsize = [0.2, 0.2]\nparticles = [11, 11]\nposition = [0.03, 0.02, 0.06]\nrotation = [10, "
         "20, "
         "5]\nvelocity = [0.3, 0, -1]\n" +
@@ -93,8 +117,11 @@ TEST(SlidingContact, SheetsThatCollideKeepTheirMomentum) {
       rubbed = std::max(rubbed, centre(frame.cloths[1]).norm());
     });
     EXPECT_GT(rubbed, 0.01) << "the sheet at rest was never hit";
-    // Positions of the snapshots are exact to 1e-16 m, steps of 0.04 s at 1 m/s.
-    EXPECT_LT((momentum_h.back() - momentum_h.front()).norm(), 1e-9 * momentum_h.front().norm()) << friction;
+    // Positions of the snapshots are exact to 1e-16 m, steps of 0.04 s at 1 m/s. BDF2 solves for impacts in single
+    // precision: 2e-7 of it was seen.
+    const double most = std::string(integrator) == "bdf2" ? 1e-6 : 1e-9;
+    EXPECT_LT((momentum_h.back() - momentum_h.front()).norm(), most * momentum_h.front().norm())
+        << friction << integrator;
   }
 }
 

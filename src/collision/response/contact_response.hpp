@@ -50,6 +50,10 @@ class ContactResponse {
   /// As those of ContactSet.
   void update(std::span<const Vec3> x_end, ContactLag& lag) const { springs_.update(x_end, lag); }
   void add_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;
+  bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
+                   std::span<Vec3> right_side, solver::LinearSystem& system) const {
+    return springs_.add_impacts(x_end, lag, start, right_side, system);
+  }
   void add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
                            std::span<Vec3> friction, std::span<double> limit) const;
   void add_linear_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> force) const;

@@ -96,6 +96,47 @@ Vec3 slip_of(const Contact& contact, const Vec3& relative) {
   return slip - contact.normal.dot(slip) * contact.normal;
 }
 
+// How much of a contact is an impact, 0 to 1, by its motion before anything stops it; see add_impacts().
+double impact_fraction(const Contact& contact, const StepStart& start) {
+  const auto along_normal = [&](std::span<const Vec3> of) { return contact.normal.dot(weighted_sum(contact, of)); };
+  const double velocity = along_normal(start.v);
+  double opening = start.h * velocity;
+  if (start.h_before > 0) {
+    const double ratio = start.h / start.h_before;
+    opening = std::max({opening, start.h * (velocity + ratio * (velocity - along_normal(start.v_before))),
+                        ratio * (along_normal(start.x) - along_normal(start.x_before))});
+  }
+  opening += contact.normal.dot(contact.obstacle_end - contact.obstacle_start);
+  return opening < 0 ? std::min(1.0, -opening / contact.range) : 0;
+}
+
+// Change of velocity across the normal [m/s] in a step that ends at x_end, as far as friction can bring it about.
+Vec3 jump_across(const Contact& contact, std::span<const Vec3> x_end, const StepStart& start) {
+  const Vec3 jump =
+      (weighted_sum(contact, x_end) - weighted_sum(contact, start.x)) / start.h - weighted_sum(contact, start.v);
+  const double along = contact.normal.dot(jump), most = contact.static_friction * std::max(0.0, along);
+  const Vec3 across = jump - along * contact.normal;
+  const double size = across.norm();
+  return size > most ? Vec3(most / size * across) : across;
+}
+
+// A force on the points of a contact, and its stiffness.
+void add_term(const Contact& contact, const Vec3& push, const Mat3& stiffness, std::span<Vec3> force,
+              solver::LinearSystem& system) {
+  int involved = 0, last = 0;
+  for (int k = 0; k < 4; ++k) {
+    force[contact.particles[k]] += contact.weights[k] * push;
+    if (contact.weights[k] != 0) ++involved, last = k;
+  }
+  if (involved == 1) {
+    // A single particle on an obstacle couples with nothing.
+    const double w = contact.weights[last];
+    system.diagonal_terms.push_back({contact.particles[last], w * w * stiffness});
+  } else {
+    system.terms.push_back({contact.particles, contact.weights, stiffness});
+  }
+}
+
 // To a slip in stick slips.
 void follow(const Contact& contact, const Vec3& slip, FrictionLag& lag) {
   const bool turned = slip.dot(lag.slip) < 0;
@@ -251,20 +292,25 @@ void ContactSet::linearise(std::span<const Vec3> x_end, double end_rate, const C
       list.push_back({&contact, response.force, end_rate * stiffness});
     }
   });
-  for (const auto& [contact, push, stiffness] : pushes) {
-    int involved = 0, last = 0;
-    for (int k = 0; k < 4; ++k) {
-      force[contact->particles[k]] += contact->weights[k] * push;
-      if (contact->weights[k] != 0) ++involved, last = k;
-    }
-    if (involved == 1) {
-      // A single particle on an obstacle couples with nothing.
-      const double w = contact->weights[last];
-      system.diagonal_terms.push_back({contact->particles[last], w * w * stiffness});
-    } else {
-      system.terms.push_back({contact->particles, contact->weights, stiffness});
-    }
+  for (const auto& [contact, push, stiffness] : pushes) add_term(*contact, push, stiffness, force, system);
+}
+
+bool ContactSet::add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
+                             std::span<Vec3> right_side, solver::LinearSystem& system) const {
+  bool any = false;
+  for (std::size_t c = 0; c < contacts_.size(); ++c) {
+    const Contact& contact = contacts_[c];
+    const Response response = respond(c, Law::tangent, x_end, lag);
+    const double fraction = response.active ? impact_fraction(contact, start) : 0;
+    if (fraction == 0 || response.slope == 0) continue;
+    any = true;
+    const Vec3& n = contact.normal;
+    const Vec3 push = fraction / start.h * n.dot(response.force) * n;
+    Mat3 stiffness = Mat3::Zero();
+    if (contact.static_friction > 0) stiffness = fraction * response.slope * (Mat3::Identity() - n * n.transpose());
+    add_term(contact, push + stiffness * jump_across(contact, x_end, start), stiffness, right_side, system);
   }
+  return any;
 }
 
 int ContactSet::active(std::span<const Vec3> x_end) const {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/numerics.hpp"
+#include "core/past.hpp"
 #include "core/types.hpp"
 #include "solver/linear_system.hpp"
 
@@ -85,6 +86,15 @@ class ContactSet {
   /// by [N].
   void add_parts_of_forces(std::span<const Vec3> x_end, const ContactLag& lag, std::span<Vec3> push,
                            std::span<Vec3> friction, std::span<double> limit) const;
+
+  /// What impacts change of velocities in a step that ends at x_end, as a linear system whose unknown are these jumps:
+  /// adds terms, and to its right hand side [N/h]. False where there is none. An impact is a contact that closes by its
+  /// range in the step, or, in proportion, by less. It closes as slowly as the slowest of three estimates says: by the
+  /// velocity at the start of the step, by that velocity and the last acceleration (which leads along curved
+  /// obstacles), and by the last displacement (which is zero at rest). Its normal force acts; friction holds its points
+  /// to the jump that they had. As a force friction is known too badly: a slip of 1e-7 m is enough for all of it.
+  bool add_impacts(std::span<const Vec3> x_end, const ContactLag& lag, const StepStart& start,
+                   std::span<Vec3> right_side, solver::LinearSystem& system) const;
 
   /// As add_linear_forces, and adds −∂f/∂x to the system, where x_end changes by `end_rate` per change of the unknown;
   /// for friction a form in its place that is definite. Friction −λ w of a slip u = ψ(‖u‖) w is linearised with w as
