@@ -11,6 +11,8 @@ namespace py = pybind11;
 void bind_simulation(py::module_& module);
 /// Error of a run, frame caches, comparison of pictures.
 void bind_tools(py::module_& module);
+/// Pictures of frames.
+void bind_drawing(py::module_& module);
 
 /// Without the lock of the interpreter: others go on meanwhile.
 using WithoutLock = py::call_guard<py::gil_scoped_release>;

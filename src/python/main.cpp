@@ -3,4 +3,5 @@
 PYBIND11_MODULE(_weft, module) {
   weft::python::bind_simulation(module);
   weft::python::bind_tools(module);
+  weft::python::bind_drawing(module);
 }

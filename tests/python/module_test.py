@@ -146,6 +146,32 @@ class Module(unittest.TestCase):
         self.assertGreater(estimate.all["position"], 0)
         self.assertFalse(estimate.chaotic)
 
+    def test_frames_are_drawn_as_the_program_does(self):
+        camera = '\n[[camera]]\nname = "side"\nposition = [1, -1, 0.6]\ntarget = [0, 0, 0.2]\n'
+        (self.folder / "seen.toml").write_text(DRAPE + camera)
+        run("thumbnail", "seen.toml", "--frame", 4, "--size", "64x48", "-o", "seen.png", folder=self.folder)
+        drawn = subprocess.run(["ffmpeg", "-v", "error", "-i", "seen.png", "-f", "rawvideo", "-pix_fmt", "rgb24", "-"],
+                               cwd=self.folder, check=True, capture_output=True).stdout
+        scene = weft.load(self.folder / "seen.toml", {"render.width": 64, "render.height": 48})
+        simulation, renderer, errors = weft.Simulation(scene), weft.Renderer(scene), []
+        for _ in range(4):
+            frame = simulation.advance()
+        picture = renderer.draw(frame)
+        self.assertEqual((picture.shape, picture.dtype), ((48, 64, 3), numpy.uint8))
+        numpy.testing.assert_array_equal(picture, numpy.frombuffer(drawn, numpy.uint8).reshape(48, 64, 3))
+        self.assertRaises(ValueError, weft.Renderer, scene, quality="best")
+
+        def draw_elsewhere():
+            try:
+                renderer.draw(frame)
+            except RuntimeError as error:
+                errors.append(str(error))
+
+        thread = threading.Thread(target=draw_elsewhere)
+        thread.start()
+        thread.join()
+        self.assertIn("from another", errors[0])
+
     def test_pictures_are_compared_as_the_program_does(self):
         for name, fabric in (("a", "cotton"), ("b", "cotton"), ("c", "leather")):
             run("thumbnail", "drape.toml", "--frame", 8, "--size", "64x64", "--quality", "draft", "-o", name + ".png",

@@ -190,6 +190,10 @@ class Difference:
     @property
     def spot(self) -> float: ...
 
+class Renderer:
+    def __init__(self, scene: Scene, *, quality: str = ...) -> None: ...
+    def draw(self, frame: Frame, before: Optional[Frame] = ...) -> numpy.typing.NDArray[numpy.uint8]: ...
+
 def compare(
     reference: _Path,
     test: _Path,

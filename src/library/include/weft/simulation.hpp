@@ -84,6 +84,7 @@ class WEFT_API Frame {
   struct Data;
   /// For the library itself.
   explicit Frame(std::shared_ptr<const Data> data);
+  const Data& data() const { return *data_; }
 
  private:
   std::shared_ptr<const Data> data_;
