@@ -25,9 +25,10 @@ struct Scene::Data {
 struct Frame::Data {
   frame::SnapshotPtr snapshot;
   Report report;
-  std::vector<std::vector<Vec3>> velocities;  ///< per cloth
-  std::vector<std::vector<float>> strains;    ///< likewise
-  std::vector<Object> objects;                ///< views of the above
+  std::vector<std::vector<Vec3>> velocities;      ///< per cloth
+  std::vector<std::vector<float>> strains;        ///< likewise
+  std::vector<std::vector<Vec3>> contact_forces;  ///< likewise
+  std::vector<Object> objects;                    ///< views of the above
 };
 
 }  // namespace weft

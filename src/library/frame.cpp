@@ -25,6 +25,7 @@ Object view_object(const Frame::Data& data, std::size_t number) {
   if (number < data.velocities.size()) {
     object.velocities = viewed<Vector>(data.velocities[number]);
     object.strains = data.strains[number];
+    object.contact_forces = viewed<Vector>(data.contact_forces[number]);
   }
   if (object.kind == Kind::cloth) object.rest = viewed<RestPoint>(surface.uv);
   object.triangles = surface.triangles;

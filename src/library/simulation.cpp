@@ -83,6 +83,7 @@ void Simulation::Impl::view(const frame::FrameReport& report) {
     simulation::ClothMotion motion = simulation->motion_of(c);
     data.velocities.emplace_back(motion.velocities.begin(), motion.velocities.end());
     data.strains.push_back(std::move(motion.strains));
+    data.contact_forces.push_back(std::move(motion.contact_forces));
   }
   current = library::make_frame(std::move(data));
 }

@@ -186,6 +186,10 @@ void bind_frame(py::module_& module) {
       .def_property_readonly("kind", &kind_of, "\"cloth\", \"obstacle\" or \"character\".")
       .def_property_readonly("positions", &rows<&Object::positions>, "n x 3, m.")
       .def_property_readonly("velocities", &rows<&Object::velocities>, "n x 3, m/s; no rows for bodies.")
+      .def_property_readonly(
+          "contact_forces", &rows<&Object::contact_forces>,
+          "n x 3, N, of all that touches a particle, friction too, at the end of the last time step; "
+          "zeros where a simulation begins; no rows for bodies and caches.")
       .def_property_readonly("strains", &strains, "n: largest |length / rest length - 1| next to each particle.")
       .def_property_readonly("rest", &rows<&Object::rest>, "n x 2: rest coordinates along weft and warp, m.")
       .def_property_readonly("triangles", &rows<&Object::triangles>, "m x 3: numbers of vertices.");

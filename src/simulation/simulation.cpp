@@ -370,7 +370,10 @@ ClothMotion Simulation::motion_of(std::size_t cloth) const {
   const ClothSystem& cloths = impl_->steps->cloth();
   const Moment& now = impl_->steps->progress().now;
   const Index first = cloths.first_particle(number), end = cloths.first_particle(number + 1);
-  return {std::span(now.v).subspan(at(first), at(end - first)), cloths.strain_per_particle(number, now.particles())};
+  const std::vector<Vec3> forces = impl_->steps->contact_forces();
+  return {std::span(now.v).subspan(at(first), at(end - first)),
+          cloths.strain_per_particle(number, now.particles()),
+          {forces.begin() + first, forces.begin() + end}};
 }
 
 void Simulation::drive(std::size_t obstacle, const scene::Pose& end) {

@@ -31,6 +31,7 @@ struct ParticleState {
 struct ClothMotion {
   std::span<const Vec3> velocities;  ///< per particle [m/s]
   std::vector<float> strains;        ///< per particle: largest relative change of length of the threads next to it
+  std::vector<Vec3> contact_forces;  ///< per particle, of all that it touches, at the end of the last step [N]
 };
 
 /// One line of `weft check --plan`: a part and whether this scene needs it.

@@ -86,6 +86,14 @@ double StepLoop::lift_bodies() {
   return lift;
 }
 
+std::vector<Vec3> StepLoop::contact_forces() const {
+  std::vector<Vec3> forces(cloth_.masses().size(), Vec3::Zero()), friction = forces;
+  std::vector<double> limit(forces.size(), 0);
+  problem_.contact_forces({.x = {}, .v = {}, .x_end = progress_.now.x}, forces, friction, limit);
+  for (std::size_t i = 0; i < forces.size(); ++i) forces[i] += friction[i];
+  return forces;
+}
+
 std::vector<Vec3> StepLoop::vertices_of(std::size_t body) const {
   std::vector<Vec3> vertices;
   if (!environment_.bodies[body].dynamics) return vertices;

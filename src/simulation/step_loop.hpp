@@ -70,6 +70,8 @@ class StepLoop {
   const StepProblem& problem() const { return problem_; }
   /// Particles that are held, by pins or by the response to contacts.
   std::size_t held() const { return held_.size(); }
+  /// Of contacts on all particles at the end of the last step, friction too [N]; zeros before the first one.
+  std::vector<Vec3> contact_forces() const;
   /// Where the vertices are of a body of the environment that forces move; nothing of others.
   std::vector<Vec3> vertices_of(std::size_t body) const;
   /// nullptr where nothing collides.

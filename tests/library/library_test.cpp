@@ -79,6 +79,7 @@ TEST(LibrarySimulation, HasTheBitsOfTheProgram) {
     const auto state = reference.state();
     ASSERT_EQ(sheet.positions.size(), state.positions.size());
     EXPECT_EQ(std::memcmp(sheet.positions.data(), state.positions.data(), state.positions.size_bytes()), 0) << k;
+    EXPECT_EQ(sheet.contact_forces.size(), sheet.positions.size());
     EXPECT_EQ(std::memcmp(sheet.velocities.data(), state.velocities.data(), state.velocities.size_bytes()), 0) << k;
     EXPECT_EQ(frame.number(), k);
     EXPECT_EQ(frame.time(), k / 25.0);

@@ -146,6 +146,34 @@ class Module(unittest.TestCase):
         self.assertGreater(estimate.all["position"], 0)
         self.assertFalse(estimate.chaotic)
 
+    def test_contact_forces_carry_the_weight_of_a_sheet_at_rest(self):
+        scene = weft.parse("""
+[time]
+duration = 2
+[[cloth]]
+name = "sheet"
+size = [0.4, 0.4]
+particles = [17, 17]
+position = [0, 0, 0.3]
+material = { density = 0.25, bend_viscosity = 1e-4 }
+[[obstacle]]
+name = "tray"
+shape = "box"
+size = [0.5, 0.5, 0.2]
+position = [0, 0, 0.15]
+rotation = [5, 0, 0]
+friction = 0.8
+""", {"cloth.sheet.material.friction": 0.8})
+        simulation = weft.Simulation(scene)
+        self.assertFalse(simulation.frame["sheet"].contact_forces.any())
+        for _ in range(50):
+            frame = simulation.advance()
+        forces, weight = frame["sheet"].contact_forces, 0.25 * 0.4 * 0.4 * 9.81
+        self.assertEqual((forces.shape, forces.flags.writeable), ((289, 3), False))
+        # What the solver leaves: 1e-3 of the weight was seen.
+        numpy.testing.assert_allclose(forces.sum(axis=0), [0, 0, weight], atol=0.01 * weight)
+        self.assertEqual(frame["tray"].contact_forces.shape, (0, 3))
+
     def test_frames_are_drawn_as_the_program_does(self):
         camera = '\n[[camera]]\nname = "side"\nposition = [1, -1, 0.6]\ntarget = [0, 0, 0.2]\n'
         (self.folder / "seen.toml").write_text(DRAPE + camera)

@@ -31,8 +31,11 @@ enum class Kind { cloth, obstacle, character };
 struct Object {
   std::string_view name;
   Kind kind = Kind::cloth;
-  std::span<const Vector> positions;    ///< per vertex [m]; the vertices of a cloth are its particles
-  std::span<const Vector> velocities;   ///< per particle [m/s]; empty for bodies and for cloth that is not yet put on
+  std::span<const Vector> positions;   ///< per vertex [m]; the vertices of a cloth are its particles
+  std::span<const Vector> velocities;  ///< per particle [m/s]; empty for bodies and for cloth that is not yet put on
+  /// Per particle, of all that it touches, friction too, at the end of the last time step [N]; likewise. Zeros where a
+  /// simulation begins or was restored. Contacts are stiff springs: sums over a patch say more than single particles.
+  std::span<const Vector> contact_forces;
   std::span<const float> strains;       ///< per particle: largest |length / rest length - 1| of the threads there
   std::span<const RestPoint> rest;      ///< per particle: rest coordinates [m]; empty if there are none
   std::span<const Triangle> triangles;  ///< the same in all frames
