@@ -1,18 +1,47 @@
 #include "cli/failure.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
 #include <filesystem>
 #include <new>
+#include <string>
+#include <string_view>
 #include <system_error>
 
 #include "core/log.hpp"
 
 namespace weft::cli {
+namespace {
+
+// Words that are longer than any path come from an argument or a file, and are of no use in a message.
+constexpr std::size_t kLongestWord = 4096, kShown = 200;
+
+std::string shorten_words(std::string_view text) {
+  std::string result;
+  while (!text.empty()) {
+    const std::size_t size = std::min(text.find_first_of(" \n"), text.size());
+    std::string_view word = text.substr(0, size);
+    if (size > kLongestWord) {
+      word = word.substr(0, kShown);
+      while (!word.empty() && (word.back() & 0x80) != 0) word.remove_suffix(1);  // no half of a character
+      result += fmt::format("{}... ({} bytes)", word, size);
+    } else {
+      result += word;
+    }
+    if (size < text.size()) result += text[size];
+    text.remove_prefix(std::min(size + 1, text.size()));
+  }
+  return result;
+}
+
+}  // namespace
 
 Failure describe_failure(const std::exception_ptr& exception) {
   try {
     std::rethrow_exception(exception);
   } catch (const Error& error) {
-    return {error.code(), error.what()};
+    return {error.code(), shorten_words(error.what())};
   } catch (const std::bad_alloc&) {
     return {ExitCode::internal, "out of memory; a smaller scene or picture may fit"};
   } catch (const std::filesystem::filesystem_error& error) {

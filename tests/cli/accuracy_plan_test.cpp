@@ -162,6 +162,17 @@ TEST(Recommendation, LeavesTheSolverAsItIsAtTheSameCost) {
   EXPECT_NE(recommendation(accuracy).find("`solver.newton_tolerance = 0.01`: 6 CPU s"), std::string::npos);
 }
 
+TEST(Recommendation, IsTheMostExactOfThoseThatCostTheSame) {
+  Accuracy accuracy = accuracy_of_one_metre();
+  accuracy.runs.push_back(accuracy.runs[5]);
+  accuracy.runs.back().setting.step = 0.008;
+  accuracy.runs.back().errors.fill(0.0025);
+  accuracy.runs.back().work.cpu_s = 6.5;
+  EXPECT_NE(recommendation(accuracy).find("`time.step = 0.008`"), std::string::npos) << recommendation(accuracy);
+  accuracy.runs.back().work.cpu_s = 7;
+  EXPECT_NE(recommendation(accuracy).find("`time.step = 0.01`"), std::string::npos) << recommendation(accuracy);
+}
+
 // 25 frames a second in three steps: 0.01333 s would take four.
 TEST(Recommendation, RoundsStepsUp) {
   Accuracy accuracy = accuracy_of_one_metre();

@@ -3,9 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <exception>
 #include <string>
 #include <vector>
 
+#include "cli/failure.hpp"
 #include "core/error.hpp"
 
 namespace weft::cli {
@@ -93,6 +95,17 @@ TEST(Options, UnknownValuesAreRefusedNamingTheAllowedOnes) {
             "--fps: expected a number of frames a second, above 0 and up to 1000, got nan");
   EXPECT_EQ(refusal({"run", "a.toml", "--set", "stretch"}),
             "--set: expected path.to.key=value such as cloth.band.material.stretch=1e6, got stretch");
+}
+
+TEST(Options, WordsLongerThanAnyPathAreNotRepeatedWhole) {
+  const auto message = [](const std::string& word) {
+    return describe_failure(std::make_exception_ptr(Error(ExitCode::usage, "--set: got {} here", word))).text;
+  };
+  EXPECT_EQ(message(std::string(4096, 'a')).size(), 4096 + 15);
+  EXPECT_EQ(message(std::string(60000, 'a')), "--set: got " + std::string(200, 'a') + "... (60000 bytes) here");
+  // The 200th byte is the first half of a letter.
+  EXPECT_EQ(message(std::string(199, 'a') + std::string(60000, '\xC3')),
+            "--set: got " + std::string(199, 'a') + "... (60199 bytes) here");
 }
 
 TEST(Options, MisspeltOptionsAndCommandsNameTheNearest) {
