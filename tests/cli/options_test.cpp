@@ -101,7 +101,7 @@ TEST(Options, WordsLongerThanAnyPathAreNotRepeatedWhole) {
   const auto message = [](const std::string& word) {
     return describe_failure(std::make_exception_ptr(Error(ExitCode::usage, "--set: got {} here", word))).text;
   };
-  EXPECT_EQ(message(std::string(4096, 'a')).size(), 4096 + 15);
+  EXPECT_EQ(message(std::string(4096, 'a')).size(), 4096 + 16);
   EXPECT_EQ(message(std::string(60000, 'a')), "--set: got " + std::string(200, 'a') + "... (60000 bytes) here");
   // The 200th byte is the first half of a letter.
   EXPECT_EQ(message(std::string(199, 'a') + std::string(60000, '\xC3')),
