@@ -11,7 +11,8 @@ layout(location = 0) out vec4 normal_heat;       // world, toward the viewer; lo
 layout(location = 1) out vec2 rest_uv;
 layout(location = 2) out vec2 distance_surface;  // frame.glsl
 #ifdef PAINTED
-// Of a picture with anything painted: 1 in w where it is, and the square root of linear colour, which bytes hold well.
+// Of a picture with anything painted: above 0.5 in w where it is, less than 1 as far as a picture over a colour leaves
+// that, and the square root of linear colour, which bytes hold well.
 #ifdef PICTURED
 in vec2 place;
 layout(binding = 10) uniform sampler2D picture;  // linear, times alpha
@@ -43,6 +44,7 @@ void main() {
 #endif
 #ifdef PAINTED
   vec3 front = color;
+  float covered = 1.0;
 #ifdef PICTURED
   vec4 texel = texture(picture, place);
 #ifdef HOLES
@@ -53,13 +55,14 @@ void main() {
 #endif
   if (laid == 3) {
     front = color * (1.0 - texel.a) + texel.rgb;
+    covered = 0.6 + 0.4 * texel.a;
   } else {
     front = color * texel.rgb / max(texel.a, 1e-3);
   }
 #endif
   vec3 root = sqrt(front);
   if (!gl_FrontFacing) root = back_color.w < 0.0 ? sqrt(back_color.rgb) : mix(root, vec3(1.0), back_color.w);
-  paint = laid == 0 ? vec4(0.0) : vec4(root, 1.0);
+  paint = laid == 0 ? vec4(0.0) : vec4(root, covered);
 #endif
   vec3 n = normalize(surface_normal_world);
   float side = gl_FrontFacing ? 1.0 : -1.0;

@@ -14,7 +14,7 @@ layout(binding = 5) uniform sampler2D rest_uvs;
 layout(binding = 8) uniform sampler2D distances_surfaces;
 layout(binding = 7) uniform sampler2D materials;  // a row for each surface: front colour, roughness; back colour, thread
                                                   // spacing; heat scale, hem [m], thickness [m], stitches beside seams [m]; cloth: gloss, share of the warp,
-                                                  // fuzz, sheer; opacity, threads
+                                                  // fuzz, sheer; opacity, threads, skin
 layout(binding = 6) uniform sampler2D heat_colors;
 #ifdef PAINTED
 layout(binding = 10) uniform sampler2D paints;  // geometry.frag
@@ -44,11 +44,20 @@ struct Point {
 #ifdef METAL
   vec3 colored_f0;
 #endif
+#ifdef SKIN
+  float skin;
+#endif
 };
 struct LightSums {
   vec3 diffuse, through, gloss;
 };
 const float kThreadShine = 0.14;  // of the light that meets threads of full gloss
+#ifdef SKIN
+// Red light goes farthest below skin, so that it comes out where less of the others does: beside the terminator and in
+// penumbras. By eye, from profiles of Jensen et al., "A Practical Model for Subsurface Light Transport", 2001.
+const vec3 kScattered = vec3(0.50, 0.17, 0.06);
+vec3 scattered(float share, float skin) { return mix(vec3(share), vec3(sqrt(share)), skin * kScattered); }
+#endif
 const float kCoat = 0.04, kCoatAlpha = 0.02;  // of a clear coat: reflectance head-on, as of glass, and roughness squared
 
 void add_light(inout LightSums sums, int i, Point at, Softness soft) {
@@ -64,7 +73,12 @@ void add_light(inout LightSums sums, int i, Point at, Softness soft) {
   float lit = share_of_light(i, soft, at.position_world, side < 0.0 ? -at.n_smooth : at.n_smooth,
                              side < 0.0 ? -at.rise : at.rise, wanted);
   vec3 strength = lights[i].color.rgb * (cone * lit);
+#ifdef SKIN
+  sums.diffuse += lights[i].color.rgb * cone * scattered(lit, at.skin) * scattered(max(dot(at.n, l), 0.0), at.skin) *
+                  smoothstep(0.0, 0.06, side);
+#else
   sums.diffuse += strength * (max(dot(at.n, l), 0.0) * smoothstep(0.0, 0.06, side));
+#endif
 #ifdef CLOTH
   // Light on the far side shines through between the threads.
   sums.through += strength * max(-side, 0.0);
@@ -107,6 +121,9 @@ void main() {
   at.alpha = max(roughness * roughness, 0.02);
   at.f0 = head_on(roughness);
   at.shine = 1.0;
+#ifdef SKIN
+  at.skin = 0.0;
+#endif
   vec3 albedo = front_roughness.rgb;
 #ifdef CLOTH
   bool front = seen.y - surface < 0.25;
@@ -117,6 +134,12 @@ void main() {
   vec4 paint = texelFetch(paints, pixel, 0);
   if (paint.w > 0.5) {
     albedo = paint.rgb * paint.rgb;
+#ifdef SKIN
+    // Of colours that skin may have; hair and shoes, which are painted, shine more.
+    float bare = opacity_threads.z * clamp(2.5 * (1.0 - paint.w), 0.0, 1.0);
+    at.skin = bare * smoothstep(0.01, 0.12, albedo.r - albedo.b);
+    at.alpha = mix(at.alpha, min(at.alpha, 0.18), opacity_threads.z - bare);
+#endif
 #ifdef CLOTH
     behind = albedo;
 #endif
@@ -200,6 +223,10 @@ void main() {
   vec3 base = albedo * light.diffuse * (1.0 - at.finish.y) * (1.0 - share) + around * share;
   vec3 linear = mix(base, above, coat) + light.gloss;
 #else
+#ifdef SKIN
+  // Down catches light at grazing angles.
+  light.diffuse *= 1.0 + 0.35 * at.skin * edge * edge * edge;
+#endif
   float mirror = (at.f0 + (1.0 - at.f0) * rim * (1.0 - roughness)) * soft.open;
   vec3 around = surroundings(reflect(-at.v, at.n), at.alpha);
   vec3 linear = albedo * light.diffuse * (1.0 - mirror) + around * mirror + light.gloss;

@@ -2,7 +2,7 @@
 // or fibres alone; each a little different in tone. Every feature fades to its mean before it gets smaller than two
 // pixels, so that nothing shimmers.
 const int kPlain = 0, kTwill = 1, kDenim = 2, kKnit = 3, kNone = 4;  // weft::Threads
-const float kUneven = 0.11;  // share of its tone by which a yarn differs at most; 0.7 of it at each three times the size
+const float kUneven = 0.15;  // share of its tone by which a yarn differs at most; 0.7 of it at each three times the size
 
 float noise(float thread) { return fract(sin(thread * 12.9898) * 43758.5453); }
 // From -1 to 1, of neighbours that make up for each other: what varies slowly from thread to thread would be left to see,
@@ -76,20 +76,22 @@ Top knit_top(vec2 thread) {
 
 // Yarns are uneven along their way, some threads wide and eight times as long, at three sizes, of which those show that
 // the picture can; the warp of denim is dyed unevenly, and fibres that stand out are of many tones.
-float uneven_tone(vec2 thread, float footprint, int threads, float fuzz) {
+// `footprint`: of a pixel along weft and warp: seen at an angle, the yarns across it still show.
+float uneven_tone(vec2 thread, vec2 footprint, int threads, float fuzz) {
   vec2 share = threads == kDenim ? vec2(0.5, 3.0) : threads == kKnit ? vec2(0.3, 1.5) : vec2(1.0);
   float length_share = threads == kNone ? 0.7 : 0.125, fibres = smoothstep(0.6, 1.0, fuzz), tone = 1.0;
   float uneven = kUneven / 0.7;
   for (float size = 3.0; size < 30.0; size *= 3.0) {
-    float seen = visible_feature(footprint, size);
+    vec2 seen = vec2(visible_feature(max(footprint.y, length_share * footprint.x), size),
+                     visible_feature(max(footprint.x, length_share * footprint.y), size));
     uneven *= 0.7;
-    if (seen == 0.0) continue;
+    if (max(seen.x, seen.y) == 0.0) continue;
     vec2 at = thread / size;
-    tone *= 1.0 + uneven * (1.0 + 2.0 * fibres) * seen *
-                      (share.x * unevenness(at * vec2(length_share, 1.0)) +
-                       share.y * unevenness(at.yx * vec2(length_share, 1.0) + 71.0));
+    tone *= 1.0 + uneven * (1.0 + fibres) *
+                      (seen.x * share.x * unevenness(at * vec2(length_share, 1.0)) +
+                       seen.y * share.y * unevenness(at.yx * vec2(length_share, 1.0) + 71.0));
   }
-  float seen = visible_feature(footprint, 1.0) * fibres;
+  float seen = visible_feature(max(footprint.x, footprint.y), 1.0) * fibres;
   // Pressed fibres lie in all directions, spun ones along their yarns.
   mat2 lie = threads == kNone ? mat2(0.9, 0.5, -0.5, 0.9) : mat2(1.3, 0.0, 0.0, 0.4);
   if (seen > 0.0) tone *= 1.0 + 0.5 * seen * (unevenness(lie * thread) + unevenness(lie * thread.yx + 31.0));
@@ -100,7 +102,9 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
   // Pixels of other surfaces take part in the derivatives, with no spacing at all; cloth without threads has a grain.
   vec2 thread = rest_uv / max(spacing, 1e-6);
   vec2 across = dFdx(thread), down = dFdy(thread);
-  float footprint = max(length(across), length(down));
+  // Of a pixel: along the threads, the larger of both, and across the lines of a twill.
+  vec2 along_axes = vec2(length(vec2(across.x, down.x)), length(vec2(across.y, down.y)));
+  float footprint = max(length(across), length(down)), across_lines = length(vec2(across.y - across.x, down.y - down.x));
   // Gradients of weft and warp in the surface, from screen derivatives.
   vec3 p_dx = dFdx(p_world), p_dy = dFdy(p_world);
   vec3 weft = p_dx * down.y - p_dy * across.y, warp = p_dy * across.x - p_dx * down.x;
@@ -116,12 +120,15 @@ Weave weave(vec2 rest_uv, float spacing, int threads, float fuzz, vec3 n_world, 
     warp = cross(n_world, weft);
   }
   Weave result = Weave(n_world, 1.0, 1.0, 0.25, weft, warp, at_outline);
-  if (spacing <= 0.0 || at_outline) footprint = 1e6;
-  result.tone = uneven_tone(thread, footprint, threads, fuzz);
+  if (spacing <= 0.0 || at_outline) {
+    footprint = across_lines = 1e6;
+    along_axes = vec2(1e6);
+  }
+  result.tone = uneven_tone(thread, along_axes, threads, fuzz);
 
   // The lines of a twill are farther apart than its threads.
   if (threads == kTwill || threads == kDenim) {
-    float line = visible_feature(footprint, 2.8) * cos(1.5707963 * (thread.y - thread.x));
+    float line = visible_feature(0.7071 * across_lines, 2.8) * cos(1.5707963 * (thread.y - thread.x));
     result.weft *= 1.0 + line;
     if (threads == kTwill) result.tone *= 1.0 - 0.08 * line;
   }

@@ -5,6 +5,7 @@
 #include <functional>
 #include <span>
 
+#include "character/mannequin_parts.hpp"
 #include "character/mannequin_shape.hpp"
 
 namespace weft::character {
@@ -41,58 +42,68 @@ double height(std::span<const Vec2> line, double at) {
   return line.back().y();
 }
 
-const Vec3 kHair(0.16, 0.115, 0.085), kShoe(0.13, 0.12, 0.125), kSole(0.07, 0.065, 0.065), kLip(0.36, 0.06, 0.07),
-    kShade(0.24, 0.15, 0.12);
+const Vec3 kHair(0.20, 0.135, 0.095), kShoe(0.13, 0.12, 0.125), kSole(0.07, 0.065, 0.065), kLip(0.62, 0.27, 0.25),
+    kBlush(0.74, 0.40, 0.33), kShade(0.30, 0.17, 0.13), kLash(0.10, 0.07, 0.055), kWhite(0.80, 0.77, 0.73),
+    kIris(0.27, 0.19, 0.13), kPupil(0.05, 0.04, 0.035);
 
-/// Hair and shoes, seen from the side; y from the front to the back.
+/// Shoes, seen from the side; y from the front to the back.
 Ink body_ink(double y, double z) {
-  // From the forehead past the temple and the ear to the nape.
-  static const Vec2 kHairline[] = {{-9.5, 170.3}, {-6.5, 168.2}, {-4.4, 165.0}, {-3.2, 162.0}, {-1.4, 159.4},
-                                   {1, 157.6},    {3, 155.4},    {5, 153.6},    {7, 152.6}};
   // From the toes over the instep to the heel.
   static const Vec2 kShoeline[] = {{-11.5, 9.0}, {-9.2, 3.6}, {-4, 2.8}, {1, 3.8}, {5, 5.6}, {7, 6.2}};
   Ink ink;
-  const double hair = inside(z - height(kHairline, y), 0.5);
-  // Strands run back from the forehead.
-  const double strands = std::sin(9 * z + 2 * y) * std::sin(2.3 * z - 0.7 * y + 1) * std::sin(23 * z + 4 * y + 2);
-  ink.add(kHair * (1 + 0.35 * strands), hair);
   const double shoe = inside(height(kShoeline, y) - z, 0.15) * inside(10 - z, 0.2);
   ink.add(kShoe, shoe);
   ink.add(kSole, shoe * inside(0.9 - z, 0.15));
   return ink;
 }
 
-/// Brows, lids and lips, seen from the front; the same on both sides.
-Ink face_ink(double x, double z) {
+/// Hair, seen from the side, with strands that run to the knot and around it; ears a little redder than the rest.
+Ink head_ink(double y, double z) {
   Ink ink;
-  const double side = std::abs(x), from_eye = side - 3.1;
-  const auto ellipse = [](double across, double up, double wide, double high) {
-    return 1 - std::hypot(across / wide, up / high);
-  };
-  // Sockets lie a little in the shade, the lid is a line that sinks to both sides.
-  ink.add(kShade, 0.22 * inside(ellipse(from_eye, z - 164.1, 2.4, 1.5), 0.9));
-  const double lid = 163.45 - 0.16 * from_eye * from_eye;
-  ink.add(kShade * 0.6, 0.85 * inside(0.11 - std::abs(z - lid), 0.14) * inside(1.55 - std::abs(from_eye), 0.5));
-  const double brow = 166.0 + 0.08 * from_eye - 0.09 * from_eye * from_eye;
-  ink.add(kHair, 0.75 * inside(0.26 - std::abs(z - brow), 0.3) * inside(1.9 - std::abs(from_eye), 0.9));
-  // Below the nose.
-  ink.add(kShade, 0.3 * inside(ellipse(side - 0.75, z - 158.75, 0.75, 0.3), 0.7));
-  // Lips, with the line between them.
-  const double bow = 0.14 * std::cos(2.2 * side);
-  ink.add(kLip, 0.4 * inside(ellipse(side, z - 156.2 - 0.3 * bow, 2.0, 0.8), 0.35));
-  const double mouth = 156.25 + 0.5 * bow;
-  ink.add(kShade * 0.7, 0.6 * inside(0.07 - std::abs(z - mouth), 0.12) * inside(1.85 - side, 0.5));
+  ink.add(kBlush, 0.18 * inside(1 - std::hypot((y - 1.4) / 2.6, (z - 162.4) / 3.6), 0.8));
+  const double back = y - kKnot.x(), up = z - kKnot.y(), r = std::hypot(back, up), angle = std::atan2(up, back);
+  // Near the knot strands of the head would be finer than the picture.
+  const double fine = 0.5 * std::sin(31 * angle + 1) * std::sin(13 * angle + 0.3 * r) +
+                      0.5 * std::sin(71 * angle + 0.5 * r) * std::sin(9 * angle + 2);
+  const double coiled = 0.8 * std::sin(3 * angle + 4.6 * r) * std::sin(2 * angle + 1.3 * r + 1);
+  const double on_head = inside(r - kKnotRadius, 1.0);
+  const double strands = on_head * std::min(1.0, r / 5) * fine + (1 - on_head) * coiled;
+  ink.add(kHair * (1 + 0.45 * strands), inside(-hairline_distance(y, z), 0.35));
   return ink;
 }
 
-/// Between the fingers, seen from the side: they are `down` cm from the shoulder.
-Ink hand_ink(double y, double down) {
+/// Brows, eyes, nostrils and lips, seen from the front; the same on both sides.
+Ink face_ink(double x, double z) {
   Ink ink;
-  for (const double gap : {-1.75, 0.1, 1.9}) {
-    const double first = 67.6 + 0.16 * (gap - 0.2) * (gap - 0.2);
-    ink.add(kShade, 0.6 * inside(0.09 - std::abs(-y - 1.45 - gap * (1 - 0.02 * (down - first))), 0.16) *
-                        inside(down - first, 1.2));
-  }
+  const double side = std::abs(x), from_eye = side - 3.05;
+  const auto ellipse = [](double across, double up, double wide, double high) {
+    return 1 - std::hypot(across / wide, up / high);
+  };
+  // Cheeks, and the shade of the sockets.
+  ink.add(kBlush, 0.14 * inside(ellipse(side - 3.7, z - 160.6, 2.0, 1.7), 1.2));
+  ink.add(kShade, 0.16 * inside(ellipse(from_eye, z - 164.3, 2.3, 1.2), 1.0));
+  // An almond between the lids, with what it holds, and the lashes along the upper one.
+  const double t = from_eye / 1.35, arc = std::max(1 - t * t, 0.0);
+  const double low = 163.62 - 0.30 * arc + 0.05 * t, high = 163.62 + 0.42 * arc + 0.05 * t;
+  const double open = inside(std::min(z - low, high - z), 0.10) * inside(1.3 - std::abs(from_eye), 0.2);
+  const double from_iris = std::hypot(from_eye, z - 163.70);
+  ink.add(kWhite, open);
+  ink.add(kIris, open * inside(0.46 - from_iris, 0.10));
+  ink.add(kPupil, open * inside(0.20 - from_iris, 0.10));
+  ink.add(kLash, 0.45 * open * inside(z - high + 0.16, 0.2));
+  ink.add(kLash, 0.9 * inside(0.075 - std::abs(z - high), 0.10) * inside(1.45 - std::abs(from_eye), 0.3));
+  ink.add(kShade, 0.45 * inside(0.05 - std::abs(z - low), 0.12) * inside(1.3 - std::abs(from_eye), 0.5));
+  const double brow = 165.85 + 0.10 * from_eye - 0.10 * from_eye * from_eye;
+  const double thick = 0.27 - 0.06 * from_eye;
+  ink.add(kHair, 0.62 * inside(thick - std::abs(z - brow), 0.3) * inside(1.9 - std::abs(from_eye), 0.9));
+  ink.add(kShade * 0.5, 0.8 * inside(ellipse(side - 0.58, z - 159.35, 0.36, 0.22), 0.6));
+  // Lips: the upper one has a bow, and between them is a line.
+  const double bow = 0.16 * std::cos(2.2 * side), end = inside(2.35 - side, 0.5);
+  const double wide = std::max(1 - side * side / (2.45 * 2.45), 0.0);
+  const double mouth = 157.2 + 0.25 * bow;
+  const double top = mouth + (0.62 + 0.8 * bow) * std::sqrt(wide), bottom = mouth - 0.95 * wide;
+  ink.add(kLip, 0.62 * end * inside(std::min(z - bottom, top - z), 0.22));
+  ink.add(kShade * 0.7, 0.65 * inside(0.06 - std::abs(z - mouth), 0.12) * inside(2.2 - side, 0.5));
   return ink;
 }
 
@@ -121,37 +132,37 @@ Material painted(std::string name, const Vec2& low, const Vec2& high, int width,
 struct Sheet {
   Vec2 low, high;  // [cm]
 };
-const Sheet kBody{{-22, -1}, {14, 177}}, kFace{{-6, 153}, {6, 169}}, kHand{{-7, 62}, {6, 79}};
+const Sheet kBody{{-22, -1}, {14, 177}}, kFace{{-6, 153}, {6, 169}}, kHead{{-15, 150}, {15, 177}};
+
+/// What lies above is seen closer [cm].
+constexpr double kHeadFrom = 152;
 
 }  // namespace
 
 Coloring figure_of(const mesh::Mesh& mesh, const MannequinBuild& build) {
   const double cm = build.height / kTableHeight;
-  const auto joints = mannequin_joints(build);
-  const Vec3& shoulder = joints[static_cast<std::size_t>(Joint::left_upper_arm)];
-  const Vec3 along = (joints[static_cast<std::size_t>(Joint::left_hand)] - shoulder).normalized();
-  enum : Index { body, face, hand };
+  enum : Index { body, face, head };
   Coloring coloring;
   coloring.over_look = true;
-  coloring.materials = {painted("body", kBody.low, kBody.high, 256, 1024, body_ink),
-                        painted("face", kFace.low, kFace.high, 192, 256, face_ink),
-                        painted("hands", kHand.low, kHand.high, 128, 128, hand_ink)};
+  coloring.materials = {painted("body", kBody.low, kBody.high, 192, 896, body_ink),
+                        painted("face", kFace.low, kFace.high, 288, 384, face_ink),
+                        painted("head", kHead.low, kHead.high, 512, 512, head_ink)};
   for (const auto& t : mesh.topology.triangles) {
     std::array<Vec3, 3> corners;
     for (std::size_t k = 0; k < 3; ++k) corners[k] = mesh.positions[t[k]] / cm;
-    const auto down = [&](const Vec3& p) { return (Vec3(std::abs(p.x()), p.y(), p.z()) - shoulder / cm).dot(along); };
     const auto on_face = [](const Vec3& p) {
-      return p.y() < -5.5 && std::abs(p.x()) < 5.6 && p.z() > 153.5 && p.z() < 168.5;
+      return p.y() < -5.0 && std::abs(p.x()) < 5.8 && p.z() > 153.5 && p.z() < 168.8 &&
+             hairline_distance(p.y(), p.z()) > 0.6;
     };
-    const auto on_hand = [&](const Vec3& p) { return std::abs(p.x()) > 30 && down(p) > 63; };
+    const auto on_head = [](const Vec3& p) { return p.z() > kHeadFrom && std::abs(p.x()) < 12; };
     const Index which = std::ranges::all_of(corners, on_face)   ? face
-                        : std::ranges::all_of(corners, on_hand) ? hand
+                        : std::ranges::all_of(corners, on_head) ? head
                                                                 : body;
-    const Sheet& sheet = which == face ? kFace : which == hand ? kHand : kBody;
+    const Sheet& sheet = which == face ? kFace : which == head ? kHead : kBody;
     std::array<Vec2, 3> places;
     for (std::size_t k = 0; k < 3; ++k) {
       const Vec3& p = corners[k];
-      const Vec2 at = which == face ? Vec2(p.x(), p.z()) : which == hand ? Vec2(p.y(), down(p)) : Vec2(p.y(), p.z());
+      const Vec2 at = which == face ? Vec2(p.x(), p.z()) : Vec2(p.y(), p.z());
       places[k] = (at - sheet.low).cwiseQuotient(sheet.high - sheet.low);
     }
     coloring.material_of_triangle.push_back(which);

@@ -11,7 +11,15 @@
 namespace weft::character {
 namespace {
 
-constexpr double kHipSwing = 1.6;  ///< share of the recorded turn of the pelvis: longer legs, and a catwalk
+constexpr double kHipSwing = 1.6;       ///< share of the recorded turn of the pelvis: longer legs, and a catwalk
+constexpr double kShoulderSwing = 1.5;  ///< likewise of the chest, which turns against the pelvis
+constexpr double kChestNod = 0.8, kHeadNod = -0.4,
+                 kHeadRoll = -0.4;  ///< shares of the pelvis' pitch and the chest's roll
+constexpr double kForward = 0.12;   ///< turn of a shoulder by that of its arm
+// Elbows of arms that hang are bent, and forearms hang more steeply than upper arms, which the chest keeps off; by
+// less than arms that are held out for wide skirts are [degrees].
+constexpr double kElbowAtRest = 14, kElbowShare = 0.75, kSteeper = 0.75, kMostSteeper = 4.5;
+constexpr double kBesideHips = 8;  ///< from their skin to the middle of a hand that hangs [cm, for a height of 175]
 // In a turn the head leads, then the chest, then the hips (Patla, Adkin & Ballard, "Online steering: coordination and
 // control of body center of mass, head and body reorientation", 1999) [s].
 constexpr double kChestLead = 0.12, kHeadLead = 0.28;
@@ -34,6 +42,7 @@ class Walker {
       : body_(body), plan_(plan), arms_out_(arms_out), keys_(keys) {
     // Steps look beyond both ends.
     const int spare = 2 * plan.period();
+    forearm_turn_ = turn_of_forearms();
     track_ = lay_track(body, plan, -spare, keys + spare);
     for (int key = track_.first; key <= track_.last(); ++key) hips_.push_back({hip_offset(key, 0), hip_offset(key, 1)});
   }
@@ -84,9 +93,13 @@ class Walker {
     std::array<Quat, kJointCount> global;
     const auto [phase, size] = sway(k);
     const Quat hips = pelvis_rotation(k);
+    const double nod = size * (walking::pelvis_pitch.at(phase) - walking::pelvis_pitch.mean);
+    const double roll = size * walking::chest_roll.at(phase);
     const Quat chest =
-        heading(k, kChestLead) * leaning(size * walking::chest_yaw.at(phase), size * walking::chest_roll.at(phase), 0);
-    const Quat head = heading(k, kHeadLead) * leaning(size * walking::head_yaw.at(phase), 0, 0);
+        heading(k, kChestLead) * leaning(size * kShoulderSwing * walking::chest_yaw.at(phase), roll, kChestNod * nod);
+    // The head turns less than the chest and against its nods, so that the eyes stay on what they look at.
+    const Quat head =
+        heading(k, kHeadLead) * leaning(size * walking::head_yaw.at(phase), kHeadRoll * roll, kHeadNod * nod);
     global[place_of(Joint::hips)] = hips;
     global[place_of(Joint::spine)] = hips.slerp(0.5, chest);
     global[place_of(Joint::chest)] = chest;
@@ -103,17 +116,32 @@ class Walker {
     return static_cast<Joint>(place_of(left) + static_cast<std::size_t>(side) * kSideJointCount);
   }
 
+  /// Inward, unless wide hips need more room.
+  double turn_of_forearms() const {
+    const auto at = [this](Joint joint) { return body_.joints[place_of(joint)]; };
+    const Vec3 &shoulder = at(Joint::left_upper_arm), &elbow = at(Joint::left_lower_arm), &wrist = at(Joint::left_hand);
+    const double cm = body_.height / 175, hand = (wrist - elbow).norm() + 8 * cm;
+    const double wanted = body_.hips_half_width + kBesideHips * cm;
+    const double aside = wanted - shoulder.x() - (elbow - shoulder).norm() * std::sin(arms_out_ * kDegree);
+    const double least = std::asin(std::clamp(aside / hand, -1.0, 1.0)) / kDegree;
+    return std::max(-std::min(kSteeper * arms_out_, kMostSteeper), least - arms_out_);
+  }
+
   void arm(std::array<Quat, kJointCount>& global, int side, double phase, double size, const Quat& chest) const {
     const double sign = side == 0 ? 1 : -1;
     const double forward = size * (walking::arm_forward.at(phase) - 0.5 * walking::arm_forward.mean);
     const double out = arms_out_ + 0.5 * size * (walking::arm_out.at(phase) - walking::arm_out.mean);
-    const double bend = 10 + size * 0.6 * (walking::elbow.at(phase) - 10);
+    const double bend = kElbowAtRest + size * kElbowShare * (walking::elbow.at(phase) - kElbowAtRest);
     // From where the arm hangs at rest, 45° out.
-    const Quat upper =
-        chest * turned(-forward * kDegree, Vec3::UnitX()) * turned(sign * (45 - out) * kDegree, Vec3::UnitY());
+    const auto hanging = [&](double from_vertical) {
+      return chest * turned(-forward * kDegree, Vec3::UnitX()) *
+             turned(sign * (45 - from_vertical) * kDegree, Vec3::UnitY());
+    };
+    const Quat upper = hanging(out);
     const Vec3 along(sign * std::sqrt(0.5), 0, -std::sqrt(0.5));
-    const Quat lower = upper * turned(bend * kDegree, along.cross(-Vec3::UnitY()));
-    global[place_of(of_side(Joint::left_shoulder, side))] = chest;
+    const Quat lower = hanging(out + forearm_turn_) * turned(bend * kDegree, along.cross(-Vec3::UnitY()));
+    global[place_of(of_side(Joint::left_shoulder, side))] =
+        chest * turned(-sign * kForward * forward * kDegree, Vec3::UnitZ());
     global[place_of(of_side(Joint::left_upper_arm, side))] = upper;
     global[place_of(of_side(Joint::left_lower_arm, side))] = lower;
     global[place_of(of_side(Joint::left_hand, side))] = lower;
@@ -174,6 +202,7 @@ class Walker {
   const Physique& body_;
   const StepPlan& plan_;
   double arms_out_;
+  double forearm_turn_ = 0;  // outward, against the upper arms [degrees]
   int keys_;
   Track track_;
   HipOffsets hips_;

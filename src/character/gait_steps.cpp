@@ -147,6 +147,10 @@ Physique physique_of(const Character& mannequin) {
   body.thigh = (knee - hip).norm();
   body.shin = (ankle - knee).norm();
   body.stance_forward = 1.3 * cm;
+  // Arms are farther out at rest.
+  for (const Vec3& p : mannequin.mesh.positions)
+    if (p.z() > 75 * cm && p.z() < 98 * cm && p.x() < 35 * cm)
+      body.hips_half_width = std::max(body.hips_half_width, p.x());
   return body;
 }
 

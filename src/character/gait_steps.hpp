@@ -20,7 +20,8 @@ struct Physique {
   double heel_back = 0, heel_radius = 0;     ///< the heel is round about a point behind the ankle
   double toe_length = 0, toe_radius = 0;     ///< from the ball to the middle of the round tips
   double thigh = 0, shin = 0;
-  double stance_forward = 0;  ///< of the hips before the ankles, standing
+  double hips_half_width = 0;  ///< of the skin, where hands hang
+  double stance_forward = 0;   ///< of the hips before the ankles, standing
 
   double leg() const { return thigh + shin; }
 };

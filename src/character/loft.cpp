@@ -12,13 +12,6 @@ double power(double x, double n) {
   return n == 2 ? x * x : std::pow(std::abs(x), n);
 }
 
-/// Minimum of a and b, rounded where they are closer than k; twice continuously differentiable (cubic smooth minimum,
-/// after Quilez, "Smooth minimum", 2013).
-double smooth_min(double a, double b, double k) {
-  const double h = std::max(k - std::abs(a - b), 0.0) / k;
-  return std::min(a, b) - h * h * h * k / 6;
-}
-
 /// Slopes at the knots of the cubic spline that is flat at both ends; for inner knots i, with h and d the lengths and
 /// slopes of the chords: h[i] s[i-1] + 2 (h[i-1] + h[i]) s[i] + h[i-1] s[i+1] = 3 (h[i] d[i-1] + h[i-1] d[i]).
 std::vector<double> spline_slopes(const std::vector<double>& at, const std::vector<double>& value) {
@@ -36,6 +29,12 @@ std::vector<double> spline_slopes(const std::vector<double>& at, const std::vect
 }
 
 }  // namespace
+
+// Twice continuously differentiable (cubic smooth minimum, after Quilez, "Smooth minimum", 2013).
+double smooth_min(double a, double b, double width) {
+  const double h = std::max(width - std::abs(a - b), 0.0) / width;
+  return std::min(a, b) - h * h * h * width / 6;
+}
 
 Loft::Loft(const LoftFrame& frame, const std::vector<Section>& sections, double first_cap, double last_cap)
     : frame_(frame), first_cap_(first_cap), last_cap_(last_cap) {
@@ -97,23 +96,28 @@ double Loft::value(const Vec3& p) const {
   return rho < 1e-9 ? -std::min({s[2], s[3], s[4]}) : length * (1 - 1 / rho);
 }
 
+double BlendedBody::Part::value(const Vec3& p) const {
+  const double whole = shape.value(p);
+  return cut ? -smooth_min(-whole, -cut(p), blend) : whole;
+}
+
 double BlendedBody::operator()(const Vec3& p) const {
   constexpr double nothing = std::numeric_limits<double>::max();
   const Vec3 mirrored(-p.x(), p.y(), p.z());
   double f = nothing;
   for (const Part& part : parts_) {
-    // A part that is farther than what is there already, and its blend, changes nothing.
-    const double reach = f == nothing ? nothing : f + part.blend;
-    if (part.shape.bounds().exteriorDistance(p) < reach) {
-      double value = part.shape.value(p);
-      // Blended with its image first, so that the sum is even in x.
-      if (part.paired && part.shape.bounds().exteriorDistance(mirrored) < value + part.blend) {
-        value = smooth_min(value, part.shape.value(mirrored), part.blend);
-      }
-      f = f == nothing ? value : smooth_min(f, value, part.blend);
-    } else if (part.paired && part.shape.bounds().exteriorDistance(mirrored) < reach) {
-      f = smooth_min(f, part.shape.value(mirrored), part.blend);
+    // A part that is farther than what is there already, and its blend, changes nothing; likewise one that takes away.
+    const double reach = f == nothing ? nothing : part.blend + (part.carved ? -f : f);
+    const auto near = [&](const Vec3& at) { return part.shape.bounds().exteriorDistance(at) < reach; };
+    double value = nothing;
+    if (near(p)) value = part.value(p);
+    // Blended with its image first, so that the sum is even in x.
+    if (part.paired && part.shape.bounds().exteriorDistance(mirrored) < std::min(reach, value + part.blend)) {
+      const double image = part.value(mirrored);
+      value = value == nothing ? image : smooth_min(value, image, part.blend);
     }
+    if (value == nothing) continue;
+    f = part.carved ? -smooth_min(-f, value, part.blend) : f == nothing ? value : smooth_min(f, value, part.blend);
   }
   return f;
 }
@@ -121,6 +125,7 @@ double BlendedBody::operator()(const Vec3& p) const {
 Box3 BlendedBody::bounds() const {
   Box3 box;
   for (const Part& part : parts_) {
+    if (part.carved) continue;
     box.extend(part.shape.bounds());
     if (!part.paired) continue;
     for (const Vec3& p : {part.shape.bounds().min(), part.shape.bounds().max()}) {

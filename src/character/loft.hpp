@@ -2,6 +2,8 @@
 #pragma once
 
 #include <array>
+#include <functional>
+#include <utility>
 #include <vector>
 
 #include "core/types.hpp"
@@ -52,11 +54,23 @@ class Loft {
   Box3 bounds_;
 };
 
+/// The minimum of two fields, rounded where they are closer than `width` [m].
+double smooth_min(double a, double b, double width);
+
 /// Union of lofts, each blended into those before it over a width of its own [m], so that no crease remains.
 class BlendedBody {
  public:
-  /// Paired parts are there twice, mirrored at x = 0.
-  void add(Loft part, double blend, bool paired) { parts_.push_back({std::move(part), blend, paired}); }
+  /// Negative where a part is kept [m].
+  using Cut = std::function<double(const Vec3&)>;
+
+  /// Paired parts are there twice, mirrored at x = 0. Of a part with a cut only what that keeps is there, with an edge
+  /// that is as round as the blend is wide.
+  void add(Loft part, double blend, bool paired, Cut cut = {}) {
+    parts_.push_back({std::move(part), blend, paired, false, std::move(cut)});
+  }
+
+  /// Takes a shape away from all parts before it, with an edge that is rounded over a width [m].
+  void carve(Loft part, double blend, bool paired) { parts_.push_back({std::move(part), blend, paired, true, {}}); }
 
   double operator()(const Vec3& p) const;
   Box3 bounds() const;
@@ -65,7 +79,10 @@ class BlendedBody {
   struct Part {
     Loft shape;
     double blend;
-    bool paired;
+    bool paired, carved;
+    Cut cut;
+
+    double value(const Vec3& p) const;
   };
   std::vector<Part> parts_;
 };

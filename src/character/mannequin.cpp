@@ -17,6 +17,8 @@ constexpr int kRemeshings = 8;  ///< more change the smallest angle by less than
 
 constexpr std::size_t kFirstLeft = 5, kFirstRight = kFirstLeft + kSideJointCount;
 
+constexpr double kFinest = 0.02;  ///< edge length from which on head and hands are no coarser [m], for 1.75 m
+
 constexpr double kRim = 0.012;  ///< rounding between sole and side of a foot [m], for a height of 1.75 m
 
 /// The body with flat soles: what is below the floor is cut off.
@@ -30,19 +32,28 @@ mesh::Field standing_on_floor(const BlendedBody& body, double height) {
 }
 
 /// Shorter where the body is thinner or more curved: arms, hands, shins, feet, neck, head, between the legs and under
-/// the arms.
+/// the arms. Faces and fingers keep their length in coarser bodies, or they would lose their shape.
 mesh::Sizing edge_lengths(const MannequinBuild& build, const std::array<Vec3, kJointCount>& joints) {
-  const double unit = build.height / 1.75;
+  const double unit = build.height / 1.75, edge = build.edge_length, fine = std::min(edge, kFinest * unit);
   const double wrist = joints[place_of(Joint::left_hand)].x(), shoulder = joints[place_of(Joint::left_upper_arm)].x();
   const Vec3 crotch(0, 0, 0.78 * unit), armpit(0.82 * shoulder, 0, 1.31 * unit);
+  const Vec3 nose(0, -0.095 * unit, 1.61 * unit), ear(0.078 * unit, 0.019 * unit, 1.627 * unit);
   return [=](const Vec3& p) {
-    const double arm =
-        0.5 * smooth_ramp(p.x(), shoulder, wrist) + 0.17 * smooth_ramp(p.x(), wrist - 0.02 * unit, wrist + 0.03 * unit);
+    const double arm = 0.5 * smooth_ramp(p.x(), shoulder, wrist);
     const double leg = 1 - smooth_ramp(p.z(), 0, 0.4 * unit);
-    const double head = smooth_ramp(p.z(), 1.38 * unit, 1.52 * unit);
+    const double neck = smooth_ramp(p.z(), 1.38 * unit, 1.52 * unit);
     const double fold = std::min((p - crotch).norm(), (p - armpit).norm());
     const double folds = 1 - smooth_ramp(fold, 0.02 * unit, 0.11 * unit);
-    return build.edge_length * (1 - std::max({arm, 0.5 * leg, 0.3 * head, 0.4 * folds}));
+    // Lengths change slowly toward head and hands.
+    const double away = std::max(std::min(1.5 * unit - p.z(), 1.4 * (wrist - p.x())), 0.0);
+    const double most = 0.5 * fine + 0.6 * away;
+    const double coarse = std::min(edge * (1 - std::max({arm, 0.5 * leg, 0.3 * neck, 0.4 * folds})), most);
+    const double hand = smooth_ramp(p.x(), wrist - 0.01 * unit, wrist + 0.05 * unit);
+    const double head = smooth_ramp(p.z(), 1.50 * unit, 1.55 * unit);
+    const double face = std::max(1 - smooth_ramp((p - nose).norm(), 0.05 * unit, 0.10 * unit),
+                                 1 - smooth_ramp((p - ear).norm(), 0.03 * unit, 0.06 * unit));
+    const double wanted = fine * std::min(1 - 0.75 * hand, 1 - 0.55 * head * (1 + 0.38 * face));
+    return std::max({hand, head}) > 0 ? std::min(coarse, wanted) : coarse;
   };
 }
 
@@ -52,7 +63,7 @@ mesh::MirroredMesh make_skin(const MannequinBuild& build, const std::array<Vec3,
   const Box3 bounds = body.bounds();
   const Vec3 spare = Vec3::Constant(kRim * build.height);
   // Fine enough for fingers and for the room between the thighs.
-  const double cell = std::min(0.7 * build.edge_length, 0.012 * build.height / 1.75);
+  const double cell = std::min(0.7 * build.edge_length, 0.0075 * build.height / 1.75);
   mesh::Mesh half = mesh::march_half_space(field, Box3(bounds.min() - spare, bounds.max() + spare), cell);
   mesh::remesh(half, field, edge_lengths(build, joints), kRemeshings);
   return mesh::join_mirror_image(half);

@@ -9,34 +9,10 @@
 #include <cmath>
 #include <utility>
 
+#include "character/mannequin_parts.hpp"
+
 namespace weft::character {
 namespace {
-
-/// What turns table values into metres for one build.
-struct Scale {
-  double length = 0.01;  ///< along the body
-  double girth = 0.01;   ///< across it
-  double masculinity = 0;
-
-  double blend(double woman, double man) const { return woman + masculinity * (man - woman); }
-};
-
-/// A row of a table: place along the axis, middle, half width, depth to front and back, exponent.
-using Rows = std::vector<Section>;
-
-/// Scales sections; `grows` tells whether they take part in the girth.
-Rows scaled(Rows rows, const Scale& scale, bool grows = true) {
-  const double across = grows ? scale.girth : scale.length;
-  for (Section& s : rows) {
-    s.at *= scale.length;
-    s.u *= scale.length;
-    s.v *= scale.length;
-    s.side *= across;
-    s.front *= across;
-    s.back *= across;
-  }
-  return rows;
-}
 
 /// Hips to collar bones; depths from the plane through ears, shoulders, hips and ankles.
 void add_torso(BlendedBody& body, const Scale& s) {
@@ -59,7 +35,7 @@ void add_torso(BlendedBody& body, const Scale& s) {
   body.add(Loft({}, scaled(rows, s), 3 * s.length, 6 * s.length), 0.01, false);
 }
 
-/// An ellipsoid around a point, given forward and up.
+/// An ellipsoid around a point, given to the left, forward and up, that takes part in the girth.
 Loft ball(const Scale& s, const Vec3& middle, double side, double depth, double half_height) {
   const LoftFrame frame{s.length * Vec3(middle.x(), -middle.y(), middle.z())};
   const double cap = half_height * s.girth;
@@ -88,7 +64,7 @@ void add_shoulders(BlendedBody& body, const Scale& s) {
   body.add(Loft(frame, scaled(rows, s), 5 * s.length, 4.6 * s.length), 0.06, true);
 }
 
-void add_neck_and_head(BlendedBody& body, const Scale& s) {
+void add_neck(BlendedBody& body, const Scale& s) {
   // Leaning forward; at 0 its foot between the shoulders.
   LoftFrame neck;
   neck.origin = s.length * Vec3(0, 2.9, 143);
@@ -102,12 +78,6 @@ void add_neck_and_head(BlendedBody& body, const Scale& s) {
                   {12, 0, 0, 4.95 * k, 5.2 * k, 5.3 * k, 2},
                   {16, 0, 0, 5.3 * k, 5.6 * k, 5.6 * k, 2}};
   body.add(Loft(neck, scaled(rows, s), 3 * s.length, 3 * s.length), 0.05, false);
-
-  const Rows head{
-      {156.4, 0, 4.5, 4.9, 5.8, 6.6, 2.1}, {161, 0, 2.2, 6.4, 7.9, 8.6, 2.1}, {164.5, 0, 1.1, 7.0, 8.6, 9.4, 2.1}};
-  body.add(Loft({}, scaled(head, s, false), 4.6 * s.length, 10.4 * s.length), 0.03, false);
-  const Scale same{s.length, s.length, s.masculinity};
-  body.add(ball(same, {0, 8.6, 161.4}, 2.0, 2.1, 3.4), 0.04, false);  // nose
 }
 
 /// Down the arm from the shoulder, u away from the body, v forward.
@@ -131,22 +101,6 @@ void add_arm(BlendedBody& body, const Scale& s, const LoftFrame& frame) {
     row.back *= k;
   }
   body.add(Loft(frame, scaled(arm, s), 4.4 * s.length, 2 * s.length), 0.045, true);
-  // The palm and four fingers in one, slightly bent toward the thigh; the thumb apart.
-  const Rows hand{{57.5, 0, 0.3, 1.3, 1.9, 1.8, 2},         {61, 0.05, 0.3, 1.5, 2.8, 2.7, 2.1},
-                  {64, 0.0, 0.3, 1.5, 3.5, 3.4, 2.2},       {67.5, -0.15, 0.2, 1.35, 3.8, 3.8, 2.3},
-                  {70.5, -0.45, 0.15, 1.15, 3.6, 3.7, 2.3}, {73.3, -0.8, 0.15, 1.0, 3.05, 3.1, 2.2},
-                  {75.3, -1.0, 0.15, 0.9, 2.4, 2.4, 2.1}};
-  body.add(Loft(frame, scaled(hand, s, false), 2 * s.length, 2.0 * s.length), 0.025, true);
-  LoftFrame thumb = frame;
-  thumb.origin += s.length * (60.2 * frame.along + 2.0 * frame.v - 0.5 * frame.u);
-  thumb.along = (0.76 * frame.along + 0.62 * frame.v - 0.22 * frame.u).normalized();
-  thumb.v = (frame.v - frame.v.dot(thumb.along) * thumb.along).normalized();
-  thumb.u = thumb.along.cross(thumb.v);
-  const Rows rows{{0, 0, 0, 1.35, 1.5, 1.5, 2},
-                  {3, 0, 0.1, 1.2, 1.3, 1.3, 2},
-                  {5, 0.05, 0.0, 1.05, 1.1, 1.1, 2},
-                  {7, 0.1, -0.2, 0.9, 0.9, 0.9, 2}};
-  body.add(Loft(thumb, scaled(rows, s, false), 1.5 * s.length, 1.3 * s.length), 0.02, true);
 }
 
 void add_leg(BlendedBody& body, const Scale& s) {
@@ -186,6 +140,30 @@ void add_foot(BlendedBody& body, const Scale& s, const Vec3& ankle) {
 
 }  // namespace
 
+Rows scaled(Rows rows, const Scale& scale, bool grows) {
+  const double across = grows ? scale.girth : scale.length;
+  for (Section& s : rows) {
+    s.at *= scale.length;
+    s.u *= scale.length;
+    s.v *= scale.length;
+    s.side *= across;
+    s.front *= across;
+    s.back *= across;
+  }
+  return rows;
+}
+
+Loft ellipsoid(const Scale& scale, const Vec3& middle, const Vec3& half, double pitch, double yaw) {
+  constexpr double degree = 0.017453292519943295;
+  const Eigen::AngleAxisd nod(pitch * degree, Vec3::UnitX()), turn(yaw * degree, Vec3::UnitZ());
+  LoftFrame frame{scale.length * Vec3(middle.x(), -middle.y(), middle.z())};
+  frame.along = turn * (nod * frame.along);
+  frame.u = turn * (nod * frame.u);
+  frame.v = turn * (nod * frame.v);
+  const double side = half.x() * scale.length, depth = half.y() * scale.length, cap = half.z() * scale.length;
+  return Loft(frame, {{0, 0, 0, side, depth, depth, 2}}, cap, cap);
+}
+
 BlendedBody mannequin_body(const MannequinBuild& build) {
   Scale scale;
   scale.length = build.height / kTableHeight;
@@ -198,8 +176,11 @@ BlendedBody mannequin_body(const MannequinBuild& build) {
   add_torso(body, scale);
   add_bust_and_seat(body, scale);
   add_shoulders(body, scale);
-  add_neck_and_head(body, scale);
-  add_arm(body, scale, arm_frame(at(Joint::left_upper_arm), at(Joint::left_hand)));
+  add_neck(body, scale);
+  add_head(body, scale);
+  const LoftFrame arm = arm_frame(at(Joint::left_upper_arm), at(Joint::left_hand));
+  add_arm(body, scale, arm);
+  add_hand(body, scale, arm);
   add_leg(body, scale);
   add_foot(body, scale, at(Joint::left_foot));
   return body;

@@ -96,9 +96,14 @@ double opacity_of(const frame::Surface& surface) {
   return 1 - kSlope * std::clamp(surface.appearance.finish.sheer - kFirst, 0.0, 0.5);
 }
 
+bool is_skin(const frame::Surface& surface) {
+  return surface.kind == frame::ObjectKind::character && !surface.parts.empty() &&
+         surface.parts.front().appearance.paint.alpha == frame::Paint::Alpha::over_color;
+}
+
 Shading::Material material_of(const frame::Surface& surface, bool plain) {
   return {plain ? clay(surface.appearance) : surface.appearance, surface.kind == frame::ObjectKind::cloth,
-          opacity_of(surface)};
+          opacity_of(surface), !plain && is_skin(surface)};
 }
 
 Shading::Shading(const Gl& gl, const QualitySettings& quality, int width, int height, const GeometryBuffer& geometry)
@@ -148,6 +153,7 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
   if (features.sheer) return;
   std::vector<const char*> of_solid = paint;
   if (features.metal) of_solid.push_back("METAL");
+  if (features.skin && features.painted) of_solid.push_back("SKIN");
   solid = Program(gl, "fullscreen.vert", "surface.frag", shading_defines(quality, lights, crisp, of_solid));
   std::vector<const char*> floor{features.checker ? "CHECKER" : "PLAIN"};
   if (features.level) floor.push_back("LEVEL");
@@ -165,6 +171,7 @@ Shading::Programs::Programs(const Gl& gl, const QualitySettings& quality, const 
 const Shading::Programs& Shading::programs(Features features) {
   features.glossy = glossy_;
   features.metal = metal_;
+  features.skin = skin_;
   features.heat = heat_;
   const auto known = programs_.find(features);
   if (known != programs_.end()) return known->second;
@@ -180,7 +187,8 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
   metal_ = std::ranges::any_of(materials, [](const Material& material) {
     return !material.cloth && (material.appearance.metal > 0 || material.appearance.coat > 0);
   });
-  for (const auto& [look, cloth, opacity] : materials) {
+  skin_ = std::ranges::any_of(materials, &Material::skin);
+  for (const auto& [look, cloth, opacity, skin] : materials) {
     texels.push_back(texel(look.color, std::clamp(look.roughness, 0.0, 1.0)));
     texels.push_back(texel(look.back_color, look.thread_spacing));
     texels.push_back(
@@ -190,7 +198,7 @@ void Shading::upload_materials(std::span<const Material> materials, double heat_
     texels.push_back(Eigen::Vector4d(cloth ? finish.gloss : look.coat, cloth ? finish.warp_share : look.metal,
                                      finish.fuzz, finish.sheer)
                          .cast<float>());
-    texels.emplace_back(static_cast<float>(opacity), static_cast<float>(finish.threads), 0.0f, 0.0f);
+    texels.emplace_back(static_cast<float>(opacity), static_cast<float>(finish.threads), skin ? 1.0f : 0.0f, 0.0f);
   }
   const int rows = static_cast<int>(materials.size());
   if (rows > material_rows_) {

@@ -23,6 +23,7 @@ class Shading {
     frame::Appearance appearance;
     bool cloth = false;
     double opacity = 1;  ///< seen head-on
+    bool skin = false;   ///< where no picture lies over its colour
   };
   /// What shaders are compiled for.
   struct Features {
@@ -35,8 +36,9 @@ class Shading {
     bool shiny = false;       ///< the floor mirrors lamps
     bool reflecting = false;  ///< the floor shows what a Mirror has drawn, everywhere
     bool sheer = false;       ///< cloth says how opaque it is
-    bool glossy = false;      ///< threads of some cloth shine; draw() sees to that, and to the next two
+    bool glossy = false;      ///< threads of some cloth shine; draw() sees to that, and to the next three
     bool metal = false;       ///< something that is no cloth is of metal or has a coat; likewise
+    bool skin = false;        ///< something is skin; likewise
     bool heat = false;        ///< in place of colours of cloth
     auto operator<=>(const Features&) const = default;
   };
@@ -80,8 +82,8 @@ class Shading {
   Buffer area_vertices_, grid_vertices_, grid_triangles_;
   GLsizei grid_indices_ = 0;
   int material_rows_ = 0;
-  bool glossy_ = false, metal_ = false, heat_ = false;  // of the materials
-  std::optional<Paints> floor_pictures_;                // once a floor has one
+  bool glossy_ = false, metal_ = false, skin_ = false, heat_ = false;  // of the materials
+  std::optional<Paints> floor_pictures_;                               // once a floor has one
   GLuint floor_picture_ = 0;
   float floor_tint_ = 1;
   Eigen::Matrix<float, 2, 4> floor_picture_from_world_ = Eigen::Matrix<float, 2, 4>::Zero();
@@ -89,6 +91,9 @@ class Shading {
 
 /// Share of the light that cloth stops, head-on. Dense weaves let light through, but nothing is seen behind them.
 double opacity_of(const frame::Surface& surface);
+
+/// Whether a body is bare where no picture lies over its colour, as the mannequin is.
+bool is_skin(const frame::Surface& surface);
 
 /// `plain`: of clay.
 Shading::Material material_of(const frame::Surface& surface, bool plain);

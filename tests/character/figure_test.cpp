@@ -66,5 +66,24 @@ TEST(Figure, BothSidesOfTheFaceAreAlike) {
   EXPECT_GT(inked, 100) << "brows, lids and lips";
 }
 
+TEST(Figure, HairIsPaintedWhereItsVolumeIs) {
+  const Character body = make_mannequin({});
+  int knot = 0, ears = 0;
+  for (std::size_t t = 0; t < body.coloring.uv.size(); ++t) {
+    Vec3 middle = Vec3::Zero();
+    for (const Index v : body.mesh.topology.triangles[t]) middle += body.mesh.positions[v] / 3;
+    if (middle.z() < 1.5) continue;
+    const int alpha = painted(body, t)[3];
+    if (middle.y() > 0.105) {
+      EXPECT_EQ(alpha, 255) << middle.transpose();
+      ++knot;
+    } else if (std::abs(middle.x()) > 0.08) {
+      EXPECT_LT(alpha, 100) << middle.transpose();
+      ++ears;
+    }
+  }
+  EXPECT_GT(std::min(knot, ears), 20);
+}
+
 }  // namespace
 }  // namespace weft::character
