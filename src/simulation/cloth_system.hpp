@@ -114,6 +114,8 @@ class ClothSystem {
                        const scene::Physics& physics);
   void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of, double put_on,
                            const scene::Physics& physics);
+  void add_rope_forces(std::size_t cloth, std::span<const double> lengths, const scene::Rope& rope,
+                       const scene::Physics& physics);
   void add_frames(const scene::Scene& scene, const environment::Environment& environment);
   void add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit);
   solver::BlockMatrix lay_out_matrix() const;
