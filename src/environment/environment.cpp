@@ -298,9 +298,8 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wea
   check_spacing(scene, cloth);
   ClothObject object;
   object.name = cloth.name;
-  const std::string where =
-      fmt::format("{}:{}:{}: {}.{}", scene.file.string(), cloth.line, cloth.column, cloth.rope ? "rope" : "cloth",
-                  cloth.name);
+  const std::string where = fmt::format("{}:{}:{}: {}.{}", scene.file.string(), cloth.line, cloth.column,
+                                        cloth.rope ? "rope" : "cloth", cloth.name);
   const mesh::Grid grid = grid_of(cloth);
   assets::LoadedMesh file;
   switch (cloth.shape) {

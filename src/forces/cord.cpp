@@ -30,7 +30,8 @@ Vec3 second_difference(const Turn& turn, const Points& x) {
 }
 
 solver::PackedBlock packed_block(const Mat3& m) {
-  return {Lanes{m(0, 0), m(1, 0), m(2, 0), m(0, 1)}, Lanes{m(1, 1), m(2, 1), m(0, 2), m(1, 2)}, Lanes{m(2, 2), 0, 0, 0}};
+  return {Lanes{m(0, 0), m(1, 0), m(2, 0), m(0, 1)}, Lanes{m(1, 1), m(2, 1), m(0, 2), m(1, 2)},
+          Lanes{m(2, 2), 0, 0, 0}};
 }
 
 }  // namespace
@@ -39,17 +40,12 @@ Cord::Cord(std::span<const double> lengths, bool closed, Index first, const Cord
     : first_(first), parameters_(parameters), damping_({parameters.bend, parameters.damping * parameters.bend, 0}) {
   const auto pieces = static_cast<Index>(lengths.size()), particles = closed ? pieces : pieces + 1;
   const auto particle = [&](Index i) { return first + i % particles; };
-  for (Index p = 0; p < pieces; ++p) {
-    const double rest = lengths[slot(p)], elasticity = parameters.stretch / rest;
-    pieces_.push_back({{particle(p), particle(p + 1)}, rest, elasticity, parameters.damping * elasticity});
-  }
+  for (Index p = 0; p < pieces; ++p) pieces_.push_back({{particle(p), particle(p + 1)}, lengths[slot(p)], 0, 0, 0});
+  use_length_ratio(1);
   if (parameters.bend == 0) return;
   for (Index p = 0; p < (closed ? pieces : pieces - 1); ++p) {
-    turns_.push_back({{particle(p), particle(p + 1), particle(p + 2)},
-                      lengths[slot(p)],
-                      lengths[slot((p + 1) % pieces)],
-                      {},
-                      0});
+    turns_.push_back(
+        {{particle(p), particle(p + 1), particle(p + 2)}, lengths[slot(p)], lengths[slot((p + 1) % pieces)], {}, 0});
     weigh(turns_.back(), {});
   }
 }
@@ -65,6 +61,14 @@ void Cord::weigh(Turn& turn, std::span<const char> held) const {
 
 void Cord::hold(std::span<const char> held) {
   for (Turn& turn : turns_) weigh(turn, held);
+}
+
+void Cord::use_length_ratio(double ratio) {
+  for (Piece& piece : pieces_) {
+    piece.rest = ratio * piece.own;
+    piece.elasticity = parameters_.stretch / piece.rest;
+    piece.viscosity = parameters_.damping * piece.elasticity;
+  }
 }
 
 void Cord::couple(std::vector<std::pair<Index, Index>>& pairs) const {
@@ -109,9 +113,9 @@ void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
   if (!at.assembly) return;
   // As in Stretch.
   const double ratio = 1 - piece.rest / length;
-  const double lateral = piece.elasticity * (at.linearisation == Linearisation::definite
-                                                 ? std::max(ratio, 0.0)
-                                                 : std::min(std::abs(ratio), 1.0));
+  const double lateral =
+      piece.elasticity *
+      (at.linearisation == Linearisation::definite ? std::max(ratio, 0.0) : std::min(std::abs(ratio), 1.0));
   const double along = piece.elasticity + at.rate * piece.viscosity;
   at.assembly.add(piece.block, Mat3((lateral - along) * n * n.transpose() - lateral * Mat3::Identity()));
 }
@@ -133,9 +137,8 @@ void Cord::add_air(const Piece& piece, const Evaluation& at) const {
   at.force.subtract(b, drag);
   if (!at.assembly) return;
   // What the velocities change, summed up on the diagonal, as in Air.
-  const auto damping =
-      packed_block(at.rate * coefficient *
-                   (speed * (Mat3::Identity() - n * n.transpose()) + across * across.transpose() / speed));
+  const auto damping = packed_block(
+      at.rate * coefficient * (speed * (Mat3::Identity() - n * n.transpose()) + across * across.transpose() / speed));
   at.assembly.add_to_own(a, damping);
   at.assembly.add_to_own(b, damping);
 }
@@ -183,8 +186,7 @@ void Cord::add_jacobian(std::span<const Vec3> x, std::span<const Vec3> v, double
     Vec3 c = second_difference(turn, x);
     if (rate > 0) c -= velocity / rate;
     const double tangent = damping_.tangent(c.squaredNorm(), c.dot(velocity));
-    const Mat3 stiffness =
-        turn.length * (parameters_.bend * Mat3::Identity() + rate * tangent * c * c.transpose());
+    const Mat3 stiffness = turn.length * (parameters_.bend * Mat3::Identity() + rate * tangent * c * c.transpose());
     for (std::size_t a = 0; a < 3; ++a)
       for (std::size_t b = 0; b < 3; ++b)
         add(turn.particles[a], turn.particles[b], turn.weights[a] * turn.weights[b] * stiffness);

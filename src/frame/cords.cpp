@@ -9,9 +9,9 @@ namespace {
 
 constexpr double kTurn = 2 * std::numbers::pi;
 constexpr int kStrands = 3;
-constexpr double kGroove = 0.1;           // depth of the furrows between strands, half of it, in radii
+constexpr double kGroove = 0.1;  // depth of the furrows between strands, half of it, in radii
 constexpr int kSidesOfStrands = 15, kSidesOfCord = 10;
-constexpr int kRingsPerLay = 8;           // of twisted strands, along one turn of them
+constexpr int kRingsPerLay = 8;  // of twisted strands, along one turn of them
 constexpr int kMostRingsPerPiece = 12;
 constexpr std::size_t kMostRings = 8000;  // beyond these strands are too fine to be drawn
 
@@ -38,7 +38,8 @@ class Spline {
     const auto count = static_cast<int>(places_.size());
     if (closed_) return places_[static_cast<std::size_t>((i + count) % count)];
     if (i < 0) return 2 * places_[0] - places_[1];
-    if (i >= count) return 2 * places_[static_cast<std::size_t>(count - 1)] - places_[static_cast<std::size_t>(count - 2)];
+    if (i >= count)
+      return 2 * places_[static_cast<std::size_t>(count - 1)] - places_[static_cast<std::size_t>(count - 2)];
     return places_[static_cast<std::size_t>(i)];
   }
   const std::vector<Vec3>& places_;
@@ -132,8 +133,8 @@ SurfaceState Cords::state_of(const Tube& tube, const SurfaceState& chain) {
   const int rings = pieces * tube.rings_per_piece + (tube.closed ? 0 : 1);
   std::vector<Vec3> middles, tangents;
   for (int r = 0; r < rings; ++r)
-    middles.push_back(spline.at(r / tube.rings_per_piece, static_cast<double>(r % tube.rings_per_piece) /
-                                                              tube.rings_per_piece));
+    middles.push_back(
+        spline.at(r / tube.rings_per_piece, static_cast<double>(r % tube.rings_per_piece) / tube.rings_per_piece));
   const auto middle = [&](int r) -> const Vec3& {
     return middles[static_cast<std::size_t>(tube.closed ? (r + rings) % rings : std::clamp(r, 0, rings - 1))];
   };

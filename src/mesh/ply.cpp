@@ -20,7 +20,8 @@ static_assert(std::endian::native == std::endian::little);
 constexpr std::size_t kFaceBytes = 1 + 3 * sizeof(std::int32_t), kEdgeBytes = 2 * sizeof(std::int32_t);
 constexpr std::size_t kPlaceBytes = 3 * sizeof(double), kUvBytes = 2 * sizeof(float);
 
-std::string header(std::size_t vertices, std::size_t faces, std::size_t edges, std::size_t passed_through, const PlyExtras& extras) {
+std::string header(std::size_t vertices, std::size_t faces, std::size_t edges, std::size_t passed_through,
+                   const PlyExtras& extras) {
   return fmt::format(
       "ply\n"
       "format binary_little_endian 1.0\n"

@@ -98,7 +98,8 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
   if (part.at && !cloth.rope)
     findings.report(path + ".at", "expected none of a cloth that is no rope; low and high say which part it is");
   if (part.at && part.at->x() > part.at->y())
-    findings.report(path + ".at", fmt::format("expected the lower end first, got {} before {}", part.at->x(), part.at->y()));
+    findings.report(path + ".at",
+                    fmt::format("expected the lower end first, got {} before {}", part.at->x(), part.at->y()));
   for (const auto& [key, name] : {std::pair(".panel", &part.panel), std::pair(".edge", &part.edge)}) {
     if (name->empty() || cloth.shape == ClothShape::pattern) continue;
     findings.report(path + key, "expected none of a cloth that is sewn from no pattern, got " + in_quotes(*name));
@@ -313,8 +314,8 @@ void check_obstacles(const Scene& scene, Findings& findings) {
     check_dynamics(scene, obstacle, path, findings);
     // One name each: it names the object in pictures, statistics and mesh files.
     if (!obstacle.name.empty() && std::find(cloths.begin(), cloths.end(), obstacle.name) != cloths.end()) {
-      findings.report(path + ".name",
-                      fmt::format("expected a name used once, got {}, which a cloth or rope has", in_quotes(obstacle.name)));
+      findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth or rope has",
+                                                  in_quotes(obstacle.name)));
     }
   }
 }
@@ -326,8 +327,9 @@ void check_characters(const Scene& scene, Findings& findings) {
     const Character& character = scene.characters[i];
     const std::string& path = findings.entry("character", i);
     if (!character.name.empty() && std::find(others.begin(), others.end(), character.name) != others.end())
-      findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth, rope or obstacle has",
-                                                  in_quotes(character.name)));
+      findings.report(path + ".name",
+                      fmt::format("expected a name used once, got {}, which a cloth, rope or obstacle has",
+                                  in_quotes(character.name)));
     if (const Acting* acting = acting_of(character);
         acting != nullptr && (acting->stance == Stance::rest || acting->stance_arms) && character.blend <= 0)
       findings.report(path + ".blend", fmt::format("expected > 0 s to get from the {} to the clip, got {}",
@@ -406,6 +408,8 @@ void check(const Scene& scene, Findings& findings) {
                     fmt::format("expected at most {} frames (duration * fps), got {:.0f}", kMaxFrames, frames));
   }
   check_times(scene.physics.keys, "physics", findings);
+  for (std::size_t i = 0; i < scene.ropes.size(); ++i)
+    check_times(scene.ropes[i].keys, findings.entry("rope", i), findings);
   for (std::size_t i = 0; i < scene.fans.size(); ++i)
     check_times(scene.fans[i].keys, findings.entry("fan", i), findings);
   check_cloths(scene, findings);

@@ -132,7 +132,8 @@ const Table& rope_weight_rules() {
 
 const Table& attachment_rules() {
   static const Table kTable =
-      TableBuilder<Attachment>("Part of a cloth or rope that springs tie to another one or to a body: a button, peg, tack or knot.")
+      TableBuilder<Attachment>(
+          "Part of a cloth or rope that springs tie to another one or to a body: a button, peg, tack or knot.")
           .plain(Type::name, "name", &Attachment::name, "unlike that of any other attachment")
           .need(Need::required)
           .plain(Type::text, "cloth", &Attachment::cloth, "cloth or rope of which the part is")

@@ -44,8 +44,8 @@ bool check_course(const Scene& scene, const Rope& rope, const std::string& path,
   const std::size_t count = rope.points.size();
   for (std::size_t i = 0; i < (rope.closed ? count : count - 1); ++i)
     if ((rope.points[(i + 1) % count] - rope.points[i]).norm() < kRoundoff) {
-      findings.report(path + ".points", fmt::format("expected points that differ from the one before, got point {} again",
-                                                    i));
+      findings.report(path + ".points",
+                      fmt::format("expected points that differ from the one before, got point {} again", i));
       return false;
     }
   return true;
@@ -60,10 +60,11 @@ void check_pieces(const Scene& scene, const Rope& rope, const std::string& path,
   const double piece = *std::ranges::min_element(shape.lengths), least = kLeastRopePiece * rope.diameter;
   if (piece < (1 - kRoundoff) * least) {
     const bool chosen = rope.segments.has_value();
-    findings.report(path + (chosen ? ".segments" : ".diameter"),
-                    fmt::format("expected pieces between particles of at least {:.4g} m, {:g} diameters, got {} of which "
-                                "the shortest has {:.4g} m",
-                                least, kLeastRopePiece, shape.lengths.size(), piece));
+    findings.report(
+        path + (chosen ? ".segments" : ".diameter"),
+        fmt::format("expected pieces between particles of at least {:.4g} m, {:g} diameters, got {} of which "
+                    "the shortest has {:.4g} m",
+                    least, kLeastRopePiece, shape.lengths.size(), piece));
   }
 }
 
@@ -76,8 +77,8 @@ void check_ropes(const Scene& scene, Findings& findings) {
     const std::string& path = findings.entry("rope", i);
     const auto is_sheet = [&](const Cloth& cloth) { return !cloth.rope && cloth.name == rope.name; };
     if (!rope.name.empty() && std::ranges::any_of(scene.cloths, is_sheet))
-      findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth has",
-                                                  in_quotes(rope.name)));
+      findings.report(path + ".name",
+                      fmt::format("expected a name used once, got {}, which a cloth has", in_quotes(rope.name)));
     if (check_course(scene, rope, path, findings)) check_pieces(scene, rope, path, particles, findings);
   }
 }

@@ -14,6 +14,17 @@ std::vector<std::string> rope_material_names() {
   return names;
 }
 
+const Table& rope_key_rules() {
+  static const Table kTable =
+      TableBuilder<RopeKey>("How long the rope is at a time.")
+          .number("time", &RopeKey::time, kMoment, "s", "later than the key before")
+          .need(Need::required)
+          .number("length", &RopeKey::length, kExtent, "m", "at rest, all of it alike, as of a cord that is drawn in")
+          .need(Need::required)
+          .build();
+  return kTable;
+}
+
 const Table& rope_look_rules() {
   static const Table kTable =
       TableBuilder<Look>("How the rope is drawn.")
@@ -44,12 +55,14 @@ const Table& rope_rules() {
           .vector("to", &Rope::to, kXyz, kPlace, "m", "where it ends, in place of points")
           .by_default("none")
           .excludes("points")
-          .plain(Type::boolean, "smooth", &Rope::smooth, "true bends it through its points; false: straight between them")
+          .plain(Type::boolean, "smooth", &Rope::smooth,
+                 "true bends it through its points; false: straight between them")
           .plain(Type::boolean, "closed", &Rope::closed, "true joins its end to its beginning: a loop")
-          .number("length", &Rope::length, kExtent, "m",
-                  "at rest; longer than from `from` to `to`, it hangs between them; else it starts stretched, or pushed "
-                  "together")
-          .by_default("as it starts")
+          .number(
+              "length", &Rope::length, kExtent, "m",
+              "at rest; longer than from `from` to `to`, it hangs between them; else it starts stretched, or pushed "
+              "together")
+          .by_default("that of its first key, else as it starts")
           .whole_number("segments", &Rope::segments, within(3, 20000),
                         "pieces between particles; each at least 1.5 diameters long")
           .by_default("pieces of 3 diameters")
@@ -65,11 +78,14 @@ const Table& rope_rules() {
           .by_default(of_material)
           .number("bend", &Rope::bend, within(0, 1e6), "N·m²", "bending stiffness (EI)")
           .by_default(of_material)
-          .number("damping", &Rope::damping, within(0, 10), "s", "viscosity of stretch and bending over their stiffness")
+          .number("damping", &Rope::damping, within(0, 10), "s",
+                  "viscosity of stretch and bending over their stiffness")
           .number("friction", &Rope::friction, within(0, 10), "",
                   "Coulomb coefficient; of a pair, the geometric mean of both")
           .number("drag", &Rope::drag, within(0, 100), "", "air resistance of motion across it; 0 for none")
           .vector("velocity", &Rope::velocity, kXyz, within(-1e4, 1e4), "m/s", "at the start")
+          .choice("interpolation", &Rope::interpolation, kInterpolations, "between its keys")
+          .list(Type::keys, "keys", &Rope::keys, rope_key_rules())
           .table("look", &Rope::look, rope_look_rules())
           .not_simulated()
           .list(Type::list, "pin", &Rope::pins, rope_pin_rules())

@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kStandardGravity = 9.81;  // [m/s²]; bending lengths are measured on Earth
 constexpr int kFewestPieces = 4;
-constexpr int kSplinePieces = 16;    // of a spline between two points
+constexpr int kSplinePieces = 16;  // of a spline between two points
 constexpr int kCatenaryPieces = 512;
 
 // Uniform Catmull-Rom spline between b and c.
@@ -24,7 +24,8 @@ std::vector<Vec3> path_through(const Rope& rope) {
   const auto point = [&](int i) -> Vec3 {
     if (rope.closed) return points[static_cast<std::size_t>((i + count) % count)];
     if (i < 0) return 2 * points[0] - points[1];
-    if (i >= count) return 2 * points[static_cast<std::size_t>(count - 1)] - points[static_cast<std::size_t>(count - 2)];
+    if (i >= count)
+      return 2 * points[static_cast<std::size_t>(count - 1)] - points[static_cast<std::size_t>(count - 2)];
     return points[static_cast<std::size_t>(i)];
   };
   const int pieces = rope.smooth ? kSplinePieces : 1;
@@ -86,7 +87,7 @@ std::vector<Vec3> resampled(const std::vector<Vec3>& path, int pieces) {
 // 430 for polypropylene at 10 mm. Cotton and all bending lengths are estimates: a limp line of 6 mm stands out by 9 cm.
 const std::vector<RopeMaterial>& rope_materials() {
   static const std::vector<RopeMaterial> kMaterials = {
-      {"cotton", 650, 2.5e8, 15},        {"nylon", 676, 1.18e8, 15},   {"polyester", 798, 1.09e9, 15},
+      {"cotton", 650, 2.5e8, 15},         {"nylon", 676, 1.18e8, 15},   {"polyester", 798, 1.09e9, 15},
       {"polypropylene", 453, 1.06e9, 15}, {"steel", 3611, 3.67e10, 40},
   };
   return kMaterials;
@@ -103,30 +104,36 @@ RopeNumbers numbers_of(const Rope& rope) {
   return numbers;
 }
 
+std::optional<double> start_length(const Rope& rope) {
+  if (rope.length || rope.keys.empty()) return rope.length;
+  return rope.keys.front().length;
+}
+
 bool hangs_slack(const Rope& rope) {
-  return rope.points.empty() && rope.length && *rope.length > (*rope.to - *rope.from).norm();
+  return rope.points.empty() && start_length(rope).value_or(0) > (*rope.to - *rope.from).norm();
 }
 
 RopeShape start_shape(const Rope& rope, UpAxis up) {
+  const std::optional<double> wanted = start_length(rope);
   std::vector<Vec3> path;
   if (!rope.points.empty())
     path = path_through(rope);
   else if (hangs_slack(rope))
-    path = catenary(*rope.from, *rope.to, *rope.length, up == UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY());
+    path = catenary(*rope.from, *rope.to, *wanted, up == UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY());
   else
     path = {*rope.from, *rope.to};
   double length = 0;
   for (std::size_t k = 1; k < path.size(); ++k) length += (path[k] - path[k - 1]).norm();
-  const int pieces = rope.segments.value_or(std::max(
-      kFewestPieces, static_cast<int>(std::min(1e6, rope.length.value_or(length) / (kRopePiece * rope.diameter)))));
+  const int pieces = rope.segments.value_or(
+      std::max(kFewestPieces, static_cast<int>(std::min(1e6, wanted.value_or(length) / (kRopePiece * rope.diameter)))));
   RopeShape shape{resampled(path, pieces), {}};
   double chords = 0;
   for (std::size_t k = 1; k < shape.places.size(); ++k) {
     shape.lengths.push_back((shape.places[k] - shape.places[k - 1]).norm());
     chords += shape.lengths.back();
   }
-  if (rope.length)
-    for (double& piece : shape.lengths) piece *= *rope.length / chords;
+  if (wanted)
+    for (double& piece : shape.lengths) piece *= *wanted / chords;
   if (rope.closed) shape.places.pop_back();
   return shape;
 }

@@ -2,6 +2,7 @@
 // them.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -41,6 +42,9 @@ inline constexpr double kRopePiece = 3, kLeastRopePiece = 1.5;
 inline constexpr double kLeastRopeSpan = 4;
 /// Whether it has no points and is longer than the distance of its ends.
 bool hangs_slack(const Rope& rope);
+
+/// At the start [m]; empty: as its course is.
+std::optional<double> start_length(const Rope& rope);
 
 /// The cloth of one dimension that is simulated.
 Cloth as_cloth(const Rope& rope);

@@ -274,22 +274,30 @@ inline long rectangle_particles(const Cloth& cloth) {
   return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
 }
 
+/// How long a rope is at a time, as if it were drawn in or let out evenly.
+struct RopeKey {
+  double time = 0;    ///< [s], strictly increasing
+  double length = 1;  ///< at rest [m]
+};
+
 /// A thin chain of particles. What is simulated is the cloth of one dimension that as_cloth() makes of it.
 struct Rope {
   std::string name;
-  std::vector<Vec3> points;                ///< that it runs through at the start [m]
-  std::optional<Vec3> from, to;            ///< its ends, where it has no points [m]
-  bool smooth = false;                     ///< bent through its points; else straight between them
-  bool closed = false;                     ///< its end is its beginning
-  std::optional<double> length;            ///< at rest [m]; absent: as it starts
-  std::optional<int> segments;             ///< pieces between particles; absent: by diameter
-  double diameter = 0.008;                 ///< that contact keeps [m]
-  int material = 0;                        ///< into rope_materials()
+  std::vector<Vec3> points;                            ///< that it runs through at the start [m]
+  std::optional<Vec3> from, to;                        ///< its ends, where it has no points [m]
+  bool smooth = false;                                 ///< bent through its points; else straight between them
+  bool closed = false;                                 ///< its end is its beginning
+  std::optional<double> length;                        ///< at rest [m]; absent: as it starts
+  Interpolation interpolation = Interpolation::cubic;  ///< between its keys
+  std::vector<RopeKey> keys;                           ///< of its length; empty: that stays
+  std::optional<int> segments;                         ///< pieces between particles; absent: by diameter
+  double diameter = 0.008;                             ///< that contact keeps [m]
+  int material = 0;                                    ///< into rope_materials()
   std::optional<double> mass, stretch, bend;  ///< of a metre [kg/m], EA [N], EI [N·m²]; absent: of the material
-  double damping = 0.01;                   ///< viscosity of stretch and bending over their stiffness [s]
-  double friction = 0.3;                   ///< Coulomb coefficient; of a pair: the geometric mean of both
-  double drag = 1.1;                       ///< air resistance coefficient of motion across it, as of a cylinder
-  Vec3 velocity{0, 0, 0};                  ///< at the start [m/s]
+  double damping = 0.01;                      ///< viscosity of stretch and bending over their stiffness [s]
+  double friction = 0.3;                      ///< Coulomb coefficient; of a pair: the geometric mean of both
+  double drag = 1.1;                          ///< air resistance coefficient of motion across it, as of a cylinder
+  Vec3 velocity{0, 0, 0};                     ///< at the start [m/s]
   Look look;
   std::vector<Pin> pins;
   std::vector<Weight> weights;

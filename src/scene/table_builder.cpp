@@ -82,7 +82,8 @@ void assign(Quat& target, const Value& value) {
 void assign(std::vector<Vec3>& target, const Value& value) {
   const std::vector<double>& numbers = numbers_of(value);
   target.clear();
-  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3) target.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
+  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
+    target.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
 }
 
 Words::Words(std::initializer_list<std::string_view> words) : list(words.begin(), words.end()) {}

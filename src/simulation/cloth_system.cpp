@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "core/archive.hpp"
 #include "core/numerics.hpp"
@@ -210,15 +211,25 @@ void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, con
 void ClothSystem::add_rope_forces(std::size_t cloth, std::span<const double> lengths, const scene::Rope& rope,
                                   const scene::Physics& physics) {
   const scene::RopeNumbers numbers = scene::numbers_of(rope);
-  auto cord = std::make_unique<forces::Cord>(
-      lengths, rope.closed, first_[cloth],
-      forces::CordParameters{.stretch = numbers.stretch,
-                             .bend = numbers.bend,
-                             .damping = rope.damping,
-                             .air_density = physics.air_density,
-                             .wind = physics.wind,
-                             .drag = rope.drag,
-                             .diameter = rope.diameter});
+  auto cord = std::make_unique<forces::Cord>(lengths, rope.closed, first_[cloth],
+                                             forces::CordParameters{.stretch = numbers.stretch,
+                                                                    .bend = numbers.bend,
+                                                                    .damping = rope.damping,
+                                                                    .air_density = physics.air_density,
+                                                                    .wind = physics.wind,
+                                                                    .drag = rope.drag,
+                                                                    .diameter = rope.diameter});
+  if (!rope.keys.empty()) {
+    std::vector<double> times;
+    std::vector<environment::Spline<1>::Value> values;
+    for (const scene::RopeKey& key : rope.keys) {
+      times.push_back(key.time);
+      values.emplace_back(key.length);
+    }
+    drawn_.push_back({cord.get(),
+                      std::accumulate(lengths.begin(), lengths.end(), 0.0),
+                      {rope.interpolation, std::move(times), std::move(values)}});
+  }
   membranes_.push_back(cord.get());
   forces_[cloth].push_back(std::move(cord));
 }
@@ -315,7 +326,13 @@ void ClothSystem::Sewing::use_share(double new_share) {
   if (bands != nullptr) bands->rest_between_start_and_pattern(share);
 }
 
+bool ClothSystem::lengths_stay(double t0, double t1) const {
+  return std::ranges::all_of(
+      drawn_, [&](const DrawnRope& rope) { return rope.lengths.at(t0).value == rope.lengths.at(t1).value; });
+}
+
 void ClothSystem::sew(double t) {
+  for (const DrawnRope& rope : drawn_) rope.cord->use_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
   for (Sewing& sewing : sewing_) {
     const double share = sewing.duration > 0 ? ease((t - sewing.begin) / sewing.duration) : 1;
     if (sewing.ties != nullptr) {

@@ -73,7 +73,8 @@ void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
   if (const auto count = std::ranges::count_if(scene.cloths, [](const Cloth& c) { return c.pressure.acts(); }))
     items.push_back({"force: pressure of enclosed air", true,
                      fmt::format("{} of {}", count, counted(scene.cloths.size(), "cloth"))});
-  if (!scene.ropes.empty()) items.push_back({"force: stretch and bending of ropes", true, counted(scene.ropes.size(), "rope")});
+  if (!scene.ropes.empty())
+    items.push_back({"force: stretch and bending of ropes", true, counted(scene.ropes.size(), "rope")});
   if (!scene.attachments.empty())
     items.push_back({"force: attachments", true, counted(scene.attachments.size(), "attachment")});
   if (const auto count = std::ranges::count_if(scene.obstacles, [](const auto& o) { return scene::is_dynamic(o); }))

@@ -146,8 +146,8 @@ std::shared_ptr<frame::Surface> make_surface(const std::string& name, frame::Obj
 
 std::shared_ptr<frame::Surface> make_cloth_surface(const environment::ClothObject& cloth, const scene::Look& look,
                                                    Pictures& pictures) {
-  auto surface = make_surface(
-      cloth.name, cloth.lengths.empty() ? frame::ObjectKind::cloth : frame::ObjectKind::rope, cloth.mesh);
+  auto surface =
+      make_surface(cloth.name, cloth.lengths.empty() ? frame::ObjectKind::cloth : frame::ObjectKind::rope, cloth.mesh);
   for (const std::string& panel : cloth.panels) surface->parts.push_back({panel, {}});
   surface->part_of_triangle = cloth.panel_of;
   surface->paint_uv = cloth.paint_uv;

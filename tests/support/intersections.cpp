@@ -145,8 +145,9 @@ std::vector<JudgedObject> objects_of(const frame::FrameSnapshot& snapshot) {
   std::vector<JudgedObject> objects;
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
-    objects.push_back({surface.name, surface.kind == frame::ObjectKind::cloth || surface.kind == frame::ObjectKind::rope, snapshot.states[i].positions,
-                       surface.triangles, surface.passed_through});
+    objects.push_back({surface.name,
+                       surface.kind == frame::ObjectKind::cloth || surface.kind == frame::ObjectKind::rope,
+                       snapshot.states[i].positions, surface.triangles, surface.passed_through});
   }
   return objects;
 }
