@@ -37,12 +37,12 @@ solver::PackedBlock packed_block(const Mat3& m) {
 }  // namespace
 
 Cord::Cord(std::span<const double> lengths, bool closed, Index first, const CordParameters& parameters)
-    : first_(first), parameters_(parameters), damping_({parameters.bend, parameters.damping * parameters.bend, 0}) {
+    : first_(first), parameters_(parameters), damping_({parameters.bend, parameters.bend_viscosity, 0}) {
   const auto pieces = static_cast<Index>(lengths.size()), particles = closed ? pieces : pieces + 1;
   const auto particle = [&](Index i) { return first + i % particles; };
   for (Index p = 0; p < pieces; ++p) pieces_.push_back({{particle(p), particle(p + 1)}, lengths[slot(p)], 0, 0, 0});
   use_length_ratio(1);
-  if (parameters.bend == 0) return;
+  if (parameters.bend == 0 && parameters.bend_viscosity == 0) return;
   for (Index p = 0; p < (closed ? pieces : pieces - 1); ++p) {
     turns_.push_back(
         {{particle(p), particle(p + 1), particle(p + 2)}, lengths[slot(p)], lengths[slot((p + 1) % pieces)], {}, 0});
@@ -67,7 +67,7 @@ void Cord::use_length_ratio(double ratio) {
   for (Piece& piece : pieces_) {
     piece.rest = ratio * piece.own;
     piece.elasticity = parameters_.stretch / piece.rest;
-    piece.viscosity = parameters_.damping * piece.elasticity;
+    piece.viscosity = parameters_.stretch_viscosity / piece.rest;
   }
 }
 

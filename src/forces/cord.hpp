@@ -9,18 +9,19 @@
 namespace weft::forces {
 
 struct CordParameters {
-  double stretch = 0;        ///< force per strain, EA [N]
-  double bend = 0;           ///< bending stiffness, EI [N·m²]
-  double damping = 0;        ///< viscosity of both over their stiffness [s]
-  double air_density = 0;    ///< [kg/m³]; 0: no air
-  Vec3 wind = Vec3::Zero();  ///< velocity of the air [m/s], unless an evaluation brings its own
-  double drag = 0;           ///< coefficient of the motion across the cord
-  double diameter = 0;       ///< that the air meets [m]
+  double stretch = 0;            ///< force per strain, EA [N]
+  double stretch_viscosity = 0;  ///< force per rate of strain [N·s]
+  double bend = 0;               ///< bending stiffness, EI [N·m²]
+  double bend_viscosity = 0;     ///< moment per rate of curvature [N·m²·s]
+  double air_density = 0;        ///< [kg/m³]; 0: no air
+  Vec3 wind = Vec3::Zero();      ///< velocity of the air [m/s], unless an evaluation brings its own
+  double drag = 0;               ///< coefficient of the motion across the cord
+  double diameter = 0;           ///< that the air meets [m]
 };
 
 /// The forces within one chain.
 ///
-/// Stretch: the energy ½ EA r (l / r − 1)² of a piece of length l, at rest r, and the tension EA τ d/dt (l / r) of its
+/// Stretch: the energy ½ EA r (l / r − 1)² of a piece of length l, at rest r, and the tension η d/dt (l / r) of its
 /// viscosity. Bending: ½ EI L ‖s''‖² at each particle between two pieces, with s'' the second difference of the
 /// positions by rest lengths, and L half of both pieces (Bend has the same on the lines of a sheet). It is straight at
 /// rest. Viscosity of bending: see BendDamping. Air: −½ ρ c d l ‖v_n‖ v_n on a piece, v_n the part of its motion
@@ -52,7 +53,7 @@ class Cord final : public Membrane {
     double own;         // length that it was made with [m]
     double rest;        // that it is at rest [m]
     double elasticity;  // EA / r [N/m]
-    double viscosity;   // τ EA / r [N·s/m]
+    double viscosity;   // η / r [N·s/m]
     Index block = 0;
   };
   struct Turn {

@@ -213,8 +213,9 @@ void ClothSystem::add_rope_forces(std::size_t cloth, std::span<const double> len
   const scene::RopeNumbers numbers = scene::numbers_of(rope);
   auto cord = std::make_unique<forces::Cord>(lengths, rope.closed, first_[cloth],
                                              forces::CordParameters{.stretch = numbers.stretch,
+                                                                    .stretch_viscosity = rope.damping * numbers.stretch,
                                                                     .bend = numbers.bend,
-                                                                    .damping = rope.damping,
+                                                                    .bend_viscosity = rope.damping * numbers.bend,
                                                                     .air_density = physics.air_density,
                                                                     .wind = physics.wind,
                                                                     .drag = rope.drag,
