@@ -31,7 +31,8 @@ const Table& rope_look_rules() {
           .starting_from(rope_look())
           .color("color", &Look::color, "of the rope")
           .number("roughness", &Look::roughness, within(0, 1), "", "0 like a mirror, 1 matte")
-          .plain(Type::boolean, "strands", &Look::strands, "draws three twisted strands; false: a smooth round cord")
+          .plain(Type::boolean, "strands", &Look::strands,
+                 "draws three twisted strands, of ropes from 9 mm on; false: a smooth round cord")
           .plain(Type::boolean, "visible", &Look::visible, "false leaves it out of the picture")
           .build();
   return kTable;

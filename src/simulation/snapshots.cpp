@@ -47,15 +47,16 @@ frame::Appearance appearance(const scene::Look& look) {
 constexpr double kGarmentHem = 0.015, kHem = 0.010;
 // Of fabrics without a name, as estimated of the others: thickness for a weight [m for kg/m²].
 constexpr double kThicknessByWeight = 2.2e-3;
-// Length in which a strand of a rope goes around once, in diameters.
-constexpr double kLay = 3.2;
+// Length in which a strand of a rope goes around once, in diameters; ropes thinner than this [m] are drawn smooth,
+// since strands finer than pixels flicker.
+constexpr double kLay = 3.2, kLeastTwisted = 0.009;
 
 /// With the finish of the fabric where the scene leaves it open.
 scene::Look look_of(const scene::Cloth& cloth) {
   scene::Look look = cloth.look;
   if (cloth.rope) {
     look.cloth_thickness = cloth.rope->diameter;
-    look.thread_spacing = look.strands ? kLay * cloth.rope->diameter : 0;
+    look.thread_spacing = look.strands && cloth.rope->diameter >= kLeastTwisted ? kLay * cloth.rope->diameter : 0;
     return look;
   }
   const scene::Fabric* fabric = scene::find_fabric(cloth.material.fabric);
