@@ -67,9 +67,9 @@ TEST(Cords, AreClosedSurfacesOfTheDiameterAroundTheChain) {
       }
       // The spline lies outside of the chords by kPiece² / 8 R, 1 mm.
       EXPECT_NEAR(farthest, 0.5 * kDiameter, 1.1e-3);
-      // Faces look outward. Furrows take a fifth, ten sides a sixteenth of the area of the circle.
+      // Faces look outward. Furrows take a fifth of the area of the circle, ten sides a sixteenth, twisted ones more.
       const double length = kPiece * (closed ? 24 : 23);
-      EXPECT_GT(volume, 0.7 * length * std::numbers::pi / 4 * kDiameter * kDiameter);
+      EXPECT_GT(volume, 0.65 * length * std::numbers::pi / 4 * kDiameter * kDiameter);
       EXPECT_LT(volume, 1.3 * length * std::numbers::pi / 4 * kDiameter * kDiameter);
     }
 }
