@@ -4,7 +4,6 @@
 #include <algorithm>
 
 #include "core/parallel.hpp"
-#include "simulation/plan.hpp"
 #include "simulation/saved_state.hpp"
 #include "simulation/scenes.hpp"
 #include "support/scene_runs.hpp"
