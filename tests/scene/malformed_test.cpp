@@ -123,7 +123,7 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:4:1: light.sun.cone_angle: unknown key of a sun; it belongs to spot\n"},
     {"KeyWithOddCharacters", kFloor + "\"a b\\u0007\" = 3\n",
      "s.toml:2:1: \"a b\\x07\": unknown key; known here: up, title, time, physics, solver, contact, render, fan, "
-     "obstacle, character, cloth, attach, camera, light\n"},
+     "obstacle, character, cloth, rope, attach, camera, light\n"},
     {"MissingName", "[[cloth]]\nsize = 1\n",
      "s.toml:1:1: cloth.0.name: expected a name of letters, digits, _ and -, starting with a letter, at most 64 long, "
      "got none\n"},
