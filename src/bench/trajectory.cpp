@@ -156,7 +156,8 @@ Errors compare(const Trajectory& run, const Trajectory& reference, const std::ve
 double cloth_size(const frame::FrameSnapshot& snapshot) {
   double largest = 0;
   for (std::size_t s = 0; s < snapshot.surfaces.size(); ++s) {
-    if (snapshot.surfaces[s]->kind != frame::ObjectKind::cloth) continue;
+    const frame::ObjectKind kind = snapshot.surfaces[s]->kind;
+    if (kind != frame::ObjectKind::cloth && kind != frame::ObjectKind::rope) continue;
     Eigen::AlignedBox3d box;
     for (const Vec3& x : snapshot.states[s].positions) box.extend(x);
     if (!box.isEmpty()) largest = std::max(largest, box.sizes().maxCoeff());

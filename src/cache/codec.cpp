@@ -189,7 +189,7 @@ template <class Archive>
 void serialize(Archive& archive, frame::Surface& surface, const Textures& textures) {
   constexpr std::size_t kLeastPart = 100;  // [bytes]
   serialize_plain(archive, surface.name);
-  serialize_byte(archive, surface.kind, frame::ObjectKind::character);
+  serialize_byte(archive, surface.kind, frame::ObjectKind::rope);
   serialize_flag(archive, surface.visible);
   serialize_flag(archive, surface.infinite_floor);
   serialize_plain(archive, surface.triangles);

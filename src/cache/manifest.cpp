@@ -17,7 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* kFormat = "weft frame cache";
-constexpr std::array kKinds{"cloth", "obstacle", "character"};
+constexpr std::array kKinds{"cloth", "obstacle", "character", "rope"};
 constexpr int kMostFrames = 100'001;  // of a scene
 constexpr int kMostPrerollFrames = 10'000'000;
 

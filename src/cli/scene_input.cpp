@@ -92,8 +92,9 @@ cache::Manifest manifest_of(const scene::Scene& scene, const render::Settings& s
 std::string describe_scene(const scene::Scene& scene, std::size_t particles) {
   std::string bodies = counted(scene.obstacles.size(), "obstacle", "obstacles");
   if (!scene.characters.empty()) bodies += ", " + counted(scene.characters.size(), "character", "characters");
-  return fmt::format("{}, {}, {}, {} at {:.4g} fps", counted(scene.cloths.size(), "cloth", "cloths"), bodies,
-                     counted(particles, "particle", "particles"),
+  std::string cloths = counted(scene.cloths.size() - scene.ropes.size(), "cloth", "cloths");
+  if (!scene.ropes.empty()) cloths += ", " + counted(scene.ropes.size(), "rope", "ropes");
+  return fmt::format("{}, {}, {}, {} at {:.4g} fps", cloths, bodies, counted(particles, "particle", "particles"),
                      counted(static_cast<std::size_t>(scene.frame_count()), "frame", "frames"), scene.time.fps);
 }
 

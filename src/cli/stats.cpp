@@ -21,6 +21,8 @@ const char* kind_name(frame::ObjectKind kind) {
       return "obstacle";
     case frame::ObjectKind::character:
       return "character";
+    case frame::ObjectKind::rope:
+      return "rope";
   }
   return "unknown";
 }
@@ -67,7 +69,7 @@ Json totals_json(const RunReport& report) {
 std::size_t count_particles(const std::vector<simulation::ObjectInfo>& objects) {
   std::size_t particles = 0;
   for (const simulation::ObjectInfo& object : objects)
-    if (object.kind == frame::ObjectKind::cloth) particles += object.vertices;
+    if (object.kind == frame::ObjectKind::cloth || object.kind == frame::ObjectKind::rope) particles += object.vertices;
   return particles;
 }
 

@@ -50,7 +50,9 @@ class Chooser {
   /// `key`: of the part, for messages.
   std::vector<Chosen> part(const scene::ClothPart& part, const std::string& key) const {
     std::vector<double> shares(object_.fractions.size());
-    if (!part.panel.empty()) {
+    if (part.at) {
+      along_rope(*part.at, shares);
+    } else if (!part.panel.empty()) {
       on_panel(part, key, shares);
     } else {
       for (std::size_t i = 0; i < shares.size(); ++i)
@@ -72,6 +74,13 @@ class Chooser {
     std::vector<double> on(shares.size());
     for (const Index i : edge) on[static_cast<std::size_t>(i)] = 1;
     multiply(on, shares);
+  }
+
+  // The particles nearest to both ends, and those between.
+  void along_rope(const Vec2& at, std::vector<double>& shares) const {
+    const auto pieces = static_cast<double>(object_.lengths.size());
+    const auto nearest = [&](double fraction) { return static_cast<std::size_t>(std::lround(fraction * pieces)); };
+    for (std::size_t i = nearest(at.x()); i <= nearest(at.y()); ++i) shares[i % shares.size()] = 1;
   }
 
   // Between low and high and under the mask of one panel. Where its own edges meet in a dart, the largest share.

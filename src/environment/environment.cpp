@@ -19,6 +19,7 @@
 #include "environment/acting.hpp"
 #include "environment/chosen_particles.hpp"
 #include "environment/followers.hpp"
+#include "environment/rope_object.hpp"
 #include "garment/fit.hpp"
 #include "garment/garment.hpp"
 #include "garment/uv_rest.hpp"
@@ -297,8 +298,8 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wea
   check_spacing(scene, cloth);
   ClothObject object;
   object.name = cloth.name;
-  const std::string where =
-      fmt::format("{}:{}:{}: cloth.{}", scene.file.string(), cloth.line, cloth.column, cloth.name);
+  const std::string where = fmt::format("{}:{}:{}: {}.{}", scene.file.string(), cloth.line, cloth.column,
+                                        cloth.rope ? "rope" : "cloth", cloth.name);
   const mesh::Grid grid = grid_of(cloth);
   assets::LoadedMesh file;
   switch (cloth.shape) {
@@ -316,6 +317,9 @@ ClothObject make_cloth(const scene::Scene& scene, const scene::Cloth& cloth, Wea
       break;
     case scene::ClothShape::pattern:
       use_pattern(scene, cloth, where, wearers, object);
+      break;
+    case scene::ClothShape::rope:
+      use_rope(scene, *cloth.rope, object);
       break;
   }
   choose_particles(scene, cloth, file, where, object);

@@ -48,11 +48,12 @@ struct ClothObject {
   double spacing = 0;
   std::vector<std::vector<Chosen>> pins, weights;  ///< particles of each of the scene; of a pin its part comes first
   std::vector<std::vector<Chosen>> attachments;    ///< likewise, of those in scene.attachments that name this cloth
-  std::vector<Vec3> start;                         ///< positions of the particles [m]
-  Vec3 velocity{0, 0, 0};                          ///< of all of them [m/s]
-  double put_on = 0;      ///< time after the start of the simulation, its preroll included, at which it comes [s]
-  std::string fitted;     ///< of a pattern that was scaled to its wearer: how
-  std::string rest_from;  ///< of a mesh file: what its shape at rest is taken from, and why
+  std::vector<double> lengths;  ///< of a rope: of its pieces at rest [m]; of a closed one as many as particles
+  std::vector<Vec3> start;      ///< positions of the particles [m]
+  Vec3 velocity{0, 0, 0};       ///< of all of them [m/s]
+  double put_on = 0;            ///< time after the start of the simulation, its preroll included, at which it comes [s]
+  std::string fitted;           ///< of a pattern that was scaled to its wearer: how
+  std::string rest_from;        ///< of a mesh file: what its shape at rest is taken from, and why
   std::vector<std::string> warnings;
 };
 

@@ -13,6 +13,7 @@
 #include "export/pc2.hpp"
 #include "export/seams.hpp"
 #include "export/usd.hpp"
+#include "frame/cords.hpp"
 #include "frame/heat_name.hpp"
 #include "mesh/ply.hpp"
 
@@ -194,9 +195,10 @@ std::vector<SharedFile> shared_files(const Request& request, const frame::FrameS
 bool write(const Request& request, const std::function<frame::SnapshotPtr(int)>& read,
            const std::function<bool()>& stop) {
   Sink sink(request);
+  frame::Cords cords;
   for (int frame : request.frames) {
     if (stop()) return false;
-    sink.add(*read(frame));
+    sink.add(*cords.sweep(read(frame)));
   }
   sink.finish();
   return true;

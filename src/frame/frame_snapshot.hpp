@@ -14,7 +14,7 @@
 
 namespace weft::frame {
 
-enum class ObjectKind { cloth, obstacle, character };
+enum class ObjectKind { cloth, obstacle, character, rope };
 
 /// A picture to lay on surfaces: rows from the top, R G B A bytes a pixel, colours in sRGB, alpha not multiplied in.
 struct Texture {
@@ -47,11 +47,11 @@ struct Appearance {
   Vec3 color{0.8, 0.8, 0.8};
   Vec3 back_color{0.8, 0.8, 0.8};  ///< cloth only: the side from which weft × warp points away
   double roughness = 0.6;          ///< 0 mirror-like to 1 matte
-  double thread_spacing = 0;       ///< distance of two threads of the drawn weave [m]; 0 draws none
+  double thread_spacing = 0;       ///< distance of two threads of the drawn weave, lay of a rope [m]; 0 draws none
   Finish finish;                   ///< cloth only
   double metal = 0;                ///< not of cloth: 1 where all light is reflected in `color`, none scattered
   double coat = 0;                 ///< not of cloth: of a clear coat over it, 1 as of glass
-  double thickness = 0;            ///< of the cloth itself, as its borders show it [m]; 0: none
+  double thickness = 0;            ///< of the cloth itself, as its borders show it, or of a rope [m]; 0: none
   double hem = 0;                  ///< width to which borders of cloth are folded to the back and sewn [m]; 0: cut
   bool checker = false;            ///< faint grid of 0.5 m tiles on the floor, to give scale
   Paint paint;                     ///< its picture is multiplied by `color`, but where that shows through it

@@ -19,7 +19,7 @@ Object view_object(const Frame::Data& data, std::size_t number) {
   const frame::Surface& surface = *data.snapshot->surfaces[number];
   Object object;
   object.name = surface.name;
-  static_assert(static_cast<int>(Kind::character) == static_cast<int>(frame::ObjectKind::character));
+  static_assert(static_cast<int>(Kind::rope) == static_cast<int>(frame::ObjectKind::rope));
   object.kind = static_cast<Kind>(surface.kind);
   object.positions = viewed<Vector>(data.snapshot->states[number].positions);
   if (number < data.velocities.size()) {
@@ -27,7 +27,7 @@ Object view_object(const Frame::Data& data, std::size_t number) {
     object.strains = data.strains[number];
     object.contact_forces = viewed<Vector>(data.contact_forces[number]);
   }
-  if (object.kind == Kind::cloth) object.rest = viewed<RestPoint>(surface.uv);
+  if (object.kind == Kind::cloth || object.kind == Kind::rope) object.rest = viewed<RestPoint>(surface.uv);
   object.triangles = surface.triangles;
   return object;
 }

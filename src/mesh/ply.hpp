@@ -22,8 +22,8 @@ struct PlyExtras {
 
 /// Writes positions as double and faces as triangles, binary little endian, under a temporary name first. Quad meshes
 /// are written as the triangles of their split too: one surface, the one that collision uses. Of those that cloth
-/// passes through a comment says how many they are. Texture coordinates are the properties `s` and `t`, before values.
-/// Throws Error(output_failed) with the system's reason.
+/// passes through a comment says how many they are. Pieces of rope, triangles (a, b, b), are written as edges. Texture
+/// coordinates are the properties `s` and `t`, before values. Throws Error(output_failed) with the system's reason.
 void write_ply(const std::filesystem::path& file, std::span<const Vec3> positions,
                std::span<const std::array<Index, 3>> triangles, const PlyExtras& extras = {});
 

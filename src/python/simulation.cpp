@@ -100,7 +100,7 @@ py::array strains(const py::object& self) {
 }
 
 const char* kind_of(const FrameObject& object) {
-  constexpr const char* kNames[] = {"cloth", "obstacle", "character"};
+  constexpr const char* kNames[] = {"cloth", "obstacle", "character", "rope"};
   return kNames[static_cast<std::size_t>(object.object->kind)];
 }
 
@@ -183,7 +183,7 @@ void bind_frame(py::module_& module) {
   py::class_<FrameObject>(module, "Object",
                           "A cloth or body in one frame. Arrays are views that cannot be written to; they stay valid.")
       .def_property_readonly("name", [](const FrameObject& self) { return std::string(self.object->name); })
-      .def_property_readonly("kind", &kind_of, "\"cloth\", \"obstacle\" or \"character\".")
+      .def_property_readonly("kind", &kind_of, "\"cloth\", \"obstacle\", \"character\" or \"rope\".")
       .def_property_readonly("positions", &rows<&Object::positions>, "n x 3, m.")
       .def_property_readonly("velocities", &rows<&Object::velocities>, "n x 3, m/s; no rows for bodies.")
       .def_property_readonly(

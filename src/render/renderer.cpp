@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "core/error.hpp"
+#include "frame/cords.hpp"
 #include "render/bounced_light.hpp"
 #include "render/data_passes.hpp"
 #include "render/drawing_time.hpp"
@@ -89,6 +90,7 @@ struct Renderer::Impl {
   std::unique_ptr<Context> context;
   const Gl& gl;
   std::optional<CameraPath> path;
+  frame::Cords cords;
   DrawTimes times;
 
   // GL objects; made and deleted with the context current.
@@ -460,7 +462,14 @@ image::Image Renderer::draw(const frame::FrameSnapshot& snapshot, const frame::F
   const WallTimer wall;
   const DrawingTimer cpu;
   const CurrentContext current(*impl_->context);
-  impl_->draw(snapshot, before);
+  if (frame::Cords::has_chains(snapshot)) {
+    const frame::FrameSnapshot swept = impl_->cords.sweep(snapshot);
+    const std::optional<frame::FrameSnapshot> swept_before =
+        before ? std::optional(impl_->cords.sweep(*before)) : std::nullopt;
+    impl_->draw(swept, swept_before ? &*swept_before : nullptr);
+  } else {
+    impl_->draw(snapshot, before);
+  }
   image::Image image = to_image(impl_->rgba, impl_->settings.width, impl_->settings.height);
   check_errors(impl_->gl, "drawing");
   impl_->times = {wall.seconds(), cpu.cpu_seconds()};

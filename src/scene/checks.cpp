@@ -14,6 +14,7 @@
 #include "scene/following.hpp"
 #include "scene/layers.hpp"
 #include "scene/reader.hpp"
+#include "scene/rope_checks.hpp"
 #include "scene/sequence_files.hpp"
 
 namespace weft::scene {
@@ -94,6 +95,11 @@ void check_part(const Cloth& cloth, const ClothPart& part, const std::string& pa
                     fmt::format("expected >= {}, the low end, got {}", part.low[axis], part.high[axis]));
     return;
   }
+  if (part.at && !cloth.rope)
+    findings.report(path + ".at", "expected none of a cloth that is no rope; low and high say which part it is");
+  if (part.at && part.at->x() > part.at->y())
+    findings.report(path + ".at",
+                    fmt::format("expected the lower end first, got {} before {}", part.at->x(), part.at->y()));
   for (const auto& [key, name] : {std::pair(".panel", &part.panel), std::pair(".edge", &part.edge)}) {
     if (name->empty() || cloth.shape == ClothShape::pattern) continue;
     findings.report(path + key, "expected none of a cloth that is sewn from no pattern, got " + in_quotes(*name));
@@ -168,8 +174,8 @@ void check_friction_pairs(const Scene& scene, Findings& findings) {
   for (std::size_t i = 0; i < scene.contact.pairs.size(); ++i) {
     const FrictionPair& pair = scene.contact.pairs[i];
     const std::string path = fmt::format("contact.pair.{}", i);
-    check_reference(pair.first, names, "a cloth, obstacle or character", path + ".first", findings);
-    check_reference(pair.second, names, "a cloth, obstacle or character", path + ".second", findings);
+    check_reference(pair.first, names, "a cloth, rope, obstacle or character", path + ".first", findings);
+    check_reference(pair.second, names, "a cloth, rope, obstacle or character", path + ".second", findings);
     const auto is_cloth = [&](const std::string& name) { return !std::ranges::count(names_of_bodies, name); };
     if (!findings.faulty(path + ".first") && !findings.faulty(path + ".second") && !is_cloth(pair.first) &&
         !is_cloth(pair.second))
@@ -188,8 +194,8 @@ void check_attachments(const Scene& scene, Findings& findings) {
   for (std::size_t i = 0; i < scene.attachments.size(); ++i) {
     const Attachment& attachment = scene.attachments[i];
     const std::string& path = findings.entry("attach", i);
-    check_reference(attachment.cloth, cloths, "a cloth", path + ".cloth", findings);
-    check_reference(attachment.to, all, "a cloth, obstacle or character", path + ".to", findings);
+    check_reference(attachment.cloth, cloths, "a cloth or rope", path + ".cloth", findings);
+    check_reference(attachment.to, all, "a cloth, rope, obstacle or character", path + ".to", findings);
     if (attachment.cloth == attachment.to && !attachment.to.empty())
       findings.report(path + ".to",
                       fmt::format("expected another object than the cloth itself, got {}", in_quotes(attachment.to)));
@@ -206,13 +212,13 @@ void check_layers(const Scene& scene, Findings& findings) {
   const std::vector<std::string> names = names_of(scene.cloths);
   for (std::size_t i = 0; i < scene.cloths.size(); ++i)
     for (const std::string& name : scene.cloths[i].over)
-      check_reference(name, names, "a cloth", findings.entry("cloth", i) + ".over", findings);
+      check_reference(name, names, "a cloth", entry_of_cloth(scene, i, findings) + ".over", findings);
   for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
     const Cloth& cloth = scene.cloths[i];
     const auto circle = std::ranges::find_if(
         cloth.over, [&](const std::string& name) { return name == cloth.name || worn_over(scene, name, cloth.name); });
     if (circle == cloth.over.end()) continue;
-    findings.report(findings.entry("cloth", i) + ".over",
+    findings.report(entry_of_cloth(scene, i, findings) + ".over",
                     fmt::format("expected cloth that is put on before this one, got {}{}", in_quotes(*circle),
                                 *circle == cloth.name ? ", which it is itself" : ", which is worn over this one"));
     return;
@@ -233,7 +239,7 @@ void check_cloths(const Scene& scene, Findings& findings) {
   long particles = 0;
   for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
     const Cloth& cloth = scene.cloths[i];
-    const std::string& path = findings.entry("cloth", i);
+    const std::string& path = entry_of_cloth(scene, i, findings);
     particles += rectangle_particles(cloth);
     if (particles > kMaxParticles) {
       findings.report(path + ".particles",
@@ -308,8 +314,8 @@ void check_obstacles(const Scene& scene, Findings& findings) {
     check_dynamics(scene, obstacle, path, findings);
     // One name each: it names the object in pictures, statistics and mesh files.
     if (!obstacle.name.empty() && std::find(cloths.begin(), cloths.end(), obstacle.name) != cloths.end()) {
-      findings.report(path + ".name",
-                      fmt::format("expected a name used once, got {}, which a cloth has", in_quotes(obstacle.name)));
+      findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth or rope has",
+                                                  in_quotes(obstacle.name)));
     }
   }
 }
@@ -321,8 +327,9 @@ void check_characters(const Scene& scene, Findings& findings) {
     const Character& character = scene.characters[i];
     const std::string& path = findings.entry("character", i);
     if (!character.name.empty() && std::find(others.begin(), others.end(), character.name) != others.end())
-      findings.report(path + ".name", fmt::format("expected a name used once, got {}, which a cloth or obstacle has",
-                                                  in_quotes(character.name)));
+      findings.report(path + ".name",
+                      fmt::format("expected a name used once, got {}, which a cloth, rope or obstacle has",
+                                  in_quotes(character.name)));
     if (const Acting* acting = acting_of(character);
         acting != nullptr && (acting->stance == Stance::rest || acting->stance_arms) && character.blend <= 0)
       findings.report(path + ".blend", fmt::format("expected > 0 s to get from the {} to the clip, got {}",
@@ -367,7 +374,7 @@ void check_cameras(const Scene& scene, Findings& findings) {
     check_times(camera.keys, path, findings);
     check_lens(camera, path, findings);
     for (const std::string& name : camera.subjects)
-      check_reference(name, objects, "a cloth, obstacle or character", path + ".subject", findings);
+      check_reference(name, objects, "a cloth, rope, obstacle or character", path + ".subject", findings);
     if (camera.kind == CameraKind::file && camera.aperture > 0 && camera.focus <= 0)
       findings.report(path + ".aperture", "expected focus beside it: nothing says what a camera of a file looks at");
     if (camera.kind != CameraKind::placed) continue;
@@ -385,19 +392,28 @@ void check_cameras(const Scene& scene, Findings& findings) {
 
 }  // namespace
 
+const std::string& entry_of_cloth(const Scene& scene, std::size_t cloth, const Findings& findings) {
+  const std::size_t sheets = scene.cloths.size() - scene.ropes.size();
+  return cloth < sheets ? findings.entry("cloth", cloth) : findings.entry("rope", cloth - sheets);
+}
+
 void check(const Scene& scene, Findings& findings) {
   const bool empty = scene.cloths.empty() && scene.obstacles.empty() && scene.characters.empty();
-  if (empty && !findings.has("cloth") && !findings.has("obstacle") && !findings.has("character")) {
-    findings.report("", "expected at least one [[cloth]], [[obstacle]] or [[character]], got none");
+  if (empty && !findings.has("cloth") && !findings.has("obstacle") && !findings.has("character") &&
+      !findings.has("rope")) {
+    findings.report("", "expected at least one [[cloth]], [[rope]], [[obstacle]] or [[character]], got none");
   }
   if (const double frames = scene.time.duration * scene.time.fps; frames > kMaxFrames) {
     findings.report("time.duration",
                     fmt::format("expected at most {} frames (duration * fps), got {:.0f}", kMaxFrames, frames));
   }
   check_times(scene.physics.keys, "physics", findings);
+  for (std::size_t i = 0; i < scene.ropes.size(); ++i)
+    check_times(scene.ropes[i].keys, findings.entry("rope", i), findings);
   for (std::size_t i = 0; i < scene.fans.size(); ++i)
     check_times(scene.fans[i].keys, findings.entry("fan", i), findings);
   check_cloths(scene, findings);
+  check_ropes(scene, findings);
   check_layers(scene, findings);
   check_attachments(scene, findings);
   check_friction_pairs(scene, findings);

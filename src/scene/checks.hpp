@@ -6,6 +6,9 @@
 
 namespace weft::scene {
 
+/// Key path of a cloth, or of the rope that it stands for.
+const std::string& entry_of_cloth(const Scene& scene, std::size_t cloth, const Findings& findings);
+
 /// Reports references to names that do not exist, key times out of order, and combinations that cannot be built.
 void check(const Scene& scene, Findings& findings);
 

@@ -24,6 +24,12 @@ inline Look look_of(const Vec3& color) {
   return look;
 }
 
+inline Look rope_look() {
+  Look look = look_of(Vec3(0.80, 0.72, 0.56));
+  look.roughness = 0.85;
+  return look;
+}
+
 /// Turns about the fixed x, then y, then z axis.
 Quat from_angles(const Vec3& degrees);
 

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <span>
+
 #include "scene/dependencies.hpp"
 #include "scene/loader.hpp"
+#include "scene/ropes.hpp"
 #include "scene/rule.hpp"
 
 namespace weft::scene {
@@ -35,6 +38,13 @@ std::string toml_value(const Value& value, const Rule& rule) {
     return fmt::format("[{}]", fmt::join(quoted, ", "));
   }
   const auto& numbers = std::get<std::vector<double>>(value);
+  if (rule.type == Type::points) {
+    std::vector<std::string> points;
+    const std::size_t size = rule.components.size();
+    for (std::size_t i = 0; i < numbers.size(); i += size)
+      points.push_back(fmt::format("[{}]", fmt::join(std::span(numbers).subspan(i, size), ", ")));
+    return fmt::format("[{}]", fmt::join(points, ", "));
+  }
   return rule.components.empty() ? fmt::format("{}", numbers[0]) : fmt::format("[{}]", fmt::join(numbers, ", "));
 }
 
@@ -108,6 +118,7 @@ class Writer {
 std::string text_of(const Scene& scene, Part part) {
   // The rules reach members through plain pointers; a copy keeps the scene itself out of their hands.
   Scene copy = scene;
+  remove_rope_cloths(copy);
   Writer writer(part);
   writer.write(scene_rules(), &copy, "");
   return std::move(writer.text);

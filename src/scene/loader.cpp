@@ -8,6 +8,7 @@
 #include "scene/effective.hpp"
 #include "scene/findings.hpp"
 #include "scene/reader.hpp"
+#include "scene/ropes.hpp"
 #include "scene/rule.hpp"
 
 namespace weft::scene {
@@ -22,6 +23,7 @@ void read_document(toml::table document, const std::vector<std::string>& overrid
     if (auto* sequence = std::get_if<MeshSequence>(&character.source); sequence && !sequence->files.empty())
       sequence->files =
           std::filesystem::absolute(scene.file.parent_path() / sequence->files).lexically_normal().string();
+  add_rope_cloths(scene);
   check(scene, findings);
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     const Place place = findings.place(findings.entry("obstacle", i) + ".file");
@@ -39,7 +41,7 @@ void read_document(toml::table document, const std::vector<std::string>& overrid
     scene.cameras[i].column = place.column;
   }
   for (std::size_t i = 0; i < scene.cloths.size(); ++i) {
-    const Place& place = findings.place(findings.entry("cloth", i));
+    const Place& place = findings.place(entry_of_cloth(scene, i, findings));
     scene.cloths[i].line = place.line;
     scene.cloths[i].column = place.column;
   }

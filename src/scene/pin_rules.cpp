@@ -54,34 +54,61 @@ const Table& pin_key_rules() {
   return kTable;
 }
 
+/// at of a part of a rope.
+template <class S>
+void rope_part_rows(TableBuilder<S>& rows) {
+  rows.vector("at", &S::at, {"from", "to"}, within(0, 1), "",
+              "of a rope, in place of low and high: one place, or all between two, in fractions of its length; the "
+              "nearest particles")
+      .single_fills_all();
+}
+
+void holding_rows(TableBuilder<Pin>& rows) {
+  rows.plain(Type::text, "follow", &Pin::follow,
+             "name of the obstacle whose motion the particles share, or of the character, at whose nearest places "
+             "they stay, or those of a part of it: \"man.torso\"")
+      .by_default("none")
+      .excludes("keys")
+      .number("release", &Pin::release, within(-1, 1e5), "s", "time at which they are let go; negative: never")
+      .number("strength", &Pin::strength, above(0, 1e9), "N/m",
+              "of a damped spring that draws each of them to where it is to be, times its share")
+      .by_default("none: they are held there, as far as nothing is in the way, those with a share of half or more");
+}
+
+void moving_rows(TableBuilder<Pin>& rows) {
+  rows.choice(
+          "interpolation", [](Pin& pin) -> Interpolation& { return pin.motion.interpolation; }, kInterpolations,
+          "between its keys")
+      .list(
+          Type::keys, "keys", [](Pin& pin) -> std::vector<PinKey>& { return pin.motion.keys; }, pin_key_rules(),
+          [](Pin& pin, std::size_t i) {
+            pin.motion.keys.push_back(i == 0 ? PinKey{} : PinKey(pin.motion.keys.back()));
+          });
+}
+
 }  // namespace
 
 const Table& pin_rules() {
   static const Table kTable =
       TableBuilder<Pin>("Particles held in place, or moved.")
           .with(part_rows<Pin>)
-          .plain(Type::text, "follow", &Pin::follow,
-                 "name of the obstacle whose motion the particles share, or of the character, at whose nearest places "
-                 "they stay, or those of a part of it: \"man.torso\"")
-          .by_default("none")
-          .excludes("keys")
-          .number("release", &Pin::release, within(-1, 1e5), "s", "time at which they are let go; negative: never")
-          .number("strength", &Pin::strength, above(0, 1e9), "N/m",
-                  "of a damped spring that draws each of them to where it is to be, times its share")
-          .by_default("none: they are held there, as far as nothing is in the way, those with a share of half or more")
+          .with(holding_rows)
           .number("fade", &Pin::fade, within(0, 1e3), "m",
                   "distance along edges of the cloth at rest up to which what is around them is drawn as well, by ever "
                   "softer springs; it asks for a strength. To hold them and only draw what is around, hold them by a "
                   "pin without strength beside this one: what a pin chooses is never drawn by the fade of another")
-          .choice(
-              "interpolation", [](Pin& pin) -> Interpolation& { return pin.motion.interpolation; }, kInterpolations,
-              "between its keys")
-          .list(
-              Type::keys, "keys", [](Pin& pin) -> std::vector<PinKey>& { return pin.motion.keys; }, pin_key_rules(),
-              [](Pin& pin, std::size_t i) {
-                pin.motion.keys.push_back(i == 0 ? PinKey{} : PinKey(pin.motion.keys.back()));
-              })
+          .with(moving_rows)
           .build();
+  return kTable;
+}
+
+const Table& rope_pin_rules() {
+  static const Table kTable = TableBuilder<Pin>("Particles of a rope held in place, or moved.")
+                                  .with(rope_part_rows<Pin>)
+                                  .need(Need::required)
+                                  .with(holding_rows)
+                                  .with(moving_rows)
+                                  .build();
   return kTable;
 }
 
@@ -94,17 +121,29 @@ const Table& weight_rules() {
   return kTable;
 }
 
+const Table& rope_weight_rules() {
+  static const Table kTable = TableBuilder<Weight>("Mass that hangs on a part of the rope.")
+                                  .with(rope_part_rows<Weight>)
+                                  .need(Need::required)
+                                  .number("mass", &Weight::mass, above(0, 1e9), "kg", "on all particles of the part")
+                                  .build();
+  return kTable;
+}
+
 const Table& attachment_rules() {
   static const Table kTable =
-      TableBuilder<Attachment>("Part of a cloth that springs tie to another cloth or to a body: a button, peg or tack.")
+      TableBuilder<Attachment>(
+          "Part of a cloth or rope that springs tie to another one or to a body: a button, peg, tack or knot.")
           .plain(Type::name, "name", &Attachment::name, "unlike that of any other attachment")
           .need(Need::required)
-          .plain(Type::text, "cloth", &Attachment::cloth, "cloth of which the part is")
+          .plain(Type::text, "cloth", &Attachment::cloth, "cloth or rope of which the part is")
           .need(Need::required)
           .plain(Type::text, "to", &Attachment::to,
-                 "cloth, obstacle or character to whose nearest places its particles are tied when it begins")
+                 "cloth, rope, obstacle or character to whose nearest places its particles are tied when it begins")
           .need(Need::required)
           .with(part_rows<Attachment>)
+          .with(rope_part_rows<Attachment>)
+          .by_default("all of it")
           .number("stiffness", &Attachment::stiffness, above(0, 1e9), "N/m",
                   "of the spring of each particle, times its share")
           .number("length", &Attachment::length, within(0, 1e4), "m", "up to which a spring is slack")

@@ -7,6 +7,8 @@ namespace weft::scene {
 
 const Table& pin_rules();
 const Table& weight_rules();
+const Table& rope_pin_rules();
+const Table& rope_weight_rules();
 const Table& attachment_rules();
 
 }  // namespace weft::scene

@@ -42,6 +42,7 @@ class Reader {
   Value read_text(const toml::node& node, const Rule& rule, const std::string& path);
   Value read_texts(const toml::node& node, const Rule& rule, const std::string& path);
   Value read_numbers(const toml::node& node, const Rule& rule, const std::string& path);
+  Value read_points(const toml::node& node, const Rule& rule, const std::string& path);
   Value read_color(const toml::node& node, const Rule& rule, const std::string& path);
   bool read_number(const toml::node& node, const Rule& rule, const std::string& path, double& number);
   Value check_file(const toml::node& node, const std::string& text, const std::string& path);

@@ -23,6 +23,8 @@ Value Reader::read_value(const toml::node& node, const Rule& rule, const std::st
       return read_numbers(node, rule, path);
     case Type::texts:
       return read_texts(node, rule, path);
+    case Type::points:
+      return read_points(node, rule, path);
     default:
       return read_text(node, rule, path);
   }
@@ -103,6 +105,20 @@ Value Reader::read_numbers(const toml::node& node, const Rule& rule, const std::
     return refuse(node, path, "expected at least one number that is not 0, got 0 in all");
   }
   return numbers;
+}
+
+Value Reader::read_points(const toml::node& node, const Rule& rule, const std::string& path) {
+  const auto* array = node.as_array();
+  if (array == nullptr || array->empty())
+    return refuse(node, path, fmt::format("expected {}, got {}", expectation(rule), describe_node(node)));
+  std::vector<double> all;
+  for (const toml::node& point : *array) {
+    const Value numbers = read_numbers(point, rule, path);
+    if (std::holds_alternative<std::monostate>(numbers)) return {};
+    const auto& own = std::get<std::vector<double>>(numbers);
+    all.insert(all.end(), own.begin(), own.end());
+  }
+  return all;
 }
 
 Value Reader::read_color(const toml::node& node, const Rule& rule, const std::string& path) {

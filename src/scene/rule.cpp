@@ -80,6 +80,8 @@ std::string expectation(const Rule& rule) {
       return fmt::format("a list of tables ([[{}]])", rule.key);
     case Type::keys:
       return fmt::format("a list of tables ({} = [{{ time = 0, ... }}, ...])", rule.key);
+    case Type::points:
+      return fmt::format("[[{}], ...], each {}", fmt::join(rule.components, ", "), range_text(rule));
     case Type::number:
       break;
   }

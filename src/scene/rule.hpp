@@ -21,6 +21,7 @@ enum class Type {
   name,    ///< of a list entry: becomes part of key paths and file names
   file,    ///< path of an existing file, relative to the scene's folder
   choice,  ///< one of `choices`
+  points,  ///< an array of arrays, each with one number for each of `components`
   number,  ///< one number, or an array with one number for each of `components`; or one of `choices`, if there are any
   color,   ///< [r, g, b] from 0 to 1, or "#rrggbb"; sRGB
   table,

@@ -11,6 +11,7 @@
 #include "scene/physics_rules.hpp"
 #include "scene/pin_rules.hpp"
 #include "scene/pressure_rules.hpp"
+#include "scene/rope_rules.hpp"
 #include "scene/rule.hpp"
 #include "scene/table_builder.hpp"
 #include "scene/view_rules.hpp"
@@ -350,6 +351,10 @@ void append_cloth(Scene& s, std::size_t) {
   s.cloths.emplace_back().look.color = kClothColor;
 }
 
+void append_rope(Scene& s, std::size_t) {
+  s.ropes.emplace_back().look = rope_look();
+}
+
 void append_light(Scene& s, std::size_t) {
   LightKey key;
   key.direction = turned_up(s.up, key.direction);
@@ -380,6 +385,7 @@ const Table& scene_rules() {
                                   .list(Type::list, "obstacle", &Scene::obstacles, obstacle_rules())
                                   .list(Type::list, "character", &Scene::characters, character_rules())
                                   .list(Type::list, "cloth", &Scene::cloths, cloth_rules(), append_cloth)
+                                  .list(Type::list, "rope", &Scene::ropes, rope_rules(), append_rope)
                                   .list(Type::list, "attach", &Scene::attachments, attachment_rules())
                                   .list(Type::list, "camera", &Scene::cameras, camera_rules(), append_camera)
                                   .not_simulated()

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
@@ -135,10 +136,11 @@ struct Look : Paint {
   std::optional<double> tile_width;   ///< obstacles only: of its picture [m]; absent: once over the shape
   double warp_share = 0.5;            ///< of the gloss; of the fabric
   Threads threads = Threads::plain;   ///< of the fabric
-  double cloth_thickness = 0;         ///< of the fabric itself [m]
+  double cloth_thickness = 0;         ///< of the fabric itself, or of a rope [m]
   double thread_spacing = 0.0006;     ///< of the drawn weave [m]; cloth only; 0 draws none
   std::optional<double> hem;          ///< width of its hems [m]; cloth only; 0: cut edges
   bool checker = false;               ///< floors only
+  bool strands = true;                ///< ropes only: drawn twisted
   bool visible = true;
 };
 
@@ -181,6 +183,7 @@ enum class VertexColor { none, red, green, blue, brightness };
 struct ClothPart {
   std::string panel;  ///< of a pattern: only those of it, and fractions are of its own size; empty: all
   Vec2 low{0, 0}, high{1, 1};
+  std::optional<Vec2> at = {};                   ///< of a rope, in place of low and high: fractions of its length
   std::string edge;                              ///< of a pattern, as "panel.edge": only those on it; empty: all
   std::optional<std::filesystem::path> mask;     ///< picture whose greys are shares; absolute after checking
   VertexColor vertex_color = VertexColor::none;  ///< of the file of a mesh
@@ -227,8 +230,10 @@ struct Attachment : ClothPart {
 };
 
 enum class ClothStart { as_given, untangle };
-enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern };
+enum class ClothShape { quads, aligned_triangles, crossed_triangles, mesh, pattern, rope };
 enum class ClothRest { automatic, mesh, uv };
+
+struct Rope;
 
 struct Cloth {
   std::string name;
@@ -259,14 +264,44 @@ struct Cloth {
   Look look;
   std::vector<Pin> pins;
   std::vector<Weight> weights;
+  std::shared_ptr<const Rope> rope;  ///< that it stands for; null: it is a sheet
 };
 
 /// Particles of a rectangle of cloth; of the others their file tells, and this is 0.
 inline long rectangle_particles(const Cloth& cloth) {
   const long u = cloth.particles_weft, v = cloth.particles_warp;
-  if (cloth.shape == ClothShape::mesh || cloth.shape == ClothShape::pattern) return 0;
+  if (cloth.shape > ClothShape::crossed_triangles) return 0;
   return u * v + (cloth.shape == ClothShape::crossed_triangles ? (u - 1) * (v - 1) : 0);
 }
+
+/// How long a rope is at a time, as if it were drawn in or let out evenly.
+struct RopeKey {
+  double time = 0;    ///< [s], strictly increasing
+  double length = 1;  ///< at rest [m]
+};
+
+/// A thin chain of particles. What is simulated is the cloth of one dimension that as_cloth() makes of it.
+struct Rope {
+  std::string name;
+  std::vector<Vec3> points;                            ///< that it runs through at the start [m]
+  std::optional<Vec3> from, to;                        ///< its ends, where it has no points [m]
+  bool smooth = false;                                 ///< bent through its points; else straight between them
+  bool closed = false;                                 ///< its end is its beginning
+  std::optional<double> length;                        ///< at rest [m]; absent: as it starts
+  Interpolation interpolation = Interpolation::cubic;  ///< between its keys
+  std::vector<RopeKey> keys;                           ///< of its length; empty: that stays
+  std::optional<int> segments;                         ///< pieces between particles; absent: by diameter
+  double diameter = 0.008;                             ///< that contact keeps [m]
+  int material = 0;                                    ///< into rope_materials()
+  std::optional<double> mass, stretch, bend;  ///< of a metre [kg/m], EA [N], EI [N·m²]; absent: of the material
+  double damping = 0.01;                      ///< viscosity of stretch and bending over their stiffness [s]
+  double friction = 0.3;                      ///< Coulomb coefficient; of a pair: the geometric mean of both
+  double drag = 1.1;                          ///< air resistance coefficient of motion across it, as of a cylinder
+  Vec3 velocity{0, 0, 0};                     ///< at the start [m/s]
+  Look look;
+  std::vector<Pin> pins;
+  std::vector<Weight> weights;
+};
 
 struct Obstacle {
   std::string name;
@@ -433,7 +468,8 @@ struct Scene {
   std::vector<Fan> fans;
   Solver solver;
   Contact contact;
-  std::vector<Cloth> cloths;
+  std::vector<Cloth> cloths;  ///< those of ropes behind the others
+  std::vector<Rope> ropes;    ///< as they are read
   std::vector<Attachment> attachments;
   std::vector<Obstacle> obstacles;
   std::vector<Character> characters;

@@ -47,6 +47,8 @@ Json type_schema(const Rule& rule) {
       if (!rule.choices.empty())
         return {{"anyOf", {numbers_schema(rule), {{"type", "string"}, {"enum", rule.choices}}}}};
       return numbers_schema(rule);
+    case Type::points:
+      return {{"type", "array"}, {"items", numbers_schema(rule)}, {"minItems", 1}};
     case Type::table:
       return table_schema(*rule.table);
     case Type::list:
@@ -61,7 +63,7 @@ Json type_schema(const Rule& rule) {
 /// "length of the film [s]", with the meaning of the components and of an absent key.
 std::string description(const Rule& rule) {
   std::string text = rule.documentation;
-  if (rule.type == Type::number && !rule.components.empty())
+  if ((rule.type == Type::number || rule.type == Type::points) && !rule.components.empty())
     text += fmt::format(": {}", fmt::join(rule.components, ", "));
   if (!rule.unit.empty()) text += fmt::format(" [{}]", rule.unit);
   if (!rule.default_note.empty()) text += "; by default " + rule.default_note;

@@ -41,6 +41,13 @@ Value to_value(const Quat& q) {
   return std::vector<double>{q.w() + 0.0, q.x() + 0.0, q.y() + 0.0, q.z() + 0.0};
 }
 
+Value to_value(const std::vector<Vec3>& points) {
+  std::vector<double> numbers;
+  for (const Vec3& point : points)
+    for (const double number : point) numbers.push_back(number + 0.0);
+  return numbers.empty() ? Value{} : numbers;
+}
+
 void assign(double& target, const Value& value) {
   target = numbers_of(value)[0];
 }
@@ -70,6 +77,13 @@ void assign(Quat& target, const Value& value) {
   target = Quat(wxyz[0], wxyz[1], wxyz[2], wxyz[3]);
   // Already of unit length up to rounding: left as it is, so that writing and reading again changes no bit.
   if (std::abs(target.squaredNorm() - 1) > 1e-14) target.normalize();
+}
+
+void assign(std::vector<Vec3>& target, const Value& value) {
+  const std::vector<double>& numbers = numbers_of(value);
+  target.clear();
+  for (std::size_t i = 0; i + 2 < numbers.size(); i += 3)
+    target.emplace_back(numbers[i], numbers[i + 1], numbers[i + 2]);
 }
 
 Words::Words(std::initializer_list<std::string_view> words) : list(words.begin(), words.end()) {}

@@ -25,6 +25,7 @@ Value to_value(const std::filesystem::path& path);
 Value to_value(const Vec2& v);
 Value to_value(const Vec3& v);
 Value to_value(const Quat& q);
+Value to_value(const std::vector<Vec3>& points);
 template <class T>
 Value to_value(const std::optional<T>& value) {
   return value ? to_value(*value) : Value{};
@@ -40,6 +41,7 @@ void assign(std::filesystem::path& target, const Value& value);
 void assign(Vec2& target, const Value& value);
 void assign(Vec3& target, const Value& value);
 void assign(Quat& target, const Value& value);
+void assign(std::vector<Vec3>& target, const Value& value);
 template <class T>
 void assign(std::optional<T>& target, const Value& value) {
   assign(target.emplace(), value);
@@ -107,6 +109,14 @@ class TableBuilder : public RowBuilder {
                        std::string_view documentation) {
     number(key, member, range, unit, documentation);
     set_components(components);
+    return *this;
+  }
+  /// Places one after the other.
+  template <class Member>
+  TableBuilder& points(std::string_view key, Member member, const Words& components, Range range, std::string_view unit,
+                       std::string_view documentation) {
+    vector(key, member, components, range, unit, documentation);
+    last().type = Type::points;
     return *this;
   }
   template <class Member>

@@ -4,12 +4,14 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "core/archive.hpp"
 #include "core/numerics.hpp"
 #include "core/parallel.hpp"
 #include "forces/air.hpp"
 #include "forces/bend.hpp"
+#include "forces/cord.hpp"
 #include "forces/crossed_membrane.hpp"
 #include "forces/rigidity.hpp"
 #include "forces/shear.hpp"
@@ -17,6 +19,7 @@
 #include "forces/stretch_limit.hpp"
 #include "forces/triangle_bend.hpp"
 #include "mesh/geometry.hpp"
+#include "scene/ropes.hpp"
 #include "simulation/pins.hpp"
 
 namespace weft::simulation {
@@ -116,8 +119,10 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     const scene::Material& material = scene.cloths[c].material;
     const environment::ClothObject& cloth = environment.cloths[c];
     first_.push_back(first);
-    const auto masses = cloth.sheet.triangles.empty() ? forces::lumped_masses(cloth.grid, material.density)
-                                                      : forces::lumped_masses(cloth.sheet, material.density);
+    const scene::Rope* rope = scene.cloths[c].rope.get();
+    const auto masses = rope != nullptr ? forces::lumped_masses(cloth.lengths, rope->closed, numbers_of(*rope).mass)
+                        : cloth.sheet.triangles.empty() ? forces::lumped_masses(cloth.grid, material.density)
+                                                        : forces::lumped_masses(cloth.sheet, material.density);
     masses_.insert(masses_.end(), masses.begin(), masses.end());
     for (std::size_t w = 0; w < cloth.weights.size(); ++w) {
       double shares = 0;
@@ -129,7 +134,9 @@ ClothSystem::ClothSystem(const scene::Scene& scene, const environment::Environme
     for (std::size_t p = 0; p < cloth.pins.size(); ++p)
       for (const environment::Chosen& chosen : cloth.pins[p])
         if (!scene.cloths[c].pins[p].strength) held_[first + chosen.particle] = 1;
-    if (cloth.sheet.triangles.empty())
+    if (rope != nullptr)
+      add_rope_forces(c, cloth.lengths, *rope, scene.physics);
+    else if (cloth.sheet.triangles.empty())
       add_quad_forces(c, cloth.grid, material, scene.physics);
     else
       add_triangle_forces(c, cloth.sheet, scene.cloths[c], cloth.put_on, scene.physics);
@@ -199,6 +206,33 @@ void ClothSystem::add_quad_forces(std::size_t cloth, const mesh::Grid& grid, con
   if (bends(material)) forces_[cloth].push_back(std::make_unique<forces::Bend>(grid, first, bend_of(material)));
   if (meets_air(material, physics))
     forces_[cloth].push_back(std::make_unique<forces::Air>(grid, first, air_of(material, physics)));
+}
+
+void ClothSystem::add_rope_forces(std::size_t cloth, std::span<const double> lengths, const scene::Rope& rope,
+                                  const scene::Physics& physics) {
+  const scene::RopeNumbers numbers = scene::numbers_of(rope);
+  auto cord = std::make_unique<forces::Cord>(lengths, rope.closed, first_[cloth],
+                                             forces::CordParameters{.stretch = numbers.stretch,
+                                                                    .stretch_viscosity = rope.damping * numbers.stretch,
+                                                                    .bend = numbers.bend,
+                                                                    .bend_viscosity = rope.damping * numbers.bend,
+                                                                    .air_density = physics.air_density,
+                                                                    .wind = physics.wind,
+                                                                    .drag = rope.drag,
+                                                                    .diameter = rope.diameter});
+  if (!rope.keys.empty()) {
+    std::vector<double> times;
+    std::vector<environment::Spline<1>::Value> values;
+    for (const scene::RopeKey& key : rope.keys) {
+      times.push_back(key.time);
+      values.emplace_back(key.length);
+    }
+    drawn_.push_back({cord.get(),
+                      std::accumulate(lengths.begin(), lengths.end(), 0.0),
+                      {rope.interpolation, std::move(times), std::move(values)}});
+  }
+  membranes_.push_back(cord.get());
+  forces_[cloth].push_back(std::move(cord));
 }
 
 void ClothSystem::add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit) {
@@ -293,7 +327,13 @@ void ClothSystem::Sewing::use_share(double new_share) {
   if (bands != nullptr) bands->rest_between_start_and_pattern(share);
 }
 
+bool ClothSystem::lengths_stay(double t0, double t1) const {
+  return std::ranges::all_of(
+      drawn_, [&](const DrawnRope& rope) { return rope.lengths.at(t0).value == rope.lengths.at(t1).value; });
+}
+
 void ClothSystem::sew(double t) {
+  for (const DrawnRope& rope : drawn_) rope.cord->use_length_ratio(rope.lengths.at(begin_ + t).value[0] / rope.length);
   for (Sewing& sewing : sewing_) {
     const double share = sewing.duration > 0 ? ease((t - sewing.begin) / sewing.duration) : 1;
     if (sewing.ties != nullptr) {

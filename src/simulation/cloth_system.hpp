@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "environment/environment.hpp"
+#include "environment/spline.hpp"
 #include "forces/bands.hpp"
 #include "forces/force.hpp"
 #include "forces/ties.hpp"
@@ -17,6 +18,7 @@
 #include "solver/linear_system.hpp"
 
 namespace weft::forces {
+class Cord;
 class StretchLimit;
 struct LockLag;
 }  // namespace weft::forces
@@ -76,8 +78,12 @@ class ClothSystem {
   /// An empty system with the pattern of this one.
   solver::LinearSystem make_linear_system() const;
 
-  /// Gives cloths that are being sewn the rest shape that they have at time t of the simulation [s].
+  /// Gives ropes the length, and cloths that are being sewn the rest shape that they have at time t of the simulation
+  /// [s].
   void sew(double t);
+
+  /// Whether keys leave all ropes as long as they are between two times of the simulation [s].
+  bool lengths_stay(double t0, double t1) const;
 
   /// Air that cloths enclose, in the step that ends at time t of the simulation [s]; after sew(t). `x`: its start [m].
   void inflate(double t, std::span<const Vec3> x);
@@ -114,6 +120,8 @@ class ClothSystem {
                        const scene::Physics& physics);
   void add_triangle_forces(std::size_t cloth, const mesh::Sheet& sheet, const scene::Cloth& of, double put_on,
                            const scene::Physics& physics);
+  void add_rope_forces(std::size_t cloth, std::span<const double> lengths, const scene::Rope& rope,
+                       const scene::Physics& physics);
   void add_frames(const scene::Scene& scene, const environment::Environment& environment);
   void add_limit(std::size_t cloth, std::unique_ptr<forces::StretchLimit> limit);
   solver::BlockMatrix lay_out_matrix() const;
@@ -140,6 +148,13 @@ class ClothSystem {
     void use_share(double new_share);
   };
   std::vector<Sewing> sewing_;
+  /// A rope whose length has keys.
+  struct DrawnRope {
+    forces::Cord* cord;
+    double length;                   // that it was made with [m]
+    environment::Spline<1> lengths;  // by time of the scene
+  };
+  std::vector<DrawnRope> drawn_;
   Inflation inflation_;
   std::vector<char> held_;  // per particle: by a pin
   Vec3 gravity_;

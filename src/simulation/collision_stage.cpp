@@ -12,6 +12,7 @@
 #include "core/error.hpp"
 #include "core/numerics.hpp"
 #include "mesh/geometry.hpp"
+#include "scene/ropes.hpp"
 #include "simulation/meetings.hpp"
 
 namespace weft::simulation {
@@ -94,8 +95,8 @@ collision::Bodies make_bodies(const scene::Scene& scene, const environment::Envi
   collision::Bodies bodies;
   for (std::size_t c = 0; c < scene.cloths.size(); ++c) {
     const scene::Material& material = scene.cloths[c].material;
-    const double thickness =
-        std::min(material.thickness, numerics.contact.thickness_of_spacing * environment.cloths[c].spacing);
+    const double of_spacing = scene.cloths[c].rope ? 1 / scene::kLeastRopePiece : numerics.contact.thickness_of_spacing;
+    const double thickness = std::min(material.thickness, of_spacing * environment.cloths[c].spacing);
     const mesh::Mesh& mesh = environment.cloths[c].mesh;
     bodies.add(mesh.topology.triangles, static_cast<Index>(mesh.positions.size()),
                {.deformable = true, .thickness = thickness, .friction = material.friction});

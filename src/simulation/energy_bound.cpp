@@ -8,6 +8,7 @@
 #include "core/error.hpp"
 #include "core/numerics.hpp"
 #include "scene/following.hpp"
+#include "scene/scene.hpp"
 #include "simulation/collision_stage.hpp"
 
 namespace weft::simulation {
@@ -21,6 +22,7 @@ bool is_driven_by_pins_alone(const scene::Scene& scene) {
     if (sewn && cloth.sewing > 0) return false;        // that drives it
     if (!cloth.over.empty()) return false;             // comes later
     if (cloth.pressure.keys.size() > 1) return false;  // air is pumped in
+    if (cloth.rope && cloth.rope->keys.size() > 1) return false;
     // The springs of pins with a strength do work that is not counted.
     for (const scene::Pin& pin : cloth.pins)
       if (pin.strength && (moves(pin.motion) || !pin.follow.empty())) return false;

@@ -37,7 +37,7 @@ void plan_forces(const Scene& scene, std::vector<PlanItem>& items) {
   const double gravity = scene.physics.gravity.norm();
   items.push_back(when("force: gravity", gravity > 0, fmt::format("{:.4g} m/s²", gravity), "physics.gravity is zero"));
   items.push_back(of_cloths(
-      "force: stretch", scene, [](const Cloth&) { return true; }, "no cloth"));
+      "force: stretch", scene, [](const Cloth& c) { return !c.rope; }, "no cloth"));
   items.push_back(of_cloths(
       "force: shear", scene, [](const Cloth& c) { return c.material.shear > 0 || c.material.shear_viscosity > 0; },
       "shear and shear_viscosity are zero"));
@@ -73,6 +73,8 @@ void plan_named(const Scene& scene, std::vector<PlanItem>& items) {
   if (const auto count = std::ranges::count_if(scene.cloths, [](const Cloth& c) { return c.pressure.acts(); }))
     items.push_back({"force: pressure of enclosed air", true,
                      fmt::format("{} of {}", count, counted(scene.cloths.size(), "cloth"))});
+  if (!scene.ropes.empty())
+    items.push_back({"force: stretch and bending of ropes", true, counted(scene.ropes.size(), "rope")});
   if (!scene.attachments.empty())
     items.push_back({"force: attachments", true, counted(scene.attachments.size(), "attachment")});
   if (const auto count = std::ranges::count_if(scene.obstacles, [](const auto& o) { return scene::is_dynamic(o); }))

@@ -412,7 +412,8 @@ std::vector<ObjectInfo> Simulation::objects() const {
   std::vector<ObjectInfo> objects;
   for (const environment::ClothObject& cloth : impl_->environment.cloths)
     objects.push_back(
-        {cloth.name, frame::ObjectKind::cloth, cloth.mesh.positions.size(),
+        {cloth.name, cloth.lengths.empty() ? frame::ObjectKind::cloth : frame::ObjectKind::rope,
+         cloth.mesh.positions.size(),
          cloth.mesh.topology.quads.empty() ? cloth.mesh.topology.triangles.size() : cloth.mesh.topology.quads.size()});
   for (const environment::BodyObject& body : impl_->environment.bodies)
     objects.push_back({body.name, body.character ? frame::ObjectKind::character : frame::ObjectKind::obstacle,

@@ -47,10 +47,18 @@ frame::Appearance appearance(const scene::Look& look) {
 constexpr double kGarmentHem = 0.015, kHem = 0.010;
 // Of fabrics without a name, as estimated of the others: thickness for a weight [m for kg/m²].
 constexpr double kThicknessByWeight = 2.2e-3;
+// Length in which a strand of a rope goes around once, in diameters; ropes thinner than this [m] are drawn smooth,
+// since strands finer than pixels flicker.
+constexpr double kLay = 3.2, kLeastTwisted = 0.009;
 
 /// With the finish of the fabric where the scene leaves it open.
 scene::Look look_of(const scene::Cloth& cloth) {
   scene::Look look = cloth.look;
+  if (cloth.rope) {
+    look.cloth_thickness = cloth.rope->diameter;
+    look.thread_spacing = look.strands && cloth.rope->diameter >= kLeastTwisted ? kLay * cloth.rope->diameter : 0;
+    return look;
+  }
   const scene::Fabric* fabric = scene::find_fabric(cloth.material.fabric);
   const scene::Finish finish = fabric ? fabric->finish : scene::fabrics().front().finish;
   look.gloss = look.gloss.value_or(finish.gloss);
@@ -106,7 +114,8 @@ void dress(frame::Surface& surface, const scene::Look& look, Pictures& pictures)
   surface.visible = look.visible;
   surface.appearance = appearance(look);
   lay_on(surface.appearance, look, pictures);
-  if (surface.kind != frame::ObjectKind::cloth) surface.appearance.thread_spacing = 0;
+  if (surface.kind != frame::ObjectKind::cloth && surface.kind != frame::ObjectKind::rope)
+    surface.appearance.thread_spacing = 0;
   // Places of pictures on obstacles are measured in pictures.
   if (surface.kind == frame::ObjectKind::obstacle) {
     surface.appearance.paint.texture_from_uv.setIdentity();
@@ -138,7 +147,8 @@ std::shared_ptr<frame::Surface> make_surface(const std::string& name, frame::Obj
 
 std::shared_ptr<frame::Surface> make_cloth_surface(const environment::ClothObject& cloth, const scene::Look& look,
                                                    Pictures& pictures) {
-  auto surface = make_surface(cloth.name, frame::ObjectKind::cloth, cloth.mesh);
+  auto surface =
+      make_surface(cloth.name, cloth.lengths.empty() ? frame::ObjectKind::cloth : frame::ObjectKind::rope, cloth.mesh);
   for (const std::string& panel : cloth.panels) surface->parts.push_back({panel, {}});
   surface->part_of_triangle = cloth.panel_of;
   surface->paint_uv = cloth.paint_uv;

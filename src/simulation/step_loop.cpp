@@ -133,6 +133,7 @@ bool StepLoop::may_rest(double t, double h, int steps) {
   for (int s = 1; s <= steps; ++s) {
     const double end = t + s * h;
     if (!weather_.stays(t, end) || !cloth_.inflation().stays(t, end) || !attachments_.stay(t, end)) return false;
+    if (!cloth_.lengths_stay(t, end)) return false;
     if (!pins_.stay(t, end) || !frames_stay(environment_, t, end) ||
         (collisions_ && !collisions_->bodies_stay(t, end, progress_.now, next_)))
       return false;

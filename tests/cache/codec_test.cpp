@@ -234,7 +234,7 @@ TEST(Codec, SurfacesThatMakeNoSenseAreRefused) {
   refuse("not finite", [](frame::Surface& s, Positions&) { s.appearance.roughness = INFINITY; });
   refuse("name of a surface", [](frame::Surface& s, Positions&) { s.name = "../../etc/passwd"; });
   refuse("name of a surface", [](frame::Surface& s, Positions&) { s.name = ""; });
-  refuse("stands for nothing", [](frame::Surface& s, Positions&) { s.kind = static_cast<frame::ObjectKind>(3); });
+  refuse("stands for nothing", [](frame::Surface& s, Positions&) { s.kind = static_cast<frame::ObjectKind>(4); });
 }
 
 // Changed behind the checksum, as only a broken writer could: refused or read, never a crash (sanitizers look on).

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "forces/bands.hpp"
+#include "forces/cord.hpp"
 #include "forces/sheets.hpp"
 #include "forces/stretch_limit.hpp"
 #include "forces/triangle_meshes.hpp"
@@ -97,6 +98,22 @@ const Case kCases[] = {
        mesh::Sheet sheet = mesh::make_sheet_of(mesh::make_triangle_sheet(kGrid, mesh::Pattern::aligned));
        sheet.bands.push_back({{0, 1, 2, 3, 4}, {0.02, 0.02, 0.02, 0.02}, 0.8, elastic, 0, 1e-6 * elastic, 0});
        return std::make_unique<Bands>(sheet, 0, 0);
+     }},
+    {"cord",
+     [](double elastic, double viscous) {
+       return std::make_unique<Cord>(std::vector<double>(19, 0.02), false, 0,
+                                     CordParameters{.stretch = elastic,
+                                                    .stretch_viscosity = viscous,
+                                                    .bend = 1e-5 * elastic,
+                                                    .bend_viscosity = 1e-5 * viscous});
+     }},
+    {"closed_cord",
+     [](double elastic, double viscous) {
+       return std::make_unique<Cord>(std::vector<double>(20, 0.02), true, 0,
+                                     CordParameters{.stretch = elastic,
+                                                    .stretch_viscosity = viscous,
+                                                    .bend = 1e-5 * elastic,
+                                                    .bend_viscosity = 1e-5 * viscous});
      }},
 };
 

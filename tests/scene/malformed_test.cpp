@@ -32,9 +32,9 @@ const std::vector<Malformed> kMalformed = {
     {"EmptyFile", "", "s.toml: expected a scene, got an empty file\n"},
     {"BlankFile", " \n\t\n", "s.toml: expected a scene, got an empty file\n"},
     {"OnlyComments", "# nothing\n",
-     "s.toml:1:1: expected at least one [[cloth]], [[obstacle]] or [[character]], got none\n"},
+     "s.toml:1:1: expected at least one [[cloth]], [[rope]], [[obstacle]] or [[character]], got none\n"},
     {"NoObjects", "[time]\nfps = 24\n",
-     "s.toml:1:1: expected at least one [[cloth]], [[obstacle]] or [[character]], got none\n"},
+     "s.toml:1:1: expected at least one [[cloth]], [[rope]], [[obstacle]] or [[character]], got none\n"},
     {"BinaryData",
      std::string("\x7f"
                  "ELF\x02\0\0",
@@ -61,8 +61,8 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:2:1: fan.f.direction: expected [x, y, z], each from -100000 to 100000, here or in the first of its keys, "
      "got none\n"},
     {"AttachmentToNothing", kBand + "[[attach]]\nname = 'peg'\ncloth = 'bond'\nto = 'line'\n",
-     "s.toml:4:9: attach.peg.cloth: expected the name of a cloth, got \"bond\"; did you mean band?\n"
-     "s.toml:5:6: attach.peg.to: expected the name of a cloth, obstacle or character, got \"line\"\n"},
+     "s.toml:4:9: attach.peg.cloth: expected the name of a cloth or rope, got \"bond\"; did you mean band?\n"
+     "s.toml:5:6: attach.peg.to: expected the name of a cloth, rope, obstacle or character, got \"line\"\n"},
     {"AttachmentToItself", kBand + "[[attach]]\nname = 'peg'\ncloth = 'band'\nto = 'band'\nbegin = 2\nrelease = 1\n",
      "s.toml:5:6: attach.peg.to: expected another object than the cloth itself, got \"band\"\n"
      "s.toml:7:11: attach.peg.release: expected > 2 s, when it begins, got 1\n"},
@@ -75,7 +75,8 @@ const std::vector<Malformed> kMalformed = {
     {"PanelOfNoPattern", "[[cloth]]\nname = 'a'\nlook.panel = [{ name = 'front' }]\n",
      "s.toml:3:15: cloth.a.look.panel.front: expected none of a cloth that is sewn from no pattern\n"},
     {"SubjectThatIsNotThere", kBand + "[[camera]]\nname = 'c'\nkind = 'follow'\nsubject = 'bond'\n",
-     "s.toml:5:11: camera.c.subject: expected the name of a cloth, obstacle or character, got \"bond\"; did you mean "
+     "s.toml:5:11: camera.c.subject: expected the name of a cloth, rope, obstacle or character, got \"bond\"; did you "
+     "mean "
      "band?\n"},
     {"TargetOfACameraThatIsFound", kBand + "[[camera]]\nname = 'c'\nkind = 'whole'\ntarget = [0, 0, 0]\n",
      "s.toml:5:1: camera.c.target: unknown key of a whole; it belongs to placed\n"},
@@ -110,7 +111,8 @@ const std::vector<Malformed> kMalformed = {
     {"StaticFrictionBelowThatOfSliding",
      kFloor + "[[cloth]]\nname = 'band'\n[[contact.pair]]\nfirst = 'band'\nsecond = 'flor'\nfriction = 0.5\n"
               "static_friction = 0.4\n",
-     "s.toml:6:10: contact.pair.0.second: expected the name of a cloth, obstacle or character, got \"flor\"; did you "
+     "s.toml:6:10: contact.pair.0.second: expected the name of a cloth, rope, obstacle or character, got \"flor\"; did "
+     "you "
      "mean floor?\n"
      "s.toml:8:19: contact.pair.0.static_friction: expected >= 0.5, that of sliding, got 0.4\n"},
     {"KeyOfAnInnerTable", "[[cloth]]\nname = 'band'\nthickness = 0.002\n",
@@ -121,7 +123,7 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:4:1: light.sun.cone_angle: unknown key of a sun; it belongs to spot\n"},
     {"KeyWithOddCharacters", kFloor + "\"a b\\u0007\" = 3\n",
      "s.toml:2:1: \"a b\\x07\": unknown key; known here: up, title, time, physics, solver, contact, render, fan, "
-     "obstacle, character, cloth, attach, camera, light\n"},
+     "obstacle, character, cloth, rope, attach, camera, light\n"},
     {"MissingName", "[[cloth]]\nsize = 1\n",
      "s.toml:1:1: cloth.0.name: expected a name of letters, digits, _ and -, starting with a letter, at most 64 long, "
      "got none\n"},
@@ -261,7 +263,7 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:4:8: cloth.1.name: expected a name used once, got \"band\" again\n"
      "s.toml:5:8: cloth.1.size: expected > 0 m, got 0\n"},
     {"NameOfClothAndCharacter", kBand + "[[character]]\nname = 'band'\nsource = 'sequence'\nfiles = '/none/*.obj'\n",
-     "s.toml:3:8: character.band.name: expected a name used once, got \"band\", which a cloth or obstacle has\n"
+     "s.toml:3:8: character.band.name: expected a name used once, got \"band\", which a cloth, rope or obstacle has\n"
      "s.toml:5:9: character.band.files: expected a folder, or a file name with a *, of at least 2 files, got "
      "\"/none/*.obj\": 0 there\n"},
     {"StanceWithoutTime",
@@ -272,7 +274,7 @@ const std::vector<Malformed> kMalformed = {
      "s.toml:1:1: character.a.files: expected a text, got none\n"
      "s.toml:4:1: character.a.loop: unknown key of a sequence; it belongs to file or mannequin\n"},
     {"NameOfClothAndObstacle", kBand + "[[obstacle]]\nname = 'band'\nshape = 'box'\n",
-     "s.toml:3:8: obstacle.band.name: expected a name used once, got \"band\", which a cloth has\n"},
+     "s.toml:3:8: obstacle.band.name: expected a name used once, got \"band\", which a cloth or rope has\n"},
     {"NameThatIsAPath", "[[cloth]]\nname = '../band'\n",
      "s.toml:2:8: cloth.0.name: expected a name of letters, digits, _ and -, starting with a letter, at most 64 long, "
      "got \"../band\"\n"},

@@ -24,7 +24,11 @@ struct Face {
   JudgedFace id;
   std::array<Index, 3> vertices;
   std::array<Point, 3> corners;
+  bool is_segment() const { return vertices[1] == vertices[2] && vertices[0] != vertices[1]; }
+  std::size_t corner_count() const { return is_segment() ? 2 : 3; }
   Triangle triangle() const { return {corners[0], corners[1], corners[2]}; }
+  Segment segment() const { return {corners[0], corners[1]}; }
+  auto bbox() const { return is_segment() ? segment().bbox() : triangle().bbox(); }
   Segment edge_opposite(std::size_t corner) const { return {corners[(corner + 1) % 3], corners[(corner + 2) % 3]}; }
 };
 
@@ -54,7 +58,8 @@ struct Faces {
         if (!object.passed_through.empty() && object.passed_through[f] != 0) continue;
         Face face{{o, static_cast<Index>(f)}, object.triangles[f], {}};
         for (std::size_t c = 0; c < 3; ++c) face.corners[c] = to_point(object, face.vertices[c]);
-        if (CGAL::collinear(face.corners[0], face.corners[1], face.corners[2])) {
+        if (face.is_segment() ? face.corners[0] == face.corners[1]
+                              : CGAL::collinear(face.corners[0], face.corners[1], face.corners[2])) {
           degenerate.push_back(face.id);
         } else {
           (object.is_cloth ? cloth : obstacles).push_back(face);
@@ -67,7 +72,7 @@ struct Faces {
 std::vector<Box> boxes_of(const std::vector<Face>& faces) {
   std::vector<Box> boxes;
   boxes.reserve(faces.size());
-  for (const Face& face : faces) boxes.emplace_back(face.triangle().bbox(), &face);
+  for (const Face& face : faces) boxes.emplace_back(face.bbox(), &face);
   return boxes;
 }
 
@@ -80,8 +85,8 @@ struct Shared {
 Shared shared_corners(const Face& a, const Face& b) {
   Shared shared;
   if (a.id.object != b.id.object) return shared;
-  for (std::size_t i = 0; i < 3; ++i) {
-    for (std::size_t j = 0; j < 3; ++j) {
+  for (std::size_t i = 0; i < a.corner_count(); ++i) {
+    for (std::size_t j = 0; j < b.corner_count(); ++j) {
       if (a.vertices[i] == b.vertices[j]) shared = {shared.count + 1, i, j};
     }
   }
@@ -94,7 +99,20 @@ bool reaches(const Segment& edge, const Face& face) {
   return CGAL::do_overlap(edge.bbox(), triangle.bbox()) && CGAL::do_intersect(edge, triangle);
 }
 
+// Pieces of rope. Two with a common end meet elsewhere if the other end of one is on the other: one is folded onto it.
+bool intersect_with_segment(const Face& segment, const Face& other) {
+  const Segment own = segment.segment();
+  if (!other.is_segment()) return CGAL::do_intersect(own, other.triangle());
+  const Shared shared = shared_corners(segment, other);
+  const Segment others = other.segment();
+  if (shared.count == 0) return CGAL::do_intersect(own, others);
+  return shared.count == 1 &&
+         (own.has_on(other.corners[1 - shared.of_b]) || others.has_on(segment.corners[1 - shared.of_a]));
+}
+
 bool intersect(const Face& a, const Face& b) {
+  if (a.is_segment()) return intersect_with_segment(a, b);
+  if (b.is_segment()) return intersect_with_segment(b, a);
   const Shared shared = shared_corners(a, b);
   if (shared.count == 0) return CGAL::do_intersect(a.triangle(), b.triangle());
   if (shared.count > 1) return false;
@@ -127,8 +145,9 @@ std::vector<JudgedObject> objects_of(const frame::FrameSnapshot& snapshot) {
   std::vector<JudgedObject> objects;
   for (std::size_t i = 0; i < snapshot.surfaces.size(); ++i) {
     const frame::Surface& surface = *snapshot.surfaces[i];
-    objects.push_back({surface.name, surface.kind == frame::ObjectKind::cloth, snapshot.states[i].positions,
-                       surface.triangles, surface.passed_through});
+    objects.push_back({surface.name,
+                       surface.kind == frame::ObjectKind::cloth || surface.kind == frame::ObjectKind::rope,
+                       snapshot.states[i].positions, surface.triangles, surface.passed_through});
   }
   return objects;
 }

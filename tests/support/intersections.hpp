@@ -17,7 +17,7 @@ namespace weft::support {
 /// One object as it lies in space. The spans must outlive the judging.
 struct JudgedObject {
   std::string name;
-  bool is_cloth = true;             ///< false: an obstacle, which may intersect other obstacles
+  bool is_cloth = true;             ///< or rope; false: an obstacle, which may intersect other obstacles
   std::span<const Vec3> positions;  ///< one per vertex [m]
   std::span<const std::array<Index, 3>> triangles;
   std::span<const std::uint8_t> passed_through =
@@ -42,6 +42,8 @@ struct Judgement {
   std::vector<JudgedFace> degenerate;   ///< faces without area; they have no inside to intersect and are not judged
 };
 
+/// A face (a, b, b) is a piece of rope: the segment between its ends.
+///
 /// All intersecting pairs of cloth with the same cloth, another cloth or an obstacle. Exact for the given doubles;
 /// touching counts. Faces of one object that share two or three vertices are skipped, since they meet anyway; of those
 /// that share one vertex, the edge opposite to it in each is held against the other face. Throws

@@ -37,6 +37,9 @@ inline PlyMesh read_ply(const std::filesystem::path& path) {
   PlyMesh mesh;
   mesh.positions.resize(std::stoul(bytes.substr(after("element vertex "))));
   mesh.triangles.resize(std::stoul(bytes.substr(after("element face "))));
+  std::size_t edges = 0;
+  if (const std::size_t said = bytes.find("element edge "); said < bytes.find("end_header\n"))
+    edges = std::stoul(bytes.substr(said + std::strlen("element edge ")));
   const std::string comment = "comment cloth passes through the last ";
   if (const std::size_t said = bytes.find(comment); said < after("end_header\n"))
     mesh.passed_through = std::stoul(bytes.substr(said + comment.size()));
@@ -44,7 +47,7 @@ inline PlyMesh read_ply(const std::filesystem::path& path) {
   std::size_t at = after("end_header\n");
   // A value of heat may follow each position; it is not read.
   const std::size_t vertex_size = sizeof(Vec3) + (bytes.find("property float ") < at ? sizeof(float) : 0);
-  expect(bytes.size() == at + vertex_size * mesh.positions.size() + 13 * mesh.triangles.size());
+  expect(bytes.size() == at + vertex_size * mesh.positions.size() + 13 * mesh.triangles.size() + 8 * edges);
   for (Vec3& position : mesh.positions) {
     std::memcpy(static_cast<void*>(position.data()), &bytes[at], sizeof(Vec3));
     at += vertex_size;
@@ -54,6 +57,13 @@ inline PlyMesh read_ply(const std::filesystem::path& path) {
     std::memcpy(triangle.data(), &bytes[at + 1], 12);
     for (const Index v : triangle) expect(v >= 0 && static_cast<std::size_t>(v) < mesh.positions.size());
     at += 13;
+  }
+  // Pieces of rope, as the simulation has them.
+  for (; edges > 0; --edges, at += 8) {
+    std::array<Index, 2> ends;
+    std::memcpy(ends.data(), &bytes[at], 8);
+    for (const Index v : ends) expect(v >= 0 && static_cast<std::size_t>(v) < mesh.positions.size());
+    mesh.triangles.push_back({ends[0], ends[1], ends[1]});
   }
   return mesh;
 }

@@ -56,6 +56,20 @@ TEST(Judge, CrossingTrianglesAreOnePairWithItsFaces) {
   EXPECT_EQ(pairs_between(kFloor, spike), 1u);
 }
 
+TEST(Judge, PiecesOfRopeThatPassThroughAFaceOrMeetAreFound) {
+  const Triangles chain = {{0, 1, 1}, {1, 2, 2}, {2, 3, 3}};
+  const std::vector<Vec3> through = {{0.2, 0.2, 1}, {0.2, 0.2, 0.5}, {0.2, 0.2, -0.5}, {0.2, 0.2, -1}};
+  const Judgement judgement = judge(std::vector<JudgedObject>{cloth(through, chain), cloth(kFloor)});
+  ASSERT_EQ(judgement.pairs.size(), 1u);
+  EXPECT_EQ(judgement.pairs[0], (IntersectingPair{{0, 1}, {1, 0}}));
+  EXPECT_TRUE(judgement.degenerate.empty());
+  // A loop whose last piece crosses the first one, and one that only comes near it.
+  EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1, 0}}, chain)}), 1u);
+  EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0.5, -1, 1e-9}}, chain)}), 0u);
+  // Neighbours meet where one is folded onto the other; so does what begins there.
+  EXPECT_EQ(pairs_of({cloth({{0, 0, 0}, {1, 0, 0}, {0.5, 0, 0}, {0.5, 1, 0}}, chain)}), 2u);
+}
+
 TEST(Judge, TouchingCountsAndTheLeastGapDoesNot) {
   EXPECT_EQ(pairs_between(kFloor, hanging(0)), 1u);
   EXPECT_EQ(pairs_between(kFloor, hanging(1e-12)), 0u);

@@ -11,7 +11,8 @@
 
 namespace weft::collision {
 
-/// Three vertices of the global vertex array, counter-clockwise from the front.
+/// Three vertices of the global vertex array, counter-clockwise from the front. A piece of rope is (a, b, b): its edge
+/// and its ends are its only features.
 using Triangle = std::array<Index, 3>;
 
 /// A piece of cloth or an obstacle: a range of the global vertex array and the triangles over it.

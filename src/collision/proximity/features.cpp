@@ -58,7 +58,9 @@ void Features::own_edges() {
     const Side& owner = sides[begin];
     owned_[owner.triangle] |= static_cast<std::uint8_t>(8U << owner.corner);
     edge_[owner.triangle][owner.corner] = static_cast<Index>(apexes_begin_.size() - 1);
-    if (end - begin == 2) across_[owner.triangle][owner.corner] = sides[begin + 1].triangle;
+    // Of an edge that is a triangle of its own, both sides are one.
+    if (end - begin == 2 && sides[begin + 1].triangle != owner.triangle)
+      across_[owner.triangle][owner.corner] = sides[begin + 1].triangle;
     for (std::size_t i = begin; i < end; ++i)
       apexes_.push_back(triangles_[sides[i].triangle][static_cast<std::size_t>(sides[i].corner + 2) % 3]);
     apexes_begin_.push_back(apexes_.size());

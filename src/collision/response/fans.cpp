@@ -10,8 +10,10 @@
 namespace weft::collision {
 namespace {
 
-/// The triangle with its corners turned so that `first` comes first.
+/// The triangle with its corners turned so that `first` comes first; of a piece of rope, whose other corners are one,
+/// `first` comes once.
 Triangle turned(const Triangle& t, Index first) {
+  if (t[1] == t[2]) return t[0] == first ? t : Triangle{first, t[0], t[0]};
   return t[0] == first ? t : t[1] == first ? Triangle{t[1], t[2], t[0]} : Triangle{t[2], t[0], t[1]};
 }
 
@@ -36,12 +38,13 @@ Fans::Fans(std::span<const Surface> surfaces) {
     const auto place = [&](Index v) -> std::uint32_t& {
       return begin[static_cast<std::size_t>(v - surface.first_vertex)];
     };
+    const auto corners_of = [](const Triangle& t) { return std::span(t).first(t[1] == t[2] ? 2 : 3); };
     for (const Triangle& t : surface.triangles)
-      for (Index v : t) ++place(v);
+      for (Index v : corners_of(t)) ++place(v);
     std::exclusive_scan(begin.begin(), begin.end(), begin.begin(), std::uint32_t{0});
     std::vector<Triangle> turned_to(begin.back());
     for (const Triangle& t : surface.triangles)
-      for (Index v : t) turned_to[place(v)++] = turned(t, v);
+      for (Index v : corners_of(t)) turned_to[place(v)++] = turned(t, v);
     std::uint32_t first = 0;  // places are now those of the ends
     for (Index v = surface.first_vertex; v < surface.first_vertex + surface.vertex_count; ++v) {
       add_fan(v, std::span(turned_to).subspan(first, place(v) - first));

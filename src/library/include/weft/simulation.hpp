@@ -25,7 +25,7 @@ struct Pose {
   std::array<double, 4> rotation{1, 0, 0, 0};  ///< unit quaternion w, x, y, z
 };
 
-enum class Kind { cloth, obstacle, character };
+enum class Kind { cloth, obstacle, character, rope };
 
 /// One object in one frame. The spans are valid as long as the frame or a copy of it exists.
 struct Object {

@@ -1,0 +1,29 @@
+#include "environment/rope_object.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "scene/ropes.hpp"
+
+namespace weft::environment {
+
+void use_rope(const scene::Scene& scene, const scene::Rope& rope, ClothObject& object) {
+  scene::RopeShape shape = scene::start_shape(rope, scene.up);
+  const auto count = static_cast<Index>(shape.places.size()), pieces = static_cast<Index>(shape.lengths.size());
+  object.spacing = *std::ranges::min_element(shape.lengths);
+  object.grid = {.nu = count, .nv = 1, .lu = object.spacing, .lv = object.spacing};
+  double along = 0;
+  for (Index i = 0; i < count; ++i) {
+    object.fractions.emplace_back(static_cast<double>(i) / pieces, 0.5);
+    object.mesh.uv.emplace_back(along, 0);
+    if (i < pieces) along += shape.lengths[static_cast<std::size_t>(i)];
+  }
+  for (Index p = 0; p < pieces; ++p) {
+    const Index next = (p + 1) % count;
+    object.mesh.topology.triangles.push_back({p, next, next});
+  }
+  object.mesh.positions = std::move(shape.places);
+  object.lengths = std::move(shape.lengths);
+}
+
+}  // namespace weft::environment

@@ -1,0 +1,10 @@
+// The keys of ropes.
+#pragma once
+
+#include "scene/rule.hpp"
+
+namespace weft::scene {
+
+const Table& rope_rules();
+
+}  // namespace weft::scene

@@ -1,0 +1,168 @@
+#include "scene/ropes.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace weft::scene {
+namespace {
+
+constexpr double kStandardGravity = 9.81;  // [m/s²]; bending lengths are measured on Earth
+constexpr int kFewestPieces = 4;
+constexpr int kSplinePieces = 16;  // of a spline between two points
+constexpr int kCatenaryPieces = 512;
+
+// Uniform Catmull-Rom spline between b and c.
+Vec3 spline_point(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double s) {
+  return b + 0.5 * s * (c - a + s * (2 * a - 5 * b + 4 * c - d + s * (3 * (b - c) + d - a)));
+}
+
+// The polyline that a rope with points follows; a closed one comes back to its first point.
+std::vector<Vec3> path_through(const Rope& rope) {
+  const std::vector<Vec3>& points = rope.points;
+  const auto count = static_cast<int>(points.size()), spans = rope.closed ? count : count - 1;
+  const auto point = [&](int i) -> Vec3 {
+    if (rope.closed) return points[static_cast<std::size_t>((i + count) % count)];
+    if (i < 0) return 2 * points[0] - points[1];
+    if (i >= count)
+      return 2 * points[static_cast<std::size_t>(count - 1)] - points[static_cast<std::size_t>(count - 2)];
+    return points[static_cast<std::size_t>(i)];
+  };
+  const int pieces = rope.smooth ? kSplinePieces : 1;
+  std::vector<Vec3> path{point(0)};
+  for (int i = 0; i < spans; ++i)
+    for (int k = 1; k <= pieces; ++k)
+      path.push_back(spline_point(point(i - 1), point(i), point(i + 1), point(i + 2),
+                                  rope.smooth ? static_cast<double>(k) / pieces : 1.0));
+  return path;
+}
+
+// A rope of this length that hangs from both ends.
+std::vector<Vec3> catenary(const Vec3& from, const Vec3& to, double length, const Vec3& up) {
+  const Vec3 way = to - from;
+  const double rise = up.dot(way);
+  const Vec3 along = way - rise * up;
+  const double span = along.norm();
+  // sinh(u) / u = ratio, with a = span / 2u the ratio of tension and weight at the lowest point.
+  const double ratio = std::sqrt(length * length - rise * rise) / span;
+  double low = 0, high = 1;
+  while (std::sinh(high) / high < ratio) high *= 2;
+  for (int k = 0; k < 100; ++k) {
+    const double u = 0.5 * (low + high);
+    (std::sinh(u) / u < ratio ? low : high) = u;
+  }
+  const double a = span / (low + high), lowest = 0.5 * span - a * std::atanh(rise / length);
+  std::vector<Vec3> path;
+  for (int k = 0; k <= kCatenaryPieces; ++k) {
+    const double s = length * k / kCatenaryPieces;
+    const double x = lowest + a * std::asinh(s / a - std::sinh(lowest / a));
+    const double z = a * (std::cosh((x - lowest) / a) - std::cosh(lowest / a));
+    path.emplace_back(from + x / span * along + z * up);
+  }
+  path.back() = to;
+  return path;
+}
+
+// Places along a polyline, evenly by its length; both ends among them.
+std::vector<Vec3> resampled(const std::vector<Vec3>& path, int pieces) {
+  std::vector<double> reached{0};
+  for (std::size_t k = 1; k < path.size(); ++k) reached.push_back(reached.back() + (path[k] - path[k - 1]).norm());
+  std::vector<Vec3> places;
+  std::size_t span = 1;
+  for (int i = 0; i < pieces; ++i) {
+    const double s = reached.back() * i / pieces;
+    while (span + 1 < path.size() && reached[span] < s) ++span;
+    const double length = reached[span] - reached[span - 1];
+    places.emplace_back(path[span - 1] +
+                        (length > 0 ? (s - reached[span - 1]) / length : 0) * (path[span] - path[span - 1]));
+  }
+  places.push_back(path.back());
+  return places;
+}
+
+}  // namespace
+
+// Mass and stiffness of nylon, polyester, polypropylene and steel (wire with a fibre core): formulas for mooring ropes,
+// as transcribed in ddjokic/Mooring-Line-Properties (moorwire.py). Data sheets of Robline give 680 for polyester and
+// 430 for polypropylene at 10 mm. Cotton and all bending lengths are estimates: a limp line of 6 mm stands out by 9 cm.
+const std::vector<RopeMaterial>& rope_materials() {
+  static const std::vector<RopeMaterial> kMaterials = {
+      {"cotton", 650, 2.5e8, 15},         {"nylon", 676, 1.18e8, 15},   {"polyester", 798, 1.09e9, 15},
+      {"polypropylene", 453, 1.06e9, 15}, {"steel", 3611, 3.67e10, 40},
+  };
+  return kMaterials;
+}
+
+RopeNumbers numbers_of(const Rope& rope) {
+  const auto& material = rope_materials()[static_cast<std::size_t>(rope.material)];
+  const double square = rope.diameter * rope.diameter;
+  RopeNumbers numbers{};
+  numbers.mass = rope.mass.value_or(material.mass * square);
+  numbers.stretch = rope.stretch.value_or(material.stretch * square);
+  numbers.bend = rope.bend.value_or(material.mass * square * kStandardGravity *
+                                    std::pow(material.bending_length * rope.diameter, 3));
+  return numbers;
+}
+
+std::optional<double> start_length(const Rope& rope) {
+  if (rope.length || rope.keys.empty()) return rope.length;
+  return rope.keys.front().length;
+}
+
+bool hangs_slack(const Rope& rope) {
+  return rope.points.empty() && start_length(rope).value_or(0) > (*rope.to - *rope.from).norm();
+}
+
+RopeShape start_shape(const Rope& rope, UpAxis up) {
+  const std::optional<double> wanted = start_length(rope);
+  std::vector<Vec3> path;
+  if (!rope.points.empty())
+    path = path_through(rope);
+  else if (hangs_slack(rope))
+    path = catenary(*rope.from, *rope.to, *wanted, up == UpAxis::z ? Vec3::UnitZ() : Vec3::UnitY());
+  else
+    path = {*rope.from, *rope.to};
+  double length = 0;
+  for (std::size_t k = 1; k < path.size(); ++k) length += (path[k] - path[k - 1]).norm();
+  const int pieces = rope.segments.value_or(
+      std::max(kFewestPieces, static_cast<int>(std::min(1e6, wanted.value_or(length) / (kRopePiece * rope.diameter)))));
+  RopeShape shape{resampled(path, pieces), {}};
+  double chords = 0;
+  for (std::size_t k = 1; k < shape.places.size(); ++k) {
+    shape.lengths.push_back((shape.places[k] - shape.places[k - 1]).norm());
+    chords += shape.lengths.back();
+  }
+  if (wanted)
+    for (double& piece : shape.lengths) piece *= *wanted / chords;
+  if (rope.closed) shape.places.pop_back();
+  return shape;
+}
+
+Cloth as_cloth(const Rope& rope) {
+  Cloth cloth;
+  cloth.name = rope.name;
+  cloth.shape = ClothShape::rope;
+  cloth.rope = std::make_shared<const Rope>(rope);
+  cloth.sewing = 0;
+  cloth.velocity = rope.velocity;
+  Material& material = cloth.material;
+  material.density = material.stretch_weft = material.stretch_warp = material.shear = material.bend = 0;
+  material.max_stretch = material.bend_viscosity = material.bend_friction = 0;
+  material.thickness = rope.diameter;
+  material.friction = rope.friction;
+  material.drag = rope.drag;
+  cloth.look = rope.look;
+  cloth.pins = rope.pins;
+  cloth.weights = rope.weights;
+  return cloth;
+}
+
+void add_rope_cloths(Scene& scene) {
+  for (const Rope& rope : scene.ropes) scene.cloths.push_back(as_cloth(rope));
+}
+
+void remove_rope_cloths(Scene& scene) {
+  std::erase_if(scene.cloths, [](const Cloth& cloth) { return cloth.rope != nullptr; });
+}
+
+}  // namespace weft::scene

@@ -1,0 +1,87 @@
+// The forces within ropes against closed forms.
+#include "forces/cord.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "forces/sheets.hpp"
+
+namespace weft::forces {
+namespace {
+
+using testing::Positions;
+
+constexpr int kPieces = 200;
+constexpr double kLength = 0.5;  // [m]
+
+std::vector<double> even_pieces() {
+  return std::vector<double>(kPieces, kLength / kPieces);
+}
+
+Positions arc(double radius) {
+  Positions x;
+  for (int i = 0; i <= kPieces; ++i) {
+    const double angle = kLength / radius * i / kPieces;
+    x.emplace_back(radius * std::sin(angle), 0.2, radius * std::cos(angle));
+  }
+  return x;
+}
+
+TEST(Cord, EnergyOfAnArcIsThatOfABeam) {
+  // ½ EI L / R² of the inner particles, one piece less than the length. A piece of 2.5 mm on a radius of 0.1 m turns by
+  // 0.025: its energy is short by a sixth of the square of that.
+  const Cord cord(even_pieces(), false, 0, {.bend = 3e-4});
+  const double expected = 0.5 * 3e-4 * (kLength - kLength / kPieces) / (0.1 * 0.1);
+  EXPECT_NEAR(cord.energy(arc(0.1)) / expected, 1, 1.1e-4);
+}
+
+TEST(Cord, PullsByItsStiffnessTimesItsStrain) {
+  const Cord cord(even_pieces(), false, 0, {.stretch = 5000});
+  Positions x;
+  for (int i = 0; i <= kPieces; ++i) x.emplace_back(1.02 * kLength * i / kPieces, 0, 0);
+  const Positions f = testing::force_of(cord, x, testing::zeros(x));
+  EXPECT_NEAR(f.front().x(), 0.02 * 5000, 1e-9);
+  EXPECT_NEAR(f.back().x(), -0.02 * 5000, 1e-9);
+  EXPECT_NEAR(cord.max_strain(x), 0.02, 1e-12);
+}
+
+TEST(Cord, PullsMoreWhereKeysMakeItShorter) {
+  Cord cord(even_pieces(), false, 0, {.stretch = 5000});
+  Positions x;
+  for (int i = 0; i <= kPieces; ++i) x.emplace_back(kLength * i / kPieces, 0, 0);
+  cord.use_length_ratio(0.8);
+  EXPECT_NEAR(testing::force_of(cord, x, testing::zeros(x)).front().x(), 5000 * (1 / 0.8 - 1), 1e-9);
+}
+
+TEST(Cord, MeetsAirAcrossAsACylinderAndNotAlong) {
+  const Cord cord(even_pieces(), false, 0, {.air_density = 1.2, .drag = 1.1, .diameter = 0.01});
+  Positions x;
+  for (int i = 0; i <= kPieces; ++i) x.emplace_back(kLength * i / kPieces, 0, 0);
+  const Positions f = testing::force_of(cord, x, Positions(x.size(), Vec3(7, 3, 4)));
+  Vec3 sum = Vec3::Zero();
+  for (const Vec3& force : f) sum += force;
+  // ½ ρ c d L ‖v‖² of the 5 m/s across it.
+  const double drag = 0.5 * 1.2 * 1.1 * 0.01 * kLength * 25;
+  EXPECT_LT((sum - drag * Vec3(0, -0.6, -0.8)).norm(), 1e-9 * drag);
+}
+
+TEST(Cord, HasHalfOfTheMassOfItsPiecesAtTheirEnds) {
+  const std::vector<double> lengths{0.1, 0.3};
+  EXPECT_EQ(lumped_masses(lengths, false, 2), (std::vector<double>{0.1, 0.4, 0.3}));
+  EXPECT_EQ(lumped_masses(lengths, true, 2), (std::vector<double>{0.4, 0.4}));
+}
+
+TEST(Cord, TurnsRigidlyWithoutResistance) {
+  const Cord cord(even_pieces(), false, 0,
+                  {.stretch = 100, .stretch_viscosity = 5, .bend = 1e-3, .bend_viscosity = 1e-3});
+  const Positions x = arc(0.1);
+  Positions spinning;
+  for (const Vec3& place : x) spinning.push_back(Vec3(3, -2, 5).cross(place));
+  const Positions still = testing::force_of(cord, x, testing::zeros(x)), turning = testing::force_of(cord, x, spinning);
+  for (std::size_t i = 0; i < x.size(); ++i) EXPECT_LT((turning[i] - still[i]).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace weft::forces

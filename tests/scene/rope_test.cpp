@@ -1,0 +1,95 @@
+// Ropes of scenes: how they are read, how they start, and what is refused.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "scene/effective.hpp"
+#include "scene/loader.hpp"
+#include "scene/ropes.hpp"
+
+namespace weft::scene {
+namespace {
+
+LoadResult load_rope(const std::string& keys) {
+  return load_text("[[rope]]\nname = \"line\"\n" + keys, "ropes.toml");
+}
+
+double length_of(const RopeShape& shape) {
+  double sum = 0;
+  for (const double piece : shape.lengths) sum += piece;
+  return sum;
+}
+
+TEST(RopeScenes, ReadBackAsTheyAreWrittenOut) {
+  const std::string text =
+      "points = [[0, 0, 1], [0.5, 0.1, 0.9], [1, 0, 1]]\nsmooth = true\ndiameter = 0.01\nmaterial = \"nylon\"\n"
+      "pin = [{ at = 0 }, { at = [0.9, 1] }]\nweight = [{ at = 0.5, mass = 0.2 }]\n"
+      "keys = [{ time = 0, length = 1.1 }, { time = 1, length = 0.9 }]\n";
+  const LoadResult once = load_rope(text);
+  ASSERT_EQ(once.describe(), "");
+  const LoadResult again = load_text(effective_scene(once.scene), "ropes.toml");
+  ASSERT_EQ(again.describe(), "");
+  EXPECT_EQ(effective_scene(once.scene), effective_scene(again.scene));
+  EXPECT_EQ(once.scene.hash, again.scene.hash);
+  ASSERT_EQ(once.scene.ropes.size(), 1U);
+  EXPECT_EQ(once.scene.ropes[0].points.size(), 3U);
+  EXPECT_EQ(once.scene.cloths.size(), 1U) << "that of the rope";
+  EXPECT_EQ(once.scene.cloths[0].pins.at(1).at, Vec2(0.9, 1));
+}
+
+TEST(RopeScenes, SlackRopesStartAsCatenariesOfTheirLength) {
+  const LoadResult loaded = load_rope("from = [0, 0, 1]\nto = [1, 0.5, 1.4]\nlength = 1.9\n");
+  ASSERT_EQ(loaded.describe(), "");
+  const RopeShape shape = start_shape(loaded.scene.ropes[0], loaded.scene.up);
+  EXPECT_LT((shape.places.front() - Vec3(0, 0, 1)).norm(), 1e-12);
+  EXPECT_LT((shape.places.back() - Vec3(1, 0.5, 1.4)).norm(), 1e-12);
+  EXPECT_NEAR(length_of(shape), 1.9, 1e-12);
+  // On a catenary z'' = √(1 + z'²) / a: the same a from any three places that are evenly spaced along it.
+  const auto ratio = [&](std::size_t i) {
+    const Vec3 before = shape.places[i] - shape.places[i - 1], after = shape.places[i + 1] - shape.places[i];
+    const auto slope = [](const Vec3& way) { return way.z() / way.head<2>().norm(); };
+    return before.norm() / (slope(after) - slope(before));
+  };
+  EXPECT_NEAR(ratio(5) / ratio(shape.places.size() - 6), 1, 0.01);
+}
+
+TEST(RopeScenes, PiecesAreEvenAlongPoints) {
+  const LoadResult loaded = load_rope("points = [[0, 0, 0], [1, 0, 0], [1, 1, 0]]\nsegments = 20\ndiameter = 0.01\n");
+  ASSERT_EQ(loaded.describe(), "");
+  const RopeShape shape = start_shape(loaded.scene.ropes[0], UpAxis::z);
+  ASSERT_EQ(shape.places.size(), 21U);
+  for (const double piece : shape.lengths) EXPECT_NEAR(piece, 0.1, 1e-12);
+}
+
+TEST(RopeScenes, MaterialsGiveFiguresForTheDiameter) {
+  // Polyester of 10 mm: 68 g/m by the data sheet of Robline's Rapallo, 80 by the formula.
+  const LoadResult loaded = load_rope("from = [0, 0, 0]\nto = [1, 0, 0]\ndiameter = 0.01\nmaterial = \"polyester\"\n");
+  ASSERT_EQ(loaded.describe(), "");
+  EXPECT_NEAR(numbers_of(loaded.scene.ropes[0]).mass, 0.0798, 1e-6);
+  EXPECT_NEAR(numbers_of(loaded.scene.ropes[0]).stretch, 109e3, 1);
+}
+
+TEST(RopeScenes, MistakesNameTheKeyAndWhatIsExpected) {
+  const auto message = [](const std::string& keys) { return load_rope(keys).describe(); };
+  const auto expect = [&](const std::string& keys, const std::string& part) {
+    EXPECT_NE(message(keys).find(part), std::string::npos) << message(keys);
+  };
+  expect("from = [0, 0, 0]\n", "rope.line.to: expected points, or from and to, got none");
+  expect("points = [[0, 0, 0]]\n", "rope.line.points: expected at least 2 points, got 1");
+  expect("points = [[0, 0, 0], [0, 0]]\n", "rope.line.points: expected [[x, y, z], ...], each from -100000 to 100000 m");
+  expect("points = [[0, 0, 0], [1, 0, 0]]\nfrom = [0, 0, 0]\n", "expected either from or points, got both");
+  expect("from = [0, 0, 0]\nto = [1, 0, 0]\nsegments = 200\n",
+         "rope.line.segments: expected pieces between particles of at least 0.012 m, 1.5 diameters");
+  expect("from = [0, 0, 0]\nto = [0, 0, 1]\nlength = 2\n", "expected ends at least 0.032 m apart across the up axis");
+  expect("from = [0, 0, 0]\nto = [1, 0, 0]\nmaterial = \"nylom\"\n", "did you mean nylon?");
+  expect("from = [0, 0, 0]\nto = [1, 0, 0]\npin = [{}]\n", "rope.line.pin.0.at: expected");
+  expect("from = [0, 0, 0]\nto = [1, 0, 0]\npin = [{ at = [0.7, 0.2] }]\n", "expected the lower end first");
+  expect("from = [0, 0, 0]\nto = [1, 0, 0]\n[[cloth]]\nname = \"line\"\n", "which a cloth has");
+  expect(
+      "from = [0, 0, 0]\nto = [1, 0, 0]\n[[cloth]]\nname = \"flag\"\n[[attach]]\nname = \"a\"\ncloth = \"flag\"\n"
+      "to = \"line\"\nat = 0.5\n",
+      "attach.a.at: expected none of a cloth that is no rope");
+}
+
+}  // namespace
+}  // namespace weft::scene
