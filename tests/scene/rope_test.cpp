@@ -76,7 +76,8 @@ TEST(RopeScenes, MistakesNameTheKeyAndWhatIsExpected) {
   };
   expect("from = [0, 0, 0]\n", "rope.line.to: expected points, or from and to, got none");
   expect("points = [[0, 0, 0]]\n", "rope.line.points: expected at least 2 points, got 1");
-  expect("points = [[0, 0, 0], [0, 0]]\n", "rope.line.points: expected [[x, y, z], ...], each from -100000 to 100000 m");
+  expect("points = [[0, 0, 0], [0, 0]]\n",
+         "rope.line.points: expected [[x, y, z], ...], each from -100000 to 100000 m");
   expect("points = [[0, 0, 0], [1, 0, 0]]\nfrom = [0, 0, 0]\n", "expected either from or points, got both");
   expect("from = [0, 0, 0]\nto = [1, 0, 0]\nsegments = 200\n",
          "rope.line.segments: expected pieces between particles of at least 0.012 m, 1.5 diameters");
