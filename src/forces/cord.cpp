@@ -98,7 +98,7 @@ void Cord::add(const Evaluation& at) const {
 }
 
 void Cord::add_stretch(const Piece& piece, const Evaluation& at) const {
-  const auto [a, b] = piece.particles;
+  const Index a = piece.particles[0], b = piece.particles[1];
   const Vec3 d = vec_at(at.x, b) - vec_at(at.x, a);
   const double length = std::max(d.norm(), kNoPieceLength * piece.rest);
   const Vec3 n = d / length;
