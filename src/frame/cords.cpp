@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/catmull_rom.hpp"
+
 namespace weft::frame {
 namespace {
 
@@ -18,33 +20,6 @@ constexpr std::size_t kMostRings = 8000;  // beyond these strands are too fine t
 bool is_closed(const Surface& chain) {
   return chain.triangles.back()[1] == chain.triangles.front()[0];
 }
-
-/// Where a spline through particles is after a share of a piece.
-class Spline {
- public:
-  Spline(const std::vector<Vec3>& places, bool closed) : places_(places), closed_(closed) {}
-
-  template <class Value>
-  static Value between(const Value& a, const Value& b, const Value& c, const Value& d, double s) {
-    return b + 0.5 * s * (c - a + s * (2 * a - 5 * b + 4 * c - d + s * (3 * (b - c) + d - a)));
-  }
-  Vec3 at(int piece, double s) const {
-    if (s == 0) return point(piece);
-    return between(point(piece - 1), point(piece), point(piece + 1), point(piece + 2), s);
-  }
-
- private:
-  Vec3 point(int i) const {
-    const auto count = static_cast<int>(places_.size());
-    if (closed_) return places_[static_cast<std::size_t>((i + count) % count)];
-    if (i < 0) return 2 * places_[0] - places_[1];
-    if (i >= count)
-      return 2 * places_[static_cast<std::size_t>(count - 1)] - places_[static_cast<std::size_t>(count - 2)];
-    return places_[static_cast<std::size_t>(i)];
-  }
-  const std::vector<Vec3>& places_;
-  bool closed_;
-};
 
 Vec3 any_normal(const Vec3& tangent) {
   return Quat::FromTwoVectors(Vec3::UnitZ(), tangent) * Vec3::UnitX();
@@ -126,15 +101,17 @@ const Cords::Tube& Cords::tube_of(const std::shared_ptr<const Surface>& chain) {
 }
 
 SurfaceState Cords::state_of(const Tube& tube, const SurfaceState& chain) {
-  const Spline spline(chain.positions, tube.closed);
   const Appearance& look = tube.chain->appearance;
   const double radius = 0.5 * look.thickness;
   const auto pieces = static_cast<int>(tube.chain->triangles.size());
   const int rings = pieces * tube.rings_per_piece + (tube.closed ? 0 : 1);
   std::vector<Vec3> middles, tangents;
-  for (int r = 0; r < rings; ++r)
-    middles.push_back(
-        spline.at(r / tube.rings_per_piece, static_cast<double>(r % tube.rings_per_piece) / tube.rings_per_piece));
+  for (int r = 0; r < rings; ++r) {
+    const int piece = r / tube.rings_per_piece, ring = r % tube.rings_per_piece;
+    middles.push_back(ring == 0 ? chain.positions[static_cast<std::size_t>(piece)]
+                                : spline_point(chain.positions, tube.closed, piece,
+                                               static_cast<double>(ring) / tube.rings_per_piece));
+  }
   const auto middle = [&](int r) -> const Vec3& {
     return middles[static_cast<std::size_t>(tube.closed ? (r + rings) % rings : std::clamp(r, 0, rings - 1))];
   };

@@ -64,8 +64,9 @@ struct StepReport {
 /// velocity: a sheet that falls on a table kept 48 % of its energy. So it takes impacts as Euler's method does, and all
 /// else in second order, as nonsmooth generalised-α methods do (Chen, Acary, Virlez & Brüls, Int. J. Numer. Meth. Engng
 /// 96, 2013). Impacts move particles by δ, A δ = F, with the forces F of impacts and the matrix A of the step without
-/// contacts. Positions stay as they are; velocities change by δ/h in place of δ/β, and so does the history, in which
-/// the next step then finds a smooth trajectory. What corrections change of velocities after a solve are impacts, too.
+/// contacts and ties. Positions stay as they are; velocities change by δ/h in place of δ/β, and so does the history, in
+/// which the next step then finds a smooth trajectory. What corrections change of velocities after a solve are impacts,
+/// too.
 ///
 /// The local error of positions follows from velocities that are there anyway. With D the change of the mean
 /// acceleration from the last step to this one, (v1 − v0)/h − (v0 − v₋)/h₋, its leading terms are

@@ -83,8 +83,8 @@ void Simulation::Impl::view(const frame::FrameReport& report) {
     simulation::ClothMotion motion = simulation->motion_of(c);
     data.velocities.emplace_back(motion.velocities.begin(), motion.velocities.end());
     data.strains.push_back(std::move(motion.strains));
-    data.contact_forces.push_back(std::move(motion.contact_forces));
   }
+  data.contact_forces = simulation->contact_forces();
   current = library::make_frame(std::move(data));
 }
 

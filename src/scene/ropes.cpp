@@ -4,6 +4,8 @@
 #include <cmath>
 #include <memory>
 
+#include "core/catmull_rom.hpp"
+
 namespace weft::scene {
 namespace {
 
@@ -12,28 +14,15 @@ constexpr int kFewestPieces = 4;
 constexpr int kSplinePieces = 16;  // of a spline between two points
 constexpr int kCatenaryPieces = 512;
 
-// Uniform Catmull-Rom spline between b and c.
-Vec3 spline_point(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& d, double s) {
-  return b + 0.5 * s * (c - a + s * (2 * a - 5 * b + 4 * c - d + s * (3 * (b - c) + d - a)));
-}
-
 // The polyline that a rope with points follows; a closed one comes back to its first point.
 std::vector<Vec3> path_through(const Rope& rope) {
   const std::vector<Vec3>& points = rope.points;
   const auto count = static_cast<int>(points.size()), spans = rope.closed ? count : count - 1;
-  const auto point = [&](int i) -> Vec3 {
-    if (rope.closed) return points[static_cast<std::size_t>((i + count) % count)];
-    if (i < 0) return 2 * points[0] - points[1];
-    if (i >= count)
-      return 2 * points[static_cast<std::size_t>(count - 1)] - points[static_cast<std::size_t>(count - 2)];
-    return points[static_cast<std::size_t>(i)];
-  };
   const int pieces = rope.smooth ? kSplinePieces : 1;
-  std::vector<Vec3> path{point(0)};
+  std::vector<Vec3> path{points[0]};
   for (int i = 0; i < spans; ++i)
     for (int k = 1; k <= pieces; ++k)
-      path.push_back(spline_point(point(i - 1), point(i), point(i + 1), point(i + 2),
-                                  rope.smooth ? static_cast<double>(k) / pieces : 1.0));
+      path.push_back(spline_point(points, rope.closed, i, static_cast<double>(k) / pieces));
   return path;
 }
 

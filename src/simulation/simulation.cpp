@@ -370,10 +370,17 @@ ClothMotion Simulation::motion_of(std::size_t cloth) const {
   const ClothSystem& cloths = impl_->steps->cloth();
   const Moment& now = impl_->steps->progress().now;
   const Index first = cloths.first_particle(number), end = cloths.first_particle(number + 1);
+  return {std::span(now.v).subspan(at(first), at(end - first)), cloths.strain_per_particle(number, now.particles())};
+}
+
+std::vector<std::vector<Vec3>> Simulation::contact_forces() const {
   const std::vector<Vec3> forces = impl_->steps->contact_forces();
-  return {std::span(now.v).subspan(at(first), at(end - first)),
-          cloths.strain_per_particle(number, now.particles()),
-          {forces.begin() + first, forces.begin() + end}};
+  const std::vector<std::size_t>& dressed = impl_->layers[impl_->layer].dressed;
+  std::vector<std::vector<Vec3>> of_cloths(impl_->scene.cloths.size());
+  for (std::size_t number = 0; number < dressed.size(); ++number)
+    of_cloths[dressed[number]].assign(forces.begin() + impl_->steps->cloth().first_particle(number),
+                                      forces.begin() + impl_->steps->cloth().first_particle(number + 1));
+  return of_cloths;
 }
 
 void Simulation::drive(std::size_t obstacle, const scene::Pose& end) {

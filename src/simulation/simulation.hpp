@@ -31,7 +31,6 @@ struct ParticleState {
 struct ClothMotion {
   std::span<const Vec3> velocities;  ///< per particle [m/s]
   std::vector<float> strains;        ///< per particle: largest relative change of length of the threads next to it
-  std::vector<Vec3> contact_forces;  ///< per particle, of all that it touches, at the end of the last step [N]
 };
 
 /// One line of `weft check --plan`: a part and whether this scene needs it.
@@ -101,6 +100,9 @@ class Simulation {
   ParticleState state() const;
   /// Of a cloth of the scene, by number; valid until the next advance().
   ClothMotion motion_of(std::size_t cloth) const;
+  /// Per cloth of the scene and particle, of all that it touches, at the end of the last step [N]; empty until the
+  /// cloth is put on.
+  std::vector<std::vector<Vec3>> contact_forces() const;
 
   /// In the next frame the obstacle, by its number in the scene, goes to `end` at constant velocity and stays there,
   /// whatever the scene says of its motion. Only for an obstacle that has two keys or more.
