@@ -1,4 +1,4 @@
-// From one frame to the next in steps: how long they are, what is done again, and what one step consists of.
+// Advances a simulation from frame to frame: divides frames into steps, and attempts each step until it is accepted.
 #pragma once
 
 #include <optional>
@@ -19,41 +19,41 @@
 
 namespace weft::simulation {
 
-/// Parts that a scene does not need are not there: no collision stage where nothing collides, no forces of zero
-/// stiffness.
+/// Parts that a scene does not need are not built: there is no collision stage if nothing collides, and no force of
+/// zero stiffness.
 class StepLoop {
  public:
-  /// From time `start` on [s], at first that of the simulation. Scene and environment must outlive it.
+  /// `start`: time of the first step [s]. Scene and environment must outlive the loop.
   StepLoop(const scene::Scene& scene, const environment::Environment& environment, double start);
 
-  StepLoop(const StepLoop&) = delete;  // its parts know each other
+  StepLoop(const StepLoop&) = delete;  // members refer to each other
   StepLoop& operator=(const StepLoop&) = delete;
 
-  /// Before the first advance(): cloths of this number are where and as fast as those of a loop that ends here, in its
-  /// order.
+  /// Before the first advance(): continues with the cloths of a loop that ends here. `cloths`: their numbers in this
+  /// loop, in the order of `before`.
   void take_over(const StepLoop& before, std::span<const std::size_t> cloths);
-  /// Takes apart what touches or crosses at the start and may be moved for it, cloths that were taken over aside;
-  /// before the first advance().
+  /// Before the first advance(): untangles cloths that touch or intersect at the start, if the scene allows it. Cloths
+  /// that were taken over stay as they are.
   void untangle();
-  /// Lifts bodies that forces move off what they touch; before the first advance(). Returns the largest lift [m].
+  /// Before the first advance(): lifts dynamic bodies off what they touch. Returns the largest lift [m].
   double lift_bodies();
-  /// Where surfaces touch or cross at the start; before the first advance().
+  /// Before the first advance(): places where surfaces touch or intersect at the start.
   std::vector<MeetingPlace> find_meetings() {
     return collisions_ ? collisions_->find_meetings(progress_.now) : std::vector<MeetingPlace>{};
   }
 
-  /// Goes on from the time t_t0 of a frame to that of the next one [s], which is report.frame, and counts in the
-  /// report. Throws Error(simulation_failed) where no step is short enough.
+  /// Advances from the time t_t0 of a frame to the time t_t1 of the next one [s], which is report.frame, and counts in
+  /// the report. Throws Error(simulation_failed) if a step is rejected at every length.
   void advance(double t_t0, double t_t1, FrameReport& report);
 
-  /// What the next step begins with, besides what follows from it.
+  /// State from which the next step begins.
   struct Progress {
     Moment now;
-    std::optional<integrator::StepControl> control;  // where the scene has a tolerance instead of a step
-    double longest;                                  // step after one that was not solved [s]; else infinite
+    std::optional<integrator::StepControl> control;  // if the scene has a tolerance in place of a step
+    double longest;                                  // longest step after a rejected one [s]; infinite before one
   };
   const Progress& progress() const { return progress_; }
-  /// To return to after a failure, between two frames.
+  /// State between two frames, for the return to it after a failure.
   struct Checkpoint {
     Progress progress;
     integrator::Stepper::History history;
@@ -68,23 +68,22 @@ class StepLoop {
   const environment::Weather& weather() const { return weather_; }
   const Attachments& attachments() const { return attachments_; }
   const StepProblem& problem() const { return problem_; }
-  /// Particles that are held, by pins or by the response to contacts.
+  /// Number of particles that pins or velocity constraints hold.
   std::size_t held() const { return held_.size(); }
-  /// Of contacts on all particles at the end of the last step, friction too [N]; zeros before the first one.
+  /// Contact forces with friction on all particles at the end of the last step [N]; zeros before the first step.
   std::vector<Vec3> contact_forces() const;
-  /// Where the vertices are of a body of the environment that forces move; nothing of others.
+  /// Vertex positions of a dynamic body [m]; empty for other bodies.
   std::vector<Vec3> vertices_of(std::size_t body) const;
-  /// nullptr where nothing collides.
+  /// nullptr if nothing collides.
   const CollisionStage* collisions() const { return collisions_ ? &*collisions_ : nullptr; }
-  /// What the frame that ends now has pinched.
+  /// Pinched cloth in the frame that ends now.
   CollisionStage::Pinches take_pinches() {
     return collisions_ ? collisions_->take_pinches(next_) : CollisionStage::Pinches{};
   }
-
-  /// And which pins have lagged in it.
+  /// Pins that lagged in that frame.
   YieldingPins::Lags take_lags() { return pins_.take_lags(); }
 
-  /// Two parts of what later frames depend on; of contacts at the time of a frame [s].
+  /// Two parts of the state that later frames depend on; the second one is of contacts at the time t of a frame [s].
   template <class Archive>
   void serialize(Archive& archive);
   template <class Archive>
@@ -93,30 +92,28 @@ class StepLoop {
   }
 
  private:
-  // Why a step was rejected; empty where it was not.
+  using Start = integrator::Stepper::Start;
+  /// Why a step was rejected; empty if it was accepted.
   using Rejection = std::optional<std::string>;
+  /// One attempt at a step.
+  struct Attempt {
+    double t, h;         // start and length [s]
+    int rejections;      // rejected steps of which this one is a part
+    bool is_last;        // the run fails if it is rejected
+    bool may_move_pins;  // pinned particles are moved if nothing else can be; otherwise they are only reported
+  };
 
+  // From frames to steps: step_loop.cpp.
   void advance_equally(double t_t0, FrameReport& report);
+  void advance_over(double t, double h, int rejections, int halvings_left, FrameReport& report);
+  void advance_controlled(double t_t0, double t_t1, FrameReport& report);
   bool may_rest(double t, double h, int steps);
   bool has_settled() const;
   static bool is_slow(const Moment& moment);
   bool rest(double t, double h, FrameReport& report);
-  void advance_over(double t, double h, int retries, int halvings, FrameReport& report);
-  void advance_controlled(double t_t0, double t_t1, FrameReport& report);
   bool turns_too_far(double t, double h) const {
     return collisions_ && collisions_->turns_too_far(t, h, progress_.now);
   }
-  Rejection attempt(double t, double h, int retries, bool last_try, FrameReport& report);
-  Rejection attempt_with(double t, double h, int retries, bool last_try, bool may_give_way, FrameReport& report);
-  bool is_short_enough(int retries, bool last_try) const;
-  void update_weather(double t, double h);
-  Rejection correct(double h, int retries, bool last_try, bool may_give_way);
-  Rejection torn(double h, bool solved);
-  double energy(const Moment& moment) const;
-  double added_share(double before, double h) const;
-  integrator::Method method() const;
-  integrator::StepReport solve(double h, integrator::Stepper::Start start, bool look, FrameReport& report);
-  static Rejection reason_of(const integrator::StepReport& step);
   void accept(double h, FrameReport& report);
   static void count_work(const StepWork& work, FrameReport& report) {
     report.pin_work += work.pins;
@@ -125,24 +122,43 @@ class StepLoop {
   void measure_stretch(FrameReport& report);
   [[noreturn]] void fail(int frame, double t, double h, const std::string& reason) const;
 
+  // One step into `next_`: step_attempt.cpp.
+  Rejection attempt(double t, double h, int rejections, bool is_last, FrameReport& report);
+  Start begin_attempt(const Attempt& attempt, FrameReport& report);
+  void update_weather(double t, double h);
+  Rejection solve_with_springs(const Attempt& attempt, Start start, FrameReport& report);
+  Rejection solve_with_velocity_constraints(const Attempt& attempt, Start start, FrameReport& report);
+  Rejection solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early, bool& solved,
+                           FrameReport& report);
+  integrator::StepReport solve(double h, Start start, bool check_early, FrameReport& report);
+  integrator::Method method() const;
+  Rejection push_apart(const Attempt& attempt);
+  static bool may_shorten(const Attempt& attempt);
+  bool is_short_enough(const Attempt& attempt) const;
+  Rejection check_divergence(double h);
+  Rejection check_overstretch(double h);
+  double energy(const Moment& moment) const;
+  double added_energy_ratio(double before, double h) const;
+  static Rejection rejection_of(const integrator::StepReport& step);
+
   const scene::Scene& scene_;
   const environment::Environment& environment_;
-  double start_;                      // of the simulation [s]
+  double start_;                      // time at which the simulation starts [s]
   std::vector<std::size_t> dressed_;  // cloths that were taken over
   ClothSystem cloth_;
   StepProblem problem_;
   YieldingPins pins_;
   Progress progress_;
   integrator::Stepper stepper_;
-  Moment next_;                                // the end of the step at hand; once that is accepted, its start
+  Moment next_;                                // end of the current step; its start once the step is accepted
   double local_error_ = 0, solver_error_ = 0;  // of the step to `next_`, estimated [m]
-  std::vector<double> told_shares_;            // of its limit, that each cloth was last told of; 0: it was not
+  std::vector<double> reported_overstretch_;   // stretch over its limit that was last reported of each cloth; 0: none
   std::vector<integrator::HeldParticle> held_;
-  std::size_t pinned_ = 0;  // of these, by pins and keys; others by the response to contacts
+  std::size_t pinned_ = 0;  // how many of them pins and keys hold; velocity constraints hold the others
   std::optional<CollisionStage> collisions_;
   Attachments attachments_;
   environment::Weather weather_;
-  Vec3 gravity_;  // of the step at hand [m/s²]
+  Vec3 gravity_;  // in the current step [m/s²]
 };
 
 }  // namespace weft::simulation

@@ -1,0 +1,246 @@
+// One attempt at a step: StepLoop::attempt and what it consists of.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/numerics.hpp"
+#include "core/parallel.hpp"
+#include "core/timer.hpp"
+#include "simulation/step_loop.hpp"
+#include "simulation/step_settings.hpp"
+
+namespace weft::simulation {
+
+// Repeats the attempt without the pins that obstacles or other cloth keep from their targets.
+StepLoop::Rejection StepLoop::attempt(double t, double h, int rejections, bool is_last, FrameReport& report) {
+  for (int tries = 1;; ++tries) {
+    const Attempt attempt{t, h, rejections, is_last, tries == numerics.repair.tries};
+    pins_.begin_step(t, h, progress_.now.x);
+    const Start start = begin_attempt(attempt, report);
+    if (!collisions_) return rejection_of(solve(h, start, false, report));
+
+    const bool with_springs = collisions_->response().form() == collision::ResponseForm::springs;
+    Rejection rejection = with_springs ? solve_with_springs(attempt, start, report)
+                                       : solve_with_velocity_constraints(attempt, start, report);
+    if (!rejection && may_shorten(attempt)) rejection = check_overstretch(h);
+    if (collisions_->gave_way().empty() || attempt.may_move_pins) return rejection;
+    if (!is_short_enough(attempt) && !pins_.any_lags()) return rejection;
+    for (const collision::GivenWay& given : collisions_->gave_way())
+      pins_.let_go(given.particle, collisions_->describe(given, progress_.now));
+  }
+}
+
+// Sets up pins, bodies, forces and contacts. Returns where the solve starts.
+StepLoop::Start StepLoop::begin_attempt(const Attempt& attempt, FrameReport& report) {
+  const auto [t, h] = std::pair(attempt.t, attempt.h);
+  held_ = pins_.held();
+  hold_frames(environment_, cloth_, t + h, held_);
+  // Whatever is released changes its acceleration at once, so that the history does not predict what follows.
+  const bool releases = release_frames(environment_, cloth_, t, h, progress_.now.v) || pins_.release_between(t, t + h);
+  if (releases) stepper_.restart();
+  pinned_ = held_.size();
+  problem_.begin_step(t + h - start_, progress_.now.particles(), held_, pins_.pulls());
+  attachments_.begin_step(t, t + h, progress_.now.particles());
+  Start start = Start::unchanged_velocity;
+  if (collisions_) {
+    const Stopwatch watch(report.collide);
+    if (collisions_->begin_step(t, h, held_, progress_.now, next_)) start = Start::next;
+  }
+  update_weather(t, h);
+  return start;
+}
+
+// Gravity of the step, and the air where unchanged velocities lead particles until its stage.
+void StepLoop::update_weather(double t, double h) {
+  const double until_stage = method() == integrator::Method::implicit_midpoint ? 0.5 * h : h;
+  gravity_ = weather_.gravity(t + until_stage);
+  cloth_.use_gravity(gravity_);
+  if (!weather_.is_local()) return;
+  const Moment& now = progress_.now;
+  std::vector<solver::Quad<double>> air(now.v.size());
+  parallel_for(air.size(), kFineGrainSize, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      air[i] = solver::quad_of<double>(weather_.air(now.x[i] + until_stage * now.v[i], t + until_stage));
+  });
+  problem_.blow(std::move(air));
+}
+
+// Solves, checks, pushes apart and continues from there with the contacts of that place, until every candidate pair has
+// a separating plane.
+StepLoop::Rejection StepLoop::solve_with_springs(const Attempt& attempt, Start start, FrameReport& report) {
+  const Moment& now = progress_.now;
+  int continuations = 0;
+  bool is_separated = false;
+  for (bool is_first = true;; is_first = false, start = Start::next) {
+    const bool may_continue = continuations < numerics.repair.restarts;
+    // An iterate that is separated already is solved to the end; others are checked early.
+    const bool check_early = !is_separated && (is_first || may_continue);
+    bool solved = false;
+    if (Rejection rejection = solve_contacts(attempt, start, is_first, check_early, solved, report)) return rejection;
+    const Stopwatch watch(report.collide);
+    is_separated = collisions_->apart(now, next_);
+    if (is_separated && solved) return std::nullopt;
+    if (!is_separated && !may_continue && solved) return push_apart(attempt);
+    if (is_separated || !may_continue) continue;
+
+    // Pins that press cloth into cloth: a continued solve has not moved that cloth out of the way.
+    const bool may_release_pins =
+        continuations > 0 && !attempt.may_move_pins && (is_short_enough(attempt) || pins_.any_lags());
+    if (may_release_pins && collisions_->find_pressing_pins()) return "pins press cloth into cloth";
+    const double energy_before = solved ? energy(next_) : 0;
+    const double strain_before = solved ? cloth_.max_strain(next_.particles()) : 0;
+    if (collisions_->push_apart(attempt.h, false, false, now, next_)) {
+      continuations = numerics.repair.restarts;  // some pairs cannot be pushed apart: push_apart(attempt) decides
+      continue;
+    }
+    if (solved && added_energy_ratio(energy_before, attempt.h) <= numerics.repair.unfelt_energy &&
+        cloth_.max_strain(next_.particles()) <= strain_before + numerics.repair.unfelt_strain)
+      return std::nullopt;
+    ++continuations;
+    collisions_->go_on_from(next_);
+    problem_.forget_contacts();
+  }
+}
+
+// The paper's response. After each solve constraints are set and released; pairs without a separating plane add some.
+StepLoop::Rejection StepLoop::solve_with_velocity_constraints(const Attempt& attempt, Start start,
+                                                              FrameReport& report) {
+  const Moment& now = progress_.now;
+  collision::ContactResponse& response = collisions_->response();
+  const auto force_on = [&](Index particle) { return stepper_.constraint_force(particle, cloth_.masses()[particle]); };
+  int revisions = 0;
+  for (bool is_first = true;; is_first = false, start = Start::next) {
+    bool solved = false;
+    if (Rejection rejection = solve_contacts(attempt, start, is_first, is_first, solved, report)) return rejection;
+    const Stopwatch watch(report.collide);
+    const bool may_revise = revisions + 1 < numerics.walls.solves;
+    if (solved && response.revise(now.x, next_.x, force_on) > 0 && may_revise) {
+      ++revisions;
+    } else if (collisions_->apart(now, next_)) {
+      if (solved) return std::nullopt;
+    } else if (may_revise && collisions_->adopt_failing(now, next_) > 0) {
+      ++revisions;
+      if (solved) response.revise(now.x, next_.x, force_on);
+    } else if (solved) {
+      return push_apart(attempt);
+    }
+  }
+}
+
+// Solves with the contacts and constraints at hand into `next_`. `solved`: false if the solve ended for an early check.
+StepLoop::Rejection StepLoop::solve_contacts(const Attempt& attempt, Start start, bool is_first, bool check_early,
+                                             bool& solved, FrameReport& report) {
+  held_.resize(pinned_);
+  collisions_->append_prescribed(held_);
+  integrator::StepReport step = solve(attempt.h, start, check_early, report);
+  // Normal forces that follow friction, and friction that follows them, can increase each other without end. With fixed
+  // normal forces friction has a potential, and dissipates (measured: a sheet of 0.5 J with friction 10 gained 1,300
+  // J).
+  if (is_first && step.verdict == integrator::Verdict::unfinished &&
+      added_energy_ratio(energy(progress_.now), attempt.h) > numerics.repair.astray_energy) {
+    problem_.keep_loads();
+    step = solve(attempt.h, Start::unchanged_velocity, check_early, report);
+  }
+  if (Rejection rejection = rejection_of(step)) {
+    progress_.longest = 0.5 * attempt.h;
+    return rejection;
+  }
+  solved = step.verdict == integrator::Verdict::solved;
+  return solved || !may_shorten(attempt) ? std::nullopt : check_divergence(attempt.h);
+}
+
+// `check_early`: the solve ends unfinished after a few iterations, so that contacts that it reveals are found soon.
+integrator::StepReport StepLoop::solve(double h, Start start, bool check_early, FrameReport& report) {
+  stepper_.use(method());
+  const integrator::StepReport step =
+      stepper_.step(problem_, progress_.now, h, gravity_, held_, next_, start,
+                    check_early ? numerics.newton.check_after : std::numeric_limits<int>::max());
+  if (collisions_) collisions_->follow_frames(next_);
+  report.newton_iterations += step.newton_iterations;
+  report.linear_iterations += step.linear_iterations;
+  report.forces += step.times.forces;
+  report.preconditioner += step.times.preconditioner;
+  report.linear += step.times.linear;
+  local_error_ = step.local_error;
+  solver_error_ = step.solver_error;
+  return step;
+}
+
+// The midpoint rule has no damping, and contacts that switch on and off would excite cloth: BDF2 replaces it in steps
+// with contacts.
+integrator::Method StepLoop::method() const {
+  const integrator::Method chosen = method_of(scene_.time.integrator);
+  const bool needs_damping =
+      chosen == integrator::Method::implicit_midpoint && collisions_ && !collisions_->response().empty();
+  return needs_damping ? integrator::Method::bdf2 : chosen;
+}
+
+// Pushes `next_` apart without solving again. Asks for a shorter step if that adds much energy.
+StepLoop::Rejection StepLoop::push_apart(const Attempt& attempt) {
+  const double energy_before = energy(next_);
+  const bool may_pinch = is_short_enough(attempt);
+  if (Rejection stuck = collisions_->push_apart(attempt.h, may_pinch, attempt.may_move_pins, progress_.now, next_))
+    return stuck;
+  if (!may_shorten(attempt)) return std::nullopt;
+  const double ratio = added_energy_ratio(energy_before, attempt.h);
+  if (ratio <= numerics.repair.corrected_energy) return std::nullopt;
+  progress_.longest = 0.5 * attempt.h;
+  return fmt::format("keeping cloth from passing through adds {:.2g} times the energy of its motion and threads",
+                     ratio);
+}
+
+bool StepLoop::may_shorten(const Attempt& attempt) {
+  return !attempt.is_last && attempt.rejections < numerics.repair.halvings;
+}
+
+// Whether a shorter step would find no more space for cloth than this one.
+bool StepLoop::is_short_enough(const Attempt& attempt) const {
+  return attempt.is_last ||
+         (attempt.rejections >= numerics.repair.halvings && collisions_->obstacles_creep(progress_.now, next_));
+}
+
+// Asks for a shorter step if an unfinished solve has stretched cloth far. Such a solve scatters particles: all pairs of
+// triangles may then meet, and pushing them apart takes a hundred times as long as two shorter steps.
+StepLoop::Rejection StepLoop::check_divergence(double h) {
+  const double strain = cloth_.max_strain(next_.particles());
+  const double most = numerics.repair.diverged_strain;
+  if (strain <= most || strain <= cloth_.max_strain(progress_.now.particles()) + most) return std::nullopt;
+  progress_.longest = 0.5 * h;
+  return fmt::format("the solve diverges, to a strain of {:.2g}", strain);
+}
+
+// Asks for a shorter step if this one stretches threads far beyond their limit.
+StepLoop::Rejection StepLoop::check_overstretch(double h) {
+  const double ratio = cloth_.overstretch(next_.particles()).share;
+  const double most = numerics.repair.overstretch;
+  if (ratio <= 1 + most || ratio <= cloth_.overstretch(progress_.now.particles()).share + most) return std::nullopt;
+  progress_.longest = 0.5 * h;
+  return fmt::format("threads are stretched to {:.2g} times their max_stretch at once", ratio);
+}
+
+// [J]
+double StepLoop::energy(const Moment& moment) const {
+  return cloth_.elastic_energy(moment.particles()) + cloth_.air_energy(moment.particles()) +
+         attachments_.energy(moment.particles()) + cloth_.kinetic_energy(moment.v) +
+         cloth_.potential_energy(moment.particles(), gravity_);
+}
+
+// Energy of `next_` beyond `before` [J], relative to the energy in play at the start of the step. The kinetic energy
+// counts as at least that of a free fall over h [s], so that cloth at rest has a scale.
+double StepLoop::added_energy_ratio(double before, double h) const {
+  double mass = 0;
+  for (const double m : cloth_.masses()) mass += m;
+  const double fall = h * gravity_.norm();
+  const double motion = std::max(cloth_.kinetic_energy(progress_.now.v), 0.5 * mass * fall * fall);
+  return (energy(next_) - before) / (motion + cloth_.elastic_energy(progress_.now.particles()));
+}
+
+StepLoop::Rejection StepLoop::rejection_of(const integrator::StepReport& step) {
+  if (step.verdict == integrator::Verdict::solved || step.verdict == integrator::Verdict::unfinished)
+    return std::nullopt;
+  return fmt::format("{} (a velocity of {:.2g} m/s left where {:.2g} may be, after {} iterations)",
+                     integrator::describe(step.verdict), step.left, step.allowed, step.newton_iterations);
+}
+
+}  // namespace weft::simulation
